@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "csv_table.hpp"
+
+#include "input_error.hpp"
+
+#include <csv.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <new>
+#include <system_error>
+
+namespace thermopower::gap::files {
+namespace {
+
+constexpr std::size_t longest_field = 4096;  // no number, label or column name is longer; a lost quote would swallow the file
+constexpr std::size_t most_columns = 4096;
+
+bool is_missing(const char* text, std::size_t size) {
+  return size == 0 || (size == 3 && (text[0] | 0x20) == 'n' && (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
+}
+
+enum class NumberFault { none, not_a_number, not_finite };
+
+NumberFault parse_number(const char* text, std::size_t size, double& value) {
+  const char* first = text;
+  const char* const last = text + size;
+  if (size > 1 && *first == '+' && first[1] != '-') ++first;  // from_chars knows no plus sign
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (end != last || error == std::errc::invalid_argument) return NumberFault::not_a_number;
+  if (error == std::errc::result_out_of_range) {
+    // Too small is zero for every purpose here; too large is not.
+    value = std::strtod(std::string(first, last).c_str(), nullptr);
+    if (!(std::fabs(value) < 1.0)) return NumberFault::not_finite;
+    return NumberFault::none;
+  }
+  return std::isfinite(value) ? NumberFault::none : NumberFault::not_finite;
+}
+
+std::string shortest(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+class Parser {
+public:
+  Parser(const std::string& file, const std::vector<std::string>& numeric) : numeric_(numeric) {
+    table_.file = file;
+    if (csv_init(&csv_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL) != 0) throw std::bad_alloc();
+    csv_set_blk_size(&csv_, 512);
+  }
+  ~Parser() { csv_free(&csv_); }
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+
+  void feed(const char* bytes, std::size_t size) {
+    if (size == 0) return;
+    if (bytes_ == 0) {
+      reject_other_encodings(bytes, size);
+      if (size >= 3 && std::memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        bytes += 3;
+        size -= 3;
+        bytes_ += 3;
+        if (size == 0) return;
+      }
+    }
+    bytes_ += size;
+    last_byte_ = bytes[size - 1];
+    const std::size_t taken = csv_parse(&csv_, bytes, size, &Parser::on_field, &Parser::on_row, this);
+    rethrow();
+    if (taken != size) fail_parse();
+    if (csv_.entry_pos > longest_field) {
+      fail(line_ + lines_in_row_, column_name(), csv_.quoted
+               ? "the quote that opens this field is not closed within " + std::to_string(longest_field) + " bytes; expected a closing '\"'"
+               : "field of more than " + std::to_string(longest_field) + " bytes; expected a number");
+    }
+  }
+
+  CsvTable finish() {
+    table_.ends_with_line_break = last_byte_ == '\n' || last_byte_ == '\r';
+    at_end_ = true;
+    if (csv_fini(&csv_, &Parser::on_field, &Parser::on_row, this) != 0) {
+      rethrow();
+      fail(line_ + lines_in_row_, column_name(), "the quote that opens this field is never closed; expected a closing '\"' before the end of the file");
+    }
+    rethrow();
+    if (header_.empty()) fail(0, {}, "the file is empty; expected a header row with 't_s' and data rows");
+    if (table_.rows == 0) fail(0, {}, "only a header row and no data; expected at least one data row");
+    collect();
+    return std::move(table_);
+  }
+
+private:
+  enum class Kind : unsigned char { undecided, number, text, run };
+  struct Target {
+    Kind kind = Kind::undecided;
+    bool must_be_number = false;
+    bool power = false;
+    std::vector<double> values;
+  };
+
+  [[noreturn]] void fail(std::size_t line, const std::string& column, const std::string& what) const {
+    std::string text = table_.file;
+    if (line != 0) text += ":" + std::to_string(line);
+    text += ": ";
+    if (!column.empty()) text += "column '" + column + "': ";
+    throw InputError(text + what);
+  }
+
+  void reject_other_encodings(const char* bytes, std::size_t size) const {
+    const auto starts = [&](const char* mark, std::size_t n) { return size >= n && std::memcmp(bytes, mark, n) == 0; };
+    if (starts("\xff\xfe", 2) || starts("\xfe\xff", 2)) fail(1, {}, "UTF-16 text; expected UTF-8 (save the file as 'CSV UTF-8')");
+    if (starts("PK\x03\x04", 4)) fail(1, {}, "a ZIP archive (a spreadsheet?); expected CSV text");
+    if (starts("\x1f\x8b", 2)) fail(1, {}, "a gzip file; expected CSV text (unpack it first)");
+  }
+
+  std::string column_name() const {
+    if (field_ < header_.size()) return header_[field_];
+    return header_.empty() || !header_done_ ? "number " + std::to_string(field_ + 1) : std::string();
+  }
+
+  // libcsv is C: an exception must not cross it, so it waits here until the parser has returned.
+  static void on_field(void* text, std::size_t size, void* self) {
+    Parser& parser = *static_cast<Parser*>(self);
+    if (parser.error_) return;
+    try {
+      parser.take_field(static_cast<const char*>(text), size);
+    } catch (...) {
+      parser.error_ = std::current_exception();
+    }
+  }
+  static void on_row(int terminator, void* self) {
+    Parser& parser = *static_cast<Parser*>(self);
+    if (parser.error_) return;
+    try {
+      parser.take_row(terminator);
+    } catch (...) {
+      parser.error_ = std::current_exception();
+    }
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+  [[noreturn]] void fail_parse() {
+    if (csv_error(&csv_) == CSV_EPARSE) {
+      fail(line_ + lines_in_row_, column_name(), "a quote inside a field; expected quotes only around a whole field, doubled inside it");
+    }
+    throw std::bad_alloc();
+  }
+
+  void take_field(const char* text, std::size_t size) {
+    row_started_ = true;
+    if (header_done_) {
+      take_value(text, size);
+    } else {
+      take_name(text, size);
+    }
+    lines_in_row_ += static_cast<std::size_t>(std::count(text, text + size, '\n'));
+    ++field_;
+  }
+
+  void take_name(const char* text, std::size_t size) {
+    if (std::memchr(text, 0, size) != nullptr) fail(1, {}, "a byte 0x00 in the header row; expected CSV text");
+    if (size > longest_field || field_ >= most_columns) fail(1, {}, "a header row of this size; expected at most 4096 names");
+    if (size == 0) {
+      fail(1, {}, "the name of column number " + std::to_string(field_ + 1) + " is empty; expected a name for each column");
+    }
+    const std::string name(text, size);
+    if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
+      fail(1, {}, "column " + quoted(name) + " appears twice in the header row; expected distinct names");
+    }
+    header_.push_back(name);
+  }
+
+  void end_header() {
+    header_done_ = true;
+    targets_.resize(header_.size());
+    for (std::size_t i = 0; i < header_.size(); ++i) {
+      Target& target = targets_[i];
+      target.kind = header_[i] == "run" ? Kind::run : Kind::undecided;
+      target.must_be_number = std::find(numeric_.begin(), numeric_.end(), header_[i]) != numeric_.end();
+      target.power = header_[i] == "power_param";
+      if (header_[i] == "t_s") time_ = i;
+      if (header_[i] == "run") run_ = i;
+    }
+    if (time_ == none) {
+      std::string found;
+      for (const auto& name : header_) {
+        if (found.size() < 120) found += (found.empty() ? "" : ", ") + quoted(name);
+      }
+      const bool other_separator = header_.size() == 1 && header_[0].find_first_of(";\t|") != std::string::npos;
+      fail(1, {}, "no column 't_s' (time in seconds) in the header row; found " + found +
+                      (other_separator ? "; expected columns separated by commas" : ""));
+    }
+  }
+
+  void take_value(const char* text, std::size_t size) {
+    if (field_ >= targets_.size()) return;  // counted, and refused at the end of the row, where the count is known
+    Target& target = targets_[field_];
+    if (target.kind == Kind::run) {
+      label_.assign(text, std::min(size, longest_field));
+      return;
+    }
+    if (target.kind == Kind::text) return;
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (!is_missing(text, size)) {
+      const NumberFault fault = parse_number(text, size, value);
+      if (fault == NumberFault::not_a_number) {
+        if (target.kind == Kind::undecided && !target.must_be_number && std::memchr(text, 0, size) == nullptr) {
+          target.kind = Kind::text;
+          target.values = {};
+          return;
+        }
+        fail(line_ + lines_in_row_, header_[field_],
+             quoted(text, size) + " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
+      }
+      if (fault == NumberFault::not_finite) {
+        fail(line_ + lines_in_row_, header_[field_], quoted(text, size) + " is not finite; expected a finite number, or an empty cell or "
+                                                                          "nan for a missing sample");
+      }
+      target.kind = Kind::number;
+      if (target.power && !(value >= 0.0 && value <= 255.0)) {
+        fail(line_ + lines_in_row_, header_[field_], quoted(text, size) + " is outside its range; expected 0..255");
+      }
+    } else if (field_ == time_) {
+      fail(line_ + lines_in_row_, header_[field_], "time is missing; expected a time in seconds in every row");
+    }
+    target.values.push_back(value);
+  }
+
+  void take_row(int terminator) {
+    // With CSV_REPALL_NL a CRLF is reported twice; the LF that follows a CR ends nothing.
+    const bool second_half = terminator == '\n' && last_terminator_ == '\r' && !row_started_;
+    last_terminator_ = terminator;
+    if (second_half) return;
+    if (row_started_) {
+      if (!header_done_) {
+        end_header();
+      } else {
+        end_data_row(terminator);
+      }
+    }
+    line_ += 1 + lines_in_row_;
+    lines_in_row_ = 0;
+    field_ = 0;
+    row_started_ = false;
+  }
+
+  void end_data_row(int terminator) {
+    if (field_ != header_.size()) {
+      const std::string count = std::to_string(field_) + (field_ == 1 ? " field" : " fields");
+      const std::string expected = "expected " + std::to_string(header_.size()) + " as in the header row";
+      const bool cut_off = at_end_ && terminator == -1 && field_ < header_.size();
+      fail(line_, field_ < header_.size() ? header_[field_] : std::string(),
+           cut_off ? "the file ends inside this row, after " + count + "; " + expected + " (was the file cut off?)"
+                   : count + " in this row; " + expected);
+    }
+    const std::vector<double>& time = targets_[time_].values;
+    const std::size_t row = table_.rows;
+    const bool new_run = row == 0 || (run_ != none && label_ != table_.run_labels.back());
+    if (new_run) {
+      table_.run_begin.push_back(row);
+      table_.run_labels.push_back(label_);
+      table_.line_of_run.push_back(line_);
+    } else if (!(time[row] > time[row - 1])) {
+      fail(line_, "t_s", "time " + shortest(time[row]) + " s follows " + shortest(time[row - 1]) +
+                             " s; expected strictly increasing time inside a run" +
+                             (run_ == none ? " (a column 'run' separates independent runs)" : ""));
+    }
+    ++table_.rows;
+  }
+
+  void collect() {
+    for (std::size_t i = 0; i < header_.size(); ++i) {
+      Target& target = targets_[i];
+      if (target.kind == Kind::text) table_.ignored_text.push_back(header_[i]);
+      if (target.kind != Kind::number && target.kind != Kind::undecided) continue;
+      table_.columns.push_back({header_[i], std::move(target.values)});
+    }
+  }
+
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  const std::vector<std::string>& numeric_;
+  CsvTable table_;
+  csv_parser csv_{};
+  std::exception_ptr error_;
+  std::vector<std::string> header_;
+  std::vector<Target> targets_;
+  std::string label_;
+  std::size_t line_ = 1;
+  std::size_t lines_in_row_ = 0;
+  std::size_t field_ = 0;
+  std::size_t time_ = none;
+  std::size_t run_ = none;
+  std::size_t bytes_ = 0;
+  int last_terminator_ = 0;
+  char last_byte_ = '\n';
+  bool header_done_ = false;
+  bool row_started_ = false;
+  bool at_end_ = false;
+};
+
+}  // namespace
+
+CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size, const std::vector<std::string>& numeric) {
+  Parser parser(name, numeric);
+  constexpr std::size_t block = 65536;  // bounded, so that a runaway field is noticed before it fills the memory
+  for (std::size_t at = 0; at < size; at += block) parser.feed(bytes + at, std::min(block, size - at));
+  return parser.finish();
+}
+
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status)) throw InputError(path + ": is a directory; expected a CSV file");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  Parser parser(path, numeric);
+  std::vector<char> block(65536);
+  for (;;) {
+    const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());
+    parser.feed(block.data(), got);
+    if (got < block.size()) {
+      if (std::ferror(file.get())) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+      break;
+    }
+  }
+  return parser.finish();
+}
+
+}  // namespace thermopower::gap::files
