@@ -12,59 +12,33 @@
 namespace thermopower {
 namespace detail {
 
-/// Bytes go into memory that is known to be large enough.
-class SbgcBufferOutput {
+/// Payload of a message on its way into memory; lets no more through than was announced.
+class SbgcMemorySink {
  public:
-  explicit SbgcBufferOutput(uint8_t* buffer) noexcept : begin_(buffer), at_(buffer) {}
-  void put(uint8_t byte) noexcept { *at_++ = byte; }
-  size_t finish() noexcept { return static_cast<size_t>(at_ - begin_); }
+  SbgcMemorySink(uint8_t* at, uint8_t announced) noexcept : at_(at), end_(at + announced) {}
 
- private:
-  uint8_t* begin_;
-  uint8_t* at_;
-};
-
-/// Bytes go onto a wire in portions, until it refuses some.
-template <class Wire>
-class SbgcWireOutput {
- public:
-  explicit SbgcWireOutput(Wire& wire) noexcept : wire_(wire) {}
-
-  void put(uint8_t byte) {
-    if (used_ == portion) flush();
-    chunk_[used_++] = byte;
-  }
-
-  size_t finish() {
-    flush();
-    return taken_;
-  }
-
- private:
-  enum : uint8_t { portion = 40 };
-
-  void flush() {
-    if (!refused_) {
-      const size_t took = sbgc_write(wire_, chunk_, used_, 0);
-      taken_ += took < used_ ? took : used_;
-      refused_ = took < used_;
+  void put(uint8_t byte) noexcept {
+    if (at_ == end_) {
+      exceeded_ = true;
+      return;
     }
-    used_ = 0;
+    *at_++ = byte;
   }
 
-  Wire& wire_;
-  size_t taken_ = 0;
-  uint8_t used_ = 0;
-  bool refused_ = false;
-  uint8_t chunk_[portion];
+  bool as_announced() const noexcept { return at_ == end_ && !exceeded_; }
+
+ private:
+  uint8_t* at_;
+  uint8_t* end_;
+  bool exceeded_ = false;
 };
 
-/// Where a message writes its payload: keeps the checksum, and lets no more through than was announced.
-template <class Output, class Protocol>
-class SbgcPayloadSink {
+/// Payload of a message on its way onto a wire, in portions, until the wire refuses some.
+template <class Wire, class Protocol, uint8_t portion>
+class SbgcWireSink {
  public:
-  SbgcPayloadSink(Output& output, Protocol& check, uint8_t announced) noexcept
-      : output_(output), check_(check), left_(announced) {}
+  SbgcWireSink(Wire& wire, Protocol& check, uint8_t announced) noexcept
+      : wire_(wire), check_(check), left_(announced) {}
 
   void put(uint8_t byte) {
     if (left_ == 0) {
@@ -73,39 +47,84 @@ class SbgcPayloadSink {
     }
     --left_;
     check_.add_payload(byte);
-    output_.put(byte);
+    put_unchecked(byte);
   }
 
+  void put_unchecked(uint8_t byte) {
+    if (used_ == portion) flush();
+    chunk_[used_++] = byte;
+  }
+
+  void flush() {
+    if (!refused_) {
+      const size_t took = sbgc_write(wire_, chunk_, used_, 0);
+      refused_ = took < used_;
+      taken_ += refused_ ? took : used_;
+    }
+    used_ = 0;
+  }
+
+  size_t taken() const noexcept { return taken_; }
   bool as_announced() const noexcept { return left_ == 0 && !exceeded_; }
 
  private:
-  Output& output_;
+  Wire& wire_;
   Protocol& check_;
+  size_t taken_ = 0;
   uint8_t left_;
+  uint8_t used_ = 0;
+  bool refused_ = false;
   bool exceeded_ = false;
+  uint8_t chunk_[portion];
 };
 
-template <class Protocol, class Message, class Output>
-size_t sbgc_write_frame(const Message& message, sbgc::Version version, Output& output) {
-  const uint8_t start = static_cast<uint8_t>(version);
-  const uint8_t id = static_cast<uint8_t>(message.id());
-  const size_t announced = static_cast<size_t>(message.payload_size());
-  if (!Protocol::is_start(start) || id == 0 || announced > 255) return 0;
-  const uint8_t size = static_cast<uint8_t>(announced);
-  const uint8_t header[3] = {id, size, static_cast<uint8_t>(id + size)};
+template <class Protocol, class Message>
+bool sbgc_may_send(const Message& message, sbgc::Version version) noexcept {
+  return Protocol::is_start(static_cast<uint8_t>(version)) && static_cast<uint8_t>(message.id()) != 0 &&
+         static_cast<size_t>(message.payload_size()) <= 255;
+}
+
+template <class Protocol, class Message>
+void sbgc_begin(const Message& message, sbgc::Version version, Protocol& check, uint8_t* header) noexcept {
+  header[0] = static_cast<uint8_t>(version);
+  header[1] = static_cast<uint8_t>(message.id());
+  header[2] = static_cast<uint8_t>(message.payload_size());
+  header[3] = static_cast<uint8_t>(header[1] + header[2]);
+  check.begin(header[0]);
+  for (uint8_t i = 1; i < 4; ++i) check.add_header(header[i]);
+}
+
+/// Into memory that holds at least frame_size() bytes.
+template <class Protocol, class Message>
+size_t sbgc_encode(const Message& message, sbgc::Version version, uint8_t* frame) {
   Protocol check;
-  check.begin(start);
-  output.put(start);
-  for (uint8_t i = 0; i < 3; ++i) {
-    check.add_header(header[i]);
-    output.put(header[i]);
-  }
-  SbgcPayloadSink<Output, Protocol> sink(output, check, size);
+  sbgc_begin(message, version, check, frame);
+  const uint8_t size = static_cast<uint8_t>(message.payload_size());
+  SbgcMemorySink sink(frame + 4, size);
+  message.write_payload(sink);
+  if (!sink.as_announced()) return 0;
+  // The checksum is a loop of its own, so that put() stays a store.
+  uint8_t* at = frame + 4;
+  for (uint8_t left = size; left != 0; --left) check.add_payload(*at++);
+  check.finish();
+  for (uint8_t i = 0; i < check.trailer_size(); ++i) *at++ = check.trailer(i);
+  return static_cast<size_t>(at - frame);
+}
+
+/// Onto a wire, with no more memory than a portion.
+template <class Protocol, uint8_t portion, class Message, class Wire>
+size_t sbgc_stream(const Message& message, sbgc::Version version, Wire& wire) {
+  Protocol check;
+  uint8_t header[4];
+  sbgc_begin(message, version, check, header);
+  SbgcWireSink<Wire, Protocol, portion> sink(wire, check, header[2]);
+  for (uint8_t i = 0; i < 4; ++i) sink.put_unchecked(header[i]);
   message.write_payload(sink);
   if (!sink.as_announced()) return 0;
   check.finish();
-  for (uint8_t i = 0; i < check.trailer_size(); ++i) output.put(check.trailer(i));
-  return output.finish();
+  for (uint8_t i = 0; i < check.trailer_size(); ++i) sink.put_unchecked(check.trailer(i));
+  sink.flush();
+  return sink.taken();
 }
 
 }  // namespace detail

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+
+/// @file heating.hpp
+/// Heating laws: how fast a watt warms the heated node. eq 3.7: dT/dt = r P, with r in K/J.
+///
+/// | law | r | when to take it |
+/// |---|---|---|
+/// | `HeatCapacityHeating` | 1 / C | always, unless the thesis's figures are to be reproduced |
+/// | `ThesisHeating` | r(V_rms, T), eq 4.16 to 4.18 | the thesis motors, as measured, as printed or as programmed |
+///
+/// A law of your own has `Scalar`, `is_linear()` (true when r is a constant), `rise_K_per_J(v_rms_V, motor_C)`,
+/// `rise_slope_per_J(v_rms_V, motor_C)` (its derivative by temperature) and `validate()`.
+
+namespace thermopower {
+
+/// Heating of a body with a heat capacity: r = 1 / C.
+template <class Number = float>
+struct HeatCapacityHeating {
+  typedef Number Scalar;
+
+  Number heat_capacity_J_per_K;  ///< C, above 0.
+
+  static constexpr bool is_linear() { return true; }  ///< r depends neither on temperature nor on voltage.
+
+  /// r, in kelvin per joule.
+  Number rise_K_per_J(const Number&, const Number&) const noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    return Real(1) / heat_capacity_J_per_K;
+  }
+
+  /// dr/dT, in 1/J.
+  Number rise_slope_per_J(const Number&, const Number&) const noexcept {
+    typedef detail::Numeric<Number> Math;
+    return Math::constant(typename Math::Real(0));
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return detail::require_positive(heat_capacity_J_per_K, ConfigError::heat_capacity_J_per_K);
+  }
+};
+
+/// The thesis's coefficient of heating: 1/r = (s1 V + s0) T + (o1 V + o0), with V = V_rms and T the motor's temperature in degC.
+/// 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute` takes them as the thesis prints them.
+/// No heating at or below `minimum_V_rms`, nor where 1/r is not positive (as programmed).
+///
+/// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 = -0.4952; the program
+/// multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by name.
+template <class Number = float>
+struct ThesisHeating {
+  typedef Number Scalar;
+
+  Number slope_V1_J_per_K2;   ///< s1, per volt
+  Number slope_V0_J_per_K2;   ///< s0
+  Number offset_V1_J_per_K;   ///< o1, per volt
+  Number offset_V0_J_per_K;   ///< o0
+  Number minimum_V_rms;       ///< At or below this voltage there is no heating (the program: 1 V).
+
+  /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
+  static ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1, Number offset_V0,
+                                  Number minimum_V_rms) noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    const Real second = Real(60);
+    ThesisHeating law = {slope_V1 * second, slope_V0 * second, offset_V1 * second, offset_V0 * second, minimum_V_rms};
+    return law;
+  }
+
+  static constexpr bool is_linear() { return false; }  ///< r depends on the temperature.
+
+  /// 1/r, J/K; may be zero or negative outside the measured range.
+  Number apparent_capacity_J_per_K(const Number& v_rms_V, const Number& motor_C) const noexcept {
+    return capacity_slope_J_per_K2(v_rms_V) * motor_C + (offset_V1_J_per_K * v_rms_V + offset_V0_J_per_K);
+  }
+
+  /// r, in kelvin per joule; >= 0.
+  Number rise_K_per_J(const Number& v_rms_V, const Number& motor_C) const noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    const Number capacity = apparent_capacity_J_per_K(v_rms_V, motor_C);
+    return where_heating(v_rms_V, capacity, Real(1) / capacity);
+  }
+
+  /// dr/dT = -r^2 (s1 V + s0), in 1/J.
+  Number rise_slope_per_J(const Number& v_rms_V, const Number& motor_C) const noexcept {
+    const Number capacity = apparent_capacity_J_per_K(v_rms_V, motor_C);
+    return where_heating(v_rms_V, capacity, -capacity_slope_J_per_K2(v_rms_V) / (capacity * capacity));
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return first_error(detail::require_finite(slope_V1_J_per_K2 + slope_V0_J_per_K2 + offset_V1_J_per_K + offset_V0_J_per_K,
+                                              ConfigError::heating_J_per_K),
+                       detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms));
+  }
+
+ private:
+  Number capacity_slope_J_per_K2(const Number& v_rms_V) const noexcept {
+    return slope_V1_J_per_K2 * v_rms_V + slope_V0_J_per_K2;
+  }
+
+  Number where_heating(const Number& v_rms_V, const Number& capacity, const Number& value) const noexcept {
+    typedef detail::Numeric<Number> Math;
+    // Not a plain 0: NaN in temperature or voltage must stay visible instead of becoming "no heating".
+    const Number zero = (capacity + v_rms_V) * typename Math::Real(0);
+    return Math::choose_if_greater(v_rms_V, minimum_V_rms, Math::choose_if_greater(capacity, zero, value, zero), zero);
+  }
+};
+
+}  // namespace thermopower

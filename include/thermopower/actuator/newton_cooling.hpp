@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+#include "surroundings.hpp"
+
+/// @file newton_cooling.hpp
+/// Newton's law of cooling, as a rate (the thesis) and as a conductance. Menu: cooling.hpp.
+
+namespace thermopower {
+
+/// Newton's law as a rate, eq 3.8: dT/dt = -k (T - T_air), whatever the heat capacity.
+template <class Number = float>
+struct RateCooling {
+  typedef Number Scalar;
+
+  Number cooling_per_s;  ///< k, above 0. The thesis prints s^-1 but means per minute: use `per_minute`.
+
+  /// k as the thesis uses it (0.11 and 0.05 per minute).
+  static RateCooling per_minute(Number cooling_per_min) noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    RateCooling law = {cooling_per_min * (Real(1) / Real(60))};
+    return law;
+  }
+
+  static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  /// Cooling rate, K/s.
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number&) const noexcept {
+    return cooling_per_s * (motor_C - around.air_C);
+  }
+  /// d rate / dT, 1/s.
+  Number slope_per_s(const Number&, const Surroundings<Number>&, const Number&) const noexcept { return cooling_per_s; }
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept { return detail::require_positive(cooling_per_s, ConfigError::cooling_per_s); }
+};
+
+/// Newton's law as a conductance: loss = G (T - T_air).
+template <class Number = float>
+struct NewtonCooling {
+  typedef Number Scalar;
+
+  Number conductance_W_per_K;  ///< G, above 0.
+
+  static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  /// Loss, W.
+  Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
+    return conductance_W_per_K * (motor_C - around.air_C);
+  }
+  /// Cooling rate, K/s.
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+    return rise_K_per_J * loss_W(motor_C, around);
+  }
+  /// d rate / dT, 1/s.
+  Number slope_per_s(const Number&, const Surroundings<Number>&, const Number& rise_K_per_J) const noexcept {
+    return rise_K_per_J * conductance_W_per_K;
+  }
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return detail::require_positive(conductance_W_per_K, ConfigError::conductance_W_per_K);
+  }
+};
+
+}  // namespace thermopower

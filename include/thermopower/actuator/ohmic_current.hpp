@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+
+/// @file ohmic_current.hpp
+/// A winding that follows Ohm's law with a resistance that rises with temperature.
+
+namespace thermopower {
+
+/// Current law: I = V_rms / R(T) with R(T) = R_ref (1 + a (T - T_ref)).
+/// Take it when the winding's resistance is known or can be measured; it is physical at any voltage and temperature.
+/// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the desk
+template <class Number = float>
+struct OhmicCurrent {
+  typedef Number Scalar;
+
+  Number resistance_ohm;  ///< At `reference_C`, between the terminals that see V_rms. Above 0.
+  Number tempco_per_K;    ///< Relative rise per kelvin: copper 0.00393. 0 .. 0.02.
+  Number reference_C;     ///< Temperature at which `resistance_ohm` was measured. -50 .. 200.
+
+  /// Winding resistance at a temperature. @return ohm
+  Number resistance_at(const Number& winding_C) const noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    return resistance_ohm * (Real(1) + tempco_per_K * (winding_C - reference_C));
+  }
+
+  /// Current drawn at a voltage. @return ampere
+  Number current_A(const Number& v_rms_V, const Number& winding_C) const noexcept {
+    return v_rms_V / resistance_at(winding_C);
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return first_error(detail::require_positive(resistance_ohm, ConfigError::resistance_ohm),
+                       first_error(detail::require_within(tempco_per_K, Number(0), Number(0.02), ConfigError::tempco_per_K),
+                                   detail::require_within(reference_C, Number(-50), Number(200), ConfigError::reference_C)));
+  }
+};
+
+}  // namespace thermopower

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+
+/// @file surroundings.hpp
+/// What an actuator loses its heat to.
+
+namespace thermopower {
+
+/// The air around an actuator during one step; constant over the step.
+template <class Number = float>
+struct Surroundings {
+  Number air_C;         ///< Air temperature, degC.
+  Number airspeed_mps;  ///< Speed of forced airflow, m/s, >= 0; only `ForcedAirflow` reads it.
+};
+
+}  // namespace thermopower

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <stdint.h>
+
+/// @file config_error.hpp
+/// The answer of every `validate()`: which field of a configuration is wrong, by name.
+
+namespace thermopower {
+
+/// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger, a log of the number or
+/// `name_of()` tell what to mend. Numbers are stable: they are never reused, new ones are added at the end.
+enum class ConfigError : uint8_t {
+  none = 0,                           ///< Every field is in its range.
+  supply_V = 1,                       ///< Must be finite and above 0.
+  resistance_ohm = 2,                 ///< Must be finite and above 0.
+  tempco_per_K = 3,                   ///< Must be within 0 .. 0.02 per kelvin (copper: 0.00393).
+  reference_C = 4,                    ///< Must be within -50 .. 200 degC.
+  base_A = 5,                         ///< Must be finite and above 0.
+  exponent = 6,                       ///< Must be finite and within the range its law states.
+  slope_A_per_K = 7,                  ///< The current's slope against temperature must be finite.
+  minimum_V_rms = 8,                  ///< Must be finite and not negative.
+  heat_capacity_J_per_K = 9,          ///< Must be finite and above 0.
+  conductance_W_per_K = 10,           ///< Must be finite and above 0.
+  cooling_per_s = 11,                 ///< Must be finite and above 0.
+  radiating_area_m2 = 12,             ///< Must be finite and above 0.
+  emissivity = 13,                    ///< Must be within 0 .. 1.
+  airflow_gain = 14,                  ///< Must be finite and not negative.
+  reference_K = 15,                   ///< A temperature difference; must be finite and above 0.
+  winding_heat_capacity_J_per_K = 16, ///< Must be finite and above 0.
+  body_heat_capacity_J_per_K = 17,    ///< Must be finite and above 0.
+  coupling_W_per_K = 18,              ///< Must be finite and above 0.
+  full_power_error_deg = 19,          ///< Must be finite and above 0.
+  power_step = 20,                    ///< Must be at least 1.
+  hysteresis_deg = 21,                ///< Must be finite and not negative.
+  maximum_C = 22,                     ///< The limit temperature must be within 0 .. 200 degC.
+  safety_time_s = 23,                 ///< Must be finite and above 0.
+  rate_per_s = 24,                    ///< Must be finite and above 0.
+  gain_low_power = 25,                ///< The P gain at the lowest power must be finite and within 0 .. 255.
+  gain_high_power = 26,               ///< The P gain at the highest power must be finite and within 0 .. 255.
+  minimum_plausible_C = 27,           ///< Must be finite and below maximum_plausible_C.
+  maximum_plausible_C = 28,           ///< Must be finite.
+  maximum_difference_K = 29,          ///< Must be finite and above 0.
+  heating_J_per_K = 30,               ///< A constant of the thesis's heating coefficient must be finite.
+  minimum_supply_V = 31,              ///< Must be finite, not negative and below supply_V.
+  timeout_s = 32,                     ///< Must be finite and above 0.
+  least_power = 33,                   ///< Must not exceed the highest power.
+  user_defined = 128                  ///< Codes from here up are free for policies of your own.
+};
+
+/// True when a `validate()` found something.
+constexpr bool is_error(ConfigError error) { return error != ConfigError::none; }
+
+/// The first of two results that is an error: lets a component report its parts in order.
+constexpr ConfigError first_error(ConfigError first, ConfigError second) { return is_error(first) ? first : second; }
+
+}  // namespace thermopower

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+
+/// @file air_temperature.hpp
+/// Air temperature from the two thermometers on a gimbal, eq 4.20, and what to do when one of them is missing or lies.
+
+namespace thermopower {
+
+/// Where an air temperature came from.
+enum class AirSource : uint8_t {
+  neither = 0,   ///< No plausible reading: `air_C` is NaN.
+  camera = 1,    ///< Only the camera's IMU is plausible.
+  frame = 2,     ///< Only the frame's IMU is plausible.
+  both = 3,      ///< Both, averaged (eq 4.20).
+  warmer = 4     ///< Both are plausible but disagree: the warmer one, because too warm costs power and too cold costs the motor.
+};
+
+/// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC: in a warm room it disagrees, and the average,
+/// which would be half the truth, is not taken.
+class AirTemperature {
+ public:
+  /// What one tunes.
+  struct Config {
+    float minimum_plausible_C;   ///< Below this a reading is rejected.
+    float maximum_plausible_C;   ///< Above this a reading is rejected.
+    float maximum_difference_K;  ///< Further apart than this the two are not averaged. Above 0.
+
+    /// -40 .. 85 degC (the sensor's own range), 15 K apart.
+    static Config standard() noexcept {
+      Config config = {-40.0f, 85.0f, 15.0f};
+      return config;
+    }
+    /// First constant out of its range, or ConfigError::none.
+    ConfigError validate() const noexcept {
+      if (!detail::is_finite(maximum_plausible_C)) return ConfigError::maximum_plausible_C;
+      if (!detail::is_finite(minimum_plausible_C) || minimum_plausible_C >= maximum_plausible_C)
+        return ConfigError::minimum_plausible_C;
+      return detail::require_positive(maximum_difference_K, ConfigError::maximum_difference_K);
+    }
+  };
+
+  /// What one logs.
+  struct State {
+    float air_C;       ///< NaN when `source` is `neither`.
+    AirSource source;  ///< Which thermometers it rests on.
+  };
+
+  explicit AirTemperature(const Config& config = Config::standard()) noexcept : config_(config) {
+    state_.air_C = detail::not_a_number();
+    state_.source = AirSource::neither;
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept { return config_.validate(); }
+
+  /// @param camera_C  thermometer of the camera's IMU; NaN when not fitted
+  /// @param frame_C   thermometer of the frame's IMU; NaN when not fitted
+  const State& step(float camera_C, float frame_C) noexcept {
+    const bool camera = is_plausible(camera_C), frame = is_plausible(frame_C);
+    if (camera && frame) {
+      const bool agree = detail::magnitude(camera_C - frame_C) <= config_.maximum_difference_K;
+      state_.air_C = agree ? 0.5f * (camera_C + frame_C) : (camera_C > frame_C ? camera_C : frame_C);
+      state_.source = agree ? AirSource::both : AirSource::warmer;
+    } else {
+      state_.air_C = camera ? camera_C : (frame ? frame_C : detail::not_a_number());
+      state_.source = camera ? AirSource::camera : (frame ? AirSource::frame : AirSource::neither);
+    }
+    return state_;
+  }
+
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+
+ private:
+  bool is_plausible(float reading_C) const noexcept {
+    return reading_C >= config_.minimum_plausible_C && reading_C <= config_.maximum_plausible_C;
+  }
+
+  Config config_;
+  State state_;
+};
+
+}  // namespace thermopower

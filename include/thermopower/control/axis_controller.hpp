@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+#include "../detail/composition.hpp"
+#include "gain_scheduler.hpp"
+#include "position_error.hpp"
+#include "safety_limiter.hpp"
+#include "step_power_law.hpp"
+
+/// @file axis_controller.hpp
+/// One axis: from a position error to a power that the motor can bear, and the gain that goes with it.
+
+namespace thermopower {
+
+/// Temperature estimate, power law, limiter and gain of one axis, in the order of the original program:
+/// the power of the last step heats the model, the error asks for a power, the limiter grants it, the gain follows.
+///
+/// @tparam Motor     names `Current` and `Thermal` and gives their constants: `motors/`, or a struct of your own
+/// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
+/// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
+/// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
+///
+/// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is the least there is. The
+/// temperature is estimated through a fault with the last valid air and supply: the motor stays warm even if its sensor is gone.
+template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>, class Gain = GainScheduler<> >
+class AxisController {
+  static_assert(detail::IsMotor<Motor>::value,
+                "thermopower: the first parameter of AxisController must be a motor: a type that names Current and Thermal");
+  static_assert(detail::IsPowerLaw<PowerLaw>::value,
+                "thermopower: the second parameter of AxisController must be a power law: a type with Config and step(error_deg)");
+  static_assert(detail::IsLimiter<Limiter>::value,
+                "thermopower: the third parameter of AxisController must be a limiter: a type with Inputs, step, cut and ceiling");
+
+ public:
+  typedef typename Motor::Current Current;  ///< Current model.
+  typedef typename Motor::Thermal Thermal;  ///< Thermal model.
+
+  /// What one tunes.
+  struct Config {
+    typename Current::Config current;      ///< From the motor.
+    typename Thermal::Config thermal;      ///< From the motor.
+    typename PowerLaw::Config power_law;   ///< What an error is worth.
+    typename Limiter::Config limiter;      ///< Limit temperature.
+    typename Gain::Config gain;            ///< Must be set where the gain rule has one.
+
+    /// The motor's constants and every policy's standard.
+    static Config standard() noexcept {
+      Config config = {Motor::current(), Motor::thermal(), PowerLaw::Config::standard(), Limiter::Config::standard(),
+                       Gain::Config::standard()};
+      return config;
+    }
+    /// `standard()` with the axis's gains.
+    static Config with_gain(const typename Gain::Config& gain) noexcept {
+      Config config = standard();
+      config.gain = gain;
+      return config;
+    }
+    /// First constant out of its range, or ConfigError::none.
+    ConfigError validate() const noexcept {
+      return first_error(
+          current.validate(),
+          first_error(thermal.validate(),
+                      first_error(power_law.validate(), first_error(limiter.validate(), gain.validate()))));
+    }
+  };
+
+  /// What the axis decides on.
+  struct Inputs {
+    float error_deg;    ///< Position error, any number of turns.
+    float supply_V;     ///< Amplitude of the switched supply.
+    float air_C;        ///< Air temperature.
+    LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
+  };
+
+  /// What one logs: every intermediate of the last step.
+  struct State {
+    float error_deg;      ///< Folded to -180 .. 180.
+    float v_rms_V;        ///< At the power of the step before.
+    float current_A;      ///< At the power of the step before.
+    float power_W;        ///< V_rms I at the power of the step before.
+    float motor_C;        ///< Estimated temperature of the hottest node; NaN before the first valid air temperature.
+    float rate_K_per_s;   ///< dT/dt of that node.
+    uint8_t demand;       ///< Power asked for.
+    uint8_t ceiling;      ///< Highest power the limiter grants.
+    uint8_t power;        ///< Power granted: send this as POWER.
+    uint8_t p_gain;       ///< Send this as P.
+    LimitReason reason;   ///< Why `power` is below `demand`.
+  };
+
+  explicit AxisController(const Config& config = Config::standard()) noexcept
+      : current_(config.current), thermal_(config.thermal, detail::not_a_number()), power_law_(config.power_law), limiter_(config.limiter),
+        gain_(config.gain), config_error_(config.validate()) {
+    const State state = {0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f, least_power(), limiter_.ceiling(), least_power(),
+                         gain_.step(least_power()), LimitReason::no_telemetry_yet};
+    state_ = state;
+  }
+
+  /// What `Config::validate()` found when the controller was made. Anything but none keeps the power at its least.
+  ConfigError validate() const noexcept { return config_error_; }
+
+  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite
+  void start(float motor_C) noexcept { thermal_.start(motor_C); }
+
+  /// One control cycle. @param dt_s  time since the last one, >= 0
+  const State& step(const Inputs& inputs, float dt_s) noexcept {
+    const LimitReason fault = find_fault(inputs, dt_s);
+    if (detail::is_finite(inputs.air_C)) last_air_C_ = inputs.air_C;
+    if (detail::is_finite(inputs.supply_V)) last_supply_V_ = inputs.supply_V;
+    estimate_temperature(detail::is_finite(dt_s) && dt_s > 0.0f ? dt_s : 0.0f);
+
+    state_.error_deg = wrap_deg(inputs.error_deg);
+    state_.demand = power_law_.step(state_.error_deg);
+    const typename Limiter::Inputs limits = {state_.demand, state_.motor_C, state_.rate_K_per_s};
+    const LimitedPower granted = is_fault(fault) ? limiter_.cut(fault) : limiter_.step(limits, dt_s);
+    state_.ceiling = limiter_.ceiling();
+    state_.power = granted.power;
+    state_.reason = granted.reason;
+    state_.p_gain = gain_.step(granted.power);
+    return state_;
+  }
+
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+
+ private:
+  LimitReason find_fault(const Inputs& inputs, float dt_s) const noexcept {
+    if (is_error(config_error_)) return LimitReason::config_invalid;
+    if (is_fault(inputs.fault)) return inputs.fault;
+    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return LimitReason::time_invalid;
+    if (!detail::is_finite(inputs.error_deg)) return LimitReason::error_not_finite;
+    if (!detail::is_finite(inputs.supply_V)) return LimitReason::supply_not_finite;
+    if (!detail::is_finite(inputs.air_C)) return LimitReason::air_implausible;
+    return LimitReason::none;
+  }
+
+  void estimate_temperature(float dt_s) noexcept {
+    if (!detail::is_finite(last_air_C_)) return;
+    // The thesis's assumption, section 4.2: a motor that was just switched on is as warm as the air.
+    if (!detail::is_finite(thermal_.hottest_C()) && !is_started_) thermal_.start(last_air_C_);
+    is_started_ = true;
+    const typename Current::State drawn =
+        current_.at_power(static_cast<float>(state_.power), last_supply_V_, thermal_.hottest_C());
+    const typename Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {last_air_C_, 0.0f}};
+    thermal_.step(heat, dt_s);
+    state_.v_rms_V = drawn.v_rms_V;
+    state_.current_A = drawn.current_A;
+    state_.power_W = drawn.winding_power_W;
+    state_.motor_C = thermal_.hottest_C();
+    state_.rate_K_per_s = thermal_.hottest_rate_K_per_s();
+  }
+
+  Current current_;
+  Thermal thermal_;
+  PowerLaw power_law_;
+  Limiter limiter_;
+  Gain gain_;
+  State state_;
+  float last_air_C_ = detail::not_a_number();
+  float last_supply_V_ = 0.0f;
+  bool is_started_ = false;
+  ConfigError config_error_;
+};
+
+}  // namespace thermopower

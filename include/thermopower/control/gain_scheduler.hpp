@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+#include "../detail/flash.hpp"
+
+/// @file gain_scheduler.hpp
+/// The proportional gain that keeps an axis's response the same when its power changes, eq 4.27.
+///
+/// | rule | gain | when to take it |
+/// |---|---|---|
+/// | `RoundedGain` | eq 4.27 to the nearest count | the default |
+/// | `TruncatedGain` | eq 4.27 as programmed, cut to a whole count | the original program |
+/// | `TableGain<Table>` | from a table in flash | the gain is not linear, or has been tuned per level |
+/// | `NoGain` | none: the actuator has no gain to schedule | anything but a gimbal board |
+///
+/// A rule of your own has `Config` with `validate()`, and `static uint8_t gain(power, config)`.
+
+namespace thermopower {
+
+/// What one tunes: the gains found at the two ends (section 4.2, auto-tuned).
+struct GainConfig {
+  float gain_low_power;   ///< P at power 0, 0 .. 255.
+  float gain_high_power;  ///< P at power 255, 0 .. 255.
+
+  /// There is no gain that suits every rig: these are NaN, which `validate()` refuses by name until they are set.
+  static GainConfig standard() noexcept {
+    GainConfig config = {detail::not_a_number(), detail::not_a_number()};
+    return config;
+  }
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return first_error(detail::require_within(gain_low_power, 0.0f, 255.0f, ConfigError::gain_low_power),
+                       detail::require_within(gain_high_power, 0.0f, 255.0f, ConfigError::gain_high_power));
+  }
+};
+
+namespace detail {
+/// Eq 4.27, plus `rounding`, as a whole count; 0 where the gains are not numbers.
+inline uint8_t scheduled_gain(uint8_t power, const GainConfig& config, float rounding) noexcept {
+  const float gain =
+      config.gain_low_power - static_cast<float>(power) / 255.0f * (config.gain_low_power - config.gain_high_power) + rounding;
+  if (!(gain > 0.0f)) return 0;
+  return static_cast<uint8_t>(gain >= 255.0f ? 255.0f : gain);
+}
+}  // namespace detail
+
+/// Eq 4.27, cut to a whole count as the program does: 22 / 172 / 36 at power 25 for roll / pitch / yaw.
+struct TruncatedGain {
+  typedef GainConfig Config;
+  static uint8_t gain(uint8_t power, const Config& config) noexcept {
+    return detail::scheduled_gain(power, config, 0.0f);
+  }
+};
+
+/// Eq 4.27 to the nearest count.
+struct RoundedGain {
+  typedef GainConfig Config;
+  static uint8_t gain(uint8_t power, const Config& config) noexcept {
+    return detail::scheduled_gain(power, config, 0.5f);
+  }
+};
+
+/// Gains at equally spaced powers, linearly interpolated. `Table` has `static constexpr uint8_t size()` (2 .. 255) and
+/// `static const uint8_t* gains()`, the address of that many bytes declared with `thermopower_flash`; the first is for power 0, the
+/// last for power 255.
+template <class Table>
+struct TableGain {
+  /// The table is the configuration.
+  struct Config {
+    static Config standard() noexcept { return Config(); }               ///< Nothing to set.
+    ConfigError validate() const noexcept { return ConfigError::none; }  ///< Sizes are checked at compile time.
+  };
+  static_assert(Table::size() >= 2, "thermopower: a gain table needs at least two entries, for power 0 and power 255");
+
+  static uint8_t gain(uint8_t power, const Config&) noexcept {
+    const uint16_t position = static_cast<uint16_t>(static_cast<uint16_t>(power) * static_cast<uint16_t>(Table::size() - 1));
+    const uint8_t index = static_cast<uint8_t>(position / 255u);
+    const int16_t fraction = static_cast<int16_t>(position % 255u);
+    const int16_t below = detail::read_flash(Table::gains() + index);
+    if (fraction == 0) return static_cast<uint8_t>(below);
+    const int16_t above = detail::read_flash(Table::gains() + index + 1);
+    const int32_t change = static_cast<int32_t>(above - below) * fraction;
+    return static_cast<uint8_t>(below + (change + (change < 0 ? -127 : 127)) / 255);
+  }
+};
+
+/// No gain to schedule: always 0, which the caller ignores.
+struct NoGainRule {
+  /// Nothing to tune.
+  struct Config {
+    static Config standard() noexcept { return Config(); }               ///< Nothing to set.
+    ConfigError validate() const noexcept { return ConfigError::none; }  ///< Nothing can be wrong.
+  };
+  static uint8_t gain(uint8_t, const Config&) noexcept { return 0; }
+};
+
+/// The proportional gain for a power.
+/// @tparam Rule  one of the rules above
+template <class Rule = RoundedGain>
+class GainScheduler {
+ public:
+  typedef typename Rule::Config Config;  ///< What one tunes.
+
+  explicit GainScheduler(const Config& config = Config::standard()) noexcept : config_(config) {}
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept { return config_.validate(); }
+  /// @param power  granted power parameter  @return P, 0 .. 255
+  uint8_t step(uint8_t power) const noexcept { return Rule::gain(power, config_); }
+
+  const Config& config() const noexcept { return config_; }  ///< The constants.
+
+ private:
+  Config config_;
+};
+
+/// For actuators without a gain.
+typedef GainScheduler<NoGainRule> NoGain;
+
+}  // namespace thermopower

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "air_temperature.hpp"
+#include "axis_controller.hpp"
+
+/// @file gimbal_controller.hpp
+/// One `AxisController` per axis, each with its own motor, fed by one telemetry message.
+
+namespace thermopower {
+
+/// What goes back to the board: one entry per axis, in the order of the axes.
+template <uint8_t axis_count>
+struct GimbalCommand {
+  uint8_t power[axis_count];        ///< POWER
+  uint8_t p_gain[axis_count];       ///< P
+  LimitReason reason[axis_count];   ///< Why `power` is below what the error asks for.
+};
+
+/// The first wrong field of a gimbal's configuration.
+struct GimbalConfigError {
+  uint8_t axis;       ///< 0 .. number of axes - 1; the number of axes when the field is the gimbal's own.
+  ConfigError field;  ///< `ConfigError::none` when all is well.
+};
+
+/// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate to compute with.
+struct NominalSupply {
+  /// @return V
+  static float supply_V(float nominal_V, float) noexcept { return nominal_V; }
+};
+
+/// The supply as the board measures it: take it when the measurement has been checked, or the battery sags.
+struct MeasuredSupply {
+  /// @return V
+  static float supply_V(float, float measured_V) noexcept { return measured_V; }
+};
+
+/// What one tunes on the gimbal as a whole.
+struct GimbalConfig {
+  float supply_V;                      ///< Nominal supply, above 0. The thesis: 13.
+  float minimum_supply_V;              ///< Below this the battery counts as empty or missing. The program: 3.
+  float timeout_s;                     ///< Silence of the link that is tolerated, above 0.
+  AirTemperature::Config air;          ///< When a thermometer is believed.
+
+  /// 13 V, 3 V, half a second.
+  static GimbalConfig standard() noexcept {
+    GimbalConfig config = {13.0f, 3.0f, 0.5f, AirTemperature::Config::standard()};
+    return config;
+  }
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    if (is_error(detail::require_positive(supply_V, ConfigError::supply_V))) return ConfigError::supply_V;
+    if (is_error(detail::require_within(minimum_supply_V, 0.0f, supply_V, ConfigError::minimum_supply_V)))
+      return ConfigError::minimum_supply_V;
+    return first_error(detail::require_positive(timeout_s, ConfigError::timeout_s), air.validate());
+  }
+};
+
+/// What the gimbal decides on, where it does not come as a telemetry message.
+template <uint8_t axis_count>
+struct GimbalInputs {
+  float error_deg[axis_count];  ///< Position errors, any number of turns.
+  float camera_C;               ///< Thermometer of the camera's IMU.
+  float frame_C;                ///< Thermometer of the frame's IMU; NaN when there is none.
+  float supply_V;               ///< Measured supply.
+};
+
+namespace detail {
+
+/// The axes one after the other; a tuple that C++11 without a standard library can have.
+template <uint8_t index, class... Axes>
+struct AxisChain {
+  AxisChain() noexcept {}
+  template <class Visitor>
+  void visit(Visitor&) noexcept {}
+};
+
+template <uint8_t index, class First, class... Rest>
+struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
+  typedef AxisChain<index + 1, Rest...> Next;
+  AxisChain() noexcept {}
+  explicit AxisChain(const typename First::Config& first, const typename Rest::Config&... rest) noexcept
+      : Next(rest...), axis(first) {}
+  template <class Visitor>
+  void visit(Visitor& visitor) noexcept {
+    visitor(index, axis);
+    Next::visit(visitor);
+  }
+  First axis;
+};
+
+template <uint8_t index, class First, class... Rest>
+First& axis_at(AxisChain<index, First, Rest...>& chain) noexcept {
+  return chain.axis;
+}
+template <uint8_t index, class First, class... Rest>
+const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
+  return chain.axis;
+}
+
+}  // namespace detail
+
+/// The controller of a whole gimbal.
+/// @tparam Supply  `NominalSupply` or `MeasuredSupply`
+/// @tparam Axes    one AxisController per axis
+template <class Supply, class... Axes>
+class BasicGimbalController {
+ public:
+  static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }  ///< Number of axes.
+  static_assert(sizeof...(Axes) >= 1 && sizeof...(Axes) < 255, "thermopower: a GimbalController needs at least one AxisController");
+
+  typedef GimbalConfig Config;                                  ///< What one tunes on the gimbal as a whole.
+  typedef GimbalCommand<sizeof...(Axes)> Command;               ///< What goes back to the board.
+  typedef GimbalInputs<sizeof...(Axes)> Inputs;                 ///< What the gimbal decides on.
+
+  /// What one logs; each axis has its own state.
+  struct State {
+    Command command;     ///< The last command.
+    float air_C;         ///< NaN when no thermometer is plausible.
+    AirSource air_source;///< Which thermometers `air_C` rests on.
+    float silent_s;      ///< Time since the last telemetry.
+  };
+
+  /// Every axis and the gimbal with their standard configuration.
+  BasicGimbalController() noexcept { begin(); }
+  /// @param config  of the gimbal  @param axes  of each axis, in order
+  explicit BasicGimbalController(const Config& config, const typename Axes::Config&... axes) noexcept
+      : config_(config), air_(config.air), axes_(axes...) {
+    begin();
+  }
+
+  /// The first wrong field found when the controller was made. Anything but none keeps the power of every axis at its least.
+  GimbalConfigError validate() const noexcept { return config_error_; }
+
+  /// One control cycle from a telemetry message.
+  /// @param telemetry  offers `error_deg(axis)`, `imu_C()`, `frame_imu_C()` and `battery_V()`, as `sbgc::RealtimeData` does
+  /// @param dt_s       time since the last step, >= 0
+  template <class Telemetry>
+  const Command& step(const Telemetry& telemetry, float dt_s) noexcept {
+    Inputs inputs;
+    for (uint8_t index = 0; index < axis_count(); ++index) inputs.error_deg[index] = telemetry.error_deg(index);
+    inputs.camera_C = static_cast<float>(telemetry.imu_C());
+    inputs.frame_C = static_cast<float>(telemetry.frame_imu_C());
+    inputs.supply_V = telemetry.battery_V();
+    return step(inputs, dt_s);
+  }
+
+  /// One control cycle. @param dt_s  time since the last step, >= 0
+  const Command& step(const Inputs& inputs, float dt_s) noexcept {
+    air_.step(inputs.camera_C, inputs.frame_C);
+    state_.silent_s = 0.0f;
+    last_ = inputs;
+    has_telemetry_ = true;
+    LimitReason fault = LimitReason::none;
+    if (!detail::is_finite(inputs.supply_V))
+      fault = LimitReason::supply_not_finite;
+    else if (inputs.supply_V < config_.minimum_supply_V)
+      fault = LimitReason::supply_low;
+    return step_axes(fault, dt_s);
+  }
+
+  /// One cycle in which no telemetry came. The temperatures go on; the last command holds until `timeout_s`, then the power is the
+  /// least. @param dt_s  time since the last step or silent cycle, >= 0
+  const Command& step_silent(float dt_s) noexcept {
+    state_.silent_s += dt_s;
+    // Asked this way round so that a NaN time counts as silence.
+    const bool is_tolerated = state_.silent_s <= config_.timeout_s;
+    const LimitReason fault = !has_telemetry_ ? LimitReason::no_telemetry_yet
+                                              : (is_tolerated ? LimitReason::none : LimitReason::link_silent);
+    return step_axes(fault, dt_s);
+  }
+
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+
+  /// The controller of one axis, to log its state or set its temperature.
+  template <uint8_t index>
+  auto axis() noexcept -> decltype(detail::axis_at<index>(*static_cast<detail::AxisChain<0, Axes...>*>(nullptr))) {
+    return detail::axis_at<index>(axes_);
+  }
+  /// @overload
+  template <uint8_t index>
+  auto axis() const noexcept -> decltype(detail::axis_at<index>(*static_cast<const detail::AxisChain<0, Axes...>*>(nullptr))) {
+    return detail::axis_at<index>(axes_);
+  }
+
+ private:
+  struct StepVisitor {
+    BasicGimbalController& gimbal;
+    LimitReason fault;
+    float dt_s;
+    template <class Axis>
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
+                                            Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
+                                            gimbal.state_.air_C, fault};
+      gimbal.store(index, controller.step(inputs, dt_s));
+    }
+  };
+
+  struct BeginVisitor {
+    BasicGimbalController& gimbal;
+    template <class Axis>
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      if (!is_error(gimbal.config_error_.field) && is_error(controller.validate())) {
+        gimbal.config_error_.axis = index;
+        gimbal.config_error_.field = controller.validate();
+      }
+      gimbal.store(index, controller.state());
+    }
+  };
+
+  template <class AxisState>
+  void store(uint8_t index, const AxisState& decided) noexcept {
+    state_.command.power[index] = decided.power;
+    state_.command.p_gain[index] = decided.p_gain;
+    state_.command.reason[index] = decided.reason;
+  }
+
+  void begin() noexcept {
+    config_error_.axis = axis_count();
+    config_error_.field = config_.validate();
+    for (uint8_t index = 0; index < axis_count(); ++index) last_.error_deg[index] = detail::not_a_number();
+    last_.camera_C = last_.frame_C = last_.supply_V = detail::not_a_number();
+    state_.air_C = detail::not_a_number();
+    state_.air_source = AirSource::neither;
+    state_.silent_s = 0.0f;
+    BeginVisitor visitor = {*this};
+    axes_.visit(visitor);
+  }
+
+  const Command& step_axes(LimitReason fault, float dt_s) noexcept {
+    state_.air_C = air_.state().air_C;
+    state_.air_source = air_.state().source;
+    if (is_error(config_error_.field)) fault = LimitReason::config_invalid;
+    StepVisitor visitor = {*this, fault, dt_s};
+    axes_.visit(visitor);
+    return state_.command;
+  }
+
+  Config config_ = Config::standard();
+  AirTemperature air_{config_.air};
+  detail::AxisChain<0, Axes...> axes_;
+  Inputs last_;
+  State state_;
+  GimbalConfigError config_error_;
+  bool has_telemetry_ = false;
+};
+
+/// The controller of a gimbal whose motors run on a known, stiff supply, as the thesis assumes.
+template <class... Axes>
+using GimbalController = BasicGimbalController<NominalSupply, Axes...>;
+
+}  // namespace thermopower

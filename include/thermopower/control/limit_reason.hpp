@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <stdint.h>
+
+/// @file limit_reason.hpp
+/// Why an actuator got the power it got.
+
+namespace thermopower {
+
+/// The reason behind a power that is less than what was asked for. Numbers are stable, for logs. Below 64 the controller is limiting,
+/// which is its job; from 64 up something is wrong (a fault), and the power is the least there is.
+enum class LimitReason : uint8_t {
+  none = 0,                   ///< The demand was granted.
+  safety_temperature = 1,     ///< Eq 4.23: at this rate the limit would be reached within the safety time; the ceiling falls.
+  over_temperature = 2,       ///< Above the limit: least power.
+  recovering = 3,             ///< Cool again; the ceiling rises but is still below the demand.
+
+  no_telemetry_yet = 64,      ///< Nothing valid was ever received.
+  link_silent = 65,           ///< No telemetry for longer than the time-out.
+  error_not_finite = 66,      ///< The position error is NaN or infinite.
+  air_implausible = 67,       ///< No thermometer gives a plausible air temperature.
+  supply_low = 68,            ///< The supply is below the lowest voltage at which the actuator may be driven.
+  supply_not_finite = 69,     ///< The supply voltage is NaN or infinite.
+  temperature_not_finite = 70,///< The estimated temperature or its rate is NaN or infinite.
+  time_invalid = 71,          ///< The time step is NaN, infinite or negative.
+  config_invalid = 72         ///< `validate()` refused the configuration.
+};
+
+/// True when the reason is a fault and not the limiter doing its work.
+constexpr bool is_fault(LimitReason reason) { return static_cast<uint8_t>(reason) >= 64; }
+
+/// What a limiter returns.
+struct LimitedPower {
+  uint8_t power;       ///< Granted power parameter, 1 .. 255; never above the demand unless the demand is 0.
+  LimitReason reason;  ///< Why it is less than the demand; `none` when it is not.
+};
+
+/// The lowest power parameter the controller board takes (0 is not valid, section 4.2).
+constexpr uint8_t least_power() { return 1; }
+
+}  // namespace thermopower

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/numeric.hpp"
+
+/// @file position_error.hpp
+/// Position error, eq 4.19, the short way round.
+
+namespace thermopower {
+
+/// Folds an angle to -180 .. 180 degrees. Angles beyond a million degrees, NaN and Inf give NaN.
+inline float wrap_deg(float angle_deg) noexcept {
+  if (angle_deg >= -180.0f && angle_deg <= 180.0f) return angle_deg;
+  if (!(detail::magnitude(angle_deg) < 1.0e6f)) return detail::not_a_number();
+  const float turns = angle_deg * (1.0f / 360.0f);
+  const int16_t whole = static_cast<int16_t>(turns < 0.0f ? turns - 0.5f : turns + 0.5f);
+  return angle_deg - 360.0f * static_cast<float>(whole);
+}
+
+/// Error of an axis, eq 4.19, folded. @return -180 .. 180 degrees
+inline float position_error_deg(float target_deg, float measured_deg) noexcept { return wrap_deg(target_deg - measured_deg); }
+
+/// The same in the controller's integer units of 360/16384 degree. @return -8192 .. 8191
+inline int16_t position_error_units(int16_t target, int16_t measured) noexcept {
+  const uint16_t turn = 16384u;
+  const uint16_t difference = static_cast<uint16_t>(static_cast<uint16_t>(target) - static_cast<uint16_t>(measured));
+  const uint16_t within = static_cast<uint16_t>(difference & (turn - 1u));  // 16384 divides 65536, so wrapping costs nothing
+  return static_cast<int16_t>(within >= turn / 2u ? static_cast<int32_t>(within) - turn : within);
+}
+
+/// Degrees of an angle in units of 360/16384 degree.
+inline float deg_from_units(int16_t units) noexcept { return static_cast<float>(units) * (360.0f / 16384.0f); }
+
+}  // namespace thermopower

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/// @file numeric.hpp
+/// What the models need from their scalar: avr-libc has neither `<cmath>` nor overloads, and the same models also run on
+/// `Eigen::Array` (many actuators at once) and on automatic-differentiation scalars.
+
+namespace thermopower {
+namespace detail {
+
+/// Operations on one kind of scalar. This primary template serves every class that has a nested `Scalar`, compares to a plain `bool`
+/// and whose functions are found beside it (Eigen's AutoDiffScalar); lanes of numbers specialise it in `simulation/lanes.hpp`.
+template <class Number>
+struct Numeric {
+  typedef typename Number::Scalar Real;  ///< The built-in type of literals: `Real(0.5)` multiplies any Number.
+
+  static Number constant(Real value) { return Number(value); }
+  static Number square_root(const Number& x) { return Number(sqrt(x)); }
+  static Number exponential(const Number& x) { return Number(exp(x)); }
+  static Number power(const Number& base, const Number& exponent) { return Number(exp(exponent * log(base))); }
+  static Number choose_if_greater(const Number& left, const Number& right, const Number& yes, const Number& no) {
+    return left > right ? yes : no;
+  }
+};
+
+template <>
+struct Numeric<float> {
+  typedef float Real;
+  static float constant(float value) { return value; }
+  static float square_root(float x) { return sqrtf(x); }
+  static float exponential(float x) { return expf(x); }
+  static float power(float base, float exponent) { return powf(base, exponent); }
+  static float choose_if_greater(float left, float right, float yes, float no) { return left > right ? yes : no; }
+};
+
+template <>
+struct Numeric<double> {
+  typedef double Real;
+  static double constant(double value) { return value; }
+  static double square_root(double x) { return sqrt(x); }
+  static double exponential(double x) { return exp(x); }
+  static double power(double base, double exponent) { return pow(base, exponent); }
+  static double choose_if_greater(double left, double right, double yes, double no) { return left > right ? yes : no; }
+};
+
+/// The value, but not below the bound. A NaN value stays NaN: it must reach whoever decides about it.
+template <class Number>
+Number at_least(const Number& value, const Number& bound) {
+  return Numeric<Number>::choose_if_greater(bound, value, bound, value);
+}
+
+/// The value, but not above the bound. A NaN value stays NaN.
+template <class Number>
+Number at_most(const Number& value, const Number& bound) {
+  return Numeric<Number>::choose_if_greater(value, bound, bound, value);
+}
+
+/// (1 - exp(-x)) / x for x >= 0: the mean of a decay over a step. Smooth at 0, where the quotient would lose every digit.
+template <class Number>
+Number mean_decay(const Number& x) {
+  typedef Numeric<Number> Math;
+  typedef typename Math::Real Real;
+  // Below this the series' next term, x^4/120, is under a float's rounding; a double keeps 1e-9 there.
+  const Number limit = Math::constant(Real(0.02));
+  const Number safe = at_least(x, limit);
+  const Number series = Real(1) - x * (Real(0.5) - x * (Real(1) / Real(6) - x * (Real(1) / Real(24))));
+  const Number quotient = (Real(1) - Math::exponential(-safe)) / safe;
+  return Math::choose_if_greater(x, limit, quotient, series);
+}
+
+/// True for every number but NaN and the infinities. By bits, so that it also holds under -ffast-math.
+inline bool is_finite(float x) noexcept {
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return (bits & 0x7f800000u) != 0x7f800000u;
+}
+
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ == 8
+/// @overload
+inline bool is_finite(double x) noexcept {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return (bits & 0x7ff0000000000000u) != 0x7ff0000000000000u;
+}
+#else
+/// @overload
+inline bool is_finite(double x) noexcept { return is_finite(static_cast<float>(x)); }
+#endif
+
+/// NaN as a float: avr-libc's own is a double.
+inline float not_a_number() noexcept { return static_cast<float>(NAN); }
+
+/// Absolute value. Arduino.h makes a macro of the usual name.
+inline float magnitude(float x) noexcept { return x < 0.0f ? -x : x; }
+/// @overload
+inline double magnitude(double x) noexcept { return x < 0.0 ? -x : x; }
+
+}  // namespace detail
+}  // namespace thermopower
