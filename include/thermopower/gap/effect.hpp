@@ -15,6 +15,7 @@ struct Parameter {
   double upper = 1.0;                ///< physical bound
   std::vector<double> starts = {};   ///< where fits begin, inside the bounds, at least one
   bool logarithmic = false;          ///< positive and known by order of magnitude only: fitted as its logarithm
+  std::string starts_relative_to = {};  ///< a column: the starts are fractions of its largest magnitude
 };
 
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/catalogue.hpp>
+#include <thermopower/gap/standard_catalogue.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/dual.hpp>
+#include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/terms.hpp>
+
+namespace thermopower::gap {
+
+/// Dry friction of constant magnitude.
+struct CoulombFriction {
+  /// What it is.
+  static EffectInfo info() {
+    return {"coulomb_friction",
+            "mechanical.friction",
+            "torque -= Nm sign(w)",
+            "Dry friction: a constant torque against the motion, and sticking at rest.",
+            {{"Nm", "N m", 0.0, 1e3, {0.0}, false}},
+            {"axis"},
+            "slow reversals at small torque"};
+  }
+
+  /// Adds dry friction.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+    terms.friction_forward_Nm += p[0];
+    terms.friction_backward_Nm += p[0];
+  }
+};
+
+}  // namespace thermopower::gap

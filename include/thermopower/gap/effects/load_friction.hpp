@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/dual.hpp>
+#include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/terms.hpp>
+
+namespace thermopower::gap {
+
+/// Dry friction in proportion to the transmitted torque.
+struct LoadFriction {
+  /// What it is.
+  static EffectInfo info() {
+    return {"load_friction",
+            "mechanical.friction",
+            "torque -= share |drive torque| sign(w)",
+            "Friction that grows with the torque transmitted (gears, screws).",
+            {{"share", "1", 0.0, 0.95, {0.0}, false}},
+            {"axis"},
+            "fast and slow motion at large and at small torque"};
+  }
+
+  /// Adds dry friction in proportion to the drive.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+    const Scalar friction_Nm = p[0] * magnitude(terms.drive_Nm);
+    terms.friction_forward_Nm += friction_Nm;
+    terms.friction_backward_Nm += friction_Nm;
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/model.hpp>
+#include <thermopower/gap/recording.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// The signals that a diagnosis can judge.
+enum class Signal { current_A = 0, motor_C = 1, angle_deg = 2, rate_dps = 3 };
+
+/// Number of signals.
+inline constexpr int signal_count = 4;
+
+/// Column name of a signal.
+inline const char* name_of(Signal signal) {
+  constexpr const char* names[] = {"current_A", "motor_C", "angle_deg", "rate_dps"};
+  return names[static_cast<int>(signal)];
+}
+
+/// Unit of a signal as reports spell it.
+inline const char* unit_of(Signal signal) {
+  constexpr const char* units[] = {"A", "degC", "deg", "deg/s"};
+  return units[static_cast<int>(signal)];
+}
+
+/// Where the heat of the thermal model comes from.
+enum class HeatSource {
+  law,       ///< the current law, from `power_param`
+  measured,  ///< the recorded `current_A`
+  drive,     ///< the recorded `drive_A`
+  none,      ///< nothing recorded: temperature is not judged
+};
+
+/// A recording as a rollout wants it: inputs without holes, outputs with theirs, and what can be judged.
+struct Inputs {
+  std::string name;
+  Eigen::VectorXd t_s;
+  std::vector<RunSpan> runs;
+  // Held inputs and covariates; empty where not recorded. Holes hold the value before them.
+  Eigen::VectorXd power_param, drive_A, supply_V, ambient_C, airspeed_mps, neighbour_C, covariate_rate_dps;
+  Eigen::VectorXd covariate_motor_C;   ///< motor temperature as an input of the axis
+  Eigen::VectorXd held_current_A;      ///< current as an input of the thermal model
+  Eigen::VectorXd held_motor_C;        ///< temperature as an input of the electrical model
+  double nominal_V = 12.0;
+  HeatSource heat = HeatSource::none;
+  std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
+  std::vector<std::string> not_judged;                 ///< one sentence each
+
+  /// Number of rows.
+  Eigen::Index rows() const { return t_s.size(); }
+  /// Whether the signal is recorded and has a law.
+  bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
+  /// Measured values of a judged signal.
+  const Eigen::VectorXd& of(Signal signal) const { return measured[static_cast<std::size_t>(signal)]; }
+  /// Whether temperature or current is judged.
+  bool bench() const { return judged(Signal::current_A) || judged(Signal::motor_C); }
+  /// Whether angle or rate is judged.
+  bool axis() const { return judged(Signal::angle_deg) || judged(Signal::rate_dps); }
+};
+
+namespace detail {
+
+/// Fills holes with the value before them (after them at a run's start).
+inline Eigen::VectorXd held(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+  Eigen::VectorXd filled = values;
+  for (const RunSpan& run : runs) {
+    Eigen::Index first = run.begin;
+    while (first < run.end && !std::isfinite(values[first])) ++first;
+    if (first == run.end) continue;
+    double last = values[first];
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      if (std::isfinite(values[row])) last = values[row];
+      filled[row] = last;
+    }
+  }
+  // A run without a single sample: the nearest earlier run's last value, else 0.
+  double last = 0.0;
+  for (Eigen::Index row = 0; row < filled.size(); ++row) {
+    if (std::isfinite(filled[row]))
+      last = filled[row];
+    else
+      filled[row] = last;
+  }
+  return filled;
+}
+
+/// Undoes wraps of an angle recorded modulo 360 degrees: jumps of more than half a turn between neighbours
+/// that land within a tenth of a turn of a whole one, in a record that stays inside one turn.
+inline Eigen::VectorXd unwrapped(const Eigen::VectorXd& angle_deg, const std::vector<RunSpan>& runs) {
+  double low = 1e300, high = -1e300;
+  for (double angle : angle_deg)
+    if (std::isfinite(angle)) low = std::fmin(low, angle), high = std::fmax(high, angle);
+  if (!(high - low <= 360.5) || !(high - low > 300.0)) return angle_deg;
+  Eigen::VectorXd result = angle_deg;
+  for (const RunSpan& run : runs) {
+    double turns = 0.0, previous = missing;
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      if (!std::isfinite(angle_deg[row])) continue;
+      const double step = angle_deg[row] - previous;
+      if (std::abs(step) > 324.0) turns -= step > 0.0 ? 1.0 : -1.0;
+      previous = angle_deg[row];
+      result[row] = angle_deg[row] + 360.0 * turns;
+    }
+  }
+  return result;
+}
+
+}  // namespace detail
+
+/// Takes from a recording what the model needs, and notes what cannot be judged and why.
+/// @throws InvalidInput where the recording is invalid
+inline Inputs prepare(const Model& model, const Recording& recording) {
+  if (const auto problem = recording.validate())
+    throw InvalidInput("recording '" + recording.name + "': " + *problem);
+  Inputs inputs;
+  inputs.name = recording.name;
+  inputs.t_s = recording.t_s;
+  inputs.runs = recording.spans();
+  const auto take = [&](const char* column) {
+    return recording.has(column) ? detail::held(recording.column(column), inputs.runs) : Eigen::VectorXd();
+  };
+  const auto measure = [&](Signal signal) {
+    inputs.measured[static_cast<std::size_t>(signal)] = recording.column(name_of(signal));
+  };
+  inputs.power_param = take("power_param");
+  inputs.drive_A = take("drive_A");
+  inputs.supply_V = take("supply_V");
+  inputs.ambient_C = take("ambient_C");
+  inputs.airspeed_mps = take("airspeed_mps");
+  inputs.neighbour_C = take("neighbour_C");
+  if (model.supply) inputs.nominal_V = model.supply->nominal_V;
+
+  const bool powered = inputs.power_param.size() > 0 && (model.supply || inputs.supply_V.size() > 0);
+  const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
+  if (model.has_current() && powered)
+    inputs.heat = HeatSource::law;
+  else if (recording.has("current_A") && (ohmic || (powered && model.has_current())))
+    inputs.heat = HeatSource::measured;
+  else if (inputs.drive_A.size() > 0 && ohmic)
+    inputs.heat = HeatSource::drive;
+  if (recording.has("current_A")) inputs.held_current_A = take("current_A");
+  if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
+
+  auto& notes = inputs.not_judged;
+  if (model.has_thermal()) {
+    if (!recording.has("motor_C")) notes.push_back("motor_C is not judged: the recording has no column motor_C");
+    else if (!recording.has("ambient_C")) notes.push_back("motor_C is not judged: the recording has no column ambient_C");
+    else if (inputs.heat == HeatSource::none)
+      notes.push_back("motor_C is not judged: neither power_param (with a current law and a supply) nor current_A nor drive_A tells the heat");
+    else measure(Signal::motor_C);
+  } else if (recording.has("motor_C") && !model.has_axis()) {
+    notes.push_back("motor_C is not judged: the model has no thermal block");
+  }
+  if (model.has_current()) {
+    if (!recording.has("current_A")) notes.push_back("current_A is not judged: the recording has no column current_A");
+    else if (!powered) notes.push_back("current_A is not judged: power_param or the supply voltage is unknown");
+    else if (!recording.has("motor_C")) notes.push_back("current_A is not judged: the recording has no column motor_C");
+    else measure(Signal::current_A);
+  }
+  if (model.has_axis()) {
+    if (inputs.drive_A.size() == 0) {
+      notes.push_back("the axis is not judged: the recording has no column drive_A");
+    } else if (!recording.has("rate_dps") && !recording.has("angle_deg")) {
+      notes.push_back("the axis is not judged: the recording has neither angle_deg nor rate_dps");
+    } else {
+      if (recording.has("rate_dps")) measure(Signal::rate_dps);
+      else notes.push_back("rate_dps is not judged: the recording has no column rate_dps");
+      if (recording.has("angle_deg"))
+        inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
+            detail::unwrapped(recording.column("angle_deg"), inputs.runs);
+      else notes.push_back("angle_deg is not judged: the recording has no column angle_deg");
+      if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
+    }
+  }
+  if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
+  return inputs;
+}
+
+}  // namespace thermopower::gap
