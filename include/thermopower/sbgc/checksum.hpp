@@ -39,7 +39,8 @@ class Crc16 {
     // The register is kept mirrored. Then a whole byte is one step, since for this polynomial the entry x of the
     // usual 256-word table is (x << 7) ^ (x << 6) ^ (x has odd parity ? 0xC001 : 0): no table, no loop over bits.
     const uint8_t x = static_cast<uint8_t>(mirrored_ ^ byte);
-    uint8_t parity = static_cast<uint8_t>(x ^ static_cast<uint8_t>(x >> 4));
+    const uint8_t swapped = static_cast<uint8_t>((x << 4) | (x >> 4));  // one instruction on AVR, a shift is not
+    uint8_t parity = static_cast<uint8_t>(x ^ swapped);
     parity = static_cast<uint8_t>(parity ^ static_cast<uint8_t>(parity >> 2));
     parity = static_cast<uint8_t>(parity ^ static_cast<uint8_t>(parity >> 1));
     uint16_t shifted = static_cast<uint16_t>(static_cast<uint16_t>(x) << 8);

@@ -57,18 +57,28 @@ class Receiver {
   static_assert(payload_capacity <= 255, "thermopower: an SBGC payload has at most 255 bytes");
 
  public:
-  /// @param timeout_us longest pause between two bytes of a frame, at most 2^31 - 1; 0 waits for ever. The default
-  /// is long for the wire (a byte takes 87 us at 115200 baud), because bytes are often read late and in groups.
-  explicit Receiver(uint32_t timeout_us = 20000) noexcept : timeout_us_(timeout_us) {}
+  /// @param timeout_us longest pause between two bytes of a frame, at most 8 000 000 (longer is taken for that); 0
+  /// waits for ever. A pause is noticed up to 512 us late and never early. The default is long for the wire (a byte
+  /// takes 87 us at 115200 baud), because bytes are often read late and in groups.
+  explicit Receiver(uint32_t timeout_us = 20000) noexcept { set_timeout_us(timeout_us); }
 
   /// @brief Takes one byte. The frame reported before, if any, is released.
   /// @param now_us a clock that may wrap around at 2^32 (such as Arduino's micros()).
   /// @return true when a valid frame is there: see frame(). Call next() for more of them before the next byte; it
   /// is allowed not to, frames then come with later bytes, and none is lost.
   bool receive(uint8_t byte, uint32_t now_us) noexcept {
+    const uint16_t now = ticks(now_us);
+    const bool late = is_late(now);
+    last_ = now;
+    if (stage_ == Stage::payload && !late) {
+      // By far the most frequent case: all bytes before this one are read, and check_header() has made room.
+      bytes_[end_] = byte;
+      cursor_ = ++end_;
+      take_payload(byte);
+      return false;
+    }
     release();
-    mark_stale(now_us);
-    last_us_ = now_us;
+    if (late) stale_ = end_;
     if (end_ == buffer_size) move_to_front();
     bytes_[end_++] = byte;
     return parse();
@@ -85,7 +95,7 @@ class Receiver {
   /// Call it now and then while no byte comes: it brings out frames that a false start is holding back.
   bool poll(uint32_t now_us) noexcept {
     release();
-    mark_stale(now_us);
+    if (is_late(ticks(now_us))) stale_ = end_;
     return parse();
   }
 
@@ -115,9 +125,12 @@ class Receiver {
   }
 
   /// @brief Longest pause between two bytes of a frame; 0 waits for ever.
-  uint32_t timeout_us() const noexcept { return timeout_us_; }
-  /// @brief Changes the longest pause; see the constructor.
-  void set_timeout_us(uint32_t timeout_us) noexcept { timeout_us_ = timeout_us; }
+  uint32_t timeout_us() const noexcept { return static_cast<uint32_t>(timeout_) << tick_shift; }
+  /// @brief Changes the longest pause; see the constructor. Rounded up to a multiple of 256 us.
+  void set_timeout_us(uint32_t timeout_us) noexcept {
+    const uint32_t longest_us = 8000000;
+    timeout_ = static_cast<uint16_t>(((timeout_us < longest_us ? timeout_us : longest_us) + 255) >> tick_shift);
+  }
 
   /// @brief The policy's state: which version to send in, for ProtocolAuto.
   const Protocol& protocol() const noexcept { return protocol_; }
@@ -125,7 +138,7 @@ class Receiver {
   Protocol& protocol() noexcept { return protocol_; }
 
  private:
-  enum : uint16_t { header_size = 4, buffer_size = payload_capacity + Protocol::overhead };
+  enum : uint16_t { header_size = 4, buffer_size = payload_capacity + Protocol::overhead, tick_shift = 8 };
   typedef typename thermopower::detail::SbgcIndex<(buffer_size > 255)>::Type Index;
   enum class Stage : uint8_t { hunting, header, payload, trailer, complete };
 
@@ -138,8 +151,7 @@ class Receiver {
       if (cursor_ == end_) break;
       const uint8_t byte = bytes_[cursor_++];
       if (stage_ == Stage::payload) {
-        protocol_.add_payload(byte);
-        if (--left_ == 0) expect_trailer();
+        take_payload(byte);
       } else if (stage_ == Stage::hunting) {
         hunt(byte);
       } else if (stage_ == Stage::header) {
@@ -176,9 +188,15 @@ class Receiver {
     if (static_cast<uint8_t>(id + size) != sum) return give_up(counters_.header_checksum);
     if (id == 0) return give_up(counters_.invalid_id);
     if (size > payload_capacity) return give_up(counters_.too_long);
+    if (head_ > static_cast<Index>(buffer_size - Protocol::overhead - size)) move_to_front();
     left_ = size;
     stage_ = Stage::payload;
     if (size == 0) expect_trailer();
+  }
+
+  void take_payload(uint8_t byte) noexcept {
+    protocol_.add_payload(byte);
+    if (--left_ == 0) expect_trailer();
   }
 
   void expect_trailer() noexcept {
@@ -203,12 +221,14 @@ class Receiver {
     if (head_ == end_) head_ = cursor_ = end_ = stale_ = 0;
   }
 
+  /// Time in units of 256 us: on an 8-bit chip this costs a few cycles per byte, microseconds in 32 bits dozens.
+  static uint16_t ticks(uint32_t now_us) noexcept { return static_cast<uint16_t>(now_us >> tick_shift); }
+
   /// No frame may continue across a long pause. The bytes before it may still hold whole frames: parse() gives up
-  /// at the mark whatever is incomplete there. The difference is signed so that a clock reading taken a little
-  /// earlier than the last one is no pause.
-  void mark_stale(uint32_t now_us) noexcept {
-    if (end_ == 0 || timeout_us_ == 0) return;
-    if (static_cast<int32_t>(now_us - last_us_) > static_cast<int32_t>(timeout_us_)) stale_ = end_;
+  /// at the mark `stale_` whatever is incomplete there. The difference is signed so that a clock reading taken a
+  /// little earlier than the last one is no pause.
+  bool is_late(uint16_t now) const noexcept {
+    return static_cast<int16_t>(now - last_) > static_cast<int16_t>(timeout_) && timeout_ != 0;
   }
 
   /// There is room in front whenever the end is reached: an incomplete frame is shorter than the buffer.
@@ -228,8 +248,8 @@ class Receiver {
   uint8_t left_ = 0;
   uint8_t trailer_at_ = 0;
   Protocol protocol_;
-  uint32_t last_us_ = 0;
-  uint32_t timeout_us_;
+  uint16_t last_ = 0;     // when the last byte came, in ticks
+  uint16_t timeout_ = 0;  // in ticks; 0 waits for ever
   ReceiverCounters counters_ = ReceiverCounters();
   uint8_t bytes_[buffer_size];
 };

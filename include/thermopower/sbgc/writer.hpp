@@ -39,26 +39,36 @@ size_t encode(const Message& message, uint8_t* buffer, size_t capacity,
               Version version = Protocol().sending()) noexcept {
   static_assert(thermopower::detail::SbgcIsMessage<Message>::value,
                 "thermopower: encode() needs a message with id(), payload_size() and write_payload(sink)");
+  if (!thermopower::detail::sbgc_may_send<Protocol>(message, version)) return 0;
   if (buffer == nullptr || frame_size(message, version) > capacity) return 0;
-  thermopower::detail::SbgcBufferOutput output(buffer);
-  return thermopower::detail::sbgc_write_frame<Protocol>(message, version, output);
+  return thermopower::detail::sbgc_encode<Protocol>(message, version, buffer);
 }
 
-/// @brief Sends a message as one frame onto a wire, with no buffer but 40 bytes of stack.
+/// @brief Sends a message as one frame onto a wire.
 ///
-/// Frames up to 40 bytes (everything a controller sends) go out in one write, longer ones in several.
+/// Frames up to `portion` bytes (with the default, everything a controller sends) go out in one write, longer ones
+/// in several. A small portion lets the first byte leave earlier.
 /// @param wire any object with `write(const uint8_t*, size_t)`, such as Arduino's Serial. When write() returns a
 /// number and that is less than asked, sending stops.
 /// @return bytes the wire took: frame_size() when all is well; 0 when the message was refused, see encode().
+/// @tparam portion bytes of stack to gather what is written at once, 1..255.
 /// @ingroup sbgc
-template <class Protocol, class Message, class Wire>
+template <class Protocol, uint8_t portion = 40, class Message, class Wire>
 size_t send(const Message& message, Wire& wire, Version version = Protocol().sending()) {
   static_assert(thermopower::detail::SbgcIsMessage<Message>::value,
                 "thermopower: send() needs a message with id(), payload_size() and write_payload(sink)");
   static_assert(thermopower::detail::SbgcHasWrite<Wire>::value,
                 "thermopower: send() needs a wire with write(const uint8_t*, size_t)");
-  thermopower::detail::SbgcWireOutput<Wire> output(wire);
-  return thermopower::detail::sbgc_write_frame<Protocol>(message, version, output);
+  static_assert(portion >= 1, "thermopower: send() needs a portion of at least one byte");
+  if (!thermopower::detail::sbgc_may_send<Protocol>(message, version)) return 0;
+  if (frame_size(message, version) > portion) {
+    return thermopower::detail::sbgc_stream<Protocol, portion>(message, version, wire);
+  }
+  uint8_t frame[portion];
+  const size_t size = thermopower::detail::sbgc_encode<Protocol>(message, version, frame);
+  if (size == 0) return 0;
+  const size_t took = thermopower::detail::sbgc_write(wire, frame, size, 0);
+  return took < size ? took : size;
 }
 
 /// @brief Puts 16 bits into a payload, low byte first.
