@@ -178,7 +178,7 @@ private:
     }
     const std::string name(text, size);
     if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
-      fail(1, {}, "column " + quoted(name) + " appears twice in the header row; expected distinct names");
+      fail(1, {}, "column " + excerpt(name) + " appears twice in the header row; expected distinct names");
     }
     header_.push_back(name);
   }
@@ -197,7 +197,7 @@ private:
     if (time_ == none) {
       std::string found;
       for (const auto& name : header_) {
-        if (found.size() < 120) found += (found.empty() ? "" : ", ") + quoted(name);
+        if (found.size() < 120) found += (found.empty() ? "" : ", ") + excerpt(name);
       }
       const bool other_separator = header_.size() == 1 && header_[0].find_first_of(";\t|") != std::string::npos;
       fail(1, {}, "no column 't_s' (time in seconds) in the header row; found " + found +
@@ -223,15 +223,15 @@ private:
           return;
         }
         fail(line_ + lines_in_row_, header_[field_],
-             quoted(text, size) + " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
+             excerpt(text, size) + " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
       }
       if (fault == NumberFault::not_finite) {
-        fail(line_ + lines_in_row_, header_[field_], quoted(text, size) + " is not finite; expected a finite number, or an empty cell or "
+        fail(line_ + lines_in_row_, header_[field_], excerpt(text, size) + " is not finite; expected a finite number, or an empty cell or "
                                                                           "nan for a missing sample");
       }
       target.kind = Kind::number;
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
-        fail(line_ + lines_in_row_, header_[field_], quoted(text, size) + " is outside its range; expected 0..255");
+        fail(line_ + lines_in_row_, header_[field_], excerpt(text, size) + " is outside its range; expected 0..255");
       }
     } else if (field_ == time_) {
       fail(line_ + lines_in_row_, header_[field_], "time is missing; expected a time in seconds in every row");

@@ -18,7 +18,7 @@ public:
 
 /// @brief Puts `text` in single quotes for an error message: control characters and broken UTF-8 become `\xNN`, and what is
 /// longer than `limit` bytes is cut and its length told. Safe for any bytes.
-inline std::string quoted(const char* text, std::size_t size, std::size_t limit = 40) {
+inline std::string excerpt(const char* text, std::size_t size, std::size_t limit = 40) {
   static const char* const digits = "0123456789abcdef";
   std::string out = "'";
   for (std::size_t i = 0; i < size && i < limit; ++i) {
@@ -35,7 +35,7 @@ inline std::string quoted(const char* text, std::size_t size, std::size_t limit 
   return out;
 }
 
-/// @copydoc quoted(const char*, std::size_t, std::size_t)
-inline std::string quoted(const std::string& text) { return quoted(text.data(), text.size()); }
+/// @copydoc excerpt(const char*, std::size_t, std::size_t)
+inline std::string excerpt(const std::string& text) { return excerpt(text.data(), text.size()); }
 
 }  // namespace thermopower::gap::files

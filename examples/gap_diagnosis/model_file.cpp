@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "model_file.hpp"
+
+#include "input_error.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <vector>
+
+namespace thermopower::gap::files {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t largest_file = 1 << 20;
+constexpr const char* format_id = "thermopower-model/1";
+
+std::string number_text(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+std::string line_and_column(const std::string& text, std::size_t byte) {
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+    if (text[i] == '\n') {
+      ++line;
+      column = 1;
+    } else {
+      ++column;
+    }
+  }
+  return std::to_string(line) + ":" + std::to_string(column);
+}
+
+/// What a constant may be.
+enum class Allowed { any, positive, not_negative, not_zero };
+
+class Reader {
+public:
+  Reader(const std::string& file, const Catalogue& catalogue) : file_(file), catalogue_(catalogue) {}
+
+  Model read(const std::string& text) {
+    const Json root = parse(text);
+    if (!root.is_object()) fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" + format_id + "\"");
+    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "effects"});
+    if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
+    if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
+      fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"");
+    }
+    Model model;
+    if (root.contains("name")) {
+      if (!root["name"].is_string()) fail("/name", "is " + shown(root["name"]) + "; expected text");
+      model.name = root["name"].get<std::string>();
+    }
+    if (root.contains("supply")) read_supply(root["supply"], model);
+    if (root.contains("current")) read_current(root["current"], model);
+    if (root.contains("thermal")) read_thermal(root["thermal"], model);
+    if (root.contains("axis")) read_axis(root["axis"], model);
+    if (root.contains("effects")) read_effects(root["effects"], model);
+    if (const auto problem = model.validate()) throw InputError(file_ + ": " + *problem);
+    return model;
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& pointer, const std::string& what) const {
+    throw InputError(file_ + ": " + (pointer.empty() ? "" : pointer + ": ") + what);
+  }
+
+  static std::string shown(const Json& value) {
+    const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() > 40 ? text.substr(0, 40) + "..." : text;
+  }
+
+  static std::string below(const std::string& pointer, const std::string& key) {
+    std::string safe;  // RFC 6901
+    for (const char c : key) safe += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return pointer + "/" + safe;
+  }
+
+  Json parse(const std::string& text) const {
+    // nlohmann keeps the last of two equal keys; which of them the author meant nobody knows.
+    std::vector<std::set<std::string>> keys;
+    std::string twice;
+    const auto watch = [&](int, Json::parse_event_t event, Json& value) {
+      if (event == Json::parse_event_t::object_start) keys.emplace_back();
+      if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
+      if (event == Json::parse_event_t::key && !keys.empty() && !keys.back().insert(value.get<std::string>()).second && twice.empty()) {
+        twice = value.get<std::string>();
+      }
+      return true;
+    };
+    try {
+      Json root = Json::parse(text, watch);
+      if (!twice.empty()) fail("", "key " + excerpt(twice) + " appears twice in one object; expected it once");
+      return root;
+    } catch (const Json::parse_error& error) {
+      std::string what = error.what();
+      const auto colon = what.find(": ", what.find("column"));
+      if (colon != std::string::npos) what = what.substr(colon + 2);
+      throw InputError(file_ + ":" + line_and_column(text, error.byte) + ": not JSON: " + what);
+    } catch (const Json::exception& error) {  // a number too large, a depth too great
+      throw InputError(file_ + ": not usable JSON: " + error.what());
+    }
+  }
+
+  void object(const Json& value, const std::string& pointer) const {
+    if (!value.is_object()) fail(pointer, "is " + shown(value) + "; expected an object");
+  }
+
+  void only(const Json& value, const std::string& pointer, std::initializer_list<const char*> keys) const {
+    only(value, pointer, std::vector<std::string>(keys.begin(), keys.end()));
+  }
+
+  void only(const Json& value, const std::string& pointer, const std::vector<std::string>& keys) const {
+    for (const auto& item : value.items()) {
+      if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
+      std::string known;
+      for (const auto& key : keys) known += (known.empty() ? "" : ", ") + key;
+      fail(below(pointer, item.key()), "unknown key; expected one of " + known);
+    }
+  }
+
+  double number(const Json& block, const std::string& pointer, const char* key, Allowed allowed) const {
+    const std::string here = below(pointer, key);
+    const char* const expected = allowed == Allowed::positive       ? "a number above 0"
+                                 : allowed == Allowed::not_negative ? "a number, 0 or more"
+                                 : allowed == Allowed::not_zero     ? "a number other than 0"
+                                                                    : "a number";
+    if (!block.contains(key)) fail(here, std::string("is missing; expected ") + expected);
+    const Json& value = block[key];
+    if (!value.is_number()) fail(here, "is " + shown(value) + "; expected " + expected);
+    const double x = value.get<double>();
+    const bool fine = std::isfinite(x) && (allowed == Allowed::any || (allowed == Allowed::positive && x > 0.0) ||
+                                           (allowed == Allowed::not_negative && x >= 0.0) || (allowed == Allowed::not_zero && x != 0.0));
+    if (!fine) fail(here, "is " + shown(value) + "; expected " + expected);
+    return x;
+  }
+
+  double number_or(const Json& block, const std::string& pointer, const char* key, Allowed allowed, double otherwise) const {
+    return block.contains(key) ? number(block, pointer, key, allowed) : otherwise;
+  }
+
+  std::string law(const Json& block, const std::string& pointer, std::initializer_list<const char*> laws) const {
+    std::string expected;
+    for (const char* name : laws) expected += (expected.empty() ? "\"" : " or \"") + std::string(name) + "\"";
+    if (!block.contains("law")) fail(pointer + "/law", "is missing; expected " + expected);
+    for (const char* name : laws) {
+      if (block["law"].is_string() && block["law"].get<std::string>() == name) return name;
+    }
+    fail(pointer + "/law", "is " + shown(block["law"]) + "; expected " + expected);
+  }
+
+  void read_supply(const Json& block, Model& model) const {
+    object(block, "/supply");
+    only(block, "/supply", {"nominal_V"});
+    SupplyModel supply;
+    supply.nominal_V = number(block, "/supply", "nominal_V", Allowed::positive);
+    model.supply = supply;
+  }
+
+  void read_current(const Json& block, Model& model) const {
+    const std::string here = "/current";
+    object(block, here);
+    if (law(block, here, {"ohmic", "thesis"}) == "ohmic") {
+      only(block, here, {"law", "resistance_ohm", "tempco_per_K", "reference_C"});
+      OhmicCurrentModel ohmic;
+      ohmic.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
+      ohmic.tempco_per_K = number_or(block, here, "tempco_per_K", Allowed::any, 0.0);
+      ohmic.reference_C = number_or(block, here, "reference_C", Allowed::any, 25.0);
+      model.current = ohmic;
+      return;
+    }
+    only(block, here, {"law", "slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K", "base_mA", "exponent", "minimum_V_rms"});
+    ThesisCurrentModel thesis;
+    thesis.slope_V2_mA_per_K = number(block, here, "slope_V2_mA_per_K", Allowed::any);
+    thesis.slope_V1_mA_per_K = number(block, here, "slope_V1_mA_per_K", Allowed::any);
+    thesis.slope_V0_mA_per_K = number(block, here, "slope_V0_mA_per_K", Allowed::any);
+    thesis.base_mA = number(block, here, "base_mA", Allowed::any);
+    thesis.exponent = number(block, here, "exponent", Allowed::any);
+    thesis.minimum_V_rms = number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    model.current = thesis;
+  }
+
+  void read_thermal(const Json& block, Model& model) const {
+    const std::string here = "/thermal";
+    object(block, here);
+    if (law(block, here, {"lumped", "thesis"}) == "lumped") {
+      only(block, here, {"law", "heat_capacity_J_per_K", "conductance_W_per_K"});
+      LumpedThermalModel lumped;
+      lumped.heat_capacity_J_per_K = number(block, here, "heat_capacity_J_per_K", Allowed::positive);
+      lumped.conductance_W_per_K = number(block, here, "conductance_W_per_K", Allowed::positive);
+      model.thermal = lumped;
+      return;
+    }
+    only(block, here, {"law", "cooling_per_min", "rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0", "minimum_V_rms"});
+    ThesisThermalModel thesis;
+    thesis.cooling_per_min = number(block, here, "cooling_per_min", Allowed::positive);
+    thesis.rinv_slope_V1 = number(block, here, "rinv_slope_V1", Allowed::any);
+    thesis.rinv_slope_V0 = number(block, here, "rinv_slope_V0", Allowed::any);
+    thesis.rinv_offset_V1 = number(block, here, "rinv_offset_V1", Allowed::any);
+    thesis.rinv_offset_V0 = number(block, here, "rinv_offset_V0", Allowed::any);
+    thesis.minimum_V_rms = number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    model.thermal = thesis;
+  }
+
+  void read_axis(const Json& block, Model& model) const {
+    const std::string here = "/axis";
+    object(block, here);
+    law(block, here, {"rigid"});
+    only(block, here, {"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A"});
+    RigidAxisModel axis;
+    axis.inertia_kgm2 = number(block, here, "inertia_kgm2", Allowed::positive);
+    axis.viscous_Nms_per_rad = number(block, here, "viscous_Nms_per_rad", Allowed::not_negative);
+    axis.torque_constant_Nm_per_A = number(block, here, "torque_constant_Nm_per_A", Allowed::not_zero);
+    model.axis = axis;
+  }
+
+  void read_effects(const Json& block, Model& model) const {
+    object(block, "/effects");
+    for (const auto& item : block.items()) {
+      const std::string here = below("/effects", item.key());
+      const auto& list = catalogue_.list();
+      const auto info = std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
+      if (info == list.end()) fail(here, "no such effect in the catalogue; expected an id that 'thermopower-gap effects' lists");
+      object(item.value(), here);
+      std::vector<std::string> names;
+      for (const auto& parameter : info->parameters) names.push_back(parameter.name);
+      only(item.value(), here, names);
+      EffectParameters& parameters = model.effects[item.key()];
+      for (const auto& parameter : info->parameters) {
+        const double value = number(item.value(), here, parameter.name.c_str(), Allowed::any);
+        if (!(value >= parameter.lower && value <= parameter.upper)) {
+          fail(below(here, parameter.name), "is " + number_text(value) + "; expected " + number_text(parameter.lower) + " to " +
+                                                number_text(parameter.upper) + (parameter.unit == "1" ? "" : " " + parameter.unit));
+        }
+        parameters[parameter.name] = value;
+      }
+    }
+  }
+
+  std::string file_;
+  const Catalogue& catalogue_;
+};
+
+}  // namespace
+
+Model parse_model(const std::string& name, const std::string& text, const Catalogue& catalogue) {
+  return Reader(name, catalogue).read(text);
+}
+
+Model read_model(const std::string& path, const Catalogue& catalogue) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status)) throw InputError(path + ": is a directory; expected a model file (JSON)");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  std::string text(largest_file + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get())) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  if (text.size() > largest_file) throw InputError(path + ": larger than 1 MiB; expected a model file (JSON)");
+  if (text.empty()) throw InputError(path + ": the file is empty; expected a model file (JSON)");
+  return parse_model(path, text, catalogue);
+}
+
+std::string to_json(const Model& model) {
+  Json root;
+  root["format"] = format_id;
+  root["name"] = model.name;
+  if (std::holds_alternative<OhmicCurrentModel>(model.current)) root["current"]["law"] = "ohmic";
+  if (std::holds_alternative<ThesisCurrentModel>(model.current)) root["current"]["law"] = "thesis";
+  if (std::holds_alternative<LumpedThermalModel>(model.thermal)) root["thermal"]["law"] = "lumped";
+  if (std::holds_alternative<ThesisThermalModel>(model.thermal)) root["thermal"]["law"] = "thesis";
+  if (model.axis) root["axis"]["law"] = "rigid";
+  for (const auto& constant : model.constants()) root[constant.block][constant.name] = constant.value;
+  for (const auto& [id, parameters] : model.effects) {
+    root["effects"][id] = Json::object();
+    for (const auto& [name, value] : parameters) root["effects"][id][name] = value;
+  }
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace thermopower::gap::files

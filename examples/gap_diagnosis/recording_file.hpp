@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "csv_table.hpp"
+
+#include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/recording.hpp>
+
+#include <string>
+#include <vector>
+
+namespace thermopower::gap::files {
+
+/// @brief Columns whose meaning is fixed and which must be numeric; any other numeric column is a covariate.
+const std::vector<std::string>& known_columns();
+
+/// @brief A recording and what was noticed while reading it (columns left out, a file that may have been cut off).
+struct RecordingFile {
+  Recording recording;
+  std::vector<Finding> findings;
+};
+
+/// @brief Reads a recording from a CSV file. @throws InputError, see read_csv()
+RecordingFile read_recording(const std::string& path);
+
+/// @brief The same from a table already in memory.
+RecordingFile to_recording(CsvTable table);
+
+}  // namespace thermopower::gap::files

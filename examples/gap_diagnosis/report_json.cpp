@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "report_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace thermopower::gap::files {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return value == 0.0 ? 0.0 : value;  // no negative zero: equal results should be equal bytes
+}
+
+Json interval(const Interval& ci) { return Json::array({number(ci.low), number(ci.high)}); }
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: return "error";
+  }
+  return "note";
+}
+
+Json parameters(const std::vector<ParameterEstimate>& list) {
+  Json object = Json::object();
+  for (const auto& one : list) {
+    object[one.name] = {{"value", number(one.value)}, {"ci95", interval(one.ci95)}, {"unit", one.unit}};
+    if (one.at_bound) object[one.name]["at_bound"] = true;
+  }
+  return object;
+}
+
+Json location(const Location& where) {
+  Json object = {{"signal", where.signal}, {"submodel", where.submodel}, {"share", number(where.share)}};
+  object["regime"] = nullptr;
+  if (where.regime) {
+    object["regime"] = {{"variable", where.regime->variable}, {"from", number(where.regime->from)}, {"to", number(where.regime->to)}};
+  }
+  object["evidence"] = where.evidence;
+  return object;
+}
+
+Json score(const GapScore& gap) {
+  return {{"unit", gap.unit},
+          {"horizon_s", gap.horizon_s ? number(*gap.horizon_s) : Json(nullptr)},
+          {"before", number(gap.before)},
+          {"recalibrated", number(gap.recalibrated)},
+          {"after", number(gap.after)},
+          {"noise_floor", number(gap.noise_floor)},
+          {"shrunk_by", number(gap.shrunk_by)},
+          {"ci95", interval(gap.ci95)}};
+}
+
+Json ranked(const RankedExplanation& one) {
+  Json confusable = Json::array();
+  for (const auto& other : one.confusable) confusable.push_back({{"effects", other.effects}, {"cosine", number(other.cosine)}});
+  return {{"effects", one.effects},
+          {"probability", number(one.probability)},
+          {"held_out_ratio", number(one.held_out_ratio)},
+          {"absorbed", one.absorbed},
+          {"at_bound", one.at_bound},
+          {"refused", one.refused},
+          {"parameters", parameters(one.parameters)},
+          {"confusable", confusable}};
+}
+
+}  // namespace
+
+std::string report_json(const Diagnosis& diagnosis) {
+  Json root;
+  root["format"] = "thermopower-gap-report/1";
+  root["verdict"] = to_string(diagnosis.verdict);
+  root["where"] = Json::array();
+  for (const auto& where : diagnosis.where) root["where"].push_back(location(where));
+  root["cause"] = Json::array();
+  for (const auto& cause : diagnosis.cause) {
+    root["cause"].push_back(
+        {{"effect", cause.effect}, {"probability", number(cause.probability)}, {"parameters", parameters(cause.parameters)}});
+  }
+  root["alternatives"] = diagnosis.alternatives;
+  root["gap"] = Json::object();
+  for (const auto& gap : diagnosis.gap) root["gap"][gap.signal] = score(gap);
+  root["next_experiment"] = diagnosis.next_experiment;
+  root["reason"] = diagnosis.reason;
+  root["none_of_these"] = number(diagnosis.none_of_these);
+  root["not_judged"] = diagnosis.not_judged;
+  root["findings"] = Json::array();
+  for (const auto& finding : diagnosis.findings) {
+    root["findings"].push_back({{"code", finding.code},
+                                {"severity", name_of(finding.severity)},
+                                {"recording", finding.recording},
+                                {"column", finding.column},
+                                {"message", finding.message}});
+  }
+  root["constants"] = Json::object();
+  for (const auto& constant : diagnosis.constants) {
+    root["constants"][constant.name] = {{"configured", number(constant.configured)}, {"fitted", number(constant.fitted)}};
+  }
+  root["ranking"] = Json::array();
+  for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace thermopower::gap::files

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "summary.hpp"
+
+#include "svg_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace thermopower::gap::files {
+namespace {
+
+constexpr std::size_t text_width = 100;
+
+// Wraps words, and indents every line but the first: the first stands behind a label.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string out;
+  std::size_t column = indent, i = 0;
+  while (i < text.size()) {
+    const std::size_t end = std::min(text.find(' ', i), text.size());
+    if (column > indent && column + 1 + (end - i) > text_width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      out += ' ';
+      ++column;
+    }
+    out.append(text, i, end - i);
+    column += end - i;
+    i = end + 1;
+  }
+  return out;
+}
+
+std::string line(const std::string& label, const std::string& text) {
+  std::string head = "  " + label;
+  head.resize(14, ' ');
+  return head + wrapped(text, 14) + "\n";
+}
+
+std::string joined(const std::vector<std::string>& ids) {
+  std::string out;
+  for (const auto& id : ids) out += (out.empty() ? "" : " + ") + id;
+  return out;
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "?";
+  char text[16];
+  if (share > 0.99 && share < 1.0) return ">99 %";
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
+  return text;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) { return unit == "1" || unit.empty() ? number : number + " " + unit; }
+
+const char* headline(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::no_gap: return "NO GAP";
+    case Verdict::explained: return "EXPLAINED";
+    case Verdict::ambiguous: return "AMBIGUOUS";
+    case Verdict::unexplained: return "UNEXPLAINED";
+    case Verdict::insufficient: return "TOO LITTLE DATA";
+  }
+  return "";
+}
+
+std::string gap_table(const Diagnosis& diagnosis) {
+  if (diagnosis.gap.empty()) return {};
+  char row[200];
+  std::snprintf(row, sizeof row, "\n  %-20s%14s%14s%14s%14s   %s\n", "RMSE, held out", "as configured", "recalibrated", "with effect",
+                "noise floor", "shrunk by [95 %]");
+  std::string out = row;
+  for (const auto& gap : diagnosis.gap) {
+    std::string shrunk = diagnosis.cause.empty()
+                             ? "-"
+                             : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " + readable(100.0 * gap.ci95.high, 3) + "]";
+    std::snprintf(row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (gap.signal + " / " + gap.unit).c_str(), readable(gap.before).c_str(),
+                  readable(gap.recalibrated).c_str(), diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(),
+                  readable(gap.noise_floor).c_str());
+    out += row + shrunk + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string summary(const Diagnosis& diagnosis) {
+  std::string out = std::string(headline(diagnosis.verdict)) + "\n";
+  if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
+  bool first = true;
+  for (const auto& where : diagnosis.where) {
+    std::string text = where.signal + ", " + where.submodel + " (" + percent(where.share) + " of the gap)";
+    if (where.regime) {
+      text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " + readable(where.regime->to);
+    }
+    out += line(first ? "where" : "", text);
+    first = false;
+  }
+  first = true;
+  for (const auto& cause : diagnosis.cause) {
+    std::string text = cause.effect + " (" + percent(cause.probability) + ")";
+    for (const auto& parameter : cause.parameters) {
+      text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
+              with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) + ", " +
+              readable(parameter.ci95.high) + "]";
+    }
+    out += line(first ? "which" : "", text);
+    first = false;
+  }
+  std::string others;
+  for (const auto& one : diagnosis.alternatives) others += (others.empty() ? "" : "; ") + joined(one);
+  if (!others.empty()) out += line("or", others + " (this recording cannot tell them apart)");
+  out += gap_table(diagnosis);
+  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty() || !diagnosis.findings.empty()) out += "\n";
+  if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
+  for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
+  for (const auto& finding : diagnosis.findings) {
+    if (finding.severity == Severity::note) continue;
+    out += line("data", finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) + ": " + finding.message);
+  }
+  return out;
+}
+
+std::string catalogue_text(const std::vector<EffectInfo>& effects) {
+  std::string out;
+  for (const auto& effect : effects) {
+    out += effect.id + "  (" + effect.submodel + ")\n";
+    out += "    " + wrapped(effect.prose, 4) + "\n";
+    if (!effect.equation.empty()) out += "    equation    " + wrapped(effect.equation, 16) + "\n";
+    bool first = true;
+    for (const auto& parameter : effect.parameters) {
+      out += std::string(first ? "    parameters  " : "                ") + parameter.name + " in " +
+             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " + readable(parameter.upper) + "\n";
+      first = false;
+    }
+    std::string needs;
+    for (const auto& need : effect.needs) needs += (needs.empty() ? "" : ", ") + need;
+    if (!needs.empty()) out += "    needs       " + wrapped(needs, 16) + "\n";
+    out += "\n";
+  }
+  out += "calibration.<constant>\n    a constant of the model itself is off by more than its slack: resistance, tempco, base, slope,\n"
+         "    heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant; as a factor on the\n"
+         "    configured value.\n";
+  return out;
+}
+
+}  // namespace thermopower::gap::files
