@@ -49,16 +49,17 @@ class EnergyMeter {
     last_power_W_ = Number(0);
   }
 
-  /// Adds one interval during which the inputs were constant. A NaN or Inf in any of them is counted in `rejected()` and not added:
-  /// one bad sample must not lose an hour's sum.
+  /// Adds one interval during which the inputs were constant. A NaN or Inf in what is integrated, or a negative time, is counted in
+  /// `rejected()` and not added: one bad sample must not lose an hour's sum.
   void step(Number v_rms_V, Number supply_V, Number current_A, Number dt_s) noexcept {
     const Number power_W = Where::power_W(v_rms_V, supply_V, current_A);
-    if (!detail::is_finite(power_W) || !detail::is_finite(dt_s) || dt_s < Number(0)) {
+    const Number energy_J = power_W * dt_s;
+    if (!detail::is_finite(power_W) || !detail::is_finite(energy_J) || !(dt_s >= Number(0))) {
       ++rejected_;
       return;
     }
     last_power_W_ = power_W;
-    energy_J_.add(power_W * dt_s);
+    energy_J_.add(energy_J);
     time_s_.add(dt_s);
   }
 
@@ -92,10 +93,32 @@ class EnergyMeter {
   uint32_t rejected_ = 0;
 };
 
-/// Saving of the second against the first, eq 4.26, in percent; NaN when the first is 0.
+/// Saving of the second average power against the first, eq 4.26. Of two meters, take `saving_percent`: it compares like with like.
+/// @return percent; NaN when the first is 0
 template <class Number>
 Number difference_percent(Number first, Number second) noexcept {
+  if (!(first < Number(0)) && !(first > Number(0))) return static_cast<Number>(NAN);
   return Number(100) * (first - second) / first;
+}
+
+namespace detail {
+template <class Left, class Right>
+struct IsSamePlace {
+  static constexpr bool value = false;
+};
+template <class Where>
+struct IsSamePlace<Where, Where> {
+  static constexpr bool value = true;
+};
+}  // namespace detail
+
+/// Saving of the second meter's average power against the first's, eq 4.26. Meters of different places do not compile.
+/// @return percent; NaN when the first average is 0
+template <class First, class Second, class Number>
+Number saving_percent(const EnergyMeter<First, Number>& first, const EnergyMeter<Second, Number>& second) noexcept {
+  static_assert(detail::IsSamePlace<First, Second>::value,
+                "thermopower: a saving compares like with like: two meters AtWinding or two AtSupply");
+  return difference_percent(first.average_W(), second.average_W());
 }
 
 }  // namespace thermopower

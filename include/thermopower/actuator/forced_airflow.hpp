@@ -20,6 +20,7 @@ struct ForcedAirflow {
   Number exponent;             ///< n, 0.2 .. 1.
 
   static constexpr bool is_linear() { return true; }  ///< The airspeed is constant over a step.
+  static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
     return conductance_at(around) * (motor_C - around.air_C);
@@ -43,7 +44,8 @@ struct ForcedAirflow {
   Number conductance_at(const Surroundings<Number>& around) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;
-    const Number speed = detail::at_least(around.airspeed_mps, Math::constant(Real(1e-6)));
+    // Kept off zero, where v^n has an infinite derivative; so little that still air still has G to rounding at any n.
+    const Number speed = detail::at_least(around.airspeed_mps, Math::constant(Real(1e-36)));
     return conductance_W_per_K * (Real(1) + airflow_gain * Math::power(speed, exponent));
   }
 };

@@ -12,8 +12,9 @@
 /// | `HeatCapacityHeating` | 1 / C | always, unless the thesis's figures are to be reproduced |
 /// | `ThesisHeating` | r(V_rms, T), eq 4.16 to 4.18 | the thesis motors, as measured, as printed or as programmed |
 ///
-/// A law of your own has `Scalar`, `is_linear()` (true when r is a constant), `rise_K_per_J(v_rms_V, motor_C)`,
-/// `rise_slope_per_J(v_rms_V, motor_C)` (its derivative by temperature) and `validate()`.
+/// A law of your own has `Scalar`, `is_linear()` (true when r is a constant), `is_heat_capacity()` (true when 1/r is a heat capacity
+/// at any voltage), `rise_K_per_J(v_rms_V, motor_C)`, `rise_slope_per_J(v_rms_V, motor_C)` (its derivative by temperature) and
+/// `validate()`.
 
 namespace thermopower {
 
@@ -24,7 +25,8 @@ struct HeatCapacityHeating {
 
   Number heat_capacity_J_per_K;  ///< C, above 0.
 
-  static constexpr bool is_linear() { return true; }  ///< r depends neither on temperature nor on voltage.
+  static constexpr bool is_linear() { return true; }         ///< r depends neither on temperature nor on voltage.
+  static constexpr bool is_heat_capacity() { return true; }  ///< 1/r is C: any cooling law may divide its watts by it.
 
   /// r, in kelvin per joule.
   Number rise_K_per_J(const Number&, const Number&) const noexcept {
@@ -69,7 +71,8 @@ struct ThesisHeating {
     return law;
   }
 
-  static constexpr bool is_linear() { return false; }  ///< r depends on the temperature.
+  static constexpr bool is_linear() { return false; }         ///< r depends on the temperature.
+  static constexpr bool is_heat_capacity() { return false; }  ///< 0 without voltage: a loss in watts would vanish with it.
 
   /// 1/r, J/K; may be zero or negative outside the measured range.
   Number apparent_capacity_J_per_K(const Number& v_rms_V, const Number& motor_C) const noexcept {

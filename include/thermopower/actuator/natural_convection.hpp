@@ -21,6 +21,7 @@ struct NaturalConvection {
   Number reference_K;          ///< Temperature difference at which G holds, above 0.
 
   static constexpr bool is_linear() { return false; }  ///< Grows faster than T - T_air.
+  static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
     return conductance_at(motor_C, around) * (motor_C - around.air_C);

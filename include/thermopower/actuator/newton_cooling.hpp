@@ -25,6 +25,7 @@ struct RateCooling {
   }
 
   static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  static constexpr bool is_in_watts() { return false; }  ///< A rate by itself: goes with every heating law.
   /// Cooling rate, K/s.
   Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number&) const noexcept {
     return cooling_per_s * (motor_C - around.air_C);
@@ -43,6 +44,7 @@ struct NewtonCooling {
   Number conductance_W_per_K;  ///< G, above 0.
 
   static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
     return conductance_W_per_K * (motor_C - around.air_C);

@@ -20,10 +20,13 @@ struct OhmicCurrent {
   Number tempco_per_K;    ///< Relative rise per kelvin: copper 0.00393. 0 .. 0.02.
   Number reference_C;     ///< Temperature at which `resistance_ohm` was measured. -50 .. 200.
 
-  /// Winding resistance at a temperature. @return ohm
+  /// Winding resistance at a temperature, at least a tenth of `resistance_ohm`: far below any real winding the straight line would
+  /// reach zero, and a current without bound. @return ohm
   Number resistance_at(const Number& winding_C) const noexcept {
-    typedef typename detail::Numeric<Number>::Real Real;
-    return resistance_ohm * (Real(1) + tempco_per_K * (winding_C - reference_C));
+    typedef detail::Numeric<Number> Math;
+    typedef typename Math::Real Real;
+    const Number relative = Real(1) + tempco_per_K * (winding_C - reference_C);
+    return resistance_ohm * detail::at_least(relative, Math::constant(Real(0.1)));
   }
 
   /// Current drawn at a voltage. @return ampere

@@ -19,6 +19,7 @@ struct RadiationCooling {
   Number emissivity;         ///< eps, 0 .. 1.
 
   static constexpr bool is_linear() { return false; }  ///< Grows with the fourth power.
+  static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
     const Number surface = squared_kelvin(motor_C), air = squared_kelvin(around.air_C);

@@ -19,6 +19,7 @@ struct SumOfCooling {
   Second second;  ///< The other; may itself be a sum.
 
   static constexpr bool is_linear() { return First::is_linear() && Second::is_linear(); }  ///< When both are.
+  static constexpr bool is_in_watts() { return First::is_in_watts() || Second::is_in_watts(); }  ///< When one is.
   /// Loss, W; needs two laws stated in watts.
   Scalar loss_W(const Scalar& motor_C, const Surroundings<Scalar>& around) const noexcept {
     return first.loss_W(motor_C, around) + second.loss_W(motor_C, around);

@@ -25,6 +25,8 @@ class ThermalModel {
   typedef typename Heating::Scalar Scalar;
   static_assert(!Step::needs_linear_laws() || (Heating::is_linear() && Cooling::is_linear()),
                 "thermopower: ExactStep needs linear heating and cooling laws; take LinearizedStep or EulerStep for these");
+  static_assert(Heating::is_heat_capacity() || !Cooling::is_in_watts(),
+                "thermopower: this heating law has no heat capacity to turn a loss in watts into a rate; take RateCooling with it");
 
   /// What one tunes: the constants of both laws.
   struct Config {

@@ -62,7 +62,10 @@ class TwoNodeThermalModel {
     body_to_winding_ = config.coupling_W_per_K / config.body_heat_capacity_J_per_K;
     const Number to_air = config.cooling.conductance_W_per_K / config.body_heat_capacity_J_per_K;
     const Number half_trace = (winding_to_body_ + body_to_winding_ + to_air) * Real(0.5);
-    const Number half_gap = Math::square_root(half_trace * half_trace - winding_to_body_ * to_air);
+    // A sum of squares: half_trace^2 less the determinant could come out negative where the eigenvalues nearly meet.
+    const Number half_difference = (winding_to_body_ - body_to_winding_ - to_air) * Real(0.5);
+    const Number half_gap =
+        Math::square_root(Number(half_difference * half_difference + winding_to_body_ * body_to_winding_));
     fast_per_s_ = half_trace + half_gap;
     // Not half_trace - half_gap, which cancels when the nodes' time constants lie far apart.
     slow_per_s_ = winding_to_body_ * to_air / fast_per_s_;

@@ -15,11 +15,12 @@ enum class AirSource : uint8_t {
   camera = 1,    ///< Only the camera's IMU is plausible.
   frame = 2,     ///< Only the frame's IMU is plausible.
   both = 3,      ///< Both, averaged (eq 4.20).
-  warmer = 4     ///< Both are plausible but disagree: the warmer one, because too warm costs power and too cold costs the motor.
+  warmer = 4     ///< Both are plausible, but they disagree or the frame reads exactly 0: the warmer one.
 };
 
-/// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC: in a warm room it disagrees, and the average,
-/// which would be half the truth, is not taken.
+/// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC, and the average would be half the truth. So a
+/// frame that reads exactly 0 is not averaged, nor are two that disagree: the warmer one is taken, because an air that is believed
+/// too warm costs power, and one that is believed too cold costs the motor.
 class AirTemperature {
  public:
   /// What one tunes.
@@ -35,9 +36,9 @@ class AirTemperature {
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      if (!detail::is_finite(maximum_plausible_C)) return ConfigError::maximum_plausible_C;
-      if (!detail::is_finite(minimum_plausible_C) || minimum_plausible_C >= maximum_plausible_C)
-        return ConfigError::minimum_plausible_C;
+      if (!detail::is_finite(minimum_plausible_C)) return ConfigError::minimum_plausible_C;
+      if (!detail::is_finite(maximum_plausible_C) || maximum_plausible_C <= minimum_plausible_C)
+        return ConfigError::maximum_plausible_C;
       return detail::require_positive(maximum_difference_K, ConfigError::maximum_difference_K);
     }
   };
@@ -61,7 +62,8 @@ class AirTemperature {
   const State& step(float camera_C, float frame_C) noexcept {
     const bool camera = is_plausible(camera_C), frame = is_plausible(frame_C);
     if (camera && frame) {
-      const bool agree = detail::magnitude(camera_C - frame_C) <= config_.maximum_difference_K;
+      const bool is_fitted = frame_C < 0.0f || frame_C > 0.0f;
+      const bool agree = is_fitted && detail::magnitude(camera_C - frame_C) <= config_.maximum_difference_K;
       state_.air_C = agree ? 0.5f * (camera_C + frame_C) : (camera_C > frame_C ? camera_C : frame_C);
       state_.source = agree ? AirSource::both : AirSource::warmer;
     } else {

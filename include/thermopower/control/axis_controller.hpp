@@ -32,6 +32,9 @@ class AxisController {
                 "thermopower: the second parameter of AxisController must be a power law: a type with Config and step(error_deg)");
   static_assert(detail::IsLimiter<Limiter>::value,
                 "thermopower: the third parameter of AxisController must be a limiter: a type with Inputs, step, cut and ceiling");
+  static_assert(detail::IsGain<Gain>::value,
+                "thermopower: the fourth parameter of AxisController must be a gain: a type with Config and step(power) const, such "
+                "as GainScheduler or NoGain");
 
  public:
   typedef typename Motor::Current Current;  ///< Current model.
@@ -68,9 +71,9 @@ class AxisController {
 
   /// What the axis decides on.
   struct Inputs {
-    float error_deg;    ///< Position error, any number of turns.
-    float supply_V;     ///< Amplitude of the switched supply.
-    float air_C;        ///< Air temperature.
+    float error_deg;    ///< Position error, any number of turns up to a million degrees.
+    float supply_V;     ///< Amplitude of the switched supply, >= 0.
+    float air_C;        ///< Air temperature, -100 .. 200 degC.
     LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
   };
 
@@ -100,20 +103,24 @@ class AxisController {
   /// What `Config::validate()` found when the controller was made. Anything but none keeps the power at its least.
   ConfigError validate() const noexcept { return config_error_; }
 
-  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite
-  void start(float motor_C) noexcept { thermal_.start(motor_C); }
+  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite; NaN: as warm as the air
+  void start(float motor_C) noexcept {
+    thermal_.start(motor_C);
+    state_.motor_C = motor_C;
+    is_started_ = detail::is_finite(motor_C);
+  }
 
   /// One control cycle. @param dt_s  time since the last one, >= 0
   const State& step(const Inputs& inputs, float dt_s) noexcept {
     const LimitReason fault = find_fault(inputs, dt_s);
-    if (detail::is_finite(inputs.air_C)) last_air_C_ = inputs.air_C;
-    if (detail::is_finite(inputs.supply_V)) last_supply_V_ = inputs.supply_V;
+    if (is_plausible_air(inputs.air_C)) last_air_C_ = inputs.air_C;
+    if (detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f) last_supply_V_ = inputs.supply_V;
     estimate_temperature(detail::is_finite(dt_s) && dt_s > 0.0f ? dt_s : 0.0f);
 
     state_.error_deg = wrap_deg(inputs.error_deg);
     state_.demand = power_law_.step(state_.error_deg);
     const typename Limiter::Inputs limits = {state_.demand, state_.motor_C, state_.rate_K_per_s};
-    const LimitedPower granted = is_fault(fault) ? limiter_.cut(fault) : limiter_.step(limits, dt_s);
+    const LimitedPower granted = is_fault(fault) ? limiter_.cut(fault, state_.demand) : limiter_.step(limits, dt_s);
     state_.ceiling = limiter_.ceiling();
     state_.power = granted.power;
     state_.reason = granted.reason;
@@ -128,16 +135,20 @@ class AxisController {
     if (is_error(config_error_)) return LimitReason::config_invalid;
     if (is_fault(inputs.fault)) return inputs.fault;
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return LimitReason::time_invalid;
-    if (!detail::is_finite(inputs.error_deg)) return LimitReason::error_not_finite;
+    if (!detail::is_finite(wrap_deg(inputs.error_deg))) return LimitReason::error_not_finite;
     if (!detail::is_finite(inputs.supply_V)) return LimitReason::supply_not_finite;
-    if (!detail::is_finite(inputs.air_C)) return LimitReason::air_implausible;
+    if (inputs.supply_V < 0.0f) return LimitReason::supply_low;
+    if (!is_plausible_air(inputs.air_C)) return LimitReason::air_implausible;
     return LimitReason::none;
   }
+
+  // Wider than any sensor's range, which is AirTemperature's business: only what no air can be.
+  static bool is_plausible_air(float air_C) noexcept { return air_C >= -100.0f && air_C <= 200.0f; }
 
   void estimate_temperature(float dt_s) noexcept {
     if (!detail::is_finite(last_air_C_)) return;
     // The thesis's assumption, section 4.2: a motor that was just switched on is as warm as the air.
-    if (!detail::is_finite(thermal_.hottest_C()) && !is_started_) thermal_.start(last_air_C_);
+    if (!is_started_) thermal_.start(last_air_C_);
     is_started_ = true;
     const typename Current::State drawn =
         current_.at_power(static_cast<float>(state_.power), last_supply_V_, thermal_.hottest_C());

@@ -51,7 +51,7 @@ struct GimbalConfig {
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(detail::require_positive(supply_V, ConfigError::supply_V))) return ConfigError::supply_V;
-    if (is_error(detail::require_within(minimum_supply_V, 0.0f, supply_V, ConfigError::minimum_supply_V)))
+    if (is_error(detail::require_not_negative(minimum_supply_V, ConfigError::minimum_supply_V)) || minimum_supply_V >= supply_V)
       return ConfigError::minimum_supply_V;
     return first_error(detail::require_positive(timeout_s, ConfigError::timeout_s), air.validate());
   }
@@ -78,6 +78,7 @@ struct AxisChain {
 
 template <uint8_t index, class First, class... Rest>
 struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
+  static_assert(IsAxis<First>::value, "thermopower: every parameter of GimbalController must be an AxisController");
   typedef AxisChain<index + 1, Rest...> Next;
   AxisChain() noexcept {}
   explicit AxisChain(const typename First::Config& first, const typename Rest::Config&... rest) noexcept
@@ -152,23 +153,22 @@ class BasicGimbalController {
     state_.silent_s = 0.0f;
     last_ = inputs;
     has_telemetry_ = true;
-    LimitReason fault = LimitReason::none;
+    telemetry_fault_ = LimitReason::none;
     if (!detail::is_finite(inputs.supply_V))
-      fault = LimitReason::supply_not_finite;
+      telemetry_fault_ = LimitReason::supply_not_finite;
     else if (inputs.supply_V < config_.minimum_supply_V)
-      fault = LimitReason::supply_low;
-    return step_axes(fault, dt_s);
+      telemetry_fault_ = LimitReason::supply_low;
+    return step_axes(telemetry_fault_, dt_s);
   }
 
-  /// One cycle in which no telemetry came. The temperatures go on; the last command holds until `timeout_s`, then the power is the
-  /// least. @param dt_s  time since the last step or silent cycle, >= 0
+  /// One cycle in which no telemetry came. The temperatures go on; what the last telemetry asked for, or its fault, holds until
+  /// `timeout_s`, then the power is the least. @param dt_s  time since the last step or silent cycle, >= 0
   const Command& step_silent(float dt_s) noexcept {
-    state_.silent_s += dt_s;
-    // Asked this way round so that a NaN time counts as silence.
+    // Asked this way round so that a NaN time counts as silence, and a negative one buys no more of it.
+    if (!(dt_s < 0.0f)) state_.silent_s += dt_s;
     const bool is_tolerated = state_.silent_s <= config_.timeout_s;
-    const LimitReason fault = !has_telemetry_ ? LimitReason::no_telemetry_yet
-                                              : (is_tolerated ? LimitReason::none : LimitReason::link_silent);
-    return step_axes(fault, dt_s);
+    if (!has_telemetry_) return step_axes(LimitReason::no_telemetry_yet, dt_s);
+    return step_axes(is_tolerated ? telemetry_fault_ : LimitReason::link_silent, dt_s);
   }
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
@@ -244,6 +244,7 @@ class BasicGimbalController {
   Inputs last_;
   State state_;
   GimbalConfigError config_error_;
+  LimitReason telemetry_fault_ = LimitReason::none;
   bool has_telemetry_ = false;
 };
 

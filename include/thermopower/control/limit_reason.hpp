@@ -19,11 +19,11 @@ enum class LimitReason : uint8_t {
 
   no_telemetry_yet = 64,      ///< Nothing valid was ever received.
   link_silent = 65,           ///< No telemetry for longer than the time-out.
-  error_not_finite = 66,      ///< The position error is NaN or infinite.
+  error_not_finite = 66,      ///< The position error is NaN, infinite, or too large to be an angle (a million degrees).
   air_implausible = 67,       ///< No thermometer gives a plausible air temperature.
-  supply_low = 68,            ///< The supply is below the lowest voltage at which the actuator may be driven.
+  supply_low = 68,            ///< The supply is below the lowest voltage at which the actuator may be driven, or negative.
   supply_not_finite = 69,     ///< The supply voltage is NaN or infinite.
-  temperature_not_finite = 70,///< The estimated temperature or its rate is NaN or infinite.
+  temperature_not_finite = 70,///< The estimated temperature or its rate is NaN or infinite, or it is below absolute zero.
   time_invalid = 71,          ///< The time step is NaN, infinite or negative.
   config_invalid = 72         ///< `validate()` refused the configuration.
 };
@@ -33,11 +33,12 @@ constexpr bool is_fault(LimitReason reason) { return static_cast<uint8_t>(reason
 
 /// What a limiter returns.
 struct LimitedPower {
-  uint8_t power;       ///< Granted power parameter, 1 .. 255; never above the demand unless the demand is 0.
+  uint8_t power;       ///< Granted power parameter; never above the demand.
   LimitReason reason;  ///< Why it is less than the demand; `none` when it is not.
 };
 
-/// The lowest power parameter the controller board takes (0 is not valid, section 4.2).
+/// What is left to an actuator that is cut: the lowest power parameter the controller board takes (0 is not valid, section 4.2). A
+/// power law that asks for 0, for an actuator that may be switched off, is granted 0.
 constexpr uint8_t least_power() { return 1; }
 
 }  // namespace thermopower

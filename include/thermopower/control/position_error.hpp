@@ -15,7 +15,10 @@ inline float wrap_deg(float angle_deg) noexcept {
   if (!(detail::magnitude(angle_deg) < 1.0e6f)) return detail::not_a_number();
   const float turns = angle_deg * (1.0f / 360.0f);
   const int16_t whole = static_cast<int16_t>(turns < 0.0f ? turns - 0.5f : turns + 0.5f);
-  return angle_deg - 360.0f * static_cast<float>(whole);
+  const float folded = angle_deg - 360.0f * static_cast<float>(whole);
+  // After thousands of turns a float's rounding can choose the turn next to the right one.
+  if (folded > 180.0f) return folded - 360.0f;
+  return folded < -180.0f ? folded + 360.0f : folded;
 }
 
 /// Error of an axis, eq 4.19, folded. @return -180 .. 180 degrees

@@ -71,8 +71,8 @@ struct PerSecond {
 /// Limits the power so that the actuator stays below its limit temperature.
 /// @tparam Rule  how the ceiling moves
 ///
-/// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time that is NaN or infinite
-/// counts as too hot; at equal history a hotter actuator never gets more.
+/// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time that is NaN, infinite or
+/// impossible (below absolute zero, a negative time) counts as too hot; at equal history a hotter actuator never gets more.
 template <class Rule = PerSecond>
 class SafetyLimiter {
  public:
@@ -93,10 +93,10 @@ class SafetyLimiter {
 
   /// @param dt_s  time since the last step, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
-    if (!detail::is_finite(inputs.motor_C) || !detail::is_finite(inputs.rate_K_per_s))
-      return cut(LimitReason::temperature_not_finite);
-    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid);
-    if (inputs.motor_C > config_.maximum_C) return cut(LimitReason::over_temperature);
+    if (!detail::is_finite(inputs.motor_C) || inputs.motor_C < -273.15f || !detail::is_finite(inputs.rate_K_per_s))
+      return cut(LimitReason::temperature_not_finite, inputs.demand);
+    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
+    if (inputs.motor_C > config_.maximum_C) return cut(LimitReason::over_temperature, inputs.demand);
 
     const float safety_C = config_.maximum_C - config_.safety_time_s * inputs.rate_K_per_s;  // eq 4.23
     const bool is_safe = inputs.motor_C <= safety_C;
@@ -114,10 +114,11 @@ class SafetyLimiter {
     return granted;
   }
 
-  /// Least power for a reason found elsewhere; the ceiling starts again from there, so that power returns gradually.
-  LimitedPower cut(LimitReason reason) noexcept {
+  /// Least power, or the demand if that is less, for a reason found elsewhere; the ceiling starts again from there, so that power
+  /// returns gradually.
+  LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     Rule::cut(state_);
-    LimitedPower least = {least_power(), reason};
+    LimitedPower least = {demand < least_power() ? demand : least_power(), reason};
     return least;
   }
 

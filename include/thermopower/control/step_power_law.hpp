@@ -33,9 +33,10 @@ struct StepPowerConfig {
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
+    if (is_error(detail::require_positive(full_power_error_deg, ConfigError::full_power_error_deg)))
+      return ConfigError::full_power_error_deg;
     if (power_step < 1 || power_step > 25) return ConfigError::power_step;
-    return first_error(detail::require_positive(full_power_error_deg, ConfigError::full_power_error_deg),
-                       detail::require_not_negative(hysteresis_deg, ConfigError::hysteresis_deg));
+    return detail::require_not_negative(hysteresis_deg, ConfigError::hysteresis_deg);
   }
 };
 
@@ -43,9 +44,10 @@ struct StepPowerConfig {
 struct NoState {};
 
 namespace detail {
-/// int(10 e / e_max), saturated at `highest`.
+/// int(10 e / e_max), saturated at `highest`; 0 where a refused configuration makes it NaN or negative.
 inline uint8_t error_level(float magnitude_deg, const StepPowerConfig& config, uint8_t highest) noexcept {
   const float level = magnitude_deg * 10.0f / config.full_power_error_deg;
+  if (!(level > 0.0f)) return 0;
   return level >= static_cast<float>(highest) ? highest : static_cast<uint8_t>(level);
 }
 }  // namespace detail
@@ -91,10 +93,10 @@ struct ContinuousPower {
   typedef StepPowerConfig Config;
   typedef NoState State;
   static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
-    const float highest = 10.0f * static_cast<float>(config.power_step);
-    const float power = highest * (magnitude_deg / config.full_power_error_deg);
-    if (power >= highest) return static_cast<uint8_t>(highest);
-    return power <= static_cast<float>(config.power_step) ? config.power_step : static_cast<uint8_t>(power + 0.5f);
+    const uint8_t highest = static_cast<uint8_t>(10u * config.power_step);
+    const float power = static_cast<float>(highest) * (magnitude_deg / config.full_power_error_deg);
+    if (!(power > static_cast<float>(config.power_step))) return config.power_step;
+    return power >= static_cast<float>(highest) ? highest : static_cast<uint8_t>(power + 0.5f);
   }
 };
 
