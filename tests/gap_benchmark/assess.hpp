@@ -20,6 +20,17 @@ struct Assessment {
   std::string confused_with;     ///< that cause
   double left_over = 0.0;        ///< RMS over the floor that the best wrong cause leaves
   std::vector<std::pair<std::string, double>> others;  ///< every suspect and how well it passes
+
+  /// Keeps, for every suspect, the lesser of two likenesses: one view that tells them apart is enough.
+  void least(const Assessment& other) {
+    for (auto& suspect : others)
+      for (const auto& same : other.others)
+        if (same.first == suspect.first) suspect.second = std::min(suspect.second, same.second);
+    std::sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    if (others.empty()) return;
+    confused_with = others.front().first;
+    confusability = others.front().second;
+  }
 };
 
 /// Noise-free residuals of one recording for given parameters, in units of each signal's floor.
@@ -93,6 +104,10 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
   if (!thorough) return result;
   for (const auto& suspect : effects) {
     if (!suspect.possible(context) || std::count(truth.begin(), truth.end(), suspect.id)) continue;
+    const bool richer = std::any_of(truth.begin(), truth.end(), [&](const std::string& id) {
+      return std::count(suspect.contains.begin(), suspect.contains.end(), id) > 0;
+    });
+    if (richer) continue;
     double likeness = 0.0, left = 1e9;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       auto ids = kept[i];

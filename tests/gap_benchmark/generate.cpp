@@ -13,6 +13,7 @@
 #include <mutex>
 #include <thread>
 
+#include "axis_draw.hpp"
 #include "bench_draw.hpp"
 
 using namespace gap_benchmark;
@@ -47,7 +48,18 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "unknown") orders.push_back(o);
   }
   for (int i = 0; i < 8; ++i) { CaseOrder o; o.thesis = i % 4 == 3; if (only.empty() || only == "none") orders.push_back(o); }
-  (void)count;
+  if (count) orders.clear();
+  for (const auto& e : axis_effects())
+    for (int i = 0; i < 3; ++i) {
+      CaseOrder o; o.axis = true; o.effects = {e.id}; o.thorough = !quick;
+      if (only.empty() || only == e.id) orders.push_back(o);
+    }
+  for (const auto& u : axis_unknowns()) {
+    CaseOrder o; o.axis = true; o.unknown = static_cast<int>(u.first); o.thorough = !quick;
+    if (only.empty() || only == "unknown") orders.push_back(o);
+  }
+  for (int i = 0; i < 4; ++i) { CaseOrder o; o.axis = true; if (only.empty() || only == "none") orders.push_back(o); }
+
 
   nlohmann::ordered_json labels;
   std::mutex lock;
@@ -59,7 +71,7 @@ int main(int argc, char** argv) {
       const auto t0 = std::chrono::steady_clock::now();
       std::string name = orders[i].effects.empty() ? (orders[i].unknown ? "unknown " + std::to_string(orders[i].unknown) : "none") : orders[i].effects[0];
       try {
-        DrawnCase drawn = draw_bench_case(orders[i], random);
+        DrawnCase drawn = orders[i].axis ? draw_axis_case(orders[i], random) : draw_bench_case(orders[i], random);
         char id[16]; std::snprintf(id, sizeof id, "%03d", static_cast<int>(i));
         const std::string dir = out + "/cases/" + id;
         std::filesystem::create_directories(dir);

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "axis_plant.hpp"
+#include "effect.hpp"
+
+namespace gap_benchmark {
+
+/// What an effect's size is chosen against.
+struct AxisContext {
+  AxisParameters model = axis_defaults();  ///< what model.json says
+  AxisParameters plant = axis_defaults();  ///< the same axis as it is, before the effect
+  double torque_Nm = 0.01;                 ///< RMS torque of the command
+  double drive_A = 0.1;                    ///< RMS of the command
+  double rate_dps = 80.0;                  ///< RMS rate
+  double swing_rad = 0.5;                  ///< RMS angle
+  double dt_s = 0.01;
+  bool has_motor = false;
+};
+
+using AxisEffect = Effect<AxisContext, AxisParameters>;
+
+inline const std::vector<AxisEffect>& axis_effects() {
+  using Context = AxisContext;
+  using Values = AxisParameters;
+  using List = std::vector<Free>;
+  const auto always = [](const Context&) { return true; };
+  const std::vector<std::string> motion = {"rate_dps", "angle_deg"};
+  const auto constant = [always, motion](const char* id, const char* submodel, AxisParameter index) {
+    return AxisEffect{id, submodel, motion, always,
+                      [index](Random& r, const Context&, Values& p) { p[index] *= std::exp(r.sign() * r.uniform(0.1, 0.45)); },
+                      [index](const Context& c) { const double x = c.model[index]; return List{{index, 0.35 * x, 2.8 * x, {x}}}; }, {}};
+  };
+  static const std::vector<AxisEffect> effects = {
+      {"coulomb_friction", "mechanical.friction", motion, always,
+       [](Random& r, const Context& c, Values& p) { p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.08, 0.5); },
+       [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}}; }, {}},
+      {"asymmetric_friction", "mechanical.friction", motion, always,
+       [](Random& r, const Context& c, Values& p) {
+         p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.12, 0.45);
+         p[asymmetry] = r.sign() * r.uniform(0.25, 0.6);
+       },
+       [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}, {asymmetry, -1.0, 1.0, {-0.3, 0.3}}}; },
+       {"coulomb_friction"}},
+      {"stribeck_friction", "mechanical.friction", motion, always,
+       [](Random& r, const Context& c, Values& p) {
+         p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.1, 0.35);
+         p[stick_ratio] = r.uniform(0.5, 1.6);
+         p[stribeck_dps] = r.log_uniform(5.0, 40.0);
+       },
+       [](const Context& c) {
+         return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}, {stick_ratio, 0.1, 3.0, {0.8}}, {stribeck_dps, 2.0, 80.0, {8.0, 30.0}}};
+       },
+       {"coulomb_friction"}},
+      {"load_friction", "mechanical.friction", motion, always,
+       [](Random& r, const Context&, Values& p) { p[load_share] = r.uniform(0.08, 0.35); },
+       [](const Context&) { return List{{load_share, 0.0, 0.7, {0.15}}}; }, {}},
+      {"drive_deadband", "mechanical.drive", motion, always,
+       [](Random& r, const Context& c, Values& p) { p[deadband_A] = c.drive_A * r.log_uniform(0.08, 0.4); },
+       [](const Context& c) { return List{{deadband_A, 0.0, 1.5 * c.drive_A, {0.15 * c.drive_A}}}; }, {}},
+      {"imbalance", "mechanical.load", motion, always,
+       [](Random& r, const Context& c, Values& p) {
+         const double size = c.torque_Nm * r.log_uniform(0.12, 0.8), phase = r.uniform(-3.1, 3.1);
+         p[unbalance_sin_Nm] = size * std::cos(phase);
+         p[unbalance_cos_Nm] = size * std::sin(phase);
+       },
+       [](const Context& c) {
+         const double m = 3.0 * c.torque_Nm;
+         return List{{unbalance_sin_Nm, -m, m, {0.1 * m}}, {unbalance_cos_Nm, -m, m, {0.0}}};
+       }, {}},
+      {"cable_spring", "mechanical.load", motion, always,
+       [](Random& r, const Context& c, Values& p) {
+         p[cable_Nm_per_rad] = c.torque_Nm * r.log_uniform(0.12, 0.7) / c.swing_rad;
+         p[cable_Nm] = p[cable_Nm_per_rad] * r.uniform(-0.4, 0.4);
+       },
+       [](const Context& c) {
+         const double m = 3.0 * c.torque_Nm;
+         return List{{cable_Nm_per_rad, 0.0, m / c.swing_rad, {0.1 * m / c.swing_rad}}, {cable_Nm, -m, m, {0.0}}};
+       }, {}},
+      {"cogging", "mechanical.load", motion, always,
+       [](Random& r, const Context& c, Values& p) {
+         const double size = c.torque_Nm * r.log_uniform(0.1, 0.5), phase = r.uniform(-3.1, 3.1);
+         p[cogging_sin_Nm] = size * std::cos(phase);
+         p[cogging_cos_Nm] = size * std::sin(phase);
+         p[cogging_count] = r.pick({6.0, 7.0, 8.0, 11.0, 12.0, 14.0, 18.0, 21.0, 22.0, 24.0});
+       },
+       [](const Context& c) {
+         const double m = 1.5 * c.torque_Nm;
+         return List{{cogging_sin_Nm, -m, m, {0.05 * m}}, {cogging_cos_Nm, -m, m, {0.0}}, {cogging_count, 4.0, 30.0, {6.0, 12.0, 22.0}}};
+       }, {}},
+      {"compliance", "mechanical.structure", motion, [](const Context& c) { return c.dt_s <= 0.0101; },
+       [](Random& r, const Context& c, Values& p) {
+         p[far_share] = r.uniform(0.25, 0.75);
+         p[spring_Hz] = r.log_uniform(3.5, std::min(18.0, 0.2 / c.dt_s));
+         p[spring_damping] = r.log_uniform(0.02, 0.12);
+       },
+       [](const Context&) { return List{{far_share, 0.08, 0.92, {0.3, 0.6}}, {spring_Hz, 2.0, 30.0, {5.0, 12.0}}, {spring_damping, 0.005, 0.4, {0.06}}}; }, {}},
+      {"actuation_delay", "mechanical.drive", motion, always,
+       [](Random& r, const Context& c, Values& p) { p[delay_s] = r.uniform(std::max(0.004, 0.4 * c.dt_s), 0.028); },
+       [](const Context&) { return List{{delay_s, 0.0, 0.06, {0.005, 0.015}}}; }, {}},
+      {"torque_saturation", "mechanical.drive", motion, always,
+       [](Random& r, const Context& c, Values& p) { p[torque_limit_Nm] = c.torque_Nm * r.uniform(0.7, 1.7); },
+       [](const Context& c) { return List{{torque_limit_Nm, 0.2 * c.torque_Nm, 4.0 * c.torque_Nm, {0.9 * c.torque_Nm, 1.5 * c.torque_Nm}}}; }, {}},
+      {"torque_fade", "mechanical.drive", motion, [](const Context& c) { return c.has_motor; },
+       [](Random& r, const Context&, Values& p) { p[fade_per_K] = r.uniform(0.0015, 0.006); },
+       [](const Context&) { return List{{fade_per_K, 0.0, 0.015, {0.002}}}; }, {}},
+      constant("calibration.inertia", "mechanical.structure", inertia),
+      constant("calibration.viscous", "mechanical.friction", viscous),
+      constant("calibration.torque_constant", "mechanical.drive", torque_constant),
+      {"angle_scale", "sensing.angle", {"angle_deg"}, always,
+       [](Random& r, const Context&, Values& p) { p[angle_gain] = r.pick({57.29577951, 18.0, 1.0 / 18.0, 10.0, 2.0, 0.5, 1.25, 0.8, 1.1, 0.9, 0.01745329}); },
+       [](const Context&) { return List{{angle_gain, 0.01, 80.0, {0.02, 0.9, 1.5, 18.0, 57.0}}}; }, {}},
+      {"angle_bias_drift", "sensing.angle", {"angle_deg", "rate_dps"}, always,
+       [](Random& r, const Context&, Values& p) { p[angle_drift_dps] = r.sign() * r.log_uniform(0.4, 4.0); },
+       [](const Context&) { return List{{angle_drift_dps, -12.0, 12.0, {0.2}}}; }, {}},
+      {"rate_bias", "sensing.rate", {"rate_dps", "angle_deg"}, always,
+       [](Random& r, const Context&, Values& p) { p[rate_bias_dps] = r.sign() * r.log_uniform(0.5, 6.0); },
+       [](const Context&) { return List{{rate_bias_dps, -20.0, 20.0, {0.3}}}; }, {}},
+  };
+  return effects;
+}
+
+/// The baseline's own constants with the slack that anybody's explanation may use.
+inline std::vector<Free> axis_slack(const AxisContext& c, double slack = 0.04) {
+  std::vector<Free> free;
+  for (const int index : {inertia, viscous, torque_constant}) {
+    const double value = c.model[static_cast<std::size_t>(index)];
+    free.push_back({index, value * (1.0 - slack), value * (1.0 + slack), {value}});
+  }
+  return free;
+}
+
+/// Causes that no catalogue of INTERFACE lists.
+enum class AxisUnknown { none, backlash, notch, magnetic_memory, warming_grease, gusts, wear, quadratic_drag, vibration, eccentric_encoder, end_stop };
+
+inline const std::vector<std::pair<AxisUnknown, std::string>>& axis_unknowns() {
+  static const std::vector<std::pair<AxisUnknown, std::string>> list = {
+      {AxisUnknown::backlash, "backlash between motor and load"},
+      {AxisUnknown::notch, "a notch: it sticks at one position"},
+      {AxisUnknown::magnetic_memory, "magnetic hysteresis: torque that remembers where it turned"},
+      {AxisUnknown::warming_grease, "grease that thins while it is worked"},
+      {AxisUnknown::gusts, "gusts of wind on the load"},
+      {AxisUnknown::wear, "a bearing that breaks in mid recording"},
+      {AxisUnknown::quadratic_drag, "air drag, with the square of the rate"},
+      {AxisUnknown::vibration, "a vibration from outside, not logged"},
+      {AxisUnknown::eccentric_encoder, "an encoder mounted off centre"},
+      {AxisUnknown::end_stop, "an elastic end stop"},
+  };
+  return list;
+}
+
+}  // namespace gap_benchmark

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace gap_benchmark {
+
+/// Every number an axis can have; an effect is off at zero (gains: at one).
+enum AxisParameter : int {
+  // what the simulation under test knows
+  inertia, viscous, torque_constant,
+  // friction
+  coulomb_Nm, asymmetry, stick_ratio, stribeck_dps, load_share,
+  // drive
+  deadband_A, delay_s, torque_limit_Nm, fade_per_K,
+  // what depends on the angle
+  unbalance_sin_Nm, unbalance_cos_Nm, cable_Nm_per_rad, cable_Nm, cogging_sin_Nm, cogging_cos_Nm, cogging_count,
+  // a spring between motor and load
+  far_share, spring_Hz, spring_damping,
+  // sensors
+  angle_gain, angle_drift_dps, rate_bias_dps,
+  // effects that have no name in the catalogue
+  gap_deg, notch_Nm, notch_deg, notch_width_deg, magnetic_Nm, magnetic_deg, drag_Nm_per_dps2, warming_share, warming_s,
+  eccentric_deg, eccentric_count, stop_deg, stop_Nm_per_rad,
+  axis_parameter_count
+};
+
+using AxisParameters = std::array<double, axis_parameter_count>;
+
+inline AxisParameters axis_defaults() {
+  AxisParameters p{};
+  p[stribeck_dps] = 10.0;
+  p[cogging_count] = 12.0;
+  p[spring_Hz] = 10.0;
+  p[spring_damping] = 0.05;
+  p[angle_gain] = 1.0;
+  p[notch_width_deg] = p[magnetic_deg] = p[warming_s] = 1.0;
+  return p;
+}
+
+constexpr double degrees_per_radian = 57.295779513082323;
+constexpr double fade_reference_C = 25.0;
+
+struct AxisInput {
+  double drive_A = 0.0, motor_C = fade_reference_C;
+  double hidden_Nm = 0.0, hidden_wear = 1.0;  ///< disturbances that no column shows
+};
+
+/// Motor side and far side of the spring, in rad; `turned` is the magnetic memory, `warm` the warmth of the grease.
+struct AxisState {
+  double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, turned = 0.0, warm = 0.0;
+};
+
+/// An axis with dry friction, as physics: it slides, or it sticks and holds still. Classical Runge-Kutta at a quarter
+/// of a millisecond inside each phase; the moment at which it comes to rest is located, not stepped over, and a delayed
+/// command switches at its own instant.
+class AxisPlant {
+public:
+  explicit AxisPlant(const AxisParameters& parameters, double step_scale = 1.0) : p_(parameters) {
+    step_s_ = 0.25e-3 * step_scale;
+    if (p_[far_share] > 0.0) {
+      const double omega = 6.283185307179586 * p_[spring_Hz];
+      const double reduced = p_[inertia] * p_[far_share] * (1.0 - p_[far_share]);
+      spring_ = reduced * omega * omega;
+      damper_ = 2.0 * p_[spring_damping] * reduced * omega;
+      step_s_ = std::min(step_s_, 0.1 / omega);
+    }
+    dry_ = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0;
+  }
+
+  double delay() const { return p_[delay_s]; }
+
+  double sensed_angle_deg(const AxisState& x, double run_time_s) const {
+    return p_[angle_gain] * (x.angle * degrees_per_radian + p_[eccentric_deg] * std::sin(p_[eccentric_count] * x.angle)) +
+           p_[angle_drift_dps] * run_time_s;
+  }
+  double sensed_rate_dps(const AxisState& x) const { return x.rate * degrees_per_radian + p_[rate_bias_dps]; }
+
+  /// Puts what the sensors say into the state; what nobody measures is kept, as far as it hangs on the motor by its twist.
+  /// @param absolute keep the far side where it was, instead of how far it was twisted
+  void restart(AxisState& x, double angle_deg, double rate_dps, double run_time_s, bool first, bool absolute) const {
+    double angle = (angle_deg - p_[angle_drift_dps] * run_time_s) / p_[angle_gain] / degrees_per_radian;
+    if (p_[eccentric_deg] != 0.0) {
+      const double seen = angle;
+      for (int i = 0; i < 20; ++i) angle = seen - p_[eccentric_deg] / degrees_per_radian * std::sin(p_[eccentric_count] * angle);
+    }
+    const double rate = (rate_dps - p_[rate_bias_dps]) / degrees_per_radian;
+    if (first) {
+      x = AxisState{angle, rate, angle, rate, 0.0, 0.0};
+    } else if (absolute) {
+      x.angle = angle;
+      x.rate = rate;
+    } else {
+      x.far_angle += angle - x.angle;
+      x.far_rate += rate - x.rate;
+      x.angle = angle;
+      x.rate = rate;
+    }
+  }
+
+  /// Motor torque for a current, N m.
+  double motor_torque(const AxisInput& u) const {
+    const double beyond = std::max(0.0, std::fabs(u.drive_A) - p_[deadband_A]);
+    double torque = p_[torque_constant] * (1.0 - p_[fade_per_K] * (u.motor_C - fade_reference_C)) * std::copysign(beyond, u.drive_A);
+    if (p_[torque_limit_Nm] > 0.0) torque = std::clamp(torque, -p_[torque_limit_Nm], p_[torque_limit_Nm]);
+    return torque;
+  }
+
+  /// Carries the state over a time in which all inputs are held.
+  void advance(AxisState& x, const AxisInput& u, double duration_s) const {
+    if (duration_s <= 0.0) return;
+    const Held held{motor_torque(u), u.hidden_Nm, u.hidden_wear};
+    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / step_s_ - 1e-9)));
+    const double h = duration_s / steps;
+    for (int i = 0; i < steps; ++i) {
+      double left_s = h;
+      for (int events = 0; events < 6 && left_s > 0.0; ++events) {
+        if (!dry_) {
+          x = stepped(x, held, 0.0, false, left_s);
+          break;
+        }
+        double way = x.rate > 0.0 ? 1.0 : -1.0;
+        bool stuck = false;
+        if (x.rate == 0.0) {
+          const double push = without_friction(x, held);
+          way = push > 0.0 ? 1.0 : -1.0;
+          stuck = std::fabs(push) <= friction(x, held, way);
+        }
+        const AxisState before = x;
+        x = stepped(before, held, way, stuck, left_s);
+        if (stuck || x.rate * way >= 0.0) break;
+        // It came to rest on the way: find when.
+        double low = 0.0, high = left_s, rate_low = before.rate, rate_high = x.rate;
+        for (int k = 0; k < 40 && high - low > 1e-12; ++k) {
+          double middle = k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * rate_low / (rate_low - rate_high);
+          middle = std::clamp(middle, low, high);
+          x = stepped(before, held, way, false, middle);
+          if (std::fabs(x.rate) < 1e-12) {
+            low = high = middle;
+            break;
+          }
+          if (x.rate * way > 0.0) { low = middle; rate_low = x.rate; } else { high = middle; rate_high = x.rate; }
+        }
+        x = stepped(before, held, way, false, high);
+        x.rate = 0.0;
+        left_s -= high;
+        if (high <= 0.0 && before.rate == 0.0) break;
+      }
+    }
+  }
+
+  /// Kinetic plus potential energy of a rigid or two-inertia axis without angle-dependent loads, J.
+  double energy(const AxisState& x) const {
+    const double near = 0.5 * p_[inertia] * (1.0 - p_[far_share]) * x.rate * x.rate;
+    const double far = 0.5 * p_[inertia] * p_[far_share] * x.far_rate * x.far_rate;
+    const double twist = x.angle - x.far_angle;
+    return near + far + 0.5 * spring_ * twist * twist;
+  }
+
+private:
+  struct Held {
+    double motor_Nm, hidden_Nm, wear;
+  };
+  using Rates = std::array<double, 6>;
+
+  AxisParameters p_;
+  double step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0;
+  bool dry_ = false;
+
+  double friction(const AxisState& x, const Held& held, double way) const {
+    double torque = p_[coulomb_Nm] * (1.0 + way * p_[asymmetry]);
+    if (p_[stick_ratio] > 0.0) {
+      const double v = x.rate * degrees_per_radian / p_[stribeck_dps];
+      torque *= 1.0 + p_[stick_ratio] * std::exp(-v * v);
+    }
+    torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm);
+    if (p_[notch_Nm] > 0.0) {
+      const double z = (x.angle * degrees_per_radian - p_[notch_deg]) / p_[notch_width_deg];
+      torque += p_[notch_Nm] * std::exp(-0.5 * z * z);
+    }
+    return torque;
+  }
+
+  double spring_torque(const AxisState& x) const {
+    double twist = x.angle - x.far_angle;
+    if (p_[gap_deg] > 0.0) {
+      const double half = 0.5 * p_[gap_deg] / degrees_per_radian;
+      if (std::fabs(twist) <= half) return 0.0;
+      twist -= std::copysign(half, twist);
+    }
+    return spring_ * twist + damper_ * (x.rate - x.far_rate);
+  }
+
+  /// Torque of the surroundings at an angle: weight, cable, end stop.
+  double load_torque(double angle, double rate) const {
+    double torque = -p_[cable_Nm_per_rad] * angle - p_[cable_Nm];
+    if (p_[unbalance_sin_Nm] != 0.0 || p_[unbalance_cos_Nm] != 0.0)
+      torque -= p_[unbalance_sin_Nm] * std::sin(angle) + p_[unbalance_cos_Nm] * std::cos(angle);
+    if (p_[stop_Nm_per_rad] > 0.0) {
+      const double over = std::fabs(angle) - p_[stop_deg] / degrees_per_radian;
+      if (over > 0.0) torque -= std::copysign(p_[stop_Nm_per_rad] * over, angle) + 0.004 * p_[stop_Nm_per_rad] * rate;
+    }
+    return torque;
+  }
+
+  /// All torque on the motor side but dry friction.
+  double without_friction(const AxisState& x, const Held& held) const {
+    double torque = held.motor_Nm + held.hidden_Nm;
+    double b = p_[viscous];
+    if (p_[warming_share] > 0.0) b *= 1.0 - p_[warming_share] * x.warm;
+    if (dry_ || p_[coulomb_Nm] > 0.0) torque -= b * x.rate;
+    else torque -= b * held.wear * x.rate;
+    if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
+      torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) + p_[cogging_cos_Nm] * std::cos(p_[cogging_count] * x.angle);
+    if (p_[magnetic_Nm] > 0.0) torque -= p_[magnetic_Nm] * x.turned;
+    if (p_[drag_Nm_per_dps2] > 0.0) {
+      const double v = x.rate * degrees_per_radian;
+      torque -= p_[drag_Nm_per_dps2] * v * std::fabs(v);
+    }
+    return p_[far_share] > 0.0 ? torque - spring_torque(x) : torque + load_torque(x.angle, x.rate);
+  }
+
+  Rates rates(const AxisState& x, const Held& held, double way, bool stuck) const {
+    Rates d{};
+    const double near = p_[inertia] * (1.0 - p_[far_share]);
+    if (!stuck) {
+      double torque = without_friction(x, held);
+      if (dry_) torque -= way * friction(x, held, way);
+      d[0] = x.rate;
+      d[1] = torque / near;
+    }
+    if (p_[far_share] > 0.0) {
+      d[2] = x.far_rate;
+      d[3] = (spring_torque(x) + load_torque(x.far_angle, x.far_rate)) / (p_[inertia] * p_[far_share]);
+    }
+    if (p_[magnetic_Nm] > 0.0) d[4] = (x.rate - std::fabs(x.rate) * x.turned) * degrees_per_radian / p_[magnetic_deg];
+    if (p_[warming_share] > 0.0) d[5] = (std::min(1.0, std::fabs(x.rate) * degrees_per_radian / 80.0) - x.warm) / p_[warming_s];
+    return d;
+  }
+
+  static AxisState moved(const AxisState& x, const Rates& d, double h) {
+    return {x.angle + h * d[0], x.rate + h * d[1], x.far_angle + h * d[2], x.far_rate + h * d[3], x.turned + h * d[4], x.warm + h * d[5]};
+  }
+
+  AxisState stepped(const AxisState& x, const Held& held, double way, bool stuck, double h) const {
+    const Rates a = rates(x, held, way, stuck), b = rates(moved(x, a, 0.5 * h), held, way, stuck),
+                c = rates(moved(x, b, 0.5 * h), held, way, stuck), d = rates(moved(x, c, h), held, way, stuck);
+    Rates mean;
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0;
+    return moved(x, mean, h);
+  }
+};
+
+/// Everything that goes into a replay of an axis.
+struct AxisDrive {
+  std::vector<double> t_s;
+  std::vector<AxisInput> input;
+  std::vector<std::size_t> run_start;
+};
+
+struct AxisOutput {
+  std::vector<double> angle_deg, rate_dps;
+};
+
+/// Carries an axis from row `k` to row `k + 1`, with the command as late as it is.
+/// @param run_first first row of the run; before it the command was zero
+inline void advance_row(const AxisPlant& plant, AxisState& x, const AxisDrive& drive, std::size_t run_first, std::size_t k, double end_s) {
+  double now_s = drive.t_s[k];
+  AxisInput u = drive.input[k];
+  if (plant.delay() <= 0.0) {
+    plant.advance(x, u, end_s - now_s);
+    return;
+  }
+  // The last row whose command has arrived by now, if any.
+  std::size_t arrived = k + 1;
+  while (arrived > run_first && drive.t_s[arrived - 1] + plant.delay() > now_s + 1e-12) --arrived;
+  while (now_s < end_s) {
+    u.drive_A = arrived > run_first ? drive.input[arrived - 1].drive_A : 0.0;
+    const double next_s = arrived <= k ? std::min(end_s, drive.t_s[arrived] + plant.delay()) : end_s;
+    plant.advance(x, u, next_s - now_s);
+    now_s = next_s;
+    ++arrived;
+  }
+}
+
+/// Replay in windows that restart from what was measured.
+/// @param restarted receives true for the rows at which a window began
+inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& drive, const AxisOutput& measured, double window_s,
+                         double step_scale = 1.0, bool absolute = false, std::vector<char>* restarted = nullptr,
+                         std::size_t rows = static_cast<std::size_t>(-1)) {
+  const AxisPlant plant(parameters, step_scale);
+  AxisOutput out;
+  AxisState x;
+  std::size_t run = 0, first = 0;
+  double window_start_s = 0.0;
+  rows = std::min(rows, drive.t_s.size());
+  for (std::size_t k = 0; k < rows; ++k) {
+    const bool starts = run < drive.run_start.size() && drive.run_start[run] == k;
+    if (starts) {
+      first = k;
+      ++run;
+    } else {
+      advance_row(plant, x, drive, first, k - 1, drive.t_s[k]);
+    }
+    const double run_time_s = drive.t_s[k] - drive.t_s[first];
+    const bool usable = !std::isnan(measured.angle_deg[k]) && !std::isnan(measured.rate_dps[k]);
+    const bool again = starts || (usable && drive.t_s[k] - window_start_s >= window_s - 1e-9);
+    if (again) {
+      plant.restart(x, measured.angle_deg[k], measured.rate_dps[k], run_time_s, starts, absolute);
+      window_start_s = drive.t_s[k];
+    }
+    if (restarted) restarted->push_back(again);
+    out.angle_deg.push_back(plant.sensed_angle_deg(x, run_time_s));
+    out.rate_dps.push_back(plant.sensed_rate_dps(x));
+  }
+  return out;
+}
+
+}  // namespace gap_benchmark
