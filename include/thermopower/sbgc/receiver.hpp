@@ -188,7 +188,7 @@ class Receiver {
     if (static_cast<uint8_t>(id + size) != sum) return give_up(counters_.header_checksum);
     if (id == 0) return give_up(counters_.invalid_id);
     if (size > payload_capacity) return give_up(counters_.too_long);
-    if (head_ > static_cast<Index>(buffer_size - Protocol::overhead - size)) move_to_front();
+    if (head_ > static_cast<Index>(payload_capacity - size)) move_to_front();
     left_ = size;
     stage_ = Stage::payload;
     if (size == 0) expect_trailer();

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Messages: both ways, and what they refuse.
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "support.hpp"
+
+using namespace support;
+namespace command = sbgc::command;
+
+namespace {
+
+using Codec = thermopower::SbgcCodec<255, sbgc::ProtocolAuto>;
+
+// Sends a message and reads it back as `Received`, in both versions of the protocol.
+template <class Received, class Sent, class Check>
+void round_trip(const Sent& sent, Check check) {
+  for (const sbgc::Version version : {sbgc::Version::v1, sbgc::Version::v2}) {
+    Codec codec;
+    const Data frame = encoded<sbgc::ProtocolAuto>(sent, version);
+    REQUIRE(frame.size() == sbgc::frame_size(sent, version));
+    REQUIRE(receive_all(codec, Data(frame.begin(), frame.end() - 1)).empty());
+    REQUIRE(codec.receive(frame.back(), 0));
+    CHECK(codec.frame().version == version);
+    Received received = Received();
+    REQUIRE(codec.read(received));
+    check(received);
+  }
+}
+
+// A payload one byte too short must be refused, and leave the message as it is.
+template <class Message>
+void refuses_shorter_than(std::uint8_t id, std::size_t size) {
+  for (std::size_t length = 0; length < size; ++length) {
+    Message message = Message();
+    const Data payload(length, 1);
+    CHECK_FALSE(message.read(view(id, payload)));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("messages: Request") {
+  round_trip<sbgc::Request>(sbgc::Request(command::get_angles),
+                            [](const sbgc::Request& r) { CHECK(r.id() == command::get_angles); });
+  sbgc::Request request;
+  CHECK_FALSE(request.read(view(command::get_angles, {1})));
+  CHECK(encoded<sbgc::ProtocolV1>(request).empty());  // id 0
+}
+
+TEST_CASE("messages: Raw carries any id and any payload") {
+  for (int id = 1; id <= 255; id += 2) {
+    const Data payload(static_cast<std::size_t>(id), static_cast<std::uint8_t>(id));
+    round_trip<sbgc::Raw>(sbgc::Raw{static_cast<std::uint8_t>(id), {payload.data(), static_cast<std::uint8_t>(id)}},
+                          [&](const sbgc::Raw& raw) {
+                            CHECK(int(raw.id()) == id);
+                            CHECK(Data(raw.data.data, raw.data.data + raw.data.size) == payload);
+                          });
+  }
+}
+
+TEST_CASE("messages: Confirm") {
+  const Data data = {5, 6};
+  sbgc::Confirm confirm;
+  confirm.confirmed_id = command::set_adj_vars_val;
+  confirm.data = sbgc::Bytes{data.data(), 2};
+  round_trip<sbgc::Confirm>(confirm, [&](const sbgc::Confirm& c) {
+    CHECK(c.confirmed_id == command::set_adj_vars_val);
+    CHECK(Data(c.data.data, c.data.data + c.data.size) == data);
+  });
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Confirm()) == Data{0x3E, 67, 1, 68, 0, 0});
+  refuses_shorter_than<sbgc::Confirm>(command::confirm, 1);
+  CHECK_FALSE(confirm.read(view(command::control, Data(13, 0))));
+  CHECK_FALSE(confirm.read(view(command::control, Data(15, 0))));
+  confirm.data.size = 255;  // would make 256 bytes
+  CHECK(encoded<sbgc::ProtocolV1>(confirm).empty());
+}
+
+TEST_CASE("messages: Error") {
+  sbgc::Error error;
+  error.code = 2;
+  for (std::uint8_t i = 0; i < 4; ++i) error.data[i] = static_cast<std::uint8_t>(10 + i);
+  CHECK(encoded<sbgc::ProtocolV1>(error) == reference::make_frame(0x3E, 255, {2, 10, 11, 12, 13}));
+  round_trip<sbgc::Error>(error, [](const sbgc::Error& e) {
+    CHECK(e.code == 2);
+    CHECK(e.data[3] == 13);
+  });
+  refuses_shorter_than<sbgc::Error>(command::error, 5);
+}
+
+TEST_CASE("messages: BoardInfo") {
+  sbgc::BoardInfo info;
+  info.board_version = 30;
+  info.firmware_version = 2687;
+  info.state_flags = 1;
+  info.board_features = 0x8102;
+  info.connection_flags = 1;
+  info.firmware_extra_id = 0xDEADBEEF;
+  info.board_features_ext = 0x0304;
+  info.reserved[2] = 99;
+  info.base_firmware_version = 2600;
+  CHECK(encoded<sbgc::ProtocolV1>(info) ==
+        reference::make_frame(0x3E, 86, {30, 0x7F, 0x0A, 1, 0x02, 0x81, 1, 0xEF, 0xBE, 0xAD, 0xDE, 0x04, 0x03, 0, 0,
+                                         99, 0x28, 0x0A}));
+  round_trip<sbgc::BoardInfo>(info, [&](const sbgc::BoardInfo& i) {
+    CHECK(i.board_version == 30);
+    CHECK(i.firmware_version == 2687);
+    CHECK(i.state_flags == 1);
+    CHECK(i.board_features == 0x8102);
+    CHECK(i.connection_flags == 1);
+    CHECK(i.firmware_extra_id == 0xDEADBEEF);
+    CHECK(i.board_features_ext == 0x0304);
+    CHECK(i.reserved[2] == 99);
+    CHECK(i.base_firmware_version == 2600);
+  });
+  refuses_shorter_than<sbgc::BoardInfo>(command::board_info, 18);
+}
+
+TEST_CASE("messages: Control in both forms") {
+  sbgc::Control control;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    control.axis[i].mode = static_cast<std::uint8_t>(sbgc::control_mode::speed + i);
+    control.axis[i].speed = static_cast<std::int16_t>(-100 * (i + 1));
+    control.axis[i].angle = static_cast<std::int16_t>(1000 * (i + 1));
+  }
+  const auto same_motion = [&](const sbgc::Control& c) {
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      CHECK(c.axis[i].speed == control.axis[i].speed);
+      CHECK(c.axis[i].angle == control.axis[i].angle);
+    }
+  };
+  CHECK(encoded<sbgc::ProtocolV1>(control) ==
+        reference::make_frame(0x3E, 67, {1, 2, 3, 0x9C, 0xFF, 0xE8, 0x03, 0x38, 0xFF, 0xD0, 0x07, 0xD4, 0xFE, 0xB8,
+                                         0x0B}));
+  round_trip<sbgc::Control>(control, [&](const sbgc::Control& c) {
+    same_motion(c);
+    CHECK_FALSE(c.one_mode);
+    for (std::uint8_t i = 0; i < 3; ++i) CHECK(c.axis[i].mode == control.axis[i].mode);
+  });
+  control.one_mode = true;
+  round_trip<sbgc::Control>(control, [&](const sbgc::Control& c) {
+    same_motion(c);
+    CHECK(c.one_mode);
+    for (std::uint8_t i = 0; i < 3; ++i) CHECK(c.axis[i].mode == control.axis[0].mode);
+  });
+  for (std::size_t size = 0; size < 40; ++size)
+    CHECK(control.read(view(command::control, Data(size, 0))) == (size == 13 || size == 15));
+}
+
+TEST_CASE("messages: motors on and off, reset") {
+  round_trip<sbgc::MotorsOn>(sbgc::MotorsOn(), [](const sbgc::MotorsOn&) {});
+  sbgc::MotorsOff off;
+  off.mode = sbgc::MotorsOff::safe_stop;
+  round_trip<sbgc::MotorsOff>(off, [](const sbgc::MotorsOff& m) { CHECK(m.mode == sbgc::MotorsOff::safe_stop); });
+  CHECK(off.read(view(command::motors_off, {})));
+  CHECK(off.mode == sbgc::MotorsOff::released);
+
+  sbgc::Reset reset;
+  reset.flags = sbgc::Reset::notify;
+  reset.delay_ms = 1000;
+  CHECK(encoded<sbgc::ProtocolV1>(reset) == reference::make_frame(0x3E, 114, {1, 0xE8, 0x03}));
+  round_trip<sbgc::Reset>(reset, [](const sbgc::Reset& r) {
+    CHECK(r.flags == sbgc::Reset::notify);
+    CHECK(r.delay_ms == 1000);
+  });
+  CHECK_FALSE(reset.read(view(command::reset, {1})));
+  CHECK_FALSE(reset.read(view(command::reset, {1, 2})));
+  CHECK(reset.delay_ms == 1000);
+  CHECK(reset.read(view(command::reset, {})));
+  CHECK(reset.delay_ms == 0);
+}
+
+TEST_CASE("messages: DataStreamInterval") {
+  sbgc::DataStreamInterval stream;
+  stream.streamed_id = command::realtime_data_4;
+  stream.interval_ms = 500;
+  stream.config[7] = 77;
+  stream.reserved[0] = 1;
+  round_trip<sbgc::DataStreamInterval>(stream, [](const sbgc::DataStreamInterval& s) {
+    CHECK(s.streamed_id == command::realtime_data_4);
+    CHECK(s.interval_ms == 500);
+    CHECK(s.config[7] == 77);
+    CHECK(s.reserved[0] == 1);
+  });
+  CHECK(encoded<sbgc::ProtocolV1>(stream).size() == 21 + 5);
+  refuses_shorter_than<sbgc::DataStreamInterval>(command::data_stream_interval, 21);
+}
+
+TEST_CASE("messages: adjustable variables") {
+  sbgc::SetAdjVars<3> set;
+  set.vars[0] = {sbgc::variable::power_yaw, 200};
+  set.vars[1] = {sbgc::variable::p_roll, -1};
+  set.vars[2] = {sbgc::variable::power_yaw, std::numeric_limits<std::int32_t>::min()};
+  round_trip<sbgc::AdjVarsView>(set, [](const sbgc::AdjVarsView& vars) {
+    REQUIRE(vars.count() == 3);
+    CHECK(vars[1].id == sbgc::variable::p_roll);
+    CHECK(vars[1].value == -1);
+    std::int32_t value = 5;
+    CHECK(vars.find(sbgc::variable::power_yaw, value));
+    CHECK(value == std::numeric_limits<std::int32_t>::min());  // the last one counts
+    value = 5;
+    CHECK_FALSE(vars.find(sbgc::variable::d_yaw, value));
+    CHECK(value == 5);
+    CHECK(int(vars[3].id) == 255);  // past the end
+    CHECK(vars[255].value == 0);
+  });
+
+  sbgc::SetAdjVars<50> most;
+  for (std::uint8_t i = 0; i < 50; ++i) most.vars[i] = {i, i * 1000};
+  round_trip<sbgc::AdjVarsView>(most, [](const sbgc::AdjVarsView& vars) {
+    CHECK(vars.count() == 50);
+    CHECK(vars[49].value == 49000);
+  });
+
+  sbgc::GetAdjVars<2> get = {{sbgc::variable::power_roll, sbgc::variable::p_roll}};
+  CHECK(encoded<sbgc::ProtocolV1>(get) == reference::make_frame(0x3E, 64, {2, 9, 0}));
+  round_trip<sbgc::GetAdjVarsView>(get, [](const sbgc::GetAdjVarsView& asked) {
+    REQUIRE(asked.ids.size == 2);
+    CHECK(asked.ids.data[0] == sbgc::variable::power_roll);
+    CHECK(asked.ids.data[1] == sbgc::variable::p_roll);
+  });
+
+  SECTION("a count that the payload does not bear out is refused") {
+    sbgc::AdjVarsView vars;
+    CHECK(vars.count() == 0);
+    CHECK_FALSE(vars.read(view(command::set_adj_vars_val, {})));
+    CHECK_FALSE(vars.read(view(command::set_adj_vars_val, {1, 9, 0, 0, 0})));
+    CHECK_FALSE(vars.read(view(command::set_adj_vars_val, Data(255, 255))));
+    CHECK(vars.read(view(command::set_adj_vars_val, {0})));
+    sbgc::GetAdjVarsView asked;
+    CHECK_FALSE(asked.read(view(command::get_adj_vars_val, {})));
+    CHECK_FALSE(asked.read(view(command::get_adj_vars_val, {2, 9})));
+  }
+}
+
+TEST_CASE("messages: telemetry is refused when short, and accepted with bytes of a newer firmware behind it") {
+  refuses_shorter_than<sbgc::RealtimeData>(command::realtime_data_3, 63);
+  refuses_shorter_than<sbgc::RealtimeData>(command::realtime_data_4, 124);
+  refuses_shorter_than<sbgc::RealtimeFields>(command::realtime_data_4, 124);
+  sbgc::RealtimeData data;
+  CHECK_FALSE(data.read(view(command::board_info, Data(124, 0))));
+  const Data longer(130, 0);
+  CHECK(data.read(view(command::realtime_data_4, longer)));
+  CHECK(int(data.payload_size()) == 124);
+}
+
+TEST_CASE("messages: what REALTIME_DATA_3 does not have reads as implausible") {
+  const Data payload(63, 0);
+  sbgc::RealtimeData data;
+  REQUIRE(data.read(view(command::realtime_data_3, payload)));
+  CHECK_FALSE(data.has_extended());
+  CHECK(int(data.imu_C()) == -128);
+  CHECK(int(data.frame_imu_C()) == -128);
+  CHECK(std::isnan(data.current_A()));
+  CHECK(data.current_mA() == 0);
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    CHECK(data.rotor_angle(axis) == 0);
+    CHECK(data.balance_error(axis) == 0);
+    CHECK(data.magnetometer(axis) == 0);
+  }
+}
+
+TEST_CASE("messages: an axis that does not exist reads as yaw, inside the payload") {
+  Data payload = load_hex("payload_rt4_real.hex");
+  sbgc::RealtimeData data;
+  REQUIRE(data.read(view(command::realtime_data_4, payload)));
+  for (const std::uint8_t axis : {std::uint8_t(3), std::uint8_t(128), std::uint8_t(255)}) {
+    CHECK(data.acc(axis) == data.acc(2));
+    CHECK(data.gyro(axis) == data.gyro(2));
+    CHECK(data.error_units(axis) == data.error_units(2));
+    CHECK(data.motor_power(axis) == data.motor_power(2));
+    CHECK(data.magnetometer(axis) == data.magnetometer(2));
+    CHECK(data.rc(axis == 3 ? std::uint8_t(6) : axis) == data.rc(5));
+  }
+}
+
+TEST_CASE("messages: the position error does not overflow") {
+  sbgc::RealtimeFields fields;
+  fields.target_angle[0] = 32767;
+  fields.imu_angle[0] = -32768;
+  fields.target_angle[1] = -32768;
+  fields.imu_angle[1] = 32767;
+  round_trip<sbgc::RealtimeFields>(fields, [](const sbgc::RealtimeFields&) {});
+  const Data frame = encoded<sbgc::ProtocolV1>(fields);
+  const Data payload(frame.begin() + 4, frame.end() - 1);
+  sbgc::RealtimeData data;
+  REQUIRE(data.read(view(command::realtime_data_4, payload)));
+  CHECK(data.error_units(0) == 65535);
+  CHECK(data.error_units(1) == -65535);
+  CHECK(is_near(data.error_deg(0), 1439.978));
+}
+
+TEST_CASE("messages: random telemetry survives fields and back, every byte") {
+  std::mt19937 random(7);
+  for (int run = 0; run < 200; ++run) {
+    for (const std::uint8_t id : {command::realtime_data_3, command::realtime_data_4}) {
+      Data payload(id == command::realtime_data_3 ? 63 : 124);
+      for (std::uint8_t& byte : payload) byte = static_cast<std::uint8_t>(random());
+      sbgc::RealtimeFields fields;
+      REQUIRE(fields.read(view(id, payload)));
+      CHECK(encoded<sbgc::ProtocolV2>(fields) == reference::make_frame(0x24, id, payload));
+    }
+  }
+}
+
+TEST_CASE("units: angles and speeds") {
+  CHECK(sbgc::angle_deg(16384) == 360.0f);
+  CHECK(sbgc::angle_deg(-4096) == -90.0f);
+  CHECK(sbgc::angle_units(90.0f) == 4096);
+  CHECK(sbgc::angle_units(-90.0f) == -4096);
+  CHECK(sbgc::angle_units(1e9f) == 32767);
+  CHECK(sbgc::angle_units(-1e9f) == -32768);
+  CHECK(sbgc::angle_units(std::numeric_limits<float>::quiet_NaN()) == 0);
+  CHECK(sbgc::angle_units(std::numeric_limits<float>::infinity()) == 32767);
+  for (int units = -32768; units <= 32767; ++units) REQUIRE(sbgc::angle_units(sbgc::angle_deg(units)) == units);
+  CHECK(is_near(sbgc::speed_deg_per_s(1000), 122.0740379));
+  CHECK(sbgc::speed_units(122.0740379f) == 1000);
+  CHECK(sbgc::speed_units(-122.0740379f) == -1000);
+}
