@@ -18,8 +18,11 @@ struct Assessment {
   double visible_heldout = 0.0;  ///< the same on the held-out recording
   double confusability = 0.0;    ///< how well the best wrong cause passes for the true one, 0..1
   std::string confused_with;     ///< that cause
-  double left_over = 0.0;        ///< RMS over the floor that the best wrong cause leaves
+  double left_over = 0.0;        ///< RMS over the floor that the best wrong cause, or two of them, leave
   std::vector<std::pair<std::string, double>> others;  ///< every suspect and how well it passes
+
+  /// No cause of the catalogue, nor two of them, come near the floor or explain most of it.
+  bool beyond_catalogue() const { return confusability < 0.9 && left_over > 2.5 && left_over > 0.25 * visible_train; }
 
   /// Keeps, for every suspect, the lesser of two likenesses: one view that tells them apart is enough.
   void least(const Assessment& other) {
@@ -125,6 +128,12 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
     }
   }
   std::sort(result.others.begin(), result.others.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  if (truth.empty() && result.beyond_catalogue()) {
+    // A cause without a name: two named ones together must not do either.
+    for (std::size_t first = 0; first < std::min<std::size_t>(2, result.others.size()); ++first)
+      for (std::size_t second = first + 1; second < result.others.size(); ++second)
+        result.left_over = std::min(result.left_over, train.explained(context.model, only({result.others[first].first, result.others[second].first}), 6).worst_rms);
+  }
   return result;
 }
 

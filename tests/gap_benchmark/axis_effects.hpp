@@ -38,11 +38,11 @@ inline const std::vector<AxisEffect>& axis_effects() {
   };
   static const std::vector<AxisEffect> effects = {
       {"coulomb_friction", "mechanical.friction", motion, always,
-       [](Random& r, const Context& c, Values& p) { p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.08, 0.5); },
+       [](Random& r, const Context& c, Values& p) { p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.03, 0.5); },
        [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}}; }, {}},
       {"asymmetric_friction", "mechanical.friction", motion, always,
        [](Random& r, const Context& c, Values& p) {
-         p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.12, 0.45);
+         p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.05, 0.45);
          p[asymmetry] = r.sign() * r.uniform(0.25, 0.6);
        },
        [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}, {asymmetry, -1.0, 1.0, {-0.3, 0.3}}}; },
@@ -61,11 +61,11 @@ inline const std::vector<AxisEffect>& axis_effects() {
        [](Random& r, const Context&, Values& p) { p[load_share] = r.uniform(0.08, 0.35); },
        [](const Context&) { return List{{load_share, 0.0, 0.7, {0.15}}}; }, {}},
       {"drive_deadband", "mechanical.drive", motion, always,
-       [](Random& r, const Context& c, Values& p) { p[deadband_A] = c.drive_A * r.log_uniform(0.08, 0.4); },
+       [](Random& r, const Context& c, Values& p) { p[deadband_A] = c.drive_A * r.log_uniform(0.03, 0.4); },
        [](const Context& c) { return List{{deadband_A, 0.0, 1.5 * c.drive_A, {0.15 * c.drive_A}}}; }, {}},
       {"imbalance", "mechanical.load", motion, always,
        [](Random& r, const Context& c, Values& p) {
-         const double size = c.torque_Nm * r.log_uniform(0.12, 0.8), phase = r.uniform(-3.1, 3.1);
+         const double size = c.torque_Nm * r.log_uniform(0.04, 0.7), phase = r.uniform(-3.1, 3.1);
          p[unbalance_sin_Nm] = size * std::cos(phase);
          p[unbalance_cos_Nm] = size * std::sin(phase);
        },
@@ -75,7 +75,7 @@ inline const std::vector<AxisEffect>& axis_effects() {
        }, {}},
       {"cable_spring", "mechanical.load", motion, always,
        [](Random& r, const Context& c, Values& p) {
-         p[cable_Nm_per_rad] = c.torque_Nm * r.log_uniform(0.12, 0.7) / c.swing_rad;
+         p[cable_Nm_per_rad] = c.torque_Nm * r.log_uniform(0.04, 0.6) / c.swing_rad;
          p[cable_Nm] = p[cable_Nm_per_rad] * r.uniform(-0.4, 0.4);
        },
        [](const Context& c) {
@@ -84,7 +84,7 @@ inline const std::vector<AxisEffect>& axis_effects() {
        }, {}},
       {"cogging", "mechanical.load", motion, always,
        [](Random& r, const Context& c, Values& p) {
-         const double size = c.torque_Nm * r.log_uniform(0.1, 0.5), phase = r.uniform(-3.1, 3.1);
+         const double size = c.torque_Nm * r.log_uniform(0.04, 0.45), phase = r.uniform(-3.1, 3.1);
          p[cogging_sin_Nm] = size * std::cos(phase);
          p[cogging_cos_Nm] = size * std::sin(phase);
          p[cogging_count] = r.pick({6.0, 7.0, 8.0, 11.0, 12.0, 14.0, 18.0, 21.0, 22.0, 24.0});

@@ -184,7 +184,8 @@ inline void add_errors(const BenchOutput& y, const BenchRecording& recording, Sq
 
 /// One case on the bench, drawn until its cause is plain in both recordings; throws when that does not happen.
 inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
-  for (int attempt = 0; attempt < 60; ++attempt) {
+  int patience = 8;
+  for (int attempt = 0; attempt < 100; ++attempt) {
     BenchSetup setup = draw_bench(order.effects, order.thesis, random);
     const BenchContext& c = setup.context;
     bool possible = true;
@@ -224,8 +225,10 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
       drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors), c, bench_effects(),
                                 bench_slack(c), order.effects, order.thorough, order.gate);
       if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
-      if (unknown != BenchUnknown::none && order.thorough &&
-          (drawn.assessment.confusability > 0.9 || drawn.assessment.left_over < order.gate)) continue;
+      if (order.thorough) {
+        if (unknown != BenchUnknown::none && !drawn.assessment.beyond_catalogue()) continue;
+        if (order.clear && drawn.assessment.confusability >= 0.9 && --patience > 0) continue;
+      }
     }
     // The shrinkage of the population: more held-out recordings of the same kind.
     SquaredErrors all_before = before, all_perfect = perfect;

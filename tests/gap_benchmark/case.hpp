@@ -19,6 +19,7 @@ struct CaseOrder {
   std::vector<std::string> effects;
   int unknown = 0;          ///< number of the cause outside the catalogue, 0 for none
   bool thorough = true;     ///< look for the best wrong cause, too
+  bool clear = false;       ///< draw again, a few times, when a wrong cause passes for the true one
   double gate = 3.0;        ///< least RMS of the cause over the floor, in train and in held-out
   int replicates = 12;      ///< further held-out recordings for the shrinkage of the population
 };

@@ -25,7 +25,7 @@ struct Fit {
   double sum_of_squares = 0.0;
 };
 
-/// Bounded Levenberg-Marquardt with central differences, inside the unit box. Slow, plain, and good enough to
+/// Bounded Levenberg-Marquardt with one-sided differences, inside the unit box. Slow, plain, and good enough to
 /// ask how well one cause can pass for another.
 inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::vector<double> values, int iterations,
                double enough = 0.0) {
@@ -38,12 +38,11 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
     for (Eigen::Index j = 0; j < n; ++j) {
       const Free& f = free[static_cast<std::size_t>(j)];
       const double h = 1e-4 * (f.to - f.from);
-      auto up = best.values, down = best.values;
-      double& u = up[static_cast<std::size_t>(j)];
-      double& d = down[static_cast<std::size_t>(j)];
-      u = std::min(f.to, u + h);
-      d = std::max(f.from, d - h);
-      jacobian.col(j) = (residuals(up) - residuals(down)) * ((f.to - f.from) / (u - d));
+      auto aside = best.values;
+      double& value = aside[static_cast<std::size_t>(j)];
+      const double at = value;
+      value = at + h <= f.to ? at + h : at - h;
+      jacobian.col(j) = (residuals(aside) - r) * ((f.to - f.from) / (value - at));
     }
     const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
     const Eigen::VectorXd gradient = jacobian.transpose() * r;
@@ -80,7 +79,7 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
         damping *= 8.0;
       }
     }
-    if (!moved || best.sum_of_squares <= enough || before - best.sum_of_squares < 1e-4 * before) break;
+    if (!moved || best.sum_of_squares <= enough || before - best.sum_of_squares < 2e-3 * before) break;
   }
   return best;
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// Draws recordings whose cause is known, and seals the causes in a file of their own.
-//   gap_benchmark_generate --out DIR --seed S [--only effect] [--count N] [--quick]
+// Draws recordings whose cause is known, and seals the causes in a file of their own:
+//   DIR/cases/NNN/{model.json,train.csv,heldout.csv}   what the judge sees
+//   DIR/jobs.txt                                       job, case, and the effects to take out of the catalogue
+//   DIR/sealed/labels.json                             what only the scorer sees
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -15,90 +17,162 @@
 
 #include "axis_draw.hpp"
 #include "bench_draw.hpp"
+#include "plan.hpp"
+
+namespace {
 
 using namespace gap_benchmark;
+using Json = nlohmann::ordered_json;
 
-int main(int argc, char** argv) {
+struct Options {
   std::string out, only;
   unsigned long long seed = 1;
-  int count = 0;
-  bool quick = false;
-  int threads = 2;
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    const auto value = [&] { return i + 1 < argc ? std::string(argv[++i]) : std::string(); };
-    if (option == "--out") out = value();
-    else if (option == "--seed") seed = std::stoull(value());
-    else if (option == "--only") only = value();
-    else if (option == "--count") count = std::stoi(value());
-    else if (option == "--threads") threads = std::stoi(value());
-    else if (option == "--quick") quick = true;
-    else { std::cerr << "unknown option " << option << "\n"; return 2; }
-  }
-  if (out.empty()) { std::cerr << "usage: gap_benchmark_generate --out DIR --seed S [--only effect] [--count N] [--quick]\n"; return 2; }
+  int count = 5, threads = 2;
+  bool quick = false, leave_one_out = true;
+};
 
-  std::vector<CaseOrder> orders;
-  for (const auto& e : bench_effects())
-    for (int i = 0; i < 3; ++i) {
-      CaseOrder o; o.effects = {e.id}; o.thesis = e.id == "supply_power_heating"; o.thorough = !quick;
-      if (only.empty() || only == e.id) orders.push_back(o);
+constexpr const char* usage =
+    "usage: gap_benchmark_generate --out DIR --seed S [options]\n"
+    "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
+    "  --only WHAT   one effect id, or none, pairs, unknown\n"
+    "  --threads N   cases drawn at once (2); the result does not depend on it\n"
+    "  --quick       do not look for the best wrong cause (no confusability in the labels)\n"
+    "  --no-leave-one-out\n";
+
+bool parse(int argc, char** argv, Options& options) {
+  try {
+    for (int i = 1; i < argc; ++i) {
+      const std::string option = argv[i];
+      const auto value = [&] {
+        if (i + 1 >= argc) throw std::invalid_argument(option + " needs a value");
+        return std::string(argv[++i]);
+      };
+      if (option == "--out") options.out = value();
+      else if (option == "--seed") options.seed = std::stoull(value());
+      else if (option == "--only") options.only = value();
+      else if (option == "--count") options.count = std::stoi(value());
+      else if (option == "--threads") options.threads = std::stoi(value());
+      else if (option == "--quick") options.quick = true;
+      else if (option == "--no-leave-one-out") options.leave_one_out = false;
+      else throw std::invalid_argument("unknown option " + option);
     }
-  for (const auto& u : bench_unknowns()) {
-    CaseOrder o; o.unknown = static_cast<int>(u.first); o.thorough = true;
-    if (only.empty() || only == "unknown") orders.push_back(o);
+    if (options.out.empty()) throw std::invalid_argument("--out is missing");
+    return true;
+  } catch (const std::exception& error) {
+    std::cerr << "gap_benchmark_generate: " << error.what() << "\n" << usage;
+    return false;
   }
-  for (int i = 0; i < 8; ++i) { CaseOrder o; o.thesis = i % 4 == 3; if (only.empty() || only == "none") orders.push_back(o); }
-  if (count) orders.clear();
-  for (const auto& e : axis_effects())
-    for (int i = 0; i < 3; ++i) {
-      CaseOrder o; o.axis = true; o.effects = {e.id}; o.thorough = !quick;
-      if (only.empty() || only == e.id) orders.push_back(o);
-    }
-  for (const auto& u : axis_unknowns()) {
-    CaseOrder o; o.axis = true; o.unknown = static_cast<int>(u.first); o.thorough = !quick;
-    if (only.empty() || only == "unknown") orders.push_back(o);
+}
+
+std::string numbered(const char* format, std::size_t number) {
+  char text[24];
+  std::snprintf(text, sizeof text, format, static_cast<int>(number));
+  return text;
+}
+
+Json complete(DrawnCase& drawn, const CaseOrder& order) {
+  const Assessment& a = drawn.assessment;
+  Json label = drawn.label;
+  label["visible"] = {{"train", a.visible_train}, {"heldout", a.visible_heldout}};
+  if (order.thorough && !a.others.empty()) {
+    label["confusability"] = a.confusability;
+    label["confused_with"] = a.confused_with;
+    label["left_over"] = a.left_over;
+    for (const auto& other : a.others) label["likeness"][other.first] = other.second;
   }
-  for (int i = 0; i < 4; ++i) { CaseOrder o; o.axis = true; if (only.empty() || only == "none") orders.push_back(o); }
+  return label;
+}
 
+}  // namespace
 
-  nlohmann::ordered_json labels;
-  std::mutex lock;
+int main(int argc, char** argv) {
+  Options options;
+  if (!parse(argc, argv, options)) return 2;
+  const std::vector<CaseOrder> orders = plan(options.seed, options.count, options.only, !options.quick);
+  if (orders.empty()) {
+    std::cerr << "gap_benchmark_generate: nothing is called " << options.only << "\n";
+    return 2;
+  }
+  std::vector<Json> labels(orders.size());
+  std::mutex talking;
   std::atomic<std::size_t> next{0};
-  std::vector<nlohmann::ordered_json> made(orders.size());
+  std::atomic<int> failed{0};
   const auto work = [&] {
     for (std::size_t i; (i = next++) < orders.size();) {
-      Random random(seed * 1000003ull + i);
-      const auto t0 = std::chrono::steady_clock::now();
-      std::string name = orders[i].effects.empty() ? (orders[i].unknown ? "unknown " + std::to_string(orders[i].unknown) : "none") : orders[i].effects[0];
+      const CaseOrder& order = orders[i];
+      Random random(options.seed * 0x100000001b3ull + i);
+      const auto began = std::chrono::steady_clock::now();
+      std::string line;
       try {
-        DrawnCase drawn = orders[i].axis ? draw_axis_case(orders[i], random) : draw_bench_case(orders[i], random);
-        char id[16]; std::snprintf(id, sizeof id, "%03d", static_cast<int>(i));
-        const std::string dir = out + "/cases/" + id;
-        std::filesystem::create_directories(dir);
-        drawn.train.write(dir + "/train.csv");
-        drawn.heldout.write(dir + "/heldout.csv");
-        std::ofstream(dir + "/model.json") << drawn.model.dump(1) << "\n";
-        const auto& a = drawn.assessment;
-        drawn.label["visible"] = {{"train", a.visible_train}, {"heldout", a.visible_heldout}};
-        drawn.label["confusability"] = a.confusability;
-        drawn.label["confused_with"] = a.confused_with;
-        drawn.label["left_over"] = a.left_over;
-        for (const auto& o : a.others) drawn.label["others"][o.first] = o.second;
-        made[i] = drawn.label;
-        std::lock_guard<std::mutex> guard(lock);
-        std::printf("%s %-26s rows %6zu visible %7.1f %7.1f conf %.3f (%s) left %.1f  %.1f s\n", id, name.c_str(), drawn.train.rows(), a.visible_train, a.visible_heldout,
-                    a.confusability, a.confused_with.c_str(), a.left_over, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
-        std::fflush(stdout);
+        DrawnCase drawn = order.axis ? draw_axis_case(order, random) : draw_bench_case(order, random);
+        const std::string directory = options.out + "/cases/" + numbered("%03d", i);
+        std::filesystem::create_directories(directory);
+        drawn.train.write(directory + "/train.csv");
+        drawn.heldout.write(directory + "/heldout.csv");
+        std::ofstream(directory + "/model.json") << drawn.model.dump(1) << "\n";
+        labels[i] = complete(drawn, order);
+        char text[200];
+        std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s", drawn.train.rows(), drawn.assessment.visible_train,
+                      drawn.assessment.visible_heldout, drawn.assessment.confusability, drawn.assessment.confused_with.c_str());
+        line = text;
       } catch (const std::exception& error) {
-        std::lock_guard<std::mutex> guard(lock);
-        std::printf("--- %s: %s\n", name.c_str(), error.what());
+        ++failed;
+        line = error.what();
       }
+      const std::lock_guard<std::mutex> guard(talking);
+      std::printf("%03zu %-45s %s, %.1f s\n", i, title(order).c_str(), line.c_str(),
+                  std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+      std::fflush(stdout);
     }
   };
   std::vector<std::thread> pool;
-  for (int t = 0; t < threads; ++t) pool.emplace_back(work);
-  for (auto& t : pool) t.join();
-  for (std::size_t i = 0; i < made.size(); ++i) { char id[16]; std::snprintf(id, sizeof id, "%03d", static_cast<int>(i)); if (!made[i].is_null()) labels[id] = made[i]; }
-  std::filesystem::create_directories(out + "/sealed");
-  std::ofstream(out + "/sealed/labels.json") << labels.dump(1) << "\n";
+  for (int t = 0; t < options.threads; ++t) pool.emplace_back(work);
+  for (auto& thread : pool) thread.join();
+
+  Json sealed;
+  sealed["seed"] = options.seed;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (!labels[i].is_null()) sealed["cases"][numbered("%03d", i)] = labels[i];
+
+  // Leave one out: jobs that take the true cause out of the catalogue, hidden among others that do not.
+  std::vector<std::string> jobs;
+  Random random(options.seed ^ 0xabcdefull);
+  std::vector<std::pair<std::string, Json>> drawn_jobs;
+  for (std::size_t i = 0; i < labels.size() && options.leave_one_out; ++i) {
+    if (labels[i].is_null() || orders[i].effects.size() != 1) continue;
+    const std::string truth = orders[i].effects.front();
+    const auto harmless = [&](const std::string& id) {
+      return id != truth && (!labels[i].contains("likeness") || labels[i]["likeness"].value(id, 0.0) < 0.5);
+    };
+    const auto bystanders = [&] {
+      std::vector<std::string> ids;
+      for (const auto& id : all_ids(orders[i].axis))
+        if (harmless(id)) ids.push_back(id);
+      random.shuffle(ids);
+      ids.resize(std::min<std::size_t>(2, ids.size()));
+      return ids;
+    };
+    auto without = bystanders();
+    without.push_back(truth);
+    random.shuffle(without);
+    drawn_jobs.push_back({numbered("%03d", i), without});
+    if (random.chance(0.25)) drawn_jobs.push_back({numbered("%03d", i), bystanders()});
+  }
+  random.shuffle(drawn_jobs);
+  std::ofstream list(options.out + "/jobs.txt");
+  for (const auto& entry : sealed["cases"].items()) list << entry.key() << " " << entry.key() << "\n";
+  for (std::size_t i = 0; i < drawn_jobs.size(); ++i) {
+    list << numbered("L%04d", i) << " " << drawn_jobs[i].first;
+    for (const auto& id : drawn_jobs[i].second) list << " " << id.get<std::string>();
+    list << "\n";
+    sealed["leave_one_out"][numbered("L%04d", i)] = {{"case", drawn_jobs[i].first}, {"without", drawn_jobs[i].second}};
+  }
+  std::filesystem::create_directories(options.out + "/sealed");
+  std::ofstream file(options.out + "/sealed/labels.json");
+  file << sealed.dump(1) << "\n";
+  if (!file || !list) {
+    std::cerr << "gap_benchmark_generate: cannot write to " << options.out << "\n";
+    return 1;
+  }
+  return failed ? 1 : 0;
 }
