@@ -14,13 +14,14 @@ jobs=${THERMOPOWER_JOBS:-$(nproc)}
 export CMAKE_BUILD_PARALLEL_LEVEL="$jobs"
 out=build/demo
 bin=build/release/bin
-mkdir -p "$out"
+mkdir -p "$out/thesis_gap"
+motor=examples/thesis_gap/bgm5208
 
 echo "== building (nano program, desktop programs)"
 cmake --preset avr-nano --log-level=WARNING -DTHERMOPOWER_TESTS=OFF
 cmake --build --preset avr-nano
 cmake --preset release --log-level=WARNING -DTHERMOPOWER_TESTS=OFF
-cmake --build --preset release --target thesis_replay nano_demo thermopower-gap thesis_recordings
+cmake --build --preset release --target thesis_replay nano_demo thermopower-gap
 
 echo
 echo "== 1. The thesis's measurements, replayed through the models"
@@ -32,9 +33,8 @@ echo "== 2. The original program on an ATmega328P, cycle by cycle, against an em
 
 echo
 echo "== 3. Why model and motor disagree: the BGM5208-200-12 as programmed, fitted on chapter 4, checked on chapter 5"
-"$bin/thesis_recordings" --out "$out/thesis_gap"
-"$bin/thermopower-gap" diagnose --model "$out/thesis_gap/bgm5208_programmed.json" \
-  --recording "$out/thesis_gap/bgm5208_chapter4.csv" --heldout "$out/thesis_gap/bgm5208_chapter5.csv" \
+"$bin/thermopower-gap" diagnose --model "${motor}_programmed.json" \
+  --recording "${motor}_chapter4.csv" --heldout "${motor}_chapter5.csv" \
   --report "$out/thesis_gap/report.json" --html "$out/thesis_gap/report.html" \
   --predictions "$out/thesis_gap/predictions.csv" --augmented "$out/thesis_gap/augmented.json" --header "$out/thesis_gap/motor_model.hpp"
 
