@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../config_error.hpp"
 #include "duty.hpp"
 
 /// @file current_model.hpp
