@@ -2,36 +2,245 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/catalogue.hpp>
+#include <thermopower/gap/data_gate.hpp>
+#include <thermopower/gap/localisation.hpp>
+#include <thermopower/gap/report_parts.hpp>
+#include <thermopower/gap/score.hpp>
+#include <thermopower/gap/splitting.hpp>
 #include <thermopower/gap/standard_catalogue.hpp>
-#include <thermopower/gap/diagnosis.hpp>
-#include <thermopower/gap/model.hpp>
-#include <thermopower/gap/recording.hpp>
+#include <thermopower/gap/thinning.hpp>
+#include <thermopower/gap/verdict.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::gap {
-
-/// What a diagnosis may be told.
-struct Options {
-  double horizon_s = 0.5;            ///< length of the axis' windows in s, > 0
-  double slack = 0.04;               ///< how far constants may move for free, as a fraction
-  double tolerance = 0.05;           ///< relative shrinkage of the gap below which nobody cares
-  double held_out_fraction = 0.3;    ///< held out where no recording is given for it
-  int effects_at_once = 2;           ///< the largest set of effects weighed together, 1..3
-  std::vector<std::string> without;  ///< ids removed from the catalogue
-  unsigned threads = 1;              ///< 1..; the result does not depend on it
-  unsigned seed = 1;                 ///< of the bootstrap; equal seeds give equal reports
-};
 
 /// Says where a model and recordings part, which effect is missing, and how far the gap shrinks with it.
 ///
 /// `train` serves to find and to fit, `held_out` to judge; where `held_out` is empty, the last
 /// `held_out_fraction` of each training recording (whole excitation segments) is taken away for it.
-/// @throws InvalidInput where the model, a recording or an option is invalid.
+/// @throws InvalidInput where the model, a recording or an option is invalid
 Diagnosis diagnose(const Model& model, const std::vector<Recording>& train,
                    const std::vector<Recording>& held_out = {}, const Options& options = {},
                    const Catalogue& catalogue = standard_catalogue());
+
+namespace detail {
+
+/// One diagnosis under way.
+class Diagnoser {
+public:
+  Diagnoser(const Model& model, const Options& options, const Catalogue& catalogue)
+      : model_(model), options_(options), catalogue_(catalogue) {
+    options.validate();
+    if (const auto problem = model.validate()) throw InvalidInput("model '" + model.name + "': " + *problem);
+    slack_.fraction = options.slack;
+  }
+
+  Diagnosis run(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
+    gather(train, held_out);
+    stage("data gate");
+    if (!enough()) return std::move(result_);
+    Localisation found = localise(model_, train_recordings_, LocalisationOptions{options_.slack});
+    result_.where = std::move(found.where);
+    result_.missing_quantities = std::move(found.quantities);
+    stage("where");
+    FitProblem problem = problem_of(train_inputs_), check = problem_of(held_out_inputs_);
+    std::vector<Candidate> candidates = search(problem, check);
+    stage("which");
+    const Conclusion conclusion = conclude(candidates, options_);
+    report(candidates, conclusion, problem, check);
+    stage("how far");
+    return std::move(result_);
+  }
+
+private:
+  void gather(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
+    if (train.empty()) throw InvalidInput("there is no recording to train on");
+    for (const Recording& one : train) {
+      for (Finding& finding : check_data(one, model_)) result_.findings.push_back(std::move(finding));
+      if (const auto problem = one.validate()) throw InvalidInput("recording '" + one.name + "': " + *problem);
+      if (held_out.empty()) {
+        auto parts = split(one, options_.held_out_fraction);
+        train_recordings_.push_back(std::move(parts.first));
+        held_out_recordings_.push_back(std::move(parts.second));
+      } else {
+        train_recordings_.push_back(one);
+      }
+    }
+    for (const Recording& one : held_out) {
+      for (Finding& finding : check_data(one, model_)) result_.findings.push_back(std::move(finding));
+      held_out_recordings_.push_back(one);
+    }
+    for (const Recording& one : train_recordings_) train_inputs_.push_back(prepare(model_, one));
+    for (const Recording& one : held_out_recordings_) held_out_inputs_.push_back(prepare(model_, one));
+    for (const auto* all : {&train_inputs_, &held_out_inputs_})
+      for (const Inputs& one : *all)
+        for (const std::string& note : one.not_judged)
+          if (std::find(result_.not_judged.begin(), result_.not_judged.end(), note) == result_.not_judged.end())
+            result_.not_judged.push_back(note);
+    result_.augmented = result_.recalibrated = model_;
+  }
+
+  bool enough() {
+    constexpr double least = 30.0;
+    for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
+      double most = 0.0;
+      for (int i = 0; i < signal_count; ++i) {
+        double samples = 0.0;
+        for (const Inputs& one : *all)
+          if (one.judged(static_cast<Signal>(i)))
+            samples += static_cast<double>(one.of(static_cast<Signal>(i)).array().isFinite().count());
+        most = std::max(most, samples);
+      }
+      if (most < least) {
+        result_.verdict = Verdict::insufficient;
+        result_.reason = most == 0.0 ? "no signal of the model can be judged with the columns recorded"
+                                     : "fewer than 30 samples of every signal: too little data for any statement";
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// The thinned data of a fit.
+  FitProblem problem_of(const std::vector<Inputs>& inputs) {
+    auto thin = std::make_shared<std::vector<Inputs>>();
+    for (const Inputs& one : inputs) {
+      const Eigen::Index share = std::max<Eigen::Index>(
+          400, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
+      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share) : one);
+    }
+    FitProblem problem;
+    problem.model = &model_;
+    problem.catalogue = &catalogue_;
+    problem.segments = thinned_axis(cut(*thin, fit_horizon_s()), axis_rows);
+    kept_.push_back(std::move(thin));
+    return problem;
+  }
+
+  static Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
+    Eigen::Index rows = 0;
+    for (const Inputs& one : inputs) rows += one.rows();
+    return rows;
+  }
+
+  double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
+
+  std::vector<Explanation> singles() const {
+    std::vector<Explanation> list;
+    const auto removed = [&](const std::string& id) {
+      return std::find(options_.without.begin(), options_.without.end(), id) != options_.without.end();
+    };
+    for (const CatalogueEntry& entry : catalogue_.entries())
+      if (!removed(entry.info.id) && can_be_judged(entry, model_, train_inputs_)) list.push_back({{&entry}, {}});
+    const std::vector<CalibratedConstant> constants = model_.calibrated();
+    for (std::size_t i = 0; i < constants.size(); ++i)
+      if (!removed("calibration." + constants[i].id) && acts(constants[i])) list.push_back({{}, {static_cast<int>(i)}});
+    return list;
+  }
+
+  /// Whether the constant's block is judged.
+  bool acts(const CalibratedConstant& constant) const {
+    for (const Inputs& one : train_inputs_)
+      if (constant.block == "axis" ? one.axis() : constant.block == "thermal" ? one.judged(Signal::motor_C) : one.bench())
+        return true;
+    return false;
+  }
+
+  void measure_noise(FitProblem& problem, const Candidate& candidate) {
+    std::array<std::vector<bool>, signal_count> gaps;
+    const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      if (residuals[i].empty()) continue;
+      double quantum = 0.0;
+      for (const Inputs& one : train_inputs_)
+        if (one.judged(static_cast<Signal>(i))) quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
+      const double rounding = problem.segments.front().inputs->repeats.size() > 0 ? 0.0 : quantum / std::sqrt(12.0);
+      problem.sigma[i] = std::max({white_sd(residuals[i], gaps[i]) * problem.sigma[i], rounding, 1e-9});
+    }
+  }
+
+  std::vector<Candidate> search(FitProblem& problem, FitProblem& check) {
+    const Attribution attribution(problem, slack_, options_.threads);
+    Candidate empty = attribution.fit({}, {});
+    measure_noise(problem, empty);
+    empty = attribution.fit({}, {}, &empty);
+    measure_noise(problem, empty);
+    SearchOptions how;
+    how.threads = options_.threads;
+    const std::vector<Explanation> causes = singles();
+    Search searching(attribution, problem, how);
+    std::vector<Candidate> candidates = searching.run_singles(causes);
+    measure_noise(problem, Search::best(candidates));
+    searching.renew(candidates);
+    searching.run_sets(candidates, causes, options_.effects_at_once);
+    measure_noise(problem, Search::best(candidates));
+    searching.renew(candidates);
+    check.sigma = problem.sigma;
+    in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
+      candidates[i].held_out = Attribution::sums(candidates[i], check, nullptr);
+    });
+    weigh(candidates, correlation_of(Search::best(candidates), problem));
+    return candidates;
+  }
+
+  void report(std::vector<Candidate>& candidates, const Conclusion& conclusion, const FitProblem& problem,
+              const FitProblem& check) {
+    result_.verdict = conclusion.verdict;
+    result_.reason = conclusion.reason;
+    result_.none_of_these = conclusion.none_of_these;
+    const Candidate& chosen = candidates[conclusion.chosen];
+    const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous;
+    const Weight weight = correlation_of(chosen, problem);
+    rank(result_, candidates, conclusion, problem, weight);
+    if (named) name_causes(result_, candidates, conclusion, model_, problem, weight);
+
+    Explanation all;
+    for (std::size_t i = 0; i < model_.calibrated().size(); ++i) all.released.push_back(static_cast<int>(i));
+    const Attribution attribution(problem, slack_, options_.threads);
+    const Candidate recalibrated = attribution.fit(all, {}, &candidates.front());
+    result_.recalibrated = augmented(model_, recalibrated.explanation, recalibrated.list, recalibrated.fit.at);
+    if (named) result_.augmented = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
+    const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
+    score(result_, model_, full, held_out_inputs_, check.sigma, named ? result_.augmented : augmented(model_, chosen.explanation, chosen.list, chosen.fit.at), options_, catalogue_);
+    if (named) {
+      std::vector<Recording> simulated = train_recordings_;
+      for (std::size_t i = 0; i < simulated.size(); ++i)
+        for (SimulatedSignal& signal : simulate(result_.augmented, train_recordings_[i], {SimulationMode::free_running, options_.horizon_s}, catalogue_))
+          simulated[i].set(signal.signal, std::move(signal.values));
+      draw_effect(model_, simulated, result_.missing_quantities);
+    }
+    result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
+  }
+
+  void stage(const char* name) {
+    const auto now = std::chrono::steady_clock::now();
+    result_.timings.push_back({name, std::chrono::duration<double>(now - since_).count()});
+    since_ = now;
+  }
+
+  static constexpr Eigen::Index bench_rows = 3000, axis_rows = 5000;
+
+  const Model model_;
+  const Options options_;
+  const Catalogue& catalogue_;
+  Slack slack_;
+  Diagnosis result_;
+  std::vector<Recording> train_recordings_, held_out_recordings_;
+  std::vector<Inputs> train_inputs_, held_out_inputs_;
+  std::vector<std::shared_ptr<std::vector<Inputs>>> kept_;
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace detail
+
+inline Diagnosis diagnose(const Model& model, const std::vector<Recording>& train,
+                          const std::vector<Recording>& held_out, const Options& options, const Catalogue& catalogue) {
+  return detail::Diagnoser(model, options, catalogue).run(train, held_out);
+}
 
 }  // namespace thermopower::gap

@@ -50,6 +50,7 @@ struct Inputs {
   Eigen::VectorXd held_current_A;      ///< current as an input of the thermal model
   Eigen::VectorXd held_motor_C;        ///< temperature as an input of the electrical model
   double nominal_V = 12.0;
+  Eigen::VectorXd repeats;             ///< samples averaged in each row; empty: one
   HeatSource heat = HeatSource::none;
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   std::vector<std::string> not_judged;                 ///< one sentence each

@@ -2,12 +2,11 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/catalogue.hpp>
+#include <thermopower/gap/fit_problem.hpp>
 #include <thermopower/gap/standard_catalogue.hpp>
-#include <thermopower/gap/model.hpp>
-#include <thermopower/gap/recording.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::gap {
@@ -31,15 +30,75 @@ struct SimulationOptions {
 
 /// One simulated signal, a value per row of the recording; NaN where it could not be simulated.
 struct SimulatedSignal {
-  std::string signal;  ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
+  std::string signal;      ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
   Eigen::VectorXd values;
 };
 
+namespace detail {
+
+/// Simulates segments from their measured starts and hands every reading to `put(segment index, signal, row, value)`.
+template <class Scalar, class Put>
+void simulate_segments(const Instance<Scalar>& instance, const std::vector<Segment>& segments, SimulationMode mode,
+                       Put&& put) {
+  const Scalar still = constant<Scalar>(0.0);
+  AxisState<Scalar> carried{still, still, still, still};
+  for (std::size_t index = 0; index < segments.size(); ++index) {
+    const Segment& segment = segments[index];
+    const Inputs& inputs = *segment.inputs;
+    if (segment.axis) {
+      const AxisRollout<Scalar> rollout(instance, inputs);
+      AxisState<Scalar> state = FitProblem::measured_start(rollout, inputs, segment.run, segment.begin);
+      if (segment.carries_on) {
+        state.twist_rad = carried.twist_rad;
+        state.twist_rate_rad_per_s = carried.twist_rate_rad_per_s;
+      }
+      rollout.window(segment.run, segment.begin, segment.end, state,
+                     [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
+                       put(index, Signal::angle_deg, row, read.angle_deg);
+                       put(index, Signal::rate_dps, row, read.rate_dps);
+                     });
+      carried = state;
+    } else {
+      const bool isolated = mode == SimulationMode::measured_inputs;
+      typename BenchRollout<Scalar>::Feed feed;
+      feed.measured_motor = !inputs.judged(Signal::motor_C) || (isolated && inputs.held_motor_C.size() > 0);
+      feed.measured_current = isolated && inputs.held_current_A.size() > 0;
+      const BenchRollout<Scalar> rollout(instance, inputs, feed);
+      BenchState<Scalar> state =
+          rollout.start(segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
+      rollout.run(segment.begin, segment.end, inputs.t_s[segment.run.begin], state,
+                  [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
+                    put(index, Signal::current_A, row, read.current_A);
+                    put(index, Signal::motor_C, row, read.motor_C);
+                  });
+    }
+  }
+}
+
+}  // namespace detail
+
 /// Simulates every signal that the model has a law for and the recording has the inputs for.
-/// Effects named in the model act, with the catalogue's equations.
-/// @throws InvalidInput for an effect or parameter that the catalogue does not know.
-std::vector<SimulatedSignal> simulate(const Model& model, const Recording& recording,
-                                      const SimulationOptions& options = {},
-                                      const Catalogue& catalogue = standard_catalogue());
+/// Effects named in the model act, with the catalogue's equations. At a row where a window restarts the values are
+/// the measured ones.
+/// @throws InvalidInput for an invalid recording, or an effect or parameter that the catalogue does not know
+inline std::vector<SimulatedSignal> simulate(const Model& model, const Recording& recording,
+                                             const SimulationOptions& options = {},
+                                             const Catalogue& catalogue = standard_catalogue()) {
+  const std::vector<Inputs> inputs{prepare(model, recording)};
+  const Instance<double> instance(model, {}, {}, catalogue);
+  std::vector<SimulatedSignal> results;
+  std::array<int, signal_count> place{-1, -1, -1, -1};
+  for (int i = 0; i < signal_count; ++i)
+    if (inputs[0].judged(static_cast<Signal>(i))) {
+      place[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
+      results.push_back({name_of(static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
+    }
+  detail::simulate_segments<double>(instance, cut(inputs, options.horizon_s), options.mode,
+                                    [&](std::size_t, Signal signal, Eigen::Index row, double value) {
+                                      const int at = place[static_cast<std::size_t>(signal)];
+                                      if (at >= 0) results[static_cast<std::size_t>(at)].values[row] = value;
+                                    });
+  return results;
+}
 
 }  // namespace thermopower::gap

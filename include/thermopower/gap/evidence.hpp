@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/search.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// How much the samples of each signal count.
+struct Weight {
+  std::array<double, signal_count> correlation{1, 1, 1, 1};  ///< samples that count as one
+};
+
+/// How many residuals of a candidate count as one, signal by signal.
+inline Weight correlation_of(const Candidate& candidate, const FitProblem& problem) {
+  Weight weight;
+  const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (!residuals[i].empty()) weight.correlation[i] = correlation_samples(residuals[i]);
+  return weight;
+}
+
+/// Deviance of every candidate and its probability among them.
+///
+/// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length of
+/// the best candidate's residuals, so that a model error that all share does not decide by sheer number of rows;
+/// training and held-out data together, the parameters from training alone; a Bayesian information penalty for
+/// every parameter, and a further one for every effect beyond the first (effects are rare).
+inline void weigh(std::vector<Candidate>& candidates, const Weight& weight) {
+  constexpr double rarity = 6.0;
+  double samples = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    samples += candidates.front().train.samples[i] / weight.correlation[i];
+  double least = 1e300;
+  for (Candidate& one : candidates) {
+    one.deviance = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      const auto add = [&](const SignalSums& sums) {
+        if (sums.samples[i] > 0.0)
+          one.deviance += sums.samples[i] / weight.correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
+      };
+      add(one.train);
+      add(one.held_out);
+    }
+    one.deviance += one.explanation.parameter_count() * std::log(std::max(samples, 2.0));
+    if (one.explanation.size() > 1) one.deviance += rarity * static_cast<double>(one.explanation.size() - 1);
+    least = std::min(least, one.deviance);
+  }
+  double total = 0.0;
+  for (Candidate& one : candidates) total += one.probability = std::exp(-0.5 * (one.deviance - least));
+  for (Candidate& one : candidates) one.probability /= total;
+}
+
+/// Change that a candidate makes to the empty explanation's residuals, all signals in one vector.
+inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& empty, const FitProblem& problem) {
+  const auto with = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
+  const auto without = Attribution::residuals(empty, problem, empty.fit.starts, nullptr);
+  std::size_t count = 0;
+  for (const auto& one : with) count += one.size();
+  Eigen::VectorXd change(static_cast<Eigen::Index>(count));
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    for (std::size_t k = 0; k < with[i].size(); ++k) change[at++] = with[i][k] - without[i][k];
+  return change;
+}
+
+/// Cosine of two signatures; 0 where one is nothing.
+inline double likeness(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const double norm = a.norm() * b.norm();
+  return norm > 0.0 ? a.dot(b) / norm : 0.0;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/evidence.hpp>
+#include <thermopower/gap/options.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// What the weighing of the candidates amounts to.
+struct Conclusion {
+  Verdict verdict = Verdict::insufficient;
+  std::size_t chosen = 0;                  ///< index of the candidate
+  std::vector<std::size_t> alternatives;   ///< indices, likeliest first
+  double none_of_these = 0.0;
+  std::string reason;
+};
+
+/// Root of the mean square over training and held-out data of a signal, in units of the noise.
+inline double level(const Candidate& candidate, std::size_t signal) {
+  const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
+  if (!(samples > 0.0)) return 0.0;
+  return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
+}
+
+/// Whether a candidate shrinks some signal's score by more than the tolerance and none of its signals grows by more,
+/// on held-out data.
+inline bool matters(const Candidate& candidate, const Candidate& than, double tolerance) {
+  bool better = false;
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    if (!(candidate.held_out.samples[i] > 0.0)) continue;
+    const double ratio = std::sqrt(candidate.held_out.mean(i) / std::max(than.held_out.mean(i), 1e-12));
+    better = better || ratio < 1.0 - tolerance;
+  }
+  return better;
+}
+
+/// How far above the noise the worst signal of a candidate remains, as a share of what the empty explanation
+/// leaves: 0 at the noise, 1 where nothing was explained.
+inline double left_over(const Candidate& candidate, const Candidate& empty) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    if (!(candidate.train.samples[i] > 0.0)) continue;
+    const double excess = std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
+    const double whole = std::max(level(empty, i) * level(empty, i) - 1.0, 1e-12);
+    if (whole > 0.1) worst = std::max(worst, std::sqrt(excess / whole));
+  }
+  return worst;
+}
+
+/// The largest root mean square of a candidate over its signals, in units of the noise.
+inline double worst_level(const Candidate& candidate) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
+  return worst;
+}
+
+/// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
+inline Conclusion conclude(const std::vector<Candidate>& candidates, const Options& options) {
+  Conclusion result;
+  const Candidate& empty = candidates.front();
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
+  const Candidate& best = candidates[result.chosen];
+  if (result.chosen == 0 || !matters(best, empty, options.tolerance)) {
+    // Nothing helps: either nothing is missing, or nothing known.
+    const bool at_noise = worst_level(empty) < 1.25;
+    result.chosen = 0;
+    result.verdict = at_noise ? Verdict::no_gap : Verdict::unexplained;
+    result.none_of_these = at_noise ? 0.0 : 0.98;
+    result.reason = at_noise ? "with its constants within their slack the simulation scores what the noise allows"
+                             : "there is a gap, and no effect of the catalogue lowers it on held-out data";
+    return result;
+  }
+  const double level_left = worst_level(best), share_left = left_over(best, empty);
+  // Half way between "at the noise" and "clearly not": a factor 1.6 of the noise and a seventh of the gap.
+  const double doubt = std::min(4.0 * (level_left - 1.5), 30.0 * (share_left - 0.15));
+  result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
+  if (result.none_of_these > 0.5) {
+    result.verdict = Verdict::unexplained;
+    result.reason = "there is a gap, and the best explanation of the catalogue leaves too much of it";
+    return result;
+  }
+  std::vector<std::size_t> order;
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (i != result.chosen && candidates[i].probability > 0.01 &&
+        !candidates[i].explanation.includes(best.explanation))
+      order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return candidates[a].probability > candidates[b].probability; });
+  result.alternatives = order;
+  result.verdict = order.empty() ? Verdict::explained : Verdict::ambiguous;
+  result.reason = order.empty() ? "the named cause brings held-out data near the noise, and nothing else does"
+                                : "several explanations bring held-out data near the noise";
+  return result;
+}
+
+}  // namespace thermopower::gap
