@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/localise_least_squares.hpp>
+#include <thermopower/gap/localise_rows.hpp>
+#include <thermopower/gap/model.hpp>
+
+/// @file localise_bench.hpp
+/// A motor on a bench: the current given the measured temperature, the temperature given the heat.
+
+namespace thermopower::gap::detail {
+
+/// What a bench recorded, without holes, and what the laws say of it when each is given its measured inputs.
+struct BenchRows {
+  std::vector<RunSpan> runs;
+  Eigen::VectorXd t_s, step_s;          ///< time, and the interval that starts at the row
+  Eigen::VectorXd current_A, motor_C;   ///< measured; NaN is missing
+  Eigen::VectorXd winding_C;            ///< motor_C without holes
+  Eigen::VectorXd ambient_C, supply_V, v_rms_V;
+  Eigen::VectorXd law_A;                ///< the law's current at the measured temperature
+  Eigen::VectorXd law_ohm;              ///< the law's resistance there (V_rms / I where there is no ohmic law)
+  std::vector<Column> covariates;       ///< other numeric columns, without holes
+  bool has_power = false, has_current = false, has_temperature = false;
+  double interval_s = 1.0;              ///< median step
+};
+
+inline double law_current(const Model& model, double v_rms_V, double winding_C) {
+  if (const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current)) {
+    return v_rms_V / (ohmic->resistance_ohm * (1.0 + ohmic->tempco_per_K * (winding_C - ohmic->reference_C)));
+  }
+  if (const auto* thesis = std::get_if<ThesisCurrentModel>(&model.current)) {
+    if (v_rms_V <= thesis->minimum_V_rms) return 0.0;
+    const double slope = (thesis->slope_V2_mA_per_K * v_rms_V + thesis->slope_V1_mA_per_K) * v_rms_V + thesis->slope_V0_mA_per_K;
+    return std::max(0.0, slope * winding_C + thesis->base_mA * std::pow(v_rms_V, thesis->exponent)) * 1e-3;
+  }
+  return 0.0;
+}
+
+inline BenchRows bench_rows(const Model& model, const Recording& recording) {
+  BenchRows b;
+  const Eigen::Index n = recording.rows();
+  b.runs = recording.spans();
+  b.t_s = recording.t_s;
+  b.step_s = Eigen::VectorXd::Zero(n);
+  std::vector<double> steps;
+  for (const RunSpan& run : b.runs) {
+    for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) {
+      b.step_s[i] = b.t_s[i + 1] - b.t_s[i];
+      steps.push_back(b.step_s[i]);
+    }
+  }
+  if (!steps.empty()) {
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    b.interval_s = steps[steps.size() / 2];
+  }
+  b.has_power = recording.has("power_param");
+  b.has_temperature = recording.has("motor_C");
+  const bool driven = !recording.has("current_A") && !b.has_power && recording.has("drive_A");
+  b.has_current = recording.has("current_A") || driven;
+  const Eigen::VectorXd none = Eigen::VectorXd::Constant(n, missing);
+  b.current_A = b.has_current ? *recording.find(driven ? "drive_A" : "current_A") : none;
+  b.motor_C = b.has_temperature ? *recording.find("motor_C") : none;
+  b.winding_C = held(recording.find("motor_C"), b.runs, n, 25.0);
+  b.ambient_C = recording.has("ambient_C") ? held(recording.find("ambient_C"), b.runs, n, 25.0) : Eigen::VectorXd();
+  if (b.ambient_C.size() == 0) {
+    b.ambient_C.resize(n);
+    for (const RunSpan& run : b.runs) b.ambient_C.segment(run.begin, run.size()).setConstant(b.winding_C[run.begin]);
+  }
+  b.supply_V = held(recording.has("supply_V") ? recording.find("supply_V") : nullptr, b.runs, n, model.supply ? model.supply->nominal_V : 12.0);
+  const Eigen::VectorXd power = held(recording.find("power_param"), b.runs, n, 0.0);
+  b.v_rms_V = b.supply_V.array() * (power.array().max(0.0) / 255.0).sqrt();
+  b.law_A.resize(n);
+  b.law_ohm.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    b.law_A[i] = b.has_power ? law_current(model, b.v_rms_V[i], b.winding_C[i]) : 0.0;
+    if (const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current)) {
+      b.law_ohm[i] = ohmic->resistance_ohm * (1.0 + ohmic->tempco_per_K * (b.winding_C[i] - ohmic->reference_C));
+    } else {
+      b.law_ohm[i] = b.law_A[i] > 0.0 ? b.v_rms_V[i] / b.law_A[i] : 0.0;
+    }
+  }
+  static const char* const known[] = {"power_param", "drive_A", "supply_V", "ambient_C", "current_A", "motor_C", "angle_deg"};
+  for (const Column& column : recording.columns) {
+    if (std::any_of(std::begin(known), std::end(known), [&](const char* name) { return column.name == name; })) continue;
+    if (!recording.has(column.name)) continue;
+    Column copy{column.name, held(&column.values, b.runs, n, 0.0)};
+    if (copy.values.maxCoeff() > copy.values.minCoeff()) b.covariates.push_back(std::move(copy));
+  }
+  return b;
+}
+
+/// Averages `stride` rows at a time inside each run, so that a million rows cost what ten thousand do.
+class Thinning {
+public:
+  Thinning(const std::vector<RunSpan>& runs, const Eigen::VectorXd& measured, Eigen::Index most) {
+    Eigen::Index rows = 0;
+    for (const RunSpan& run : runs) rows += run.size();
+    stride_ = std::max<Eigen::Index>(1, (rows + most - 1) / most);
+    for (const RunSpan& run : runs) {
+      for (Eigen::Index i = run.begin; i < run.end; i += stride_) {
+        std::vector<Eigen::Index> list;
+        for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k) {
+          if (std::isfinite(measured[k])) list.push_back(k);
+        }
+        if (!list.empty()) rows_.push_back(std::move(list));
+      }
+    }
+  }
+
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  Eigen::Index stride() const { return stride_; }
+
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
+    Eigen::MatrixXd out(rows(), full.cols());
+    for (Eigen::Index i = 0; i < rows(); ++i) {
+      const auto& list = rows_[static_cast<std::size_t>(i)];
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(full.cols());
+      for (const Eigen::Index k : list) sum += full.row(k);
+      out.row(i) = sum / static_cast<double>(list.size());
+    }
+    return out;
+  }
+
+  Eigen::VectorXi folds(int count) const {
+    Eigen::VectorXi fold(rows());
+    for (Eigen::Index i = 0; i < rows(); ++i) fold[i] = static_cast<int>(i * count / std::max<Eigen::Index>(1, rows()));
+    return fold;
+  }
+
+private:
+  Eigen::Index stride_ = 1;
+  std::vector<std::vector<Eigen::Index>> rows_;
+};
+
+/// A submodel's problem with its candidate directions.
+struct Judged {
+  Problem problem;
+  std::vector<Block> blocks;
+  double floor = 0.0;  ///< sum of squares that noise leaves
+};
+
+constexpr Eigen::Index localisation_rows = 8000;
+
+/// The current, given the measured temperature and the supply.
+inline Judged judge_current(const Model& model, const BenchRows& b, double slack) {
+  Judged j;
+  const Thinning thin(b.runs, b.current_A, localisation_rows);
+  const Eigen::VectorXd law = b.law_A;
+  j.problem.slack = slack;
+  j.problem.y = thin(b.current_A - law);
+  j.problem.fold = thin.folds(j.problem.folds);
+  j.problem.free.resize(thin.rows(), 0);
+  if (const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current)) {
+    Eigen::MatrixXd nuisance(law.size(), 2);
+    nuisance.col(0) = -law;
+    const Eigen::ArrayXd rise = ohmic->tempco_per_K * (b.winding_C.array() - ohmic->reference_C);
+    nuisance.col(1) = -law.array() * rise / (1.0 + rise);
+    j.problem.nuisance = thin(nuisance);
+  } else if (const auto* thesis = std::get_if<ThesisCurrentModel>(&model.current)) {
+    Eigen::MatrixXd nuisance(law.size(), 2);
+    for (Eigen::Index i = 0; i < law.size(); ++i) {
+      const bool on = law[i] > 0.0;
+      nuisance(i, 0) = on ? 1e-3 * thesis->base_mA * std::pow(b.v_rms_V[i], thesis->exponent) : 0.0;
+      nuisance(i, 1) = on ? law[i] - nuisance(i, 0) : 0.0;
+    }
+    j.problem.nuisance = thin(nuisance);
+  }
+  const double sigma = noise_of(b.current_A - law, b.runs);
+  j.floor = sigma * sigma * static_cast<double>(thin.rows()) / static_cast<double>(thin.stride());
+  const auto add = [&](const char* submodel, const std::string& variable, const std::string& words, const Eigen::MatrixXd& columns) {
+    j.blocks.push_back({submodel, variable, words, thin(columns)});
+  };
+  const Eigen::VectorXd on = (b.v_rms_V.array() > 0.0).cast<double>();
+  add("sensing.current", "", "the same offset at every current, none included", Eigen::VectorXd::Ones(law.size()));
+  add("electrical.scale", "v_rms_V", "the same factor at every voltage", law);
+  const Eigen::VectorXd warm = (b.winding_C.array() - 25.0) / 10.0;
+  Eigen::MatrixXd columns(law.size(), 2);
+  columns.col(0) = law;
+  columns.col(1) = law.cwiseProduct(warm);
+  add("electrical", "motor_C", "a resistance that depends on the temperature", columns);
+  Eigen::VectorXd charge = Eigen::VectorXd::Zero(law.size());
+  for (const RunSpan& run : b.runs) {
+    double sum = 0.0;
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      charge[i] = sum;
+      const double drawn = std::isfinite(b.current_A[i]) ? b.current_A[i] : law[i];
+      sum += drawn * b.v_rms_V[i] / std::max(b.supply_V[i], 1e-9) * b.step_s[i] / 3600.0;
+    }
+  }
+  const Eigen::MatrixXd by_voltage = scaled(hats(Eigen::VectorXd(b.v_rms_V.array() + 0.0), 6), law);
+  add("electrical", "v_rms_V", "a voltage lost that depends on the drive", by_voltage);
+  Eigen::MatrixXd reciprocal(law.size(), 2);
+  for (Eigen::Index i = 0; i < law.size(); ++i) {
+    reciprocal(i, 0) = law[i];
+    reciprocal(i, 1) = b.v_rms_V[i] > 0.0 ? law[i] * std::pow(b.supply_V[i] / b.v_rms_V[i], 2.0) : 0.0;
+  }
+  add("electrical", "v_rms_V", "a piece of the duty that is lost", reciprocal);
+  Eigen::MatrixXd sag(law.size(), 3);
+  sag.col(0) = law;
+  sag.col(1) = law.cwiseProduct(b.v_rms_V.cwiseProduct(b.v_rms_V));
+  sag.col(2) = law.cwiseProduct(charge);
+  add("electrical", "v_rms_V", "a supply that gives way under load and with the charge drawn", sag);
+  for (const Column& column : b.covariates) {
+    const Eigen::VectorXd z = column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
+    const double scale = std::max(z.cwiseAbs().maxCoeff(), 1e-12);
+    Eigen::MatrixXd voltage(law.size(), 2), factor(law.size(), 2);
+    voltage.col(0) = law;
+    factor.col(0) = law;
+    for (Eigen::Index i = 0; i < law.size(); ++i) {
+      voltage(i, 1) = on[i] * (b.law_ohm[i] > 0.0 ? z[i] / scale / b.law_ohm[i] : 0.0);
+      factor(i, 1) = law[i] * z[i] / scale;
+    }
+    add("electrical", column.name, "a voltage lost that grows with " + column.name, voltage);
+    add("electrical", column.name, "a factor that changes with " + column.name, factor);
+  }
+  return j;
+}
+
+/// Where the heat of a thermal judgement comes from.
+enum class HeatSource { law, measured_current, electrical_power };
+
+/// Heat into the motor in W by one source; empty where it is not to be had.
+inline Eigen::VectorXd heat_of(const Model& model, const BenchRows& b, HeatSource source) {
+  const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
+  const bool polynomial = std::holds_alternative<ThesisThermalModel>(model.thermal);
+  const Eigen::Index n = b.t_s.size();
+  Eigen::VectorXd heat(n);
+  const Eigen::VectorXd measured = b.has_current ? held(&b.current_A, b.runs, n, 0.0) : Eigen::VectorXd();
+  switch (source) {
+    case HeatSource::law:
+      if (!b.has_power || !model.has_current()) return {};
+      return b.v_rms_V.cwiseProduct(b.law_A);
+    case HeatSource::measured_current:
+      if (!b.has_current || (polynomial && !b.has_power) || (!polynomial && !ohmic)) return {};
+      if (polynomial) return b.v_rms_V.cwiseProduct(measured);
+      return measured.cwiseProduct(measured).cwiseProduct(b.law_ohm);
+    case HeatSource::electrical_power:
+      if (!b.has_current || !b.has_power || polynomial) return {};
+      return b.v_rms_V.cwiseProduct(measured);
+  }
+  return {};
+}
+
+/// The temperature, given the heat: responses of the baseline's own linear filter to missing watts.
+class ThermalJudge {
+public:
+  ThermalJudge(const Model& model, const BenchRows& rows, const Eigen::VectorXd& heat_W)
+      : b_(rows), heat_(heat_W), thin_(rows.runs, rows.motor_C, localisation_rows) {
+    const Eigen::Index n = b_.t_s.size();
+    capacity_.resize(n);
+    relax_.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal)) {
+        capacity_[i] = lumped->heat_capacity_J_per_K;
+        relax_[i] = lumped->conductance_W_per_K / lumped->heat_capacity_J_per_K;
+      } else if (const auto* thesis = std::get_if<ThesisThermalModel>(&model.thermal)) {
+        const double v = b_.v_rms_V[i];
+        const double rinv = (thesis->rinv_slope_V1 * v + thesis->rinv_slope_V0) * b_.winding_C[i] + thesis->rinv_offset_V1 * v + thesis->rinv_offset_V0;
+        capacity_[i] = v > thesis->minimum_V_rms ? 60.0 * std::max(rinv, 1e-3) : 60.0 * 1e3;
+        relax_[i] = thesis->cooling_per_min / 60.0;
+        if (v <= thesis->minimum_V_rms) heat_[i] = 0.0;
+      }
+    }
+    time_constant_s_ = 1.0 / std::max(relax_.mean(), 1e-12);
+    polynomial_ = std::holds_alternative<ThesisThermalModel>(model.thermal);
+    loss_ = capacity_.cwiseProduct(relax_);
+    if (polynomial_) loss_ = Eigen::VectorXd::Constant(n, 1.0);
+    simulate();
+  }
+
+  /// Temperature response to extra watts from a start at 0.
+  Eigen::VectorXd response(const Eigen::VectorXd& watts) const { return filtered(watts.cwiseQuotient(capacity_)); }
+
+  Judged judge(double slack, HeatSource source) const {
+    Judged j;
+    j.problem.slack = slack;
+    j.problem.y = thin_(b_.motor_C - baseline_);
+    j.problem.fold = thin_.folds(j.problem.folds);
+    const Eigen::Index n = baseline_.size();
+    const Eigen::VectorXd rise = b_.winding_C - b_.ambient_C;
+    // Written with the measured temperature these are exact however far a constant is off: the baseline's filter is linear.
+    const Eigen::VectorXd scale_heat = response(heat_), scale_loss = filtered(-relax_.cwiseProduct(rise));
+    const Eigen::VectorXd scale_storage = stored(b_.winding_C);
+    Eigen::MatrixXd nuisance(n, source == HeatSource::electrical_power ? 2 : 3);
+    nuisance.col(0) = scale_storage;
+    nuisance.col(1) = scale_loss;
+    if (nuisance.cols() == 3) nuisance.col(2) = scale_heat;
+    j.problem.nuisance = thin_(nuisance);
+    const Eigen::Index runs = static_cast<Eigen::Index>(b_.runs.size());
+    Eigen::MatrixXd starts = Eigen::MatrixXd::Zero(n, runs <= 6 ? runs : 0);
+    for (Eigen::Index r = 0; r < starts.cols(); ++r) {
+      const RunSpan& run = b_.runs[static_cast<std::size_t>(r)];
+      double left = 1.0;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        starts(i, r) = left;
+        left *= std::exp(-relax_[i] * b_.step_s[i]);
+      }
+    }
+    j.problem.free = thin_(starts);
+    const double sigma = noise_of(b_.motor_C, b_.runs);
+    j.floor = sigma * sigma * static_cast<double>(thin_.rows()) / static_cast<double>(thin_.stride());
+
+    const double unbounded = std::numeric_limits<double>::infinity();
+    const auto add = [&](const char* submodel, const std::string& variable, const std::string& words, const Eigen::MatrixXd& columns,
+                         double lower) { j.blocks.push_back({submodel, variable, words, thin_(columns), lower, unbounded}); };
+    const auto responses = [&](const Eigen::MatrixXd& watts) {
+      Eigen::MatrixXd out(watts.rows(), watts.cols());
+      for (Eigen::Index k = 0; k < watts.cols(); ++k) out.col(k) = response(watts.col(k));
+      return out;
+    };
+    const Eigen::VectorXd loss = loss_.cwiseProduct(rise);
+    add("sensing.temperature", "rise_K", "a thermometer that shows another rise than the heat makes", scale_heat, -unbounded);
+    add("thermal.storage", "dT_dt", "another heat capacity", scale_storage, -unbounded);
+    add("thermal.loss", "rise_K", "another conductance", scale_loss, -unbounded);
+    add("thermal.loss", "rise_K", "a loss that is there without a rise", response(loss_), -unbounded);
+    add("thermal.loss", "rise_K", "a conductance that depends on the rise", responses(scaled(even_hats(rise, 4), loss)), -unbounded);
+    add("thermal.storage", "motor_C", "a heat capacity that depends on the temperature", by_capacity(), -unbounded);
+    add("thermal.heating", "heat_W", "a heat that is not in proportion to the law's", responses(scaled(even_hats(heat_, 4), heat_)), -unbounded);
+    if (b_.has_power && polynomial_) {
+      Eigen::VectorXd supply(n);
+      for (Eigen::Index i = 0; i < n; ++i) supply[i] = b_.v_rms_V[i] > 0.0 ? heat_[i] * (b_.supply_V[i] / b_.v_rms_V[i] - 1.0) : 0.0;
+      add("thermal.heating", "v_rms_V", "heat by the power at the supply and not at the motor", response(supply), 0.0);
+    }
+    Eigen::MatrixXd fast(n, 5), lagging(n, 5);
+    double tau = std::max(2.0 * b_.interval_s, 0.004 * time_constant_s_);
+    const double ratio = std::pow(std::max(0.4 * time_constant_s_ / tau, 1.5), 0.25);
+    for (Eigen::Index k = 0; k < 5; ++k, tau *= ratio) {
+      fast.col(k) = lag(heat_, tau, true);
+      lagging.col(k) = lag(baseline_, tau, false) - baseline_;
+    }
+    add("thermal.storage", "dT_dt", "a part that follows the heat faster than the whole", fast, 0.0);
+    add("sensing.temperature", "dT_dt", "a reading that comes after the temperature", lagging, 0.0);
+    for (const Column& column : b_.covariates) {
+      const Eigen::VectorXd z = column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
+      const double scale = std::max(z.cwiseAbs().maxCoeff(), 1e-12);
+      const Eigen::VectorXd unit = z / scale;
+      Eigen::MatrixXd two(n, 2);
+      two.col(0) = loss.cwiseProduct(unit);
+      two.col(1) = loss.array() * unit.array().sign() * unit.array().abs().sqrt();
+      add("thermal.loss", column.name, "a conductance that changes with " + column.name, responses(two), -unbounded);
+      if (column.name.size() > 2 && column.name.compare(column.name.size() - 2, 2, "_C") == 0) {
+        add("thermal.heating", column.name, "heat that flows in from " + column.name,
+            response(loss_.cwiseProduct(column.values - b_.winding_C)), -unbounded);
+      } else {
+        add("thermal.heating", column.name, "heat with the square of " + column.name, response(loss_.cwiseProduct(unit.cwiseProduct(unit))), -unbounded);
+        two.col(0) = loss_.cwiseProduct(unit);
+        two.col(1) = loss_.cwiseProduct(unit.cwiseProduct(unit));
+        add("thermal.heating", column.name, "heat that comes with " + column.name, responses(two), -unbounded);
+      }
+    }
+    return j;
+  }
+
+  /// J/K, W and W of each row: what multiplies dT/dt, what the baseline loses at the measured temperature, what it is heated by.
+  const Eigen::VectorXd& capacity() const { return capacity_; }
+  Eigen::VectorXd loss_W() const { return capacity_.cwiseProduct(relax_).cwiseProduct(b_.winding_C - b_.ambient_C); }
+  const Eigen::VectorXd& heat() const { return heat_; }
+
+private:
+  // x' = drive - relax x, exactly for a drive that is held over the interval.
+  Eigen::VectorXd filtered(const Eigen::VectorXd& drive) const {
+    Eigen::VectorXd out(drive.size());
+    for (const RunSpan& run : b_.runs) {
+      double x = 0.0;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        out[i] = x;
+        const double keep = std::exp(-relax_[i] * b_.step_s[i]);
+        x = keep * x + drive[i] * (relax_[i] > 0.0 ? (1.0 - keep) / relax_[i] : b_.step_s[i]);
+      }
+    }
+    return out;
+  }
+
+  Eigen::VectorXd lag(const Eigen::VectorXd& input, double tau, bool from_zero) const {
+    Eigen::VectorXd out(input.size());
+    for (const RunSpan& run : b_.runs) {
+      double x = from_zero ? 0.0 : input[run.begin];
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        out[i] = x;
+        x += (input[i] - x) * (1.0 - std::exp(-b_.step_s[i] / tau));
+      }
+    }
+    return out;
+  }
+
+  // Response to the watts that a heat store of content A(T), in units of the heat capacity, takes: lag(A) - A.
+  Eigen::VectorXd stored(const Eigen::VectorXd& content) const {
+    Eigen::VectorXd out(content.size());
+    for (const RunSpan& run : b_.runs) {
+      double x = content[run.begin];
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        out[i] = x - content[i];
+        x += (content[i] - x) * (1.0 - std::exp(-relax_[i] * b_.step_s[i]));
+      }
+    }
+    return out;
+  }
+
+  Eigen::MatrixXd by_capacity() const {
+    const double from = b_.winding_C.minCoeff(), to = b_.winding_C.maxCoeff();
+    constexpr Eigen::Index bins = 7;
+    const double width = (to - from) / static_cast<double>(bins);
+    Eigen::MatrixXd out(b_.winding_C.size(), bins);
+    for (Eigen::Index k = 0; k < bins; ++k) {
+      const double begin = from + width * static_cast<double>(k);
+      const Eigen::VectorXd content = (b_.winding_C.array() - begin).max(0.0).min(width);
+      out.col(k) = stored(content);
+    }
+    return out;
+  }
+
+  void simulate() {
+    baseline_.resize(heat_.size());
+    for (const RunSpan& run : b_.runs) {
+      double temperature = b_.winding_C[run.begin];
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        baseline_[i] = temperature;
+        const double keep = std::exp(-relax_[i] * b_.step_s[i]);
+        const double target = b_.ambient_C[i] + heat_[i] / capacity_[i] / relax_[i];
+        temperature = target + (temperature - target) * keep;
+      }
+    }
+  }
+
+  const BenchRows& b_;
+  Eigen::VectorXd heat_, capacity_, relax_, loss_, baseline_;
+  Thinning thin_;
+  double time_constant_s_ = 1.0;
+  bool polynomial_ = false;
+};
+
+}  // namespace thermopower::gap::detail
