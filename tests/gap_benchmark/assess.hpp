@@ -62,7 +62,7 @@ struct Scenario {
       for (std::size_t j = 0; j < free.size(); ++j) p[static_cast<std::size_t>(free[j].index)] = values[j];
       return p;
     };
-    const Fit best = fit_from_all_starts([&](const std::vector<double>& v) { return residuals(with(v)); }, free, iterations, 1e-3);
+    const Fit best = fit_from_best_starts([&](const std::vector<double>& v) { return residuals(with(v)); }, free, iterations, 1e-3);
     return {best.sum_of_squares, worst_rms(residuals(with(best.values)))};
   }
 };
@@ -82,10 +82,13 @@ inline std::vector<Free> joined(std::vector<Free> all, const std::vector<Free>& 
 /// Judges a drawn case.
 /// @param truth ids of the causes at work; empty for none and for causes without a name
 /// @param thorough whether to look for the best wrong cause, which takes most of the time
+/// @param hopeless a likeness from which on the case will be drawn again, so that no more need be known
+/// @param only_these suspects to look at; all when empty
 template <class Context, class Values>
 Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout, const Context& context,
                   const std::vector<Effect<Context, Values>>& effects, const std::vector<Free>& slack,
-                  const std::vector<std::string>& truth, bool thorough, double gate) {
+                  const std::vector<std::string>& truth, bool thorough, double gate, double hopeless = 2.0,
+                  const std::vector<std::string>& only_these = {}) {
   Assessment result;
   const auto only = [&](const std::vector<std::string>& ids) {
     std::vector<Free> free = slack;
@@ -110,12 +113,12 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
     const bool richer = std::any_of(truth.begin(), truth.end(), [&](const std::string& id) {
       return std::count(suspect.contains.begin(), suspect.contains.end(), id) > 0;
     });
-    if (richer) continue;
+    if (richer || (!only_these.empty() && !std::count(only_these.begin(), only_these.end(), suspect.id))) continue;
     double likeness = 0.0, left = 1e9;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       auto ids = kept[i];
       ids.push_back(suspect.id);
-      const auto explained = train.explained(context.model, only(ids), truth.size() == 2 ? 7 : 10);
+      const auto explained = train.explained(context.model, only(ids), truth.size() == 2 ? 6 : 8);
       const double cosine = std::sqrt(std::max(0.0, 1.0 - explained.sum_of_squares / without[i].sum_of_squares));
       likeness = std::max(likeness, cosine);
       left = std::min(left, explained.worst_rms);
@@ -126,12 +129,13 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
       result.confused_with = suspect.id;
       result.left_over = left;
     }
+    if (likeness >= hopeless) return result;
   }
   std::sort(result.others.begin(), result.others.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   if (truth.empty() && result.beyond_catalogue()) {
     // A cause without a name: two named ones together must not do either.
     for (std::size_t first = 0; first < std::min<std::size_t>(2, result.others.size()); ++first)
-      for (std::size_t second = first + 1; second < result.others.size(); ++second)
+      for (std::size_t second = first + 1; second < std::min<std::size_t>(8, result.others.size()); ++second)
         result.left_over = std::min(result.left_over, train.explained(context.model, only({result.others[first].first, result.others[second].first}), 6).worst_rms);
   }
   return result;

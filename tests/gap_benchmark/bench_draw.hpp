@@ -223,7 +223,8 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     DrawnCase drawn;
     if (!order.effects.empty() || unknown != BenchUnknown::none) {
       drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors), c, bench_effects(),
-                                bench_slack(c), order.effects, order.thorough, order.gate);
+                                bench_slack(c), order.effects, order.thorough, order.gate,
+                                unknown != BenchUnknown::none || (order.clear && patience > 1) ? 0.9 : 2.0);
       if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
       if (order.thorough) {
         if (unknown != BenchUnknown::none && !drawn.assessment.beyond_catalogue()) continue;

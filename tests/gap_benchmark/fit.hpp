@@ -84,24 +84,29 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
   return best;
 }
 
-/// The best fit over every combination of the listed starting values.
-inline Fit fit_from_all_starts(const Residuals& residuals, const std::vector<Free>& free, int iterations,
-                               double enough = 0.0) {
+/// The best fit from the two best combinations of the listed starting values.
+inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Free>& free, int iterations, double enough = 0.0) {
+  std::vector<std::pair<double, std::vector<double>>> starts;
   std::vector<std::size_t> choice(free.size(), 0);
-  Fit best;
-  bool first = true;
-  for (;;) {
+  for (std::size_t j = 0; j <= free.size();) {
     std::vector<double> values;
-    for (std::size_t j = 0; j < free.size(); ++j)
-      values.push_back(std::clamp(free[j].starts[choice[j]], free[j].from, free[j].to));
-    const Fit candidate = fit(residuals, free, values, iterations, enough);
-    if (first || candidate.sum_of_squares < best.sum_of_squares) best = candidate;
-    first = false;
-    if (best.sum_of_squares <= enough) return best;
-    std::size_t j = 0;
+    for (std::size_t i = 0; i < free.size(); ++i) values.push_back(std::clamp(free[i].starts[choice[i]], free[i].from, free[i].to));
+    starts.emplace_back(0.0, values);
+    j = 0;
     while (j < free.size() && ++choice[j] == free[j].starts.size()) choice[j++] = 0;
-    if (j == free.size()) return best;
+    if (j == free.size()) break;
   }
+  if (starts.size() > 2)
+    for (auto& start : starts) start.first = residuals(start.second).squaredNorm();
+  std::sort(starts.begin(), starts.end());
+  starts.resize(std::min<std::size_t>(2, starts.size()));
+  Fit best;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Fit candidate = fit(residuals, free, starts[i].second, iterations, enough);
+    if (i == 0 || candidate.sum_of_squares < best.sum_of_squares) best = candidate;
+    if (best.sum_of_squares <= enough) break;
+  }
+  return best;
 }
 
 }  // namespace gap_benchmark

@@ -34,7 +34,7 @@ struct Options {
 constexpr const char* usage =
     "usage: gap_benchmark_generate --out DIR --seed S [options]\n"
     "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
-    "  --only WHAT   one effect id, or none, pairs, unknown\n"
+    "  --only LIST   effect ids, none, pairs, unknown, with commas between\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
     "  --quick       do not look for the best wrong cause (no confusability in the labels)\n"
     "  --no-leave-one-out\n";

@@ -63,15 +63,16 @@ inline std::string title(const CaseOrder& order) {
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
+/// @param only comma-separated effect ids, `none`, `pairs` or `unknown`; everything when empty
 /// With 5 recordings per effect: 190 single effects, 60 none, 48 pairs, 45 outside the catalogue.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only, bool thorough) {
   Random random(seed ^ 0x5eedull);
   std::vector<CaseOrder> orders;
-  const auto wanted = [&](const char* kind) { return only.empty() || only == kind; };
+  const auto wanted = [&](const std::string& kind) { return only.empty() || ("," + only + ",").find("," + kind + ",") != std::string::npos; };
   const auto scaled = [&](int at_five) { return only.empty() ? std::max(1, at_five * count / 5) : count; };
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis)) {
-      if (!wanted(id.c_str())) continue;
+      if (!wanted(id)) continue;
       for (int i = 0; i < count; ++i) {
         CaseOrder order;
         order.axis = axis;

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+//
+// What the benchmark itself has to be right about, before it may judge anything: the physics of its plants, the step of
+// its integrators, its random numbers, its statistics, and that it tells the judge nothing.
+
+#include "../catch.hpp"
+
+#include <filesystem>
+
+#include "axis_draw.hpp"
+#include "bench_draw.hpp"
+#include "plan.hpp"
+#include "tally.hpp"
+
+using namespace gap_benchmark;
+
+namespace {
+
+/// Equal to a relative tolerance.
+bool agree(double value, double expected, double tolerance = 1e-5) {
+  return std::fabs(value - expected) <= tolerance * std::max(std::fabs(value), std::fabs(expected));
+}
+
+double furthest(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::fabs(a[i] - b[i]));
+  return worst;
+}
+
+BenchParameters small_motor() {
+  BenchParameters p = bench_defaults();
+  p[resistance_ohm] = 8.0;
+  p[heat_capacity] = 60.0;
+  p[conductance] = 0.2;
+  return p;
+}
+
+AxisParameters small_axis() {
+  AxisParameters p = axis_defaults();
+  p[inertia] = 1e-3;
+  p[viscous] = 1e-3;
+  p[torque_constant] = 0.15;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("without a temperature coefficient the motor follows the exponential of the textbook") {
+  BenchParameters p = small_motor();
+  p[tempco_per_K] = 0.0;
+  const BenchPlant plant(p);
+  BenchInput u;
+  u.power_param = 128.0;
+  u.supply_V = 12.0;
+  u.ambient_C = 22.0;
+  BenchState x;
+  x.winding_C = 30.0;
+  plant.advance(x, u, 400.0);
+  const double watts = 144.0 * (128.0 / 255.0) / 8.0, end_C = 22.0 + watts / 0.2;
+  CHECK(agree(x.winding_C, end_C + (30.0 - end_C) * std::exp(-400.0 * 0.2 / 60.0), 1e-9));
+}
+
+TEST_CASE("heat in is heat out plus heat stored, with two nodes and every kind of loss") {
+  BenchParameters p = small_motor();
+  p[winding_share] = 0.2;
+  p[coupling_W_per_K] = 1.0;
+  p[radiation_W_per_K4] = 5e-10;
+  p[convection_exponent] = 0.25;
+  p[convection_reference_K] = 20.0;
+  p[neighbour_W_per_K] = 0.03;
+  const BenchPlant plant(p);
+  BenchInput u;
+  u.power_param = 200.0;
+  u.neighbour_C = 55.0;
+  BenchState x;
+  double balance_J = 0.0;
+  const double h = 0.01;
+  for (int i = 0; i < 60000; ++i) {  // Simpson's rule over each little step
+    const BenchState a = x;
+    BenchState b = a;
+    plant.advance(b, u, 0.5 * h);
+    x = b;
+    plant.advance(x, u, 0.5 * h);
+    const auto net = [&](const BenchState& s) { return plant.heating(u, s) - plant.loss(u, s.housing_C, false, p[conductance]); };
+    balance_J += h / 6.0 * (net(a) + 4.0 * net(b) + net(x));
+  }
+  const double stored_J = 60.0 * (0.2 * (x.winding_C - 20.0) + 0.8 * (x.housing_C - 20.0));
+  CHECK(x.winding_C > 60.0);
+  CHECK(agree(balance_J, stored_J, 1e-8));
+}
+
+TEST_CASE("an undamped spring keeps its energy") {
+  AxisParameters p = small_axis();
+  p[viscous] = 0.0;
+  p[far_share] = 0.6;
+  p[spring_Hz] = 15.0;
+  p[spring_damping] = 0.0;
+  const AxisPlant plant(p);
+  AxisState x;
+  x.angle = 0.02;
+  x.far_rate = 1.0;
+  const double before = plant.energy(x);
+  for (int i = 0; i < 5000; ++i) plant.advance(x, AxisInput{}, 0.001);
+  CHECK(agree(plant.energy(x), before, 1e-5));
+}
+
+TEST_CASE("a rigid axis follows the exponential of the textbook, and dry friction stops it when it should") {
+  AxisParameters p = small_axis();
+  AxisInput u;
+  u.drive_A = 0.02;
+  AxisState x;
+  AxisPlant(p).advance(x, u, 0.8);
+  CHECK(agree(x.rate, 3.0 * (1.0 - std::exp(-0.8)), 1e-9));
+
+  p[viscous] = 0.0;
+  p[coulomb_Nm] = 2e-3;
+  x = AxisState{};
+  x.rate = 1.0;
+  AxisPlant(p).advance(x, AxisInput{}, 3.0);
+  CHECK(x.rate == 0.0);                                   // at rest, and not chattering around it
+  CHECK(agree(x.angle, 0.5 * 1.0 / 2.0, 1e-6));  // v^2 / (2 F / J)
+  u.drive_A = 0.9 * 2e-3 / 0.15;                          // not enough to break away
+  AxisPlant(p).advance(x, u, 1.0);
+  CHECK(x.rate == 0.0);
+}
+
+TEST_CASE("a delayed command switches at its own instant") {
+  AxisParameters p = small_axis();
+  p[viscous] = 0.0;
+  p[delay_s] = 0.0137;
+  AxisDrive drive;
+  drive.t_s = {0.0, 0.01, 0.02, 0.03, 0.04};
+  drive.input.resize(5);
+  drive.input[0].drive_A = 0.1;
+  drive.run_start = {0};
+  const AxisOutput nothing{std::vector<double>(5, 0.0), std::vector<double>(5, 0.0)};
+  const AxisOutput y = replay(p, drive, nothing, 10.0);
+  CHECK(y.rate_dps[1] == 0.0);
+  CHECK(agree(y.rate_dps[2], 15.0 * (0.02 - 0.0137) * degrees_per_radian));
+  CHECK(agree(y.rate_dps[4], 15.0 * 0.01 * degrees_per_radian));
+}
+
+TEST_CASE("halving the step of the plants changes a recording by less than a hundredth of its noise") {
+  Random random(11);
+  for (const auto& effect : bench_effects()) {
+    CAPTURE(effect.id);
+    BenchSetup setup = draw_bench({effect.id}, effect.id == "supply_power_heating", random);
+    if (!effect.possible(setup.context)) continue;
+    effect.draw(random, setup.context, setup.plant);
+    const BenchRecording made = record(setup, BenchSession{}, Random(3));
+    BenchDrive drive = made.drive;
+    const BenchOutput coarse = replay(made.exact, drive, 1.0), fine = replay(made.exact, drive, 0.5);
+    CHECK(furthest(coarse.motor_C, fine.motor_C) < 0.01 * setup.noise_motor_C);
+    CHECK(furthest(coarse.current_A, fine.current_A) < 0.01 * setup.noise_current_A);
+  }
+  for (const BenchUnknown unknown : {BenchUnknown::melting, BenchUnknown::hidden_fan, BenchUnknown::shorted_turns}) {
+    BenchSetup setup = draw_bench({}, false, random);
+    draw_unknown(setup, unknown, random);
+    const BenchRecording made = record(setup, BenchSession{}, Random(4));
+    const BenchOutput coarse = replay(made.exact, made.drive, 1.0), fine = replay(made.exact, made.drive, 0.5);
+    CHECK(furthest(coarse.motor_C, fine.motor_C) < 0.01 * setup.noise_motor_C);
+  }
+  for (const auto& effect : axis_effects()) {
+    CAPTURE(effect.id);
+    AxisSetup setup = draw_axis({effect.id}, random);
+    AxisSession session;
+    session.length_s = 8.0;
+    measure_session(setup, session, Random(5));
+    setup.plant = setup.context.plant;
+    if (!effect.possible(setup.context)) continue;
+    effect.draw(random, setup.context, setup.plant);
+    const AxisRecording made = record(setup, session, Random(6));
+    const AxisOutput coarse = replay(setup.plant, made.drive, made.truth, axis_horizon_s, 1.0),
+                     fine = replay(setup.plant, made.drive, made.truth, axis_horizon_s, 0.5);
+    const double gain = std::max(1.0, setup.plant[angle_gain]);
+    CHECK(furthest(coarse.angle_deg, fine.angle_deg) < 0.01 * gain * setup.noise_angle_deg);
+    CHECK(furthest(coarse.rate_dps, fine.rate_dps) < 0.01 * setup.noise_rate_dps);
+  }
+}
+
+TEST_CASE("the true model replays its own recording to the noise of its sensors") {
+  Random random(21);
+  BenchSetup bench = draw_bench({}, false, random);
+  bench.context.has_current = true;
+  bench.context.current_is_input = bench.missing_cells = false;
+  const BenchRecording made = record(bench, BenchSession{}, Random(7));
+  SquaredErrors errors;
+  add_errors(replay(made.exact, drive_from_log(bench, made)), made, errors);
+  CHECK(errors["motor_C"].rms() < 1.5 * std::hypot(bench.noise_motor_C, bench.quantum_motor_C / std::sqrt(12.0)) + 0.03);
+  CHECK(errors["motor_C"].rms() > 0.9 * bench.noise_motor_C);
+
+  AxisSetup axis = draw_axis({}, random);
+  AxisSession session;
+  session.length_s = 10.0;
+  const AxisRecording moved = record(axis, session, Random(8));
+  SquaredErrors motion;
+  add_errors(axis.plant, drive_from_log(axis, moved), moved, false, motion);
+  CHECK(motion["rate_dps"].rms() < 2.0 * std::hypot(axis.noise_rate_dps, axis.quantum_rate_dps));
+  CHECK(motion["rate_dps"].rms() > 0.9 * axis.noise_rate_dps);
+}
+
+TEST_CASE("the same seed draws the same case, and the gate holds in both recordings") {
+  for (const bool axis : {false, true}) {
+    CaseOrder order;
+    order.axis = axis;
+    order.effects = {axis ? "coulomb_friction" : "series_resistance"};
+    order.thorough = false;
+    order.replicates = 1;
+    Random first(42), second(42);
+    const DrawnCase a = axis ? draw_axis_case(order, first) : draw_bench_case(order, first);
+    const DrawnCase b = axis ? draw_axis_case(order, second) : draw_bench_case(order, second);
+    CHECK(a.label.dump() == b.label.dump());
+    CHECK(a.model.dump() == b.model.dump());
+    CHECK(a.train.columns.back().values == b.train.columns.back().values);
+    CHECK(a.assessment.visible_train >= order.gate);
+    CHECK(a.assessment.visible_heldout >= order.gate);
+  }
+}
+
+TEST_CASE("a cause is recognised by its own fit and a stranger is not") {
+  CaseOrder order;
+  order.effects = {"dead_time"};
+  order.replicates = 0;
+  order.clear = true;
+  Random random(5);
+  const DrawnCase drawn = draw_bench_case(order, random);
+  CHECK(drawn.assessment.confusability < 0.9);
+  CHECK(drawn.assessment.others.size() > 8);
+}
+
+TEST_CASE("what the judge sees does not name the cause") {
+  CaseOrder order;
+  order.effects = {"series_resistance"};
+  order.thorough = false;
+  order.replicates = 0;
+  Random random(9);
+  const DrawnCase drawn = draw_bench_case(order, random);
+  CHECK(drawn.model.dump().find("series") == std::string::npos);
+  CHECK_FALSE(drawn.model.contains("effects"));
+  for (const auto& column : drawn.train.columns) CHECK(column.name.find("ohm") == std::string::npos);
+}
+
+TEST_CASE("the plan holds every effect, and its order says nothing") {
+  const auto orders = plan(1, 5, "", true);
+  CHECK(orders.size() >= 300);
+  for (const bool axis : {false, true})
+    for (const auto& id : all_ids(axis))
+      CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) { return o.axis == axis && o.effects == std::vector<std::string>{id}; }) == 5);
+  int neighbours = 0;
+  for (std::size_t i = 1; i < orders.size(); ++i) neighbours += orders[i].effects == orders[i - 1].effects;
+  CHECK(neighbours < 40);
+}
+
+TEST_CASE("Wilson's interval is that of the tables") {
+  CHECK(wilson(0, 10).first < 1e-12);
+  CHECK(std::fabs(wilson(0, 10).second - 0.2775) < 1e-4);
+  CHECK(std::fabs(wilson(81, 263).first - 0.2553) < 1e-4);
+  CHECK(std::fabs(wilson(81, 263).second - 0.3662) < 1e-4);
+}

@@ -1,0 +1,44 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+#
+# Runs the diagnosis on every job of a benchmark directory, through files only. It knows the cases and nothing of sealed/.
+#   judge.sh PROGRAM DIR [JOBS_AT_ONCE]
+# Each job leaves DIR/reports/JOB/{report.json,predictions.csv,summary.txt,errors.txt,status}; status holds the exit
+# status and the seconds it took.
+
+set -eu
+
+if [ "$1" = --one ]; then
+  program=$2 directory=$3 job=$4 case=$5
+  shift 5
+  case=$directory/cases/$case
+  out=$directory/reports/$job
+  mkdir -p "$out"
+  rm -f "$out"/*
+  # What a user's program can see is this directory and no other.
+  set -- "$@" ""
+  options=""
+  for id; do
+    [ -z "$id" ] || options="$options --without $id"
+  done
+  began=$(date +%s.%N)
+  status=0
+  # shellcheck disable=SC2086  # the ids hold no blanks
+  timeout 300 "$program" diagnose --model "$case/model.json" --recording "$case/train.csv" --heldout "$case/heldout.csv" \
+    --report "$out/report.json" --predictions "$out/predictions.csv" $options >"$out/summary.txt" 2>"$out/errors.txt" || status=$?
+  ended=$(date +%s.%N)
+  echo "$status $(echo "$ended $began" | awk '{ printf "%.2f", $1 - $2 }')" >"$out/status"
+  exit 0
+fi
+
+if [ $# -lt 2 ]; then
+  echo "usage: judge.sh PROGRAM DIR [JOBS_AT_ONCE]" >&2
+  exit 2
+fi
+program=$1 directory=$2 at_once=${3:-2}
+[ -x "$program" ] || { echo "judge.sh: $program is no program" >&2; exit 2; }
+[ -r "$directory/jobs.txt" ] || { echo "judge.sh: $directory/jobs.txt is missing" >&2; exit 2; }
+mkdir -p "$directory/reports"
+# One line of jobs.txt is one run; a line's words become arguments.
+xargs -P "$at_once" -L 1 "$0" --one "$program" "$directory" <"$directory/jobs.txt"

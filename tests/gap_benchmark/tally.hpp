@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gap_benchmark {
+
+/// Wilson's 95 % interval of a rate.
+inline std::pair<double, double> wilson(int hits, int total) {
+  if (total == 0) return {0.0, 1.0};
+  const double z = 1.959963984540054, n = total, p = hits / n, z2 = z * z;
+  const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+  const double half = z / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
+  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+/// One rate of the table.
+struct Tally {
+  std::string key, title, target;
+  bool at_most = false;
+  int hits = 0, total = 0;
+
+  double rate() const { return total ? static_cast<double>(hits) / total : 0.0; }
+};
+
+/// The rates of the table, in its order.
+class Tallies {
+public:
+  void add(const std::string& key, bool hit) {
+    for (auto& tally : list_)
+      if (tally.key == key) {
+        tally.hits += hit;
+        ++tally.total;
+        return;
+      }
+    throw std::logic_error("no tally " + key);
+  }
+
+  const Tally* find(const std::string& key) const {
+    for (const auto& tally : list_)
+      if (tally.key == key) return &tally;
+    return nullptr;
+  }
+
+  void print(std::ostream& out) const {
+    for (const auto& tally : list_) {
+      if (!tally.total) continue;
+      const auto interval = wilson(tally.hits, tally.total);
+      char text[120];
+      std::snprintf(text, sizeof text, "%.1f %% | %.1f to %.1f %% | %d / %d", 100.0 * tally.rate(), 100.0 * interval.first,
+                    100.0 * interval.second, tally.hits, tally.total);
+      out << "| " << tally.title << " | " << text << " | " << tally.target << " |\n";
+    }
+  }
+
+private:
+  std::vector<Tally> list_ = {
+      {"top1", "cause named, where no wrong cause passes for it (confusability < 0.9)", "at least 95 %"},
+      {"class", "truth inside the reported class", "at least 99 %"},
+      {"false_gap", "gap claimed where there is none", "at most 1 %", true},
+      {"unknown", "cause outside the catalogue called unexplained", "at least 90 %"},
+      {"both", "both of two causes named", "at least 85 %"},
+      {"where", "signal and submodel right, from residuals alone", "at least 95 %"},
+      {"coverage", "interval covers the shrinkage over many recordings", "90 to 98 %"},
+      {"after", "held-out gap below 1.3 times the floor, of the explained", "at least 90 %"},
+      {"left_out", "cause left out of the catalogue: unexplained or an honest class", "never a confident neighbour"},
+      {"top1_all", "cause named, all single effects", ""},
+      {"both_exactly", "both of two causes named and nothing else", ""},
+      {"both_in_class", "both of two causes inside the reported class", ""},
+      {"where_exact", "submodel right to the last word", ""},
+      {"coverage_sample", "interval covers the shrinkage on this very recording", ""},
+      {"coverage_below", "misses of the interval that promise too much", ""},
+      {"left_out_unexplained", "cause left out: called unexplained", ""},
+      {"left_out_equivalent", "cause left out: a confident neighbour that nobody could tell from it", ""},
+      {"bystanders", "other causes left out: the same answer", ""},
+      {"honest", "score in the report agrees with its own predictions", ""},
+  };
+};
+
+}  // namespace gap_benchmark
