@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Any bytes, in any chunking, with pauses anywhere: the codec reports the leftmost reading of the stream, conserves
-// bytes, and every typed message either refuses a frame or encodes back into a frame that reads the same.
+// Any bytes, in any chunking, with pauses anywhere: the codec reports the leftmost reading of the stream,
+// conserves bytes, and every typed message either refuses a frame or encodes back into a frame that reads the
+// same.
 //
 // The input is a small program, so that valid frames occur often: see play() below. Build with
-// -fsanitize=fuzzer,address,undefined to search with libFuzzer, or with sbgc_fuzz_driver.cpp to run random programs.
+// -fsanitize=fuzzer,address,undefined to search with libFuzzer, or with sbgc_fuzz_driver.cpp to run random
+// programs.
 
 #include <cstddef>
 #include <cstdint>
@@ -73,8 +75,8 @@ struct Recording {
   std::vector<std::size_t> pauses;
 };
 
-// One operation per leading byte: 0..3 a v1 frame, 4..7 a v2 frame (id, size and payload follow; every fourth is
-// damaged in one byte), 8 a pause, anything else: the next byte goes out as it is.
+// One operation per leading byte: 0..3 a v1 frame, 4..7 a v2 frame (id, size and payload follow; every fourth
+// is damaged in one byte), 8 a pause, anything else: the next byte goes out as it is.
 Recording play(const std::uint8_t* program, std::size_t size) {
   Recording recording;
   std::size_t at = 0;
@@ -122,8 +124,8 @@ void check(const Recording& recording, bool v1, bool v2) {
   }
   while (codec.poll(now_us + timeout_us + 1000)) take();
 
-  const auto expected = reference::leftmost_reading(recording.stream, reference::Rules{capacity, v1, v2},
-                                                    recording.pauses);
+  const auto expected =
+      reference::leftmost_reading(recording.stream, reference::Rules{capacity, v1, v2}, recording.pauses);
   require(frames == expected, "the frames are the leftmost reading of the stream");
   std::size_t frame_bytes = 0;
   for (const reference::Frame& frame : expected) frame_bytes += frame.end - frame.begin;

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
   const auto start = std::chrono::steady_clock::now();
   unsigned long runs = 0;
   // A fixed number of inputs at least, so that a slow machine checks something too.
-  while (runs < 200 || std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
+  while (runs < 200 ||
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
     std::vector<std::uint8_t> input(random() % 600);
     const bool narrow = random() % 2 == 0;  // few values: many starts, short frames, coincidences
     static const std::uint8_t likely[] = {0, 1, 2, 3, 4, 5, 7, 8, 9, 25, 0x24, 0x3E};

@@ -22,8 +22,8 @@ struct AdjVar {
   int32_t value;  ///< for the variables listed there 0..255
 };
 
-/// @brief Sets adjustable variables in the board's RAM; the board answers Confirm. Board to host: the answer to
-/// GetAdjVars.
+/// @brief Sets adjustable variables in the board's RAM; the board answers Confirm. Board to host: the answer
+/// to GetAdjVars.
 ///
 /// Fill `vars`. To read one from a frame, use AdjVarsView, which takes any number.
 /// @tparam count number of variables, 1..50.
@@ -55,8 +55,8 @@ struct SetAdjVars {
 class AdjVarsView {
  public:
   /// @brief Looks at a frame's payload.
-  /// @return false, with this object unchanged, unless the frame is SET_ADJ_VARS_VAL and as long as its number of
-  /// variables says.
+  /// @return false, with this object unchanged, unless the frame is SET_ADJ_VARS_VAL and as long as its
+  /// number of variables says.
   bool read(const Frame& frame) noexcept {
     if (frame.id != command::set_adj_vars_val || frame.size < 1) return false;
     if (frame.size < 1 + 5 * static_cast<int16_t>(frame.payload[0])) return false;
@@ -125,9 +125,10 @@ struct GetAdjVarsView {
   }
 };
 
-/// @brief The message that carries a gimbal command to the board: POWER roll, pitch, yaw, then P roll, pitch, yaw.
-/// @param gimbal any object with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw, such as the command a
-/// gimbal controller gives.
+/// @brief The message that carries a gimbal command to the board: POWER roll, pitch, yaw, then P roll, pitch,
+/// yaw.
+/// @param gimbal any object with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw, such as the command
+/// a gimbal controller gives.
 /// @ingroup sbgc
 template <class Command>
 SetAdjVars<6> power_and_gain(const Command& gimbal) noexcept {

@@ -17,8 +17,8 @@ namespace sbgc {
 
 /// @brief The board has executed a command.
 ///
-/// Its id is that of CONTROL; the direction tells them apart, and so does the size here: read() refuses the 13 and
-/// 15 bytes of a Control.
+/// Its id is that of CONTROL; the direction tells them apart, and so does the size here: read() refuses the
+/// 13 and 15 bytes of a Control.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_CONFIRM.
 /// @ingroup sbgc
 struct Confirm {

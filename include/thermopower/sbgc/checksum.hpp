@@ -26,8 +26,8 @@ class Sum8 {
   uint8_t sum_ = 0;
 };
 
-/// @brief Protocol v2: CRC-16, polynomial 0x8005, initial value 0, data bits LSB first, register shifted left,
-/// result not reflected, no final xor. Check value of "123456789": 0xBCDD.
+/// @brief Protocol v2: CRC-16, polynomial 0x8005, initial value 0, data bits LSB first, register shifted
+/// left, result not reflected, no final xor. Check value of "123456789": 0xBCDD.
 ///
 /// It finds every change within any 16 neighbouring bits, so every change of a single byte.
 /// Source: SimpleBGC serial protocol specification 2.5, appendix with the CRC.
@@ -36,10 +36,12 @@ class Crc16 {
  public:
   /// @brief Takes one more byte into account.
   void add(uint8_t byte) noexcept {
-    // The register is kept mirrored. Then a whole byte is one step, since for this polynomial the entry x of the
-    // usual 256-word table is (x << 7) ^ (x << 6) ^ (x has odd parity ? 0xC001 : 0): no table, no loop over bits.
+    // The register is kept mirrored. Then a whole byte is one step, since for this polynomial the entry x of
+    // the usual 256-word table is (x << 7) ^ (x << 6) ^ (x has odd parity ? 0xC001 : 0): no table, no loop
+    // over bits.
     const uint8_t x = static_cast<uint8_t>(mirrored_ ^ byte);
-    const uint8_t swapped = static_cast<uint8_t>((x << 4) | (x >> 4));  // one instruction on AVR, a shift is not
+    // Swapping halves is one instruction on AVR, shifting by four is a loop; the parity is the same.
+    const uint8_t swapped = static_cast<uint8_t>((x << 4) | (x >> 4));
     uint8_t parity = static_cast<uint8_t>(x ^ swapped);
     parity = static_cast<uint8_t>(parity ^ static_cast<uint8_t>(parity >> 2));
     parity = static_cast<uint8_t>(parity ^ static_cast<uint8_t>(parity >> 1));

@@ -32,11 +32,12 @@ namespace thermopower {
 ///     for (bool got = codec.receive(byte, micros()); got; got = codec.next())
 ///       if (const auto* telemetry = codec.realtime_data()) use(telemetry->error_deg(0));
 ///
-/// Receiving is sbgc::Receiver, which says what is guaranteed on a damaged line; both ends speak the same messages,
-/// so an emulated board is a codec as well. There is one buffer and no other memory; instances are independent.
+/// Receiving is sbgc::Receiver, which says what is guaranteed on a damaged line; both ends speak the same
+/// messages, so an emulated board is a codec as well. There is one buffer and no other memory; instances are
+/// independent.
 ///
-/// @tparam payload_capacity longest payload to be received, 0..255. The default holds every message that has a
-/// type here up to REALTIME_DATA_4.
+/// @tparam payload_capacity longest payload to be received, 0..255. The default holds every message that has
+/// a type here up to REALTIME_DATA_4.
 /// @tparam Protocol sbgc::ProtocolV1, sbgc::ProtocolV2 or sbgc::ProtocolAuto (a menu: see sbgc::ProtocolV1).
 /// @ingroup sbgc
 template <size_t payload_capacity = 124, class Protocol = sbgc::ProtocolV1>
@@ -68,6 +69,7 @@ class SbgcCodec : public sbgc::Receiver<payload_capacity, Protocol> {
   }
 
   /// @brief Sends a message as one frame.
+  /// @param message any message, see sbgc::encode().
   /// @param wire any object with `write(const uint8_t*, size_t)`, such as Arduino's Serial.
   /// @return bytes the wire took; 0 when the message was refused (see sbgc::send()).
   template <class Message, class Wire>

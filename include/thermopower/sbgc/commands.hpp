@@ -15,7 +15,8 @@
 namespace thermopower {
 namespace sbgc {
 
-/// @brief A command without payload: asks for data (`Request(command::realtime_data_4)`), or any other such command.
+/// @brief A command without payload: asks for data (`Request(command::realtime_data_4)`), or any other such
+/// command.
 /// @ingroup sbgc
 struct Request {
   uint8_t requested_id = 0;  ///< see command::Id; 0 cannot be sent
@@ -42,8 +43,8 @@ struct Request {
 /// @brief Any command with any payload, for those that have no type here.
 /// @ingroup sbgc
 struct Raw {
-  uint8_t raw_id;   ///< 1..255
-  Bytes data;       ///< the payload, not copied: a view of a frame's payload, or of the caller's bytes
+  uint8_t raw_id;  ///< 1..255
+  Bytes data;      ///< the payload, not copied: a view of a frame's payload, or of the caller's bytes
 
   /// @brief Looks at a frame. @return false, with nothing changed, when there is none.
   bool read(const Frame& frame) noexcept {

@@ -40,12 +40,12 @@ struct AxisControl {
 
 /// @brief Moves the gimbal. The board does not answer unless it was configured to.
 ///
-/// Firmware 2.55b5 and later takes a mode for each axis (15 bytes); older firmware one mode for all (13 bytes).
-/// Source: SimpleBGC serial protocol specification 2.5, CMD_CONTROL.
+/// Firmware 2.55b5 and later takes a mode for each axis (15 bytes); older firmware one mode for all (13
+/// bytes). Source: SimpleBGC serial protocol specification 2.5, CMD_CONTROL.
 /// @ingroup sbgc
 struct Control {
-  AxisControl axis[3];       ///< roll, pitch, yaw
-  bool one_mode = false;     ///< use the older form: the mode of roll goes for all axes
+  AxisControl axis[3];    ///< roll, pitch, yaw
+  bool one_mode = false;  ///< use the older form: the mode of roll goes for all axes
 
   /// @brief Reads a frame of either form. @return false, with nothing changed, when it is none.
   bool read(const Frame& frame) noexcept {

@@ -15,8 +15,8 @@ namespace sbgc {
 
 /// @brief Version of a frame; the value is its first byte.
 ///
-/// v1: `3E id size id+size payload sum`. v2: `24 id size id+size payload crc_low crc_high`, the CRC being over
-/// everything but the first byte.
+/// v1: `3E id size id+size payload sum`. v2: `24 id size id+size payload crc_low crc_high`, the CRC being
+/// over everything but the first byte.
 /// @ingroup sbgc
 enum class Version : uint8_t {
   v1 = 0x3E,  ///< checksum of one byte, understood by every firmware
@@ -28,7 +28,8 @@ enum class Version : uint8_t {
 /// A policy is the running checksum of one frame. To add one, offer the same members:
 /// - ProtocolV1: when the board's firmware is old or unknown, or flash is short.
 /// - ProtocolV2: when the board is known to speak v2; rejects every change of a single byte.
-/// - ProtocolAuto: takes both, answers in the version it heard last: for an emulated board, a sniffer, a desktop
+/// - ProtocolAuto: takes both, answers in the version it heard last: for an emulated board, a sniffer, a
+/// desktop
 ///   program. A v2 frame whose first byte is damaged into the one of v1 has one chance in 256 to pass.
 /// @ingroup sbgc
 class ProtocolV1 {
@@ -90,8 +91,8 @@ class ProtocolV2 {
   uint16_t sent_ = 0;
 };
 
-/// @brief Policy: receives v1 and v2 mixed and sends in the version of the last valid frame (v1 before the first).
-/// Members as in ProtocolV1, which also says when to take which.
+/// @brief Policy: receives v1 and v2 mixed and sends in the version of the last valid frame (v1 before the
+/// first). Members as in ProtocolV1, which also says when to take which.
 /// @ingroup sbgc
 class ProtocolAuto {
  public:

@@ -17,14 +17,17 @@
 namespace thermopower {
 namespace sbgc {
 
-/// @brief Telemetry of the board: a view of a REALTIME_DATA_3 or REALTIME_DATA_4 payload, decoded as it is asked.
+/// @brief Telemetry of the board: a view of a REALTIME_DATA_3 or REALTIME_DATA_4 payload, decoded as it is
+/// asked.
 ///
-/// Valid as long as the frame it came from. Axes are 0 roll, 1 pitch, 2 yaw; a larger axis reads as yaw. Fields
-/// may be asked for after a read() that gave true (a null pointer is what they would be read from before).
+/// Valid as long as the frame it came from. Axes are 0 roll, 1 pitch, 2 yaw; a larger axis reads as yaw.
+/// Fields may be asked for after a read() that gave true (a null pointer is what they would be read from
+/// before).
 ///
-/// Only REALTIME_DATA_4 has the extension (has_extended()): rotor angles, balance errors, current, magnetometer and
-/// temperatures. Without it the temperatures are -128 degC and the current in amperes is NaN, so that a value that
-/// was never sent reads as implausible and not as a mild 0; the other extended fields read 0.
+/// Only REALTIME_DATA_4 has the extension (has_extended()): rotor angles, balance errors, current,
+/// magnetometer and temperatures. Without it the temperatures are -128 degC and the current in amperes is
+/// NaN, so that a value that was never sent reads as implausible and not as a mild 0; the other extended
+/// fields read 0.
 ///
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_REALTIME_DATA_3 and CMD_REALTIME_DATA_4.
 /// @ingroup sbgc
@@ -89,7 +92,8 @@ class RealtimeData {
   uint16_t system_error() const noexcept { return read_u16(payload_ + 14); }
   /// @brief Detail of system_error().
   uint8_t system_sub_error() const noexcept { return payload_[16]; }
-  /// @brief Remote control input: 0 roll, 1 pitch, 2 yaw, 3 command, 4 and 5 external controller; larger reads 5.
+  /// @brief Remote control input: 0 roll, 1 pitch, 2 yaw, 3 command, 4 and 5 external controller; larger
+  /// reads 5.
   int16_t rc(uint8_t channel) const noexcept { return i16(20, twice(channel, 5)); }
   /// @brief Camera angle, 360/16384 degrees.
   int16_t imu_angle(uint8_t axis) const noexcept { return i16(32, twice(axis, 2)); }
@@ -112,13 +116,19 @@ class RealtimeData {
   /// @brief Motor power now, 0..255.
   uint8_t motor_power(uint8_t axis) const noexcept { return payload_[60 + (axis > 2 ? 2 : axis)]; }
   /// @brief Extended: angle of the rotor, 360/16384 degrees.
-  int16_t rotor_angle(uint8_t axis) const noexcept { return extended_ ? i16(63, twice(axis, 2)) : int16_t(0); }
+  int16_t rotor_angle(uint8_t axis) const noexcept {
+    return extended_ ? i16(63, twice(axis, 2)) : int16_t(0);
+  }
   /// @brief Extended: error of balance, -512..512 for the whole power of the motor.
-  int16_t balance_error(uint8_t axis) const noexcept { return extended_ ? i16(70, twice(axis, 2)) : int16_t(0); }
+  int16_t balance_error(uint8_t axis) const noexcept {
+    return extended_ ? i16(70, twice(axis, 2)) : int16_t(0);
+  }
   /// @brief Extended: current drawn from the supply, mA.
   uint16_t current_mA() const noexcept { return extended_ ? read_u16(payload_ + 76) : uint16_t(0); }
   /// @brief Extended: magnetometer, in its own units.
-  int16_t magnetometer(uint8_t axis) const noexcept { return extended_ ? i16(78, twice(axis, 2)) : int16_t(0); }
+  int16_t magnetometer(uint8_t axis) const noexcept {
+    return extended_ ? i16(78, twice(axis, 2)) : int16_t(0);
+  }
   /// @brief All bytes, for fields that have no name here.
   Bytes payload() const noexcept { return Bytes{payload_, payload_size()}; }
   /// @}

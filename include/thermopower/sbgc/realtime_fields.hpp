@@ -15,38 +15,38 @@ namespace sbgc {
 
 /// @brief The fields of REALTIME_DATA_3 and REALTIME_DATA_4 as plain numbers, to be filled in and sent.
 ///
-/// RealtimeData reads them without a copy; this is the other direction, or a copy to keep (124 bytes and a little).
-/// Units are those of RealtimeData's fields as sent; everything starts at 0. Bytes the protocol reserves are kept
-/// too, so that reading a payload and sending it gives the same bytes.
+/// RealtimeData reads them without a copy; this is the other direction, or a copy to keep (124 bytes and a
+/// little). Units are those of RealtimeData's fields as sent; everything starts at 0. Bytes the protocol
+/// reserves are kept too, so that reading a payload and sending it gives the same bytes.
 /// @ingroup sbgc
 struct RealtimeFields {
-  bool extended = true;              ///< send as REALTIME_DATA_4 (else as _3, without the fields from rotor_angle)
-  int16_t acc[3] = {};               ///< 1/512 g
-  int16_t gyro[3] = {};              ///< 0.06103701895 deg/s
-  uint16_t serial_errors = 0;        ///< count
-  uint16_t system_error = 0;         ///< flags
-  uint8_t system_sub_error = 0;      ///< code
-  uint8_t reserved_17[3] = {};       ///< offsets 17 to 19
-  int16_t rc[6] = {};                ///< roll, pitch, yaw, command, external roll and pitch
-  int16_t imu_angle[3] = {};         ///< 360/16384 degrees
-  int16_t frame_imu_angle[3] = {};   ///< 360/16384 degrees
-  int16_t target_angle[3] = {};      ///< 360/16384 degrees
-  uint16_t cycle_time_us = 0;        ///< microseconds
-  uint16_t i2c_errors = 0;           ///< count
-  uint8_t reserved_54 = 0;           ///< offset 54
-  uint16_t battery_cV = 0;           ///< 0.01 V
-  uint8_t flags = 0;                 ///< bit 0: motors are on
-  uint8_t imu = 0;                   ///< selected IMU
-  uint8_t profile = 0;               ///< profile in use
-  uint8_t motor_power[3] = {};       ///< 0..255
-  int16_t rotor_angle[3] = {};       ///< 360/16384 degrees
-  uint8_t reserved_69 = 0;           ///< offset 69
-  int16_t balance_error[3] = {};     ///< -512..512
-  uint16_t current_mA = 0;           ///< mA
-  int16_t magnetometer[3] = {};      ///< sensor units
-  int8_t imu_C = 0;                  ///< degC
-  int8_t frame_imu_C = 0;            ///< degC
-  uint8_t later[38] = {};            ///< offsets 86 to 123: fields of later firmware
+  bool extended = true;        ///< send as REALTIME_DATA_4 (else as _3, without the fields from rotor_angle)
+  int16_t acc[3] = {};         ///< 1/512 g
+  int16_t gyro[3] = {};        ///< 0.06103701895 deg/s
+  uint16_t serial_errors = 0;  ///< count
+  uint16_t system_error = 0;   ///< flags
+  uint8_t system_sub_error = 0;     ///< code
+  uint8_t reserved_17[3] = {};      ///< offsets 17 to 19
+  int16_t rc[6] = {};               ///< roll, pitch, yaw, command, external roll and pitch
+  int16_t imu_angle[3] = {};        ///< 360/16384 degrees
+  int16_t frame_imu_angle[3] = {};  ///< 360/16384 degrees
+  int16_t target_angle[3] = {};     ///< 360/16384 degrees
+  uint16_t cycle_time_us = 0;       ///< microseconds
+  uint16_t i2c_errors = 0;          ///< count
+  uint8_t reserved_54 = 0;          ///< offset 54
+  uint16_t battery_cV = 0;          ///< 0.01 V
+  uint8_t flags = 0;                ///< bit 0: motors are on
+  uint8_t imu = 0;                  ///< selected IMU
+  uint8_t profile = 0;              ///< profile in use
+  uint8_t motor_power[3] = {};      ///< 0..255
+  int16_t rotor_angle[3] = {};      ///< 360/16384 degrees
+  uint8_t reserved_69 = 0;          ///< offset 69
+  int16_t balance_error[3] = {};    ///< -512..512
+  uint16_t current_mA = 0;          ///< mA
+  int16_t magnetometer[3] = {};     ///< sensor units
+  int8_t imu_C = 0;                 ///< degC
+  int8_t frame_imu_C = 0;           ///< degC
+  uint8_t later[38] = {};           ///< offsets 86 to 123: fields of later firmware
 
   /// @brief Copies all fields of a payload.
   /// @return false, with nothing changed, when the frame is not telemetry; see RealtimeData::read().

@@ -34,18 +34,19 @@ struct ReceiverCounters {
 /// @brief Finds the frames in a stream of bytes, a byte at a time, whatever the damage.
 ///
 /// The result is the leftmost reading of the stream: at each position either a valid frame starts, which is
-/// reported and whose bytes are done with, or one byte is skipped. When a frame proves wrong, its bytes after the
-/// first are kept and read again, so that a stray start byte or a lost byte costs the damaged frame and nothing
-/// else. False starts delay the frames behind them (until enough bytes have come, or until the time-out), but do
-/// not lose them. What cannot be had: damaged bytes whose checksums are right by chance (v1: about one false start
-/// in 65536, v2: one in 16 million) are a frame like any other, and hide what they overlap.
+/// reported and whose bytes are done with, or one byte is skipped. When a frame proves wrong, its bytes after
+/// the first are kept and read again, so that a stray start byte or a lost byte costs the damaged frame and
+/// nothing else. False starts delay the frames behind them (until enough bytes have come, or until the
+/// time-out), but do not lose them. What cannot be had: damaged bytes whose checksums are right by chance
+/// (v1: about one false start in 65536, v2: one in 16 million) are a frame like any other, and hide what they
+/// overlap.
 ///
-/// A header that announces more than the buffer holds is given up at once and what follows it is read on as if it
-/// were noise, because the header may be false; a whole valid frame inside such a payload is therefore reported.
-/// With `payload_capacity` 255 this cannot happen.
+/// A header that announces more than the buffer holds is given up at once and what follows it is read on as
+/// if it were noise, because the header may be false; a whole valid frame inside such a payload is therefore
+/// reported. With `payload_capacity` 255 this cannot happen.
 ///
-/// Work per byte is constant (one step of a state machine and of the running checksum) except that giving up a
-/// frame reads its bytes again: never more than the buffer, once for each false header in it.
+/// Work per byte is constant (one step of a state machine and of the running checksum) except that giving up
+/// a frame reads its bytes again: never more than the buffer, once for each false header in it.
 ///
 ///     for (bool got = receiver.receive(byte, now_us); got; got = receiver.next()) use(receiver.frame());
 ///
@@ -57,15 +58,16 @@ class Receiver {
   static_assert(payload_capacity <= 255, "thermopower: an SBGC payload has at most 255 bytes");
 
  public:
-  /// @param timeout_us longest pause between two bytes of a frame, at most 8 000 000 (longer is taken for that); 0
-  /// waits for ever. A pause is noticed up to 512 us late and never early. The default is long for the wire (a byte
-  /// takes 87 us at 115200 baud), because bytes are often read late and in groups.
+  /// @param timeout_us longest pause between two bytes of a frame, at most 8 000 000 (longer is taken for
+  /// that); 0 waits for ever. A pause is noticed up to 512 us late and never early. The default is long for
+  /// the wire (a byte takes 87 us at 115200 baud), because bytes are often read late and in groups.
   explicit Receiver(uint32_t timeout_us = 20000) noexcept { set_timeout_us(timeout_us); }
 
   /// @brief Takes one byte. The frame reported before, if any, is released.
+  /// @param byte the next byte of the stream.
   /// @param now_us a clock that may wrap around at 2^32 (such as Arduino's micros()).
-  /// @return true when a valid frame is there: see frame(). Call next() for more of them before the next byte; it
-  /// is allowed not to, frames then come with later bytes, and none is lost.
+  /// @return true when a valid frame is there: see frame(). Call next() for more of them before the next
+  /// byte; it is allowed not to, frames then come with later bytes, and none is lost.
   bool receive(uint8_t byte, uint32_t now_us) noexcept {
     const uint16_t now = ticks(now_us);
     const bool late = is_late(now);
@@ -129,7 +131,8 @@ class Receiver {
   /// @brief Changes the longest pause; see the constructor. Rounded up to a multiple of 256 us.
   void set_timeout_us(uint32_t timeout_us) noexcept {
     const uint32_t longest_us = 8000000;
-    timeout_ = static_cast<uint16_t>(((timeout_us < longest_us ? timeout_us : longest_us) + 255) >> tick_shift);
+    timeout_ =
+        static_cast<uint16_t>(((timeout_us < longest_us ? timeout_us : longest_us) + 255) >> tick_shift);
   }
 
   /// @brief The policy's state: which version to send in, for ProtocolAuto.
@@ -221,12 +224,13 @@ class Receiver {
     if (head_ == end_) head_ = cursor_ = end_ = stale_ = 0;
   }
 
-  /// Time in units of 256 us: on an 8-bit chip this costs a few cycles per byte, microseconds in 32 bits dozens.
+  /// Time in units of 256 us: on an 8-bit chip this costs a few cycles per byte, microseconds in 32 bits
+  /// dozens.
   static uint16_t ticks(uint32_t now_us) noexcept { return static_cast<uint16_t>(now_us >> tick_shift); }
 
-  /// No frame may continue across a long pause. The bytes before it may still hold whole frames: parse() gives up
-  /// at the mark `stale_` whatever is incomplete there. The difference is signed so that a clock reading taken a
-  /// little earlier than the last one is no pause.
+  /// No frame may continue across a long pause. The bytes before it may still hold whole frames: parse()
+  /// gives up at the mark `stale_` whatever is incomplete there. The difference is signed so that a clock
+  /// reading taken a little earlier than the last one is no pause.
   bool is_late(uint16_t now) const noexcept {
     return static_cast<int16_t>(now - last_) > static_cast<int16_t>(timeout_) && timeout_ != 0;
   }

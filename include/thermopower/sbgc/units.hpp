@@ -29,7 +29,8 @@ inline int16_t sbgc_to_int16(float value) noexcept {
 }
 }  // namespace detail
 
-/// @brief Angle in degrees of a number of angle units. Angles are continuous: they are not wrapped to one turn.
+/// @brief Angle in degrees of a number of angle units. Angles are continuous: they are not wrapped to one
+/// turn.
 /// @param units any number of units; a difference of two int16 angles needs 32 bits.
 /// @ingroup sbgc
 inline constexpr float angle_deg(int32_t units) noexcept {

@@ -20,19 +20,25 @@ namespace sbgc {
 /// @ingroup sbgc
 template <class Message>
 size_t frame_size(const Message& message, Version version) noexcept {
-  const size_t overhead = version == Version::v2 ? size_t(ProtocolV2::overhead) : size_t(ProtocolV1::overhead);
+  const size_t overhead =
+      version == Version::v2 ? size_t(ProtocolV2::overhead) : size_t(ProtocolV1::overhead);
   return overhead + static_cast<size_t>(message.payload_size());
 }
 
 /// @brief Encodes a message as one frame into the caller's buffer.
 ///
-/// A message is any object with `id()`, `payload_size()` and `template <class Sink> void write_payload(Sink&)`,
-/// which calls `sink.put(byte)` payload_size() times (put_u16() and its siblings help).
+/// A message is any object with `id()`, `payload_size()` and `template <class Sink> void
+/// write_payload(Sink&)`, which calls `sink.put(byte)` payload_size() times (put_u16() and its siblings
+/// help).
 /// @tparam Protocol one that speaks `version`.
+/// @param message what to send.
+/// @param buffer where to; `capacity` bytes. Null is refused.
+/// @param capacity size of the buffer.
+/// @param version a version that the policy speaks.
 /// @return bytes written; 0 when the message was refused, and then the buffer is as it was: it does not fit
-/// `capacity`, its id is 0, its payload is longer than 255 bytes, or the policy does not speak `version`. 0 as well
-/// (the buffer is then partly overwritten) when a message of your own writes another number of bytes than it
-/// announced.
+/// `capacity`, its id is 0, its payload is longer than 255 bytes, or the policy does not speak `version`. 0
+/// as well (the buffer is then partly overwritten) when a message of your own writes another number of bytes
+/// than it announced.
 /// @ingroup sbgc
 template <class Protocol, class Message>
 size_t encode(const Message& message, uint8_t* buffer, size_t capacity,
@@ -46,10 +52,12 @@ size_t encode(const Message& message, uint8_t* buffer, size_t capacity,
 
 /// @brief Sends a message as one frame onto a wire.
 ///
-/// Frames up to `portion` bytes (with the default, everything a controller sends) go out in one write, longer ones
-/// in several. A small portion lets the first byte leave earlier.
-/// @param wire any object with `write(const uint8_t*, size_t)`, such as Arduino's Serial. When write() returns a
-/// number and that is less than asked, sending stops.
+/// Frames up to `portion` bytes (with the default, everything a controller sends) go out in one write, longer
+/// ones in several. A small portion lets the first byte leave earlier.
+/// @param message any message, see encode().
+/// @param version a version that the policy speaks.
+/// @param wire any object with `write(const uint8_t*, size_t)`, such as Arduino's Serial. When write()
+/// returns a number and that is less than asked, sending stops.
 /// @return bytes the wire took: frame_size() when all is well; 0 when the message was refused, see encode().
 /// @tparam portion bytes of stack to gather what is written at once, 1..255.
 /// @ingroup sbgc

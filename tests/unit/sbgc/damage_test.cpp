@@ -3,10 +3,10 @@
 
 // What damage costs: exactly the damaged frames.
 //
-// The guarantee, for any stream, however it was made: the receiver's result is the leftmost reading of the stream
-// (see reference.hpp). From it follows: an intact frame is lost only where damaged bytes happen to form a frame with
-// right checksums that overlaps it. v2 has 16 + 8 check bits against that; v1 only 8 + 8, so v1 does lose one now
-// and then, and no receiver can help it.
+// The guarantee, for any stream, however it was made: the receiver's result is the leftmost reading of the
+// stream (see reference.hpp). From it follows: an intact frame is lost only where damaged bytes happen to
+// form a frame with right checksums that overlaps it. v2 has 16 + 8 check bits against that; v1 only 8 + 8,
+// so v1 does lose one now and then, and no receiver can help it.
 
 #include <algorithm>
 #include <random>
@@ -44,11 +44,14 @@ struct Recording {
 Recording record(Random& random, const reference::Rules& rules, int frames, int damage, bool nasty) {
   Recording recording;
   for (int i = 0; i < frames; ++i) {
-    const auto byte = [&] { return nasty && pick(random, 0, 1) == 0 ? nasty_byte(random) : any_byte(random); };
+    const auto byte = [&] {
+      return nasty && pick(random, 0, 1) == 0 ? nasty_byte(random) : any_byte(random);
+    };
     for (int noise = pick(random, 0, 9) == 0 ? pick(random, 1, 30) : 0; noise > 0; --noise)
       recording.stream.push_back(byte());
     const int longest = static_cast<int>(rules.payload_capacity);
-    Data payload(static_cast<std::size_t>(pick(random, 0, pick(random, 0, 1) == 0 ? longest : std::min(longest, 12))));
+    Data payload(
+        static_cast<std::size_t>(pick(random, 0, pick(random, 0, 1) == 0 ? longest : std::min(longest, 12))));
     for (std::uint8_t& value : payload) value = byte();
     const bool v1 = rules.v1 && (!rules.v2 || pick(random, 0, 1) == 0);
     const std::uint8_t id = static_cast<std::uint8_t>(pick(random, 1, 255));
@@ -94,8 +97,8 @@ using AutoWordIndex = Case<250, sbgc::ProtocolAuto, true, true>;
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("damage: the result is the leftmost reading of any stream", "", V1Small, V1Default, V1Full, V2Default,
-                   V2Full, AutoSmall, AutoByteIndex, AutoWordIndex) {
+TEMPLATE_TEST_CASE("damage: the result is the leftmost reading of any stream", "", V1Small, V1Default, V1Full,
+                   V2Default, V2Full, AutoSmall, AutoByteIndex, AutoWordIndex) {
   Random random(20260101);
   for (int run = 0; run < 60; ++run) {
     const bool nasty = run % 2 == 0;
@@ -117,8 +120,8 @@ TEMPLATE_TEST_CASE("damage: the result is the leftmost reading of any stream", "
   }
 }
 
-TEMPLATE_TEST_CASE("damage: pauses cut frames and nothing else, in any chunking", "", V1Default, V2Full, AutoSmall,
-                   AutoWordIndex) {
+TEMPLATE_TEST_CASE("damage: pauses cut frames and nothing else, in any chunking", "", V1Default, V2Full,
+                   AutoSmall, AutoWordIndex) {
   Random random(20260202);
   for (int run = 0; run < 40; ++run) {
     const Recording recording = record(random, TestType::rules(), 40, 20, run % 2 == 0);
@@ -146,7 +149,8 @@ TEMPLATE_TEST_CASE("damage: pauses cut frames and nothing else, in any chunking"
   }
 }
 
-TEMPLATE_TEST_CASE("damage: frames arrive also when next() is never called", "", V1Default, V2Full, AutoWordIndex) {
+TEMPLATE_TEST_CASE("damage: frames arrive also when next() is never called", "", V1Default, V2Full,
+                   AutoWordIndex) {
   Random random(20260303);
   for (int run = 0; run < 40; ++run) {
     const Recording recording = record(random, TestType::rules(), 40, 20, true);
@@ -190,8 +194,10 @@ TEST_CASE("damage: v1 loses an intact frame only to damaged bytes whose checksum
       bool received = false;
       bool overlapped = false;
       for (const reference::Frame& read : reading) {
-        if (read.begin == frame.begin && read.end == frame.end) received = true;
-        else if (read.begin < frame.end && frame.begin < read.end) overlapped = true;
+        if (read.begin == frame.begin && read.end == frame.end)
+          received = true;
+        else if (read.begin < frame.end && frame.begin < read.end)
+          overlapped = true;
       }
       if (!received) {
         ++lost;

@@ -41,7 +41,9 @@ struct FullWire {
   }
 };
 
-sbgc::Raw raw(const Data& payload) { return sbgc::Raw{25, {payload.data(), static_cast<std::uint8_t>(payload.size())}}; }
+sbgc::Raw raw(const Data& payload) {
+  return sbgc::Raw{25, {payload.data(), static_cast<std::uint8_t>(payload.size())}};
+}
 
 }  // namespace
 
@@ -65,15 +67,18 @@ TEST_CASE("encode: a buffer too small is refused and left as it was") {
 TEST_CASE("encode: id 0 and a version the policy does not speak are refused") {
   Data buffer(64, 0xEE);
   CHECK(sbgc::encode<sbgc::ProtocolV1>(sbgc::Request(0), buffer.data(), buffer.size()) == 0);
-  CHECK(sbgc::encode<sbgc::ProtocolV1>(sbgc::Request(25), buffer.data(), buffer.size(), sbgc::Version::v2) == 0);
-  CHECK(sbgc::encode<sbgc::ProtocolV2>(sbgc::Request(25), buffer.data(), buffer.size(), sbgc::Version::v1) == 0);
+  CHECK(sbgc::encode<sbgc::ProtocolV1>(sbgc::Request(25), buffer.data(), buffer.size(), sbgc::Version::v2) ==
+        0);
+  CHECK(sbgc::encode<sbgc::ProtocolV2>(sbgc::Request(25), buffer.data(), buffer.size(), sbgc::Version::v1) ==
+        0);
   CHECK(buffer == Data(64, 0xEE));
   VectorWire wire;
   CHECK(sbgc::send<sbgc::ProtocolV1>(sbgc::Request(0), wire) == 0);
   CHECK(wire.writes.empty());
 }
 
-TEST_CASE("encode: a message that writes more or less than it announced is refused, and no memory is overrun") {
+TEST_CASE(
+    "encode: a message that writes more or less than it announced is refused, and no memory is overrun") {
   Data buffer(8, 0);
   CHECK(sbgc::encode<sbgc::ProtocolV1>(TooMuch(), buffer.data(), buffer.size()) == 0);
   CHECK(sbgc::encode<sbgc::ProtocolV1>(TooLittle(), buffer.data(), buffer.size()) == 0);

@@ -140,8 +140,10 @@ TEST_CASE("golden: telemetry encodes to the same bytes, from the view and from t
 
 TEST_CASE("golden: the payload alone, taken as a frame of either version") {
   const Data payload = load_hex("payload_rt4_real.hex");
-  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Raw{25, {payload.data(), 124}}) == load_hex("v1_answer_rt4_real.hex"));
-  CHECK(encoded<sbgc::ProtocolV2>(sbgc::Raw{25, {payload.data(), 124}}) == load_hex("v2_answer_rt4_real.hex"));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Raw{25, {payload.data(), 124}}) ==
+        load_hex("v1_answer_rt4_real.hex"));
+  CHECK(encoded<sbgc::ProtocolV2>(sbgc::Raw{25, {payload.data(), 124}}) ==
+        load_hex("v2_answer_rt4_real.hex"));
 }
 
 TEST_CASE("golden: the variables of a command read back") {

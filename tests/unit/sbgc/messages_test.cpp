@@ -55,11 +55,12 @@ TEST_CASE("messages: Request") {
 TEST_CASE("messages: Raw carries any id and any payload") {
   for (int id = 1; id <= 255; id += 2) {
     const Data payload(static_cast<std::size_t>(id), static_cast<std::uint8_t>(id));
-    round_trip<sbgc::Raw>(sbgc::Raw{static_cast<std::uint8_t>(id), {payload.data(), static_cast<std::uint8_t>(id)}},
-                          [&](const sbgc::Raw& raw) {
-                            CHECK(int(raw.id()) == id);
-                            CHECK(Data(raw.data.data, raw.data.data + raw.data.size) == payload);
-                          });
+    round_trip<sbgc::Raw>(
+        sbgc::Raw{static_cast<std::uint8_t>(id), {payload.data(), static_cast<std::uint8_t>(id)}},
+        [&](const sbgc::Raw& raw) {
+          CHECK(int(raw.id()) == id);
+          CHECK(Data(raw.data.data, raw.data.data + raw.data.size) == payload);
+        });
   }
 }
 
@@ -104,8 +105,9 @@ TEST_CASE("messages: BoardInfo") {
   info.reserved[2] = 99;
   info.base_firmware_version = 2600;
   CHECK(encoded<sbgc::ProtocolV1>(info) ==
-        reference::make_frame(0x3E, 86, {30, 0x7F, 0x0A, 1, 0x02, 0x81, 1, 0xEF, 0xBE, 0xAD, 0xDE, 0x04, 0x03, 0, 0,
-                                         99, 0x28, 0x0A}));
+        reference::make_frame(
+            0x3E, 86,
+            {30, 0x7F, 0x0A, 1, 0x02, 0x81, 1, 0xEF, 0xBE, 0xAD, 0xDE, 0x04, 0x03, 0, 0, 99, 0x28, 0x0A}));
   round_trip<sbgc::BoardInfo>(info, [&](const sbgc::BoardInfo& i) {
     CHECK(i.board_version == 30);
     CHECK(i.firmware_version == 2687);
@@ -134,8 +136,8 @@ TEST_CASE("messages: Control in both forms") {
     }
   };
   CHECK(encoded<sbgc::ProtocolV1>(control) ==
-        reference::make_frame(0x3E, 67, {1, 2, 3, 0x9C, 0xFF, 0xE8, 0x03, 0x38, 0xFF, 0xD0, 0x07, 0xD4, 0xFE, 0xB8,
-                                         0x0B}));
+        reference::make_frame(
+            0x3E, 67, {1, 2, 3, 0x9C, 0xFF, 0xE8, 0x03, 0x38, 0xFF, 0xD0, 0x07, 0xD4, 0xFE, 0xB8, 0x0B}));
   round_trip<sbgc::Control>(control, [&](const sbgc::Control& c) {
     same_motion(c);
     CHECK_FALSE(c.one_mode);
@@ -155,7 +157,8 @@ TEST_CASE("messages: motors on and off, reset") {
   round_trip<sbgc::MotorsOn>(sbgc::MotorsOn(), [](const sbgc::MotorsOn&) {});
   sbgc::MotorsOff off;
   off.mode = sbgc::MotorsOff::safe_stop;
-  round_trip<sbgc::MotorsOff>(off, [](const sbgc::MotorsOff& m) { CHECK(m.mode == sbgc::MotorsOff::safe_stop); });
+  round_trip<sbgc::MotorsOff>(off,
+                              [](const sbgc::MotorsOff& m) { CHECK(m.mode == sbgc::MotorsOff::safe_stop); });
   CHECK(off.read(view(command::motors_off, {})));
   CHECK(off.mode == sbgc::MotorsOff::released);
 
@@ -237,7 +240,8 @@ TEST_CASE("messages: adjustable variables") {
   }
 }
 
-TEST_CASE("messages: telemetry is refused when short, and accepted with bytes of a newer firmware behind it") {
+TEST_CASE(
+    "messages: telemetry is refused when short, and accepted with bytes of a newer firmware behind it") {
   refuses_shorter_than<sbgc::RealtimeData>(command::realtime_data_3, 63);
   refuses_shorter_than<sbgc::RealtimeData>(command::realtime_data_4, 124);
   refuses_shorter_than<sbgc::RealtimeFields>(command::realtime_data_4, 124);
@@ -316,7 +320,8 @@ TEST_CASE("units: angles and speeds") {
   CHECK(sbgc::angle_units(-1e9f) == -32768);
   CHECK(sbgc::angle_units(std::numeric_limits<float>::quiet_NaN()) == 0);
   CHECK(sbgc::angle_units(std::numeric_limits<float>::infinity()) == 32767);
-  for (int units = -32768; units <= 32767; ++units) REQUIRE(sbgc::angle_units(sbgc::angle_deg(units)) == units);
+  for (int units = -32768; units <= 32767; ++units)
+    REQUIRE(sbgc::angle_units(sbgc::angle_deg(units)) == units);
   CHECK(is_near(sbgc::speed_deg_per_s(1000), 122.0740379));
   CHECK(sbgc::speed_units(122.0740379f) == 1000);
   CHECK(sbgc::speed_units(-122.0740379f) == -1000);

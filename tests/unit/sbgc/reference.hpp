@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-// What the receiver is compared with: an independent, slow reading of a whole recorded stream, written from the
-// protocol's definition. It shares no code with the library.
+// What the receiver is compared with: an independent, slow reading of a whole recorded stream, written from
+// the protocol's definition. It shares no code with the library.
 
 namespace reference {
 
@@ -87,8 +87,8 @@ inline bool frame_at(const Data& stream, std::size_t at, std::size_t end, const 
   return make_frame(start, id, frame.payload) == Data(from, from + static_cast<std::ptrdiff_t>(length));
 }
 
-// At each position either a valid frame starts, or one byte is skipped. No frame goes across a pause; `pauses` are
-// positions in ascending order.
+// At each position either a valid frame starts, or one byte is skipped. No frame goes across a pause;
+// `pauses` are positions in ascending order.
 inline std::vector<Frame> leftmost_reading(const Data& stream, const Rules& rules,
                                            const std::vector<std::size_t>& pauses = {}) {
   std::vector<Frame> frames;

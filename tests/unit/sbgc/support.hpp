@@ -43,8 +43,8 @@ inline std::map<std::string, int> load_fields(const std::string& name) {
   return fields;
 }
 
-inline bool is_near(double value, double expected) {
-  return std::fabs(value - expected) <= 1e-6 * std::fabs(expected);
+inline bool is_near(float value, double expected) {
+  return std::fabs(static_cast<double>(value) - expected) <= 1e-6 * std::fabs(expected);
 }
 
 template <class Receiver>
@@ -62,7 +62,8 @@ template <class Receiver>
 std::vector<reference::Frame> receive_all(Receiver& receiver, const Data& data, std::uint32_t now_us = 0) {
   std::vector<reference::Frame> frames;
   for (const std::uint8_t byte : data)
-    for (bool got = receiver.receive(byte, now_us); got; got = receiver.next()) frames.push_back(copy(receiver));
+    for (bool got = receiver.receive(byte, now_us); got; got = receiver.next())
+      frames.push_back(copy(receiver));
   return frames;
 }
 
