@@ -46,6 +46,17 @@ enum class ConfigError : uint8_t {
   minimum_supply_V = 31,              ///< Must be finite, not negative and below supply_V.
   timeout_s = 32,                     ///< Must be finite and above 0.
   least_power = 33,                   ///< Must not exceed the highest power.
+  maximum_winding_C = 34,             ///< The winding's limit must be within 0 .. 250 degC.
+  maximum_body_C = 35,                ///< The body's limit must be within 0 .. 250 degC.
+  highest_supply_V = 36,              ///< Must be finite and above 0.
+  supply_error = 37,                  ///< A fraction; must be finite and not negative.
+  coldest_C = 38,                     ///< Must be within -60 .. 100 degC and below the limit.
+  heat_when_cold_W = 39,              ///< Must be finite, above 0, and full power must not warm the actuator by 3000 K.
+  heat_when_hot_W = 40,               ///< Must be finite, above 0 and not above heat_when_cold_W.
+  highest_air_C = 41,                 ///< Must not be below coldest_C, and the least power must be bearable in that air.
+  air_error_K = 42,                   ///< Must be finite and not negative.
+  hold_s = 43,                        ///< Must be finite, above 0 and at most 10 s.
+  horizon_s = 44,                     ///< Must be finite and not below hold_s.
   user_defined = 128                  ///< Codes from here up are free for policies of your own.
 };
 

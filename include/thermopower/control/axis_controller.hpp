@@ -4,6 +4,7 @@
 
 #include "../detail/check.hpp"
 #include "../detail/composition.hpp"
+#include "../detail/limiter_call.hpp"
 #include "gain_scheduler.hpp"
 #include "position_error.hpp"
 #include "safety_limiter.hpp"
@@ -118,17 +119,22 @@ class AxisController {
     estimate_temperature(detail::is_finite(dt_s) && dt_s > 0.0f ? dt_s : 0.0f);
 
     state_.error_deg = wrap_deg(inputs.error_deg);
-    state_.demand = power_law_.step(state_.error_deg);
-    const typename Limiter::Inputs limits = {state_.demand, state_.motor_C, state_.rate_K_per_s};
-    const LimitedPower granted = is_fault(fault) ? limiter_.cut(fault, state_.demand) : limiter_.step(limits, dt_s);
+    AxisFacts facts = {0, state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s, last_air_C_, last_supply_V_};
+    state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
+    facts.demand = state_.demand;
+    const LimitedPower granted = is_fault(fault) ? detail::cut_limiter(limiter_, fault, state_.demand, dt_s, 0)
+                                                 : limiter_.step(detail::limiter_inputs<Limiter>(facts, 0), dt_s);
     state_.ceiling = limiter_.ceiling();
     state_.power = granted.power;
     state_.reason = granted.reason;
-    state_.p_gain = gain_.step(granted.power);
+    state_.p_gain = detail::gain_for(gain_, granted.power, facts, 0);
     return state_;
   }
 
-  const State& state() const noexcept { return state_; }  ///< After the last step.
+  const State& state() const noexcept { return state_; }      ///< After the last step.
+  Limiter& limiter() noexcept { return limiter_; }            ///< To tell a limiter what was measured; its own state.
+  PowerLaw& power_law() noexcept { return power_law_; }       ///< To tell a law what was measured; its own state.
+  const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
 
  private:
   LimitReason find_fault(const Inputs& inputs, float dt_s) const noexcept {

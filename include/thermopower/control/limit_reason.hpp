@@ -16,6 +16,9 @@ enum class LimitReason : uint8_t {
   safety_temperature = 1,     ///< Eq 4.23: at this rate the limit would be reached within the safety time; the ceiling falls.
   over_temperature = 2,       ///< Above the limit: least power.
   recovering = 3,             ///< Cool again; the ceiling rises but is still below the demand.
+  winding_limit = 4,          ///< More would bring the winding to its limit within the horizon.
+  body_limit = 5,             ///< More would bring the body (or the only node) to its limit within the horizon.
+  node_limit = 6,             ///< More would bring one of several nodes to its limit; the limiter's state says which.
 
   no_telemetry_yet = 64,      ///< Nothing valid was ever received.
   link_silent = 65,           ///< No telemetry for longer than the time-out.

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "certified_fixed.hpp"
+
+/// @file certified_bounds.hpp
+/// What must be declared about an actuator before a limiter can vouch for it: bounds, not values.
+///
+/// Most bounds have one end only, because a comparison argument shows which end is the dangerous one (docs/explain/certified-limiter.md).
+/// Only heat capacities need both: a small one warms fast, a large one cools slowly.
+
+namespace thermopower {
+
+/// A constant that is not known exactly. `lowest` <= true value <= `highest`.
+struct Bounds {
+  float lowest;   ///< Above 0.
+  float highest;  ///< Not below `lowest`, finite.
+
+  /// A value and a tolerance. @param fraction  0.2 for +-20 %; 0 .. below 1
+  static Bounds around(float value, float fraction) noexcept {
+    const Bounds bounds = {value * (1.0f - fraction), value * (1.0f + fraction)};
+    return bounds;
+  }
+  /// `field` unless 0 < lowest <= highest < infinity.
+  ConfigError validate(ConfigError field) const noexcept {
+    return first_error(detail::require_positive(lowest, field),
+                       detail::is_finite(highest) && highest >= lowest ? ConfigError::none : field);
+  }
+};
+
+/// The most heat that can arise in the winding at full POWER (255) and the highest supply: at two winding temperatures, because a
+/// warm winding takes less. In between the straight line is used, which lies above every 1/R(T).
+struct HeatBounds {
+  float highest_supply_V;  ///< The supply is never above this. Above 0.
+  float supply_error;      ///< The measured supply may be wrong by this fraction until the next step, >= 0. 1 or more: it is not used.
+  float coldest_C;         ///< The winding is never colder: the coldest air. -60 .. 100 degC.
+  float heat_when_cold_W;  ///< Highest heat at `coldest_C`. Above 0.
+  float heat_when_hot_W;   ///< Highest heat at the winding's limit. Above 0, not above `heat_when_cold_W`.
+
+  /// For a winding that follows Ohm's law.
+  /// @param highest_supply_V  V
+  /// @param supply_error      see the field
+  /// @param resistance_ohm    lowest and highest at `reference_C`; only the lowest counts
+  /// @param tempco_per_K      relative rise per kelvin of the winding, lowest and highest (copper: 0.0038 .. 0.0040)
+  /// @param reference_C       where the resistance was measured
+  /// @param coldest_C         see the field
+  /// @param hottest_C         the winding's limit
+  static HeatBounds ohmic(float highest_supply_V, float supply_error, const Bounds& resistance_ohm, const Bounds& tempco_per_K,
+                          float reference_C, float coldest_C, float hottest_C) noexcept {
+    const float at_reference_W = highest_supply_V * highest_supply_V / resistance_ohm.lowest;
+    const HeatBounds heat = {highest_supply_V, supply_error, coldest_C,
+                             at_reference_W / resistance_ratio(tempco_per_K, coldest_C - reference_C),
+                             at_reference_W / resistance_ratio(tempco_per_K, hottest_C - reference_C)};
+    return heat;
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    if (is_error(detail::require_positive(highest_supply_V, ConfigError::highest_supply_V))) return ConfigError::highest_supply_V;
+    if (is_error(detail::require_not_negative(supply_error, ConfigError::supply_error))) return ConfigError::supply_error;
+    if (is_error(detail::require_within(coldest_C, -60.0f, 100.0f, ConfigError::coldest_C))) return ConfigError::coldest_C;
+    if (is_error(detail::require_positive(heat_when_cold_W, ConfigError::heat_when_cold_W))) return ConfigError::heat_when_cold_W;
+    if (is_error(detail::require_positive(heat_when_hot_W, ConfigError::heat_when_hot_W)) || heat_when_hot_W > heat_when_cold_W)
+      return ConfigError::heat_when_hot_W;
+    return ConfigError::none;
+  }
+
+ private:
+  // The lowest there can be: below the reference the larger coefficient takes more away.
+  static float resistance_ratio(const Bounds& tempco_per_K, float difference_K) noexcept {
+    return 1.0f + (difference_K < 0.0f ? tempco_per_K.highest : tempco_per_K.lowest) * difference_K;
+  }
+};
+
+/// What a certified network is told about its surroundings and its use.
+struct CertifiedUse {
+  HeatBounds heat;      ///< What full POWER does.
+  float highest_air_C;  ///< The air is never warmer than this. Not below `heat.coldest_C`.
+  float hold_s;         ///< A power acts for at most this long before the next step can lower it. Above 0, at most 10.
+  float horizon_s;      ///< How long a power must be bearable to be granted: how gently authority falls. At least `hold_s`.
+};
+
+/// Carries a step's length through the network's two time constants: the part of the way to its final value that a node goes.
+struct CertifiedTravel {
+  detail::UnitFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
+  detail::UnitFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
+
+  /// @param fastest_per_s  rate with the smallest heat capacity  @param slowest_per_s  with the largest
+  static CertifiedTravel over(float fastest_per_s, float slowest_per_s, float dt_s) noexcept {
+    const float fast = fastest_per_s * dt_s, slow = slowest_per_s * dt_s;
+    // Taylor's series of 1 - exp(-x) ends above it after an odd term and below it after an even one, for every x >= 0.
+    const float above = fast < 1.0f ? fast * (1.0f - fast * (0.5f - fast * (1.0f / 6.0f))) : 1.0f;
+    const float below = slow < 1.0f ? slow * (1.0f - 0.5f * slow) : 0.5f;
+    const CertifiedTravel travel = {detail::fraction_up(above), detail::fraction_down(below)};
+    return travel;
+  }
+};
+
+/// What holds a power back.
+enum class CertifiedNode : uint8_t {
+  none = 0,     ///< Nothing: full power is bearable.
+  winding = 1,  ///< The winding's limit.
+  body = 2      ///< The body's limit, or the only node's.
+};
+
+/// The largest power that a network can bear, in counts of heat above the least, and which node says so.
+struct CertifiedCount {
+  uint8_t count;
+  CertifiedNode node;
+
+  /// Lowers the count to how often `size` goes into `room`.
+  void fit(int32_t room, int32_t size, CertifiedNode which) noexcept {
+    const uint8_t fitting = detail::count_within(room, size, count);
+    if (fitting < count) {
+      count = fitting;
+      node = which;
+    }
+  }
+};
+
+}  // namespace thermopower

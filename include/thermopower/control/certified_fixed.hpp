@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+
+/// @file certified_fixed.hpp
+/// Whole-number arithmetic of the certified limiter: every rounding goes to the safe side, and a PC and an 8-bit chip agree to the
+/// bit. A float's own rounding would decide the result: at 60 degC it is coarser than what a body warms in 10 ms.
+
+namespace thermopower {
+namespace detail {
+
+/// A temperature or temperature difference in 2^-18 K, +-8191 K.
+typedef int32_t KelvinUnits;
+/// A fraction 0 .. 1 in 2^-31.
+typedef int32_t UnitFraction;
+
+/// Units in a kelvin.
+constexpr float units_per_K() { return 262144.0f; }
+/// 1 - 2^-31: the largest fraction.
+constexpr UnitFraction whole_fraction() { return 0x7fffffffL; }
+/// Covers the rounding of the float arithmetic that made a constant: 2^-18, sixty-four float roundings.
+constexpr float float_margin() { return 1.0f / 262144.0f; }
+/// The most that full power may warm a node in the end: sums of two such rises and a temperature stay in range.
+constexpr float highest_rise_K() { return 3000.0f; }
+
+/// A positive number not below `value`; saturates.
+inline int32_t rounded_up(float value) noexcept {
+  const float wide = value * (1.0f + float_margin()) + 1.0f;
+  if (!(wide > 0.0f)) return 0;
+  return wide < 2147483000.0f ? static_cast<int32_t>(wide) : 0x7fffffffL;
+}
+/// A number not above `value` >= 0.
+inline int32_t rounded_down(float value) noexcept {
+  const float narrow = value * (1.0f - float_margin()) - 1.0f;
+  if (!(narrow > 0.0f)) return 0;
+  return narrow < 2147483000.0f ? static_cast<int32_t>(narrow) : 0x7fffffffL;
+}
+/// A difference of temperature, towards hot. @param difference_K  >= 0
+inline KelvinUnits kelvin_up(float difference_K) noexcept { return rounded_up(difference_K * units_per_K()); }
+/// A fraction, towards one. @param fraction  >= 0
+inline UnitFraction fraction_up(float fraction) noexcept { return rounded_up(fraction * 2147483648.0f); }
+/// A fraction, towards zero.
+inline UnitFraction fraction_down(float fraction) noexcept { return rounded_down(fraction * 2147483648.0f); }
+/// An absolute temperature, towards 0 degC by less than a unit. NaN and what is beyond 4000 degC count as 4000 degC.
+inline KelvinUnits celsius_units(float temperature_C) noexcept {
+  if (!(temperature_C < 4000.0f)) return static_cast<KelvinUnits>(4000.0f * units_per_K());
+  return static_cast<KelvinUnits>((temperature_C > -300.0f ? temperature_C : -300.0f) * units_per_K());
+}
+/// Back to a float.
+inline float celsius_from(KelvinUnits units) noexcept { return static_cast<float>(units) * (1.0f / units_per_K()); }
+
+/// floor(value * fraction): for both signs, the largest whole number that is not above.
+inline int32_t part_down(int32_t value, UnitFraction fraction) noexcept {
+  // The low word is dropped first: a 64-bit shift by 31 would cost an 8-bit chip more than the product.
+  const int64_t product = static_cast<int64_t>(value) * fraction;
+  const uint32_t high = static_cast<uint32_t>(product >> 32);
+  const uint32_t low = static_cast<uint32_t>(product);
+  return static_cast<int32_t>((high << 1) | (low >> 31));
+}
+/// Not below value * fraction.
+inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept { return part_down(value, fraction) + 1; }
+
+/// How often `size` goes into `room`: the largest count 0 .. `most` with count * size <= room.
+/// @param size  >= 0, and `most` times it must fit
+inline uint8_t count_within(int32_t room, int32_t size, uint8_t most) noexcept {
+  if (room < 0) return 0;
+  if (size * static_cast<int32_t>(most) <= room) return most;  // the usual case, and far cheaper than a division
+  return static_cast<uint8_t>(static_cast<uint32_t>(room) / static_cast<uint32_t>(size));
+}
+
+/// An upper bound of a temperature, kept to 2^-50 K so that its changes are added without any rounding.
+class UpperBound {
+ public:
+  /// Not above the bound, by less than a unit.
+  KelvinUnits below() const noexcept { return high_; }
+  /// Not below the bound.
+  KelvinUnits above() const noexcept { return high_ + 1; }
+  /// Sets the bound.
+  void set(KelvinUnits value) noexcept {
+    high_ = value;
+    low_ = 0;
+  }
+  /// Raises the bound; never lowers it.
+  void raise(KelvinUnits floor) noexcept {
+    if (high_ < floor) set(floor);
+  }
+  /// Adds way * fraction, exactly.
+  void go(KelvinUnits way, UnitFraction fraction) noexcept {
+    const int64_t product = static_cast<int64_t>(way) * fraction;
+    const uint32_t product_low = static_cast<uint32_t>(product);
+    const uint32_t twice_low = product_low << 1;
+    const uint32_t twice_high = (static_cast<uint32_t>(product >> 32) << 1) | (product_low >> 31);
+    low_ += twice_low;
+    high_ += static_cast<KelvinUnits>(twice_high);
+    if (low_ < twice_low) ++high_;
+  }
+
+ private:
+  KelvinUnits high_ = 0;
+  uint32_t low_ = 0;
+};
+
+}  // namespace detail
+}  // namespace thermopower

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "certified_one_node.hpp"
+#include "certified_two_node.hpp"
+#include "../detail/limiter_call.hpp"
+
+/// @file certified_limiter.hpp
+/// A limiter that is right by proof: no node passes its limit, whatever the actuator's true constants inside the declared bounds.
+///
+/// | network | when to take it |
+/// |---|---|
+/// | `CertifiedTwoNode` | the winding is much faster than the housing, or winding and housing have limits of their own |
+/// | `CertifiedOneNode` | only one time constant is known |
+///
+/// | heat | POWER p gives at most | when to take it |
+/// |---|---|---|
+/// | `LinearHeat` | p/255 of the heat at full POWER | a winding that follows Ohm's law: V_rms^2 is proportional to POWER |
+/// | `SquareHeat` | (p/255)^2 of it | a current that rises at least with V_rms^3, as the thesis's motors (exponents 3.41 and 3.46) |
+///
+/// The proof, and what happens outside the bounds: docs/explain/certified-limiter.md.
+
+namespace thermopower {
+
+/// Heat in proportion to POWER.
+struct LinearHeat {
+  /// Counts of 1/255 of the full heat. @param power  1 .. 255
+  static uint8_t count(uint8_t power) noexcept { return power; }
+  /// The largest POWER that gives no more than this. @param count  1 .. 255
+  static uint8_t power(uint8_t count) noexcept { return count; }
+};
+
+/// Heat that rises at least with the square of POWER.
+struct SquareHeat {
+  /// @copydoc LinearHeat::count
+  static uint8_t count(uint8_t power) noexcept {
+    const uint16_t square = static_cast<uint16_t>(static_cast<uint16_t>(power) * power);
+    return static_cast<uint8_t>((square + 254u) / 255u);
+  }
+  /// @copydoc LinearHeat::power
+  static uint8_t power(uint8_t count) noexcept {
+    uint8_t power = 0;
+    for (uint8_t step = 128; step != 0; step = static_cast<uint8_t>(step >> 1)) {
+      const uint8_t next = static_cast<uint8_t>(power + step);
+      if (static_cast<uint16_t>(static_cast<uint16_t>(next) * next) <= count * 255u) power = next;
+    }
+    return power;
+  }
+};
+
+/// Grants the largest power with which no node exceeds its limit, whatever the true constants within the bounds.
+/// @tparam Network  `CertifiedTwoNode` or `CertifiedOneNode`
+/// @tparam Heat     `LinearHeat` or `SquareHeat`
+///
+/// Guarantees, for every actuator, air and supply within the bounds and every demand, when each step comes at most `hold_s` after the
+/// last: no limit is exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling, in constant air, the
+/// power settles and stays (no dithering); a fault gives the least power and forgets nothing.
+template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
+class CertifiedLimiter {
+ public:
+  /// What is declared, and how gently authority falls.
+  struct Config {
+    typename Network::Config network;  ///< Bounds and limits of the actuator.
+    CertifiedUse use;                  ///< Bounds of its surroundings.
+    float air_error_K;                 ///< The air may be warmer than measured by this until the next step, >= 0.
+
+    /// No bounds suit every actuator: `validate()` refuses these by name until they are set. Hold 0.1 s, horizon 30 s, air +-5 K.
+    static Config standard() noexcept {
+      const float unset = detail::not_a_number();
+      const Config config = {Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f}, 5.0f};
+      return config;
+    }
+    /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the actuator would be too hot in
+    /// that air at the least power: no limiter could help.
+    ConfigError validate() const noexcept {
+      if (is_error(first_error(network.validate(), use.heat.validate())))
+        return first_error(network.validate(), use.heat.validate());
+      if (is_error(detail::require_within(use.heat.coldest_C, -60.0f, network.hottest_C() - 1.0f, ConfigError::coldest_C)))
+        return ConfigError::coldest_C;
+      if (is_error(detail::require_within(use.highest_air_C, use.heat.coldest_C, 200.0f, ConfigError::highest_air_C)))
+        return ConfigError::highest_air_C;
+      if (is_error(detail::require_positive(use.hold_s, ConfigError::hold_s)) || use.hold_s > 10.0f) return ConfigError::hold_s;
+      if (!detail::is_finite(use.horizon_s) || use.horizon_s < use.hold_s) return ConfigError::horizon_s;
+      if (is_error(detail::require_not_negative(air_error_K, ConfigError::air_error_K))) return ConfigError::air_error_K;
+      return Network(network, use).feasible();
+    }
+  };
+
+  /// What the limiter decides on.
+  struct Inputs {
+    uint8_t demand;  ///< Power parameter asked for.
+    float supply_V;  ///< Measured supply; NaN counts as the highest.
+    float air_C;     ///< Measured air; NaN counts as the highest.
+  };
+
+  /// What one logs.
+  struct State {
+    float winding_upper_C;   ///< No true winding is hotter.
+    float body_upper_C;      ///< No true body is hotter, nor will be if power is cut now.
+    uint8_t ceiling;         ///< Largest power that would be granted.
+    uint8_t sustainable;     ///< Largest power that is bearable for ever in this air.
+    CertifiedNode node;      ///< Which limit sets the ceiling.
+    float headroom_W;        ///< Heat that could be added to the power granted.
+    float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever reached.
+    uint16_t late_steps;     ///< Steps longer than `hold_s`: the guarantee did not cover them. Stops at 65535.
+  };
+
+  explicit CertifiedLimiter(const Config& config = Config::standard()) noexcept
+      : config_(config), config_error_(config.validate()), network_(config.network, config.use), travel_(network_.travel(0.0f)) {}
+
+  /// First constant out of its range, or ConfigError::none. Anything but none keeps the power at its least.
+  ConfigError validate() const noexcept { return config_error_; }
+
+  /// Says how warm the actuator is, when that is known better than "at its limits".
+  /// @param winding_C, body_C  never below the truth. NaN: at the limits. Below the air counts as the air.
+  void start(float winding_C, float body_C) noexcept { network_.start(winding_C, body_C); }
+  /// Lowers the bounds to a measurement, for instance an observer's estimate plus its uncertainty.
+  /// @param winding_C, body_C  never below the truth; NaN where nothing was measured
+  void tighten(float winding_C, float body_C) noexcept { network_.tighten(winding_C, body_C); }
+
+  /// @param dt_s  time since the last step, during which the power granted then acted, >= 0
+  LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
+    if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
+    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
+    advance(dt_s);
+    observe(inputs.air_C, inputs.supply_V);
+
+    CertifiedCount largest = network_.largest();
+    const uint8_t wanted = static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
+    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises no further than what can be kept for ever.
+    if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
+      const uint8_t sustainable = network_.sustainable();
+      if (sustainable < largest.count) largest.count = sustainable > ceiling_ ? sustainable : ceiling_;
+      if (largest.node == CertifiedNode::none) largest.node = node_;
+    }
+    ceiling_ = largest.count;
+    node_ = largest.node;
+    is_limiting_ = wanted > ceiling_;
+    acting_ = is_limiting_ ? ceiling_ : wanted;
+
+    LimitedPower granted = {inputs.demand, LimitReason::none};
+    if (is_limiting_) {
+      granted.power = ceiling();
+      granted.reason = node_ == CertifiedNode::winding ? LimitReason::winding_limit : LimitReason::body_limit;
+    }
+    return granted;
+  }
+
+  /// Least power for a reason found elsewhere, a known time after the last step.
+  LimitedPower cut_after(LimitReason reason, uint8_t demand, float dt_s) noexcept {
+    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(reason, demand);
+    if (!is_error(config_error_)) advance(dt_s);
+    return least(reason, demand);
+  }
+  /// The same when the time is not known: the power of the last step is assumed to have acted for `hold_s`, and nothing to have cooled.
+  LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
+    if (!is_error(config_error_)) network_.advance_unknown(acting_);
+    return least(reason, demand);
+  }
+  /// What it needs of an axis.
+  static Inputs read(const AxisFacts& facts) noexcept {
+    const Inputs inputs = {facts.demand, facts.supply_V, facts.air_C};
+    return inputs;
+  }
+
+  /// Highest power granted now, 1 .. 255.
+  uint8_t ceiling() const noexcept { return Heat::power(static_cast<uint8_t>(ceiling_ + 1)); }
+
+  /// What one logs, computed when asked for.
+  State state() const noexcept {
+    const State state = {network_.winding_C(), network_.body_C(), ceiling(),
+                         Heat::power(static_cast<uint8_t>(network_.sustainable() + 1)), node_,
+                         static_cast<float>(ceiling_ - acting_) * (1.0f / 255.0f) * config_.use.heat.heat_when_hot_W,
+                         network_.seconds_to_limit(acting_), late_steps_};
+    return state;
+  }
+  float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
+  float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
+  const Config& config() const noexcept { return config_; }                ///< What was declared.
+
+ private:
+  void advance(float dt_s) noexcept {
+    if (!(dt_s == travel_s_)) {
+      travel_s_ = dt_s;
+      travel_ = network_.travel(dt_s);
+    }
+    if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
+    network_.advance(acting_, travel_);
+  }
+
+  void observe(float air_C, float supply_V) noexcept {
+    float air_upper_C = config_.use.highest_air_C;
+    const float warmest_C = air_C + config_.air_error_K;
+    if (warmest_C < air_upper_C) air_upper_C = detail::at_least(warmest_C, config_.use.heat.coldest_C);
+    if (!(supply_V == supply_V_)) {
+      supply_V_ = supply_V;
+      const float ratio = supply_V * (1.0f + config_.use.heat.supply_error) / config_.use.heat.highest_supply_V;
+      const bool is_used = ratio >= 0.0f && ratio < 1.0f && config_.use.heat.supply_error < 1.0f;
+      supply_squared_ = is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
+    }
+    network_.surroundings(air_upper_C, supply_squared_);
+  }
+
+  LimitedPower least(LimitReason reason, uint8_t demand) noexcept {
+    observe(detail::not_a_number(), detail::not_a_number());
+    acting_ = 0;
+    ceiling_ = 0;
+    node_ = CertifiedNode::none;
+    is_limiting_ = false;
+    const LimitedPower least = {demand < least_power() ? demand : least_power(), reason};
+    return least;
+  }
+
+  Config config_;
+  ConfigError config_error_;
+  Network network_;
+  typename Network::Travel travel_;
+  float travel_s_ = 0.0f;
+  float supply_V_ = detail::not_a_number();
+  detail::UnitFraction supply_squared_ = detail::whole_fraction();
+  uint16_t late_steps_ = 0;
+  uint8_t acting_ = 0;   // count that has acted since the last step
+  uint8_t ceiling_ = 0;
+  CertifiedNode node_ = CertifiedNode::none;
+  bool is_limiting_ = false;
+};
+
+}  // namespace thermopower

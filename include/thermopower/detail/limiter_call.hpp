@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../control/limit_reason.hpp"
+
+/// @file limiter_call.hpp
+/// Hands an axis's facts to its policies in the form they ask for. A limiter whose `Inputs` are a demand, a temperature and a rate
+/// gets these; one that needs more has `static Inputs read(const AxisFacts&)`. A limiter that must know how long a fault lasted has
+/// `cut_after(reason, demand, dt_s)` beside `cut(reason, demand)`. A power law may take `step(error_deg, facts, dt_s)` and a gain
+/// `step(power, facts)`.
+
+namespace thermopower {
+
+/// What an axis knows when it asks its policies.
+struct AxisFacts {
+  uint8_t demand;      ///< Power parameter asked for.
+  float motor_C;       ///< Estimated temperature of the hottest node.
+  float body_C;        ///< Estimated temperature of the coolest node that the thermal model has.
+  float rate_K_per_s;  ///< dT/dt of the hottest node.
+  float air_C;         ///< Air temperature; NaN when it is not known.
+  float supply_V;      ///< Supply; NaN when it is not known.
+};
+
+namespace detail {
+
+template <class Limiter>
+auto limiter_inputs(const AxisFacts& facts, int) noexcept -> decltype(Limiter::read(facts)) {
+  return Limiter::read(facts);
+}
+template <class Limiter>
+typename Limiter::Inputs limiter_inputs(const AxisFacts& facts, long) noexcept {
+  const typename Limiter::Inputs inputs = {facts.demand, facts.motor_C, facts.rate_K_per_s};
+  return inputs;
+}
+
+template <class Limiter>
+auto cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float dt_s, int) noexcept
+    -> decltype(limiter.cut_after(reason, demand, dt_s)) {
+  return limiter.cut_after(reason, demand, dt_s);
+}
+template <class Limiter>
+LimitedPower cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float, long) noexcept {
+  return limiter.cut(reason, demand);
+}
+
+template <class Law>
+auto demanded_power(Law& law, float error_deg, const AxisFacts& facts, float dt_s, int) noexcept
+    -> decltype(law.step(error_deg, facts, dt_s)) {
+  return law.step(error_deg, facts, dt_s);
+}
+template <class Law>
+uint8_t demanded_power(Law& law, float error_deg, const AxisFacts&, float, long) noexcept {
+  return law.step(error_deg);
+}
+
+template <class Gain>
+auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept -> decltype(gain.step(power, facts)) {
+  return gain.step(power, facts);
+}
+template <class Gain>
+uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
+  return gain.step(power);
+}
+
+/// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has only one.
+template <class Thermal>
+auto body_of(const Thermal& thermal, int) noexcept -> decltype(thermal.state().body_C + 0.0f) {
+  return thermal.state().body_C;
+}
+template <class Thermal>
+float body_of(const Thermal& thermal, long) noexcept {
+  return thermal.hottest_C();
+}
+
+}  // namespace detail
+}  // namespace thermopower
