@@ -12,6 +12,7 @@
 #include "actuator/energy_meter.hpp"
 #include "actuator/heating.hpp"
 #include "actuator/ohmic_current.hpp"
+#include "actuator/tabulated_current.hpp"
 #include "actuator/thermal_model.hpp"
 #include "actuator/thesis_current.hpp"
 #include "actuator/two_node_thermal_model.hpp"

@@ -28,16 +28,15 @@ struct ThesisCurrent {
   Number minimum_V_rms;     ///< At or below this voltage the current is taken as 0 (the program: 1 V).
 
   /// The law with its constants as the thesis prints them, in milliampere. The conversion to SI happens here and nowhere else.
-  static ThesisCurrent from_milliampere(Number slope_V2, Number slope_V1, Number slope_V0, Number base, Number exponent,
-                                        Number minimum_V_rms) noexcept {
+  static constexpr ThesisCurrent from_milliampere(Number slope_V2, Number slope_V1, Number slope_V0, Number base, Number exponent,
+                                                  Number minimum_V_rms) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    const Real milli = Real(0.001);
-    ThesisCurrent law = {slope_V2 * milli, slope_V1 * milli, slope_V0 * milli, base * milli, exponent, minimum_V_rms};
-    return law;
+    return ThesisCurrent{slope_V2 * Real(0.001), slope_V1 * Real(0.001), slope_V0 * Real(0.001),
+                         base * Real(0.001),     exponent,               minimum_V_rms};
   }
 
   /// m(V): how much the current changes with temperature. @return A/K
-  Number slope_A_per_K(const Number& v_rms_V) const noexcept {
+  constexpr Number slope_A_per_K(const Number& v_rms_V) const noexcept {
     return (slope_V2_A_per_K * v_rms_V + slope_V1_A_per_K) * v_rms_V + slope_V0_A_per_K;
   }
 

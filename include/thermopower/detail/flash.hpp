@@ -23,6 +23,12 @@ namespace thermopower {
 namespace detail {
 
 #if !defined(THERMOPOWER_FLASH_HEADER)
+/// The address of a table declared with `thermopower_flash`, for `read_flash` and nothing else.
+template <class Value>
+inline const Value* flash_pointer(const Value* table) noexcept {
+  return table;
+}
+
 /// Copies a value of any plain type out of flash. `address` must point at an object declared with `thermopower_flash`.
 template <class Value>
 inline Value read_flash(const Value* address) noexcept {

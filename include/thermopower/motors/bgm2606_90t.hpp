@@ -22,7 +22,7 @@ struct Bgm2606_90t {
 
   /// Eq 4.2 and 4.3 as the regression of Table 4.1 gives them (the text prints the first sign wrong).
   template <class Number = float>
-  static ThesisCurrent<Number> current_law() noexcept {
+  static constexpr ThesisCurrent<Number> current_law() noexcept {
     return ThesisCurrent<Number>::from_milliampere(Number(-0.013445), Number(0.015576), Number(0.016839), Number(0.155098),
                                                    Number(3.459071), Number(1));
   }
@@ -54,7 +54,7 @@ struct Bgm2606_90t {
 
     /// Program lines 32 to 36.
     template <class Number = float>
-    static ThesisCurrent<Number> current_law() noexcept {
+    static constexpr ThesisCurrent<Number> current_law() noexcept {
       return ThesisCurrent<Number>::from_milliampere(Number(-0.0134), Number(0.0156), Number(0.0167), Number(0.1551),
                                                      Number(3.4591), Number(1));
     }
@@ -82,7 +82,7 @@ struct Bgm2606_90t {
   struct AsPrinted : AsProgrammed {
     /// Eq 4.2 and 4.3, sign as printed.
     template <class Number = float>
-    static ThesisCurrent<Number> current_law() noexcept {
+    static constexpr ThesisCurrent<Number> current_law() noexcept {
       return ThesisCurrent<Number>::from_milliampere(Number(0.0134), Number(0.0156), Number(0.0167), Number(0.1551),
                                                      Number(3.4591), Number(1));
     }

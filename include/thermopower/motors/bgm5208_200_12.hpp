@@ -23,7 +23,7 @@ struct Bgm5208_200_12 {
 
   /// Eq 4.4 and 4.5 as the regression of Table 4.2 gives them (the text prints the first sign wrong).
   template <class Number = float>
-  static ThesisCurrent<Number> current_law() noexcept {
+  static constexpr ThesisCurrent<Number> current_law() noexcept {
     return ThesisCurrent<Number>::from_milliampere(Number(-0.054978), Number(0.631148), Number(-2.497093), Number(0.125709),
                                                    Number(3.413451), Number(1));
   }
@@ -55,7 +55,7 @@ struct Bgm5208_200_12 {
 
     /// Program lines 32 to 36.
     template <class Number = float>
-    static ThesisCurrent<Number> current_law() noexcept {
+    static constexpr ThesisCurrent<Number> current_law() noexcept {
       return ThesisCurrent<Number>::from_milliampere(Number(-0.055), Number(0.6311), Number(-2.497), Number(0.1257),
                                                      Number(3.4135), Number(1));
     }
@@ -83,7 +83,7 @@ struct Bgm5208_200_12 {
   struct AsPrinted : AsProgrammed {
     /// Eq 4.4 and 4.5, sign as printed.
     template <class Number = float>
-    static ThesisCurrent<Number> current_law() noexcept {
+    static constexpr ThesisCurrent<Number> current_law() noexcept {
       return ThesisCurrent<Number>::from_milliampere(Number(0.055), Number(0.6311), Number(-2.497), Number(0.1257),
                                                      Number(3.4135), Number(1));
     }
