@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+/// @file desktop.hpp
+/// Everything that needs a desk: the firmware's models and policies, and the simulation they are tried on.
+/// The identification and the diagnosis of gaps have umbrellas of their own.
+
+#include "simulation/axis_batch.hpp"
+#include "simulation/rig_policies.hpp"
+#include "simulation/scenarios.hpp"
+#include "thermopower.hpp"

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../detail/check.hpp"
+
+/// @file joint_friction.hpp
+/// Friction in the bearing of an axis.
+
+namespace thermopower::simulation {
+
+/// Coulomb, Stribeck and viscous friction:
+///
+///     M(w) = (M_c + (M_s - M_c) / (1 + (w / w_s)^2)) w / sqrt(w^2 + w_0^2) + b w
+///
+/// The Stribeck term falls off as 1 / (1 + (w/w_s)^2) (Hess and Soom, J. Tribology 112, 1990). Below the speed w_0 the joint creeps
+/// instead of sticking: the law stays smooth, so that a fixed-step integrator keeps its order.
+template <class Number>
+struct JointFriction {
+  Number coulomb_Nm;                ///< M_c, >= 0.
+  Number breakaway_Nm;              ///< M_s, >= M_c.
+  Number stribeck_rad_per_s;        ///< w_s, above 0.
+  Number creep_rad_per_s;           ///< w_0, above 0; small against w_s.
+  Number viscous_Nm_s_per_rad;      ///< b, >= 0.
+
+  /// Torque against the motion. @param joint_rad_per_s  speed of the camera side relative to the base side
+  Number torque_Nm(const Number& joint_rad_per_s) const noexcept {
+    using Math = thermopower::detail::Numeric<Number>;
+    using Real = typename Math::Real;
+    const Number square = joint_rad_per_s * joint_rad_per_s;
+    const Number stribeck_square = stribeck_rad_per_s * stribeck_rad_per_s;
+    // One division for both quotients.
+    const Number root = Math::square_root(Number(square + creep_rad_per_s * creep_rad_per_s));
+    const Number sum = square + stribeck_square;
+    const Number dry = coulomb_Nm * sum + (breakaway_Nm - coulomb_Nm) * stribeck_square;
+    return joint_rad_per_s * (dry / (sum * root) + viscous_Nm_s_per_rad * Real(1));
+  }
+};
+
+}  // namespace thermopower::simulation

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../control/gimbal_controller.hpp"
+#include "rig.hpp"
+
+/// @file rig_run.hpp
+/// A controller on the rig, from start to finish.
+
+namespace thermopower::simulation {
+
+/// Constant power with the gain that goes with it: how a gimbal is run without any of this.
+struct ConstantPower {
+  GimbalCommand<3> command;   ///< Sent in every cycle.
+
+  /// @param power  POWER of each axis  @param p_gain  P of each axis
+  ConstantPower(std::array<std::uint8_t, 3> power, std::array<std::uint8_t, 3> p_gain) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      command.power[i] = power[i];
+      command.p_gain[i] = p_gain[i];
+      command.reason[i] = LimitReason::none;
+    }
+  }
+  /// The same, whatever happens.
+  template <class Telemetry>
+  const GimbalCommand<3>& step(const Telemetry&, float) noexcept {
+    return command;
+  }
+};
+
+/// One row of what a run looks like, once per control cycle.
+struct RigSample {
+  double t_s;                                   ///< Since the start.
+  const Rig& rig;                               ///< Everything there is.
+  const RigTelemetry& telemetry;                ///< What the controller saw.
+  const GimbalCommand<3>& command;              ///< What it answered.
+};
+
+/// Runs a scenario to its end.
+/// @param controller  anything with `step(telemetry, dt_s)` that gives a `GimbalCommand<3>`: `GimbalController` as it is
+/// @param sink        called with a `RigSample` in every control cycle
+template <class Controller, class Sink>
+RigMetrics run_rig(const RigConfig& config, const Scenario& scenario, Controller& controller, Sink&& sink) {
+  Rig rig(config, scenario);
+  RigMetrics metrics;
+  const auto cycles = static_cast<std::uint64_t>(std::llround(scenario.duration_s / config.board_cycle_s));
+  const auto per_control = static_cast<std::uint64_t>(config.cycles_per_control);
+  const double control_s = config.board_cycle_s * config.cycles_per_control;
+  std::uint64_t counted = 0;
+  for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
+    if (cycle % per_control == 0) {
+      const RigTelemetry telemetry = rig.telemetry();
+      const GimbalCommand<3>& command = controller.step(telemetry, cycle == 0 ? 0.0f : static_cast<float>(control_s));
+      rig.command(command.power, command.p_gain);
+      for (std::size_t i = 0; i < 3; ++i)
+        if (command.reason[i] != LimitReason::none && cycle > 0) metrics.axes[i].limiting_s += control_s;
+      metrics.lowest_supply_V = std::fmin(metrics.lowest_supply_V, rig.battery().state().supply_V);
+      sink(RigSample{rig.time_s(), rig, telemetry, command});
+    }
+    rig.cycle();
+    const bool counts = rig.time_s() > scenario.settle_s;
+    counted += counts ? 1 : 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      AxisMetrics& axis = metrics.axes[i];
+      const auto& temperatures = rig.plant(i).temperatures();
+      axis.mean_power += rig.power(i);
+      axis.peak_winding_C = std::fmax(axis.peak_winding_C, temperatures.winding_C);
+      axis.peak_body_C = std::fmax(axis.peak_body_C, temperatures.body_C);
+      if (temperatures.body_C > config.body_limit_C) axis.over_limit_s += config.board_cycle_s;
+      if (!counts) continue;
+      const double error_deg = rig.error_deg(i);
+      const double blur_px = config.optics.blur_of_rate_px(rig.plant(i).rate_deg_per_s());
+      axis.error_rms_deg += error_deg * error_deg;
+      axis.error_peak_deg = std::fmax(axis.error_peak_deg, std::fabs(error_deg));
+      axis.blur_rms_px += blur_px * blur_px;
+      if (std::fabs(blur_px) > 0.5) axis.blurred_share += 1.0;
+    }
+  }
+  const double share = 1.0 / std::fmax(1.0, static_cast<double>(counted));
+  for (std::size_t i = 0; i < 3; ++i) {
+    AxisMetrics& axis = metrics.axes[i];
+    axis.error_rms_deg = std::sqrt(axis.error_rms_deg * share);
+    axis.blur_rms_px = std::sqrt(axis.blur_rms_px * share);
+    axis.blurred_share *= share;
+    axis.mean_power /= static_cast<double>(cycles);
+    axis.energy_J = rig.axis_energy_J(i);
+    metrics.energy_J += axis.energy_J;
+  }
+  metrics.time_s = static_cast<double>(counted) * config.board_cycle_s;
+  return metrics;
+}
+
+/// @overload Without a sink.
+template <class Controller>
+RigMetrics run_rig(const RigConfig& config, const Scenario& scenario, Controller& controller) {
+  return run_rig(config, scenario, controller, [](const RigSample&) {});
+}
+
+}  // namespace thermopower::simulation
