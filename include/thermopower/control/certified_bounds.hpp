@@ -30,7 +30,7 @@ struct Bounds {
 };
 
 /// The most heat that can arise in the winding at full POWER (255) and the highest supply: at two winding temperatures, because a
-/// warm winding takes less. In between the straight line is used, which lies above every 1/R(T).
+/// warm winding takes less. In between, the heat may be no more than that of a resistance that rises in a straight line.
 struct HeatBounds {
   float highest_supply_V;  ///< The supply is never above this. Above 0.
   float supply_error;      ///< The measured supply may be wrong by this fraction until the next step, >= 0. 1 or more: it is not used.
@@ -95,6 +95,28 @@ struct CertifiedTravel {
     const CertifiedTravel travel = {detail::fraction_up(above), detail::fraction_down(below)};
     return travel;
   }
+};
+
+/// How much less heat a warm winding takes: a chord over 1/R(T), which is convex, so the chord lies above it.
+class CertifiedRelief {
+ public:
+  /// @param hot_C  where `heat_when_hot_W` holds  @param end_C  where the chord is to be exact; above it the relief stays
+  void set(const HeatBounds& heat, float hot_C, float end_C) noexcept {
+    const float resistance = heat.heat_when_cold_W / heat.heat_when_hot_W - 1.0f;  // relative rise from coldest to hot
+    const float at_end = resistance * (end_C - heat.coldest_C) / (hot_C - heat.coldest_C);
+    per_K_ = detail::fraction_down(at_end / (1.0f + at_end) / (end_C - heat.coldest_C));
+    end_ = detail::celsius_units(end_C - heat.coldest_C);
+  }
+  /// Heat at a winding temperature as a fraction of the heat at the coldest, not below the truth. @param over_coldest  difference
+  detail::UnitFraction at(detail::KelvinUnits over_coldest) const noexcept {
+    const detail::KelvinUnits over = over_coldest < end_ ? over_coldest : end_;
+    if (over <= 0) return detail::whole_fraction();
+    return static_cast<detail::UnitFraction>(detail::whole_fraction() - (detail::part_down(over, per_K_) << 13));
+  }
+
+ private:
+  detail::UnitFraction per_K_ = 0;
+  detail::KelvinUnits end_ = 0;
 };
 
 /// What holds a power back.

@@ -128,10 +128,11 @@ class CertifiedLimiter {
 
     CertifiedCount largest = network_.largest();
     const uint8_t wanted = static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
-    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises no further than what can be kept for ever.
+    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises to what can be kept for ever, or not at all.
     if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
       const uint8_t sustainable = network_.sustainable();
-      if (sustainable < largest.count) largest.count = sustainable > ceiling_ ? sustainable : ceiling_;
+      const bool may_rise = sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
+      largest.count = may_rise ? sustainable : ceiling_;
       if (largest.node == CertifiedNode::none) largest.node = node_;
     }
     ceiling_ = largest.count;

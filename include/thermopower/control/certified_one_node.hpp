@@ -52,8 +52,7 @@ class CertifiedOneNode {
     horizon_ = detail::fraction_down(1.0f - expf(-fastest_per_s_ * use.horizon_s));
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
-    relief_per_K_ = detail::fraction_down((1.0f - use.heat.heat_when_hot_W / use.heat.heat_when_cold_W) /
-                                          (config.maximum_C - use.heat.coldest_C));
+    relief_.set(use.heat, config.maximum_C, config.maximum_C);
     feasible_ = ConfigError::none;
     if (!(config.maximum_C > use.highest_air_C + detail::celsius_from(to_air_) + 0.01f)) feasible_ = ConfigError::highest_air_C;
     if (!(255.0f * detail::celsius_from(to_air_) < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
@@ -102,12 +101,7 @@ class CertifiedOneNode {
       base_ = detail::celsius_units(air_C) + 1 + to_air_;
     }
     const detail::KelvinUnits above = room();
-    detail::KelvinUnits over = base_ + above - detail::part_up(above, hold_.heating);
-    if (over > limit_) over = limit_;
-    over -= coldest_;
-    if (over < 0) over = 0;
-    const detail::UnitFraction relief =
-        static_cast<detail::UnitFraction>(detail::whole_fraction() - (detail::part_down(over, relief_per_K_) << 13));
+    const detail::UnitFraction relief = relief_.at(base_ + above - detail::part_up(above, hold_.heating) - coldest_);
     to_air_now_ = detail::part_up(
         to_air_, supply_squared == detail::whole_fraction() ? relief : detail::part_up(relief, supply_squared));
   }
@@ -122,6 +116,9 @@ class CertifiedOneNode {
   }
   /// The largest count that is bearable for ever in this air.
   uint8_t sustainable() const noexcept { return detail::count_within(limit_ - base_, to_air_now_, 254); }
+
+  /// Always true: there is no second node that could hand on heat.
+  bool is_below(uint8_t) const noexcept { return true; }
 
   float winding_C() const noexcept { return detail::celsius_from(node_.above()); }  ///< Upper bound of the node.
   float body_C() const noexcept { return winding_C(); }                             ///< The same node.
@@ -142,7 +139,8 @@ class CertifiedOneNode {
   Config config_;
   float fastest_per_s_, slowest_per_s_, hold_s_;
   detail::KelvinUnits to_air_, to_air_now_, coldest_, limit_;
-  detail::UnitFraction horizon_, relief_per_K_;
+  detail::UnitFraction horizon_;
+  CertifiedRelief relief_;
   CertifiedTravel hold_;
   detail::UpperBound node_;
   detail::KelvinUnits base_ = 0;

@@ -94,10 +94,10 @@ class CertifiedTwoNode {
     horizon_body_ = detail::fraction_down(1.0f - expf(-fastest_body_per_s_ * use.horizon_s));
 
     coldest_ = detail::celsius_units(use.heat.coldest_C);
-    hottest_ = detail::celsius_units(config.maximum_winding_C);
-    relief_per_K_ = detail::fraction_down((1.0f - use.heat.heat_when_hot_W / use.heat.heat_when_cold_W) /
-                                          (config.maximum_winding_C - use.heat.coldest_C));
     set_limits(use, 1.0f - body_share, count_W);
+    // A chord for each bound, so that each is exact at its own limit.
+    winding_relief_.set(use.heat, config.maximum_winding_C, config.maximum_winding_C);
+    mean_relief_.set(use.heat, config.maximum_winding_C, detail::celsius_from(mean_limit_));
     winding_.set(winding_limit_);
     mean_.set(mean_limit_);
     surroundings(use.highest_air_C, detail::whole_fraction());
@@ -206,6 +206,9 @@ class CertifiedTwoNode {
     return count.count;
   }
 
+  /// True when the winding has no more heat to hand on than it would have at this count for ever.
+  bool is_below(uint8_t count) const noexcept { return room().apart <= count * (across_now_ + soak_now_); }
+
   float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }  ///< Upper bound of the winding.
   float body_C() const noexcept { return detail::celsius_from(mean_.above()); }        ///< Upper bound of the body, now and after a cut.
   const Config& config() const noexcept { return config_; }                            ///< What was declared.
@@ -273,18 +276,13 @@ class CertifiedTwoNode {
     return mean + gap_ + count * soak_now_;
   }
 
-  // Heat falls as the winding warms; taken where the bound will be lowest within the next hold.
-  detail::UnitFraction relief(detail::KelvinUnits lowest) const noexcept {
-    detail::KelvinUnits over = (lowest < hottest_ ? lowest : hottest_) - coldest_;
-    if (over < 0) over = 0;
-    return static_cast<detail::UnitFraction>(detail::whole_fraction() - (detail::part_down(over, relief_per_K_) << 13));
-  }
 
   void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
     const Room now = room();
+    // Heat falls as the winding warms; taken where each bound will be lowest within the next hold.
     const detail::UnitFraction winding =
-        relief(base_ + now.winding - detail::part_up(now.apart, hold_.winding.heating));
-    const detail::UnitFraction body = relief(base_ + now.mean - detail::part_up(now.mean, hold_.body.heating));
+        winding_relief_.at(base_ + now.winding - detail::part_up(now.apart, hold_.winding.heating) - coldest_);
+    const detail::UnitFraction body = mean_relief_.at(base_ + now.mean - detail::part_up(now.mean, hold_.body.heating) - coldest_);
     take(supply(winding, supply_squared), supply(body, supply_squared));
   }
   static detail::UnitFraction supply(detail::UnitFraction relief, detail::UnitFraction supply_squared) noexcept {
@@ -317,8 +315,9 @@ class CertifiedTwoNode {
   float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
   detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
   detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step
-  detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, hottest_, winding_limit_, mean_limit_;
-  detail::UnitFraction weight_, horizon_winding_, horizon_body_, relief_per_K_;
+  detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, winding_limit_, mean_limit_;
+  detail::UnitFraction weight_, horizon_winding_, horizon_body_;
+  CertifiedRelief winding_relief_, mean_relief_;
   Travel hold_;
   detail::UpperBound winding_, mean_;
   detail::KelvinUnits base_ = 0;
