@@ -102,6 +102,7 @@ class Rig {
   const AxisPlant<double>& plant(std::size_t index) const noexcept { return axes_[index]; }   ///< One axis.
   const Battery<double>& battery() const noexcept { return battery_; }                        ///< The supply.
   double axis_energy_J(std::size_t index) const noexcept { return energy_J_[index]; }         ///< Drawn from the supply so far.
+  double supply_A() const noexcept { return supply_A_; }                                      ///< Drawn by all motors.
   std::uint8_t power(std::size_t index) const noexcept { return in_force_[index].power; }     ///< POWER in force.
   const RigConfig& config() const noexcept { return config_; }                                ///< As set up.
   const Scenario& scenario() const noexcept { return scenario_; }                             ///< As set up.
