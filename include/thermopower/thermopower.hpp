@@ -18,6 +18,7 @@
 #include "actuator/two_node_thermal_model.hpp"
 #include "control/air_temperature.hpp"
 #include "control/axis_controller.hpp"
+#include "control/certified_limiter.hpp"
 #include "control/gain_scheduler.hpp"
 #include "control/gimbal_controller.hpp"
 #include "control/limit_reason.hpp"

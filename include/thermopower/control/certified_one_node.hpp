@@ -49,7 +49,7 @@ class CertifiedOneNode {
     to_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
     hold_s_ = use.hold_s;
     hold_ = travel(use.hold_s).body;
-    horizon_ = detail::fraction_down(1.0f - expf(-fastest_per_s_ * use.horizon_s));
+    horizon_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_per_s_ * use.horizon_s));
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
     relief_.set(use.heat, config.maximum_C, config.maximum_C);
@@ -130,7 +130,7 @@ class CertifiedOneNode {
     const float settled_K = detail::celsius_from(count * to_air_now_);
     if (above_K >= limit_K) return 0.0f;
     if (settled_K <= limit_K) return static_cast<float>(INFINITY);
-    return logf((settled_K - above_K) / (settled_K - limit_K)) / fastest_per_s_;
+    return static_cast<float>(logf((settled_K - above_K) / (settled_K - limit_K))) / fastest_per_s_;
   }
 
  private:

@@ -90,8 +90,8 @@ class CertifiedTwoNode {
 
     hold_s_ = use.hold_s;
     hold_ = travel(use.hold_s);
-    horizon_winding_ = detail::fraction_down(1.0f - expf(-fastest_winding_per_s_ * use.horizon_s));
-    horizon_body_ = detail::fraction_down(1.0f - expf(-fastest_body_per_s_ * use.horizon_s));
+    horizon_winding_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_winding_per_s_ * use.horizon_s));
+    horizon_body_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
 
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     set_limits(use, 1.0f - body_share, count_W);
@@ -254,7 +254,7 @@ class CertifiedTwoNode {
   static float crossing_s(float from_K, float to_K, float limit_K, float rate_per_s) noexcept {
     if (from_K >= limit_K) return 0.0f;
     if (to_K <= limit_K) return static_cast<float>(INFINITY);
-    return logf((to_K - from_K) / (to_K - limit_K)) / rate_per_s;
+    return static_cast<float>(logf((to_K - from_K) / (to_K - limit_K))) / rate_per_s;
   }
 
   float share() const noexcept { return static_cast<float>(weight_) * (1.0f / 2147483648.0f); }

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Rules for headers that run in firmware which no compiler enforces.
+
+#include "../catch.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// The text without comments and with empty string literals; line breaks stay.
+std::string code_of(const std::string& text) {
+  std::string code;
+  for (size_t i = 0; i < text.size();) {
+    if (text.compare(i, 2, "//") == 0) {
+      while (i < text.size() && text[i] != '\n') ++i;
+    } else if (text.compare(i, 2, "/*") == 0) {
+      for (i += 2; i < text.size() && text.compare(i, 2, "*/") != 0; ++i)
+        if (text[i] == '\n') code += '\n';
+      i += 2;
+    } else if (text[i] == '"' && code.find_last_of('\n') != std::string::npos &&
+               code.compare(code.find_last_of('\n') + 1, 8, "#include") != 0) {
+      code += "\"\"";
+      for (++i; i < text.size() && text[i] != '"'; ++i)
+        if (text[i] == '\\') ++i;
+      ++i;
+    } else {
+      code += text[i++];
+    }
+  }
+  return code;
+}
+
+struct Header {
+  std::string name;  // relative to include/thermopower
+  std::string text, code;
+  std::vector<std::string> quoted, angled;
+  std::set<std::string> identifiers;
+};
+
+bool is_firmware(const std::string& name) {
+  static const std::regex upstairs("^(simulation|identification|gap)/|^desktop\\.hpp$");
+  return !std::regex_search(name, upstairs);
+}
+
+const std::map<std::string, Header>& headers() {
+  static const std::map<std::string, Header> all = [] {
+    std::map<std::string, Header> found;
+    const fs::path root = THERMOPOWER_INCLUDE;
+    for (const auto& entry : fs::recursive_directory_iterator(root)) {
+      if (entry.path().extension() != ".hpp") continue;
+      Header header;
+      header.name = fs::relative(entry.path(), root).generic_string();
+      if (!is_firmware(header.name)) continue;
+      header.text = read(entry.path());
+      header.code = code_of(header.text);
+      static const std::regex include(R"re(#include\s*([<"])([^>"]+)[>"])re"), word("[A-Za-z0-9_]+");
+      for (std::sregex_iterator i(header.code.begin(), header.code.end(), include), end; i != end; ++i)
+        ((*i)[1] == "<" ? header.angled : header.quoted).push_back((*i)[2]);
+      const std::string plain = std::regex_replace(header.code, std::regex("#include[^\n]*"), "");
+      for (std::sregex_iterator i(plain.begin(), plain.end(), word), end; i != end; ++i)
+        if (!std::isdigit(static_cast<unsigned char>(i->str()[0]))) header.identifiers.insert(i->str());
+      found[header.name] = header;
+    }
+    return found;
+  }();
+  return all;
+}
+
+/// Everything a header includes of ours, itself among it.
+void reach(const std::string& name, std::set<std::string>& reached) {
+  if (!reached.insert(name).second) return;
+  const auto found = headers().find(name);
+  if (found == headers().end()) return;
+  for (const std::string& included : found->second.quoted)
+    reach((fs::path(name).parent_path() / included).lexically_normal().generic_string(), reached);
+}
+
+/// Names in a list as `-dM -E` prints it.
+std::set<std::string> macros_in(const std::string& path) {
+  std::ifstream file(path);
+  std::set<std::string> macros;
+  for (std::string define, name, line; std::getline(file, line);) {
+    std::istringstream words(line);
+    words >> define >> name;
+    macros.insert(name.substr(0, name.find('(')));
+  }
+  return macros;
+}
+
+}  // namespace
+
+TEST_CASE("there are firmware headers to check") { CHECK(headers().size() > 40); }
+
+TEST_CASE("every header begins with its licence and is included once") {
+  for (const auto& [name, header] : headers()) {
+    CAPTURE(name);
+    CHECK(header.text.rfind("// SPDX-License-Identifier: MIT\n// Copyright (c) 2026 the thermopower authors\n", 0) == 0);
+    CHECK(header.text.find("#pragma once") != std::string::npos);
+  }
+}
+
+TEST_CASE("firmware headers include nothing that avr-libc lacks") {
+  const std::set<std::string> allowed = {"stdint.h", "stddef.h", "math.h", "string.h", "avr/pgmspace.h"};
+  for (const auto& [name, header] : headers()) {
+    for (const std::string& included : header.angled) {
+      CAPTURE(name, included);
+      CHECK(allowed.count(included) == 1);
+    }
+  }
+}
+
+TEST_CASE("firmware headers reach nothing upstairs, however indirectly") {
+  for (const auto& [name, header] : headers()) {
+    std::set<std::string> reached;
+    reach(name, reached);
+    for (const std::string& other : reached) {
+      CAPTURE(name, other);
+      CHECK(is_firmware(other));
+      CHECK(headers().count(other) == 1);  // an include that leads nowhere
+    }
+  }
+}
+
+TEST_CASE("dependencies point one way: the actuator knows no control, the wire knows neither") {
+  const std::map<std::string, std::string> forbidden = {
+      {"actuator", "^(control|sbgc|motors)/"}, {"motors", "^(control|sbgc)/"}, {"control", "^(actuator|sbgc|motors)/"},
+      {"sbgc", "^(actuator|control|motors)/"}};
+  for (const auto& [name, header] : headers()) {
+    const auto rule = forbidden.find(name.substr(0, name.find('/')));
+    if (rule == forbidden.end()) continue;
+    std::set<std::string> reached;
+    reach(name, reached);
+    for (const std::string& other : reached) {
+      CAPTURE(name, other);
+      CHECK_FALSE(std::regex_search(other, std::regex(rule->second)));
+    }
+  }
+}
+
+TEST_CASE("the umbrella holds every firmware header") {
+  std::set<std::string> reached;
+  reach("thermopower.hpp", reached);
+  for (const auto& [name, header] : headers()) {
+    CAPTURE(name);
+    CHECK(reached.count(name) == 1);
+  }
+}
+
+TEST_CASE("firmware headers use no heap, no exception, no run-time type, no clock and no standard library") {
+  for (const auto& [name, header] : headers()) {
+    for (const char* word : {"new", "delete", "malloc", "calloc", "realloc", "free", "throw", "try", "catch", "dynamic_cast", "typeid",
+                             "std", "millis", "micros", "clock", "thread_local"}) {
+      CAPTURE(name, word);
+      CHECK(header.identifiers.count(word) == 0);
+    }
+  }
+}
+
+TEST_CASE("firmware headers declare no name that Arduino.h takes as a macro") {
+  std::set<std::string> macros = macros_in(THERMOPOWER_ARDUINO_MACROS);
+  if (macros.empty()) {
+    WARN("no Arduino core here: names are not checked against its macros");
+    return;
+  }
+  REQUIRE(macros.count("abs") == 1);
+  // What the tool chain's own headers define is used as what it is.
+  for (const std::string& name : macros_in(THERMOPOWER_ARDUINO_MACROS ".bare")) macros.erase(name);
+  CHECK(macros.size() > 500);
+  for (const auto& [name, header] : headers()) {
+    for (const std::string& identifier : header.identifiers) {
+      if (macros.count(identifier) == 0) continue;
+      CAPTURE(name, identifier);
+      CHECK(false);
+    }
+  }
+}
+
+TEST_CASE("firmware headers have no names in capitals, none of one capital letter, and none that is reserved") {
+  const std::set<std::string> meant = {"NAN", "INFINITY", "PROGMEM", "THERMOPOWER_FLASH_HEADER", "__AVR__", "__SIZEOF_DOUBLE__"};
+  const std::regex capitals("[A-Z][A-Z0-9_]*"), reserved("_[A-Z].*|.*__.*");
+  for (const auto& [name, header] : headers()) {
+    for (const std::string& identifier : header.identifiers) {
+      if (meant.count(identifier) == 1) continue;
+      CAPTURE(name, identifier);
+      CHECK_FALSE(std::regex_match(identifier, capitals));
+      CHECK_FALSE(std::regex_match(identifier, reserved));
+    }
+  }
+}
+
+TEST_CASE("a firmware header has one idea: at most 350 lines") {
+  for (const auto& [name, header] : headers()) {
+    CAPTURE(name);
+    CHECK(std::count(header.text.begin(), header.text.end(), '\n') <= 350);
+  }
+}
+
+TEST_CASE("the checks themselves see what they look for") {
+  CHECK(code_of("int a; // new\nint b;") == "int a; \nint b;");
+  CHECK(code_of("x /* throw\n */ y") == "x \n y");
+  CHECK(code_of("\nf(\"new // \\\" x\");") == "\nf(\"\");");
+  CHECK(code_of("\n#include \"a.hpp\"\n") == "\n#include \"a.hpp\"\n");
+}
