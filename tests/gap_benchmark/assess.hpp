@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,58 +12,87 @@
 
 namespace gap_benchmark {
 
+using Fitted = std::map<int, double>;
+
+/// A wrong cause, and how well it passes for the true one.
+struct Suspect {
+  std::string id;
+  double likeness = 0.0;                ///< 0..1
+  std::vector<Fitted> fitted;  ///< what it takes, beside each cause that is kept
+};
+
 /// How plainly a case shows its cause, found with the plant itself and nothing of the library.
 struct Assessment {
   double visible_train = 0.0;    ///< RMS over the floor, best signal, after re-calibration within the slack
   double visible_heldout = 0.0;  ///< the same on the held-out recording
-  double confusability = 0.0;    ///< how well the best wrong cause passes for the true one, 0..1
-  std::string confused_with;     ///< that cause
-  double left_over = 0.0;        ///< RMS over the floor that the best wrong cause, or two of them, leave
-  std::vector<std::pair<std::string, double>> others;  ///< every suspect and how well it passes
+  double left_over = 1e9;        ///< RMS over the floor that the best wrong cause, or two of them, leave
+  std::vector<Suspect> suspects;
+
+  /// The likeness of the best wrong cause.
+  double confusability() const { return suspects.empty() ? 0.0 : suspects.front().likeness; }
+  std::string confused_with() const { return suspects.empty() ? std::string() : suspects.front().id; }
 
   /// No cause of the catalogue, nor two of them, come near the floor or explain most of it.
-  bool beyond_catalogue() const { return confusability < 0.9 && left_over > 2.5 && left_over > 0.25 * visible_train; }
+  bool beyond_catalogue() const { return confusability() < 0.9 && left_over > 2.5 && left_over > 0.25 * visible_train; }
+
+  void sort() {
+    std::stable_sort(suspects.begin(), suspects.end(), [](const Suspect& a, const Suspect& b) { return a.likeness > b.likeness; });
+  }
 
   /// Keeps, for every suspect, the lesser of two likenesses: one view that tells them apart is enough.
   void least(const Assessment& other) {
-    for (auto& suspect : others)
-      for (const auto& same : other.others)
-        if (same.first == suspect.first) suspect.second = std::min(suspect.second, same.second);
-    std::sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-    if (others.empty()) return;
-    confused_with = others.front().first;
-    confusability = others.front().second;
+    for (auto& suspect : suspects)
+      for (const auto& same : other.suspects)
+        if (same.id == suspect.id) suspect.likeness = std::min(suspect.likeness, same.likeness);
+    sort();
   }
 };
 
 /// Noise-free residuals of one recording for given parameters, in units of each signal's floor.
-/// `Values` is the plant's parameter array; signals are stacked, `rows_per_signal` apart.
+/// `Values` is the plant's parameter array; the signals are stacked, with the same number of rows each.
 template <class Values>
 struct Scenario {
   std::function<Eigen::VectorXd(const Values&)> residuals;
   Eigen::Index signals = 1;
 
+  struct Explained {
+    double sum_of_squares = 0.0, worst_rms = 0.0;
+    Fitted fitted;
+  };
+
+  /// What is left when the model's free numbers are fitted.
+  /// @param seed a solution to try as well
+  Explained explained(const Values& model, const std::vector<Free>& free, int iterations, const Fitted& seed = {}) const {
+    const auto with = [&](const std::vector<double>& values) {
+      Values p = model;
+      for (std::size_t j = 0; j < free.size(); ++j) p[static_cast<std::size_t>(free[j].index)] = values[j];
+      return p;
+    };
+    const Residuals of = [&](const std::vector<double>& values) {
+      Eigen::VectorXd r = residuals(with(values));
+      // A replay that runs away is as wrong as can be, and no number.
+      for (Eigen::Index i = 0; i < r.size(); ++i) r(i) = std::isfinite(r(i)) ? std::clamp(r(i), -1e6, 1e6) : 1e6;
+      return r;
+    };
+    std::vector<double> seeded;
+    for (const auto& f : free) {
+      const auto known = seed.find(f.index);
+      if (known != seed.end()) seeded.push_back(known->second);
+    }
+    if (seeded.size() != free.size()) seeded.clear();
+    const Fit best = fit_from_best_starts(of, free, seeded, iterations, 1e-3);
+    Explained result{best.sum_of_squares, worst_rms(of(best.values)), {}};
+    for (std::size_t j = 0; j < free.size(); ++j) result.fitted[free[j].index] = best.values[j];
+    return result;
+  }
+
+private:
   double worst_rms(const Eigen::VectorXd& r) const {
     const Eigen::Index rows = r.size() / signals;
     double worst = 0.0;
     for (Eigen::Index s = 0; s < signals; ++s)
       worst = std::max(worst, std::sqrt(r.segment(s * rows, rows).squaredNorm() / static_cast<double>(rows)));
     return worst;
-  }
-
-  struct Explained {
-    double sum_of_squares, worst_rms;
-  };
-
-  /// What is left when the model's free numbers are fitted.
-  Explained explained(const Values& model, const std::vector<Free>& free, int iterations) const {
-    const auto with = [&](const std::vector<double>& values) {
-      Values p = model;
-      for (std::size_t j = 0; j < free.size(); ++j) p[static_cast<std::size_t>(free[j].index)] = values[j];
-      return p;
-    };
-    const Fit best = fit_from_best_starts([&](const std::vector<double>& v) { return residuals(with(v)); }, free, iterations, 1e-3);
-    return {best.sum_of_squares, worst_rms(residuals(with(best.values)))};
   }
 };
 
@@ -79,64 +108,67 @@ inline std::vector<Free> joined(std::vector<Free> all, const std::vector<Free>& 
   return all;
 }
 
+/// What to look for.
+struct Inquiry {
+  std::vector<std::string> truth;  ///< ids of the causes at work; empty for none and for causes without a name
+  bool thorough = true;            ///< whether to look for the best wrong cause, which takes most of the time
+  double gate = 3.0;               ///< least RMS over the floor; below it nothing more is done
+  double hopeless = 2.0;           ///< a likeness from which on the case is drawn again, so that no more need be known
+  const Assessment* seeds = nullptr;  ///< an earlier look: only its suspects of likeness 0.9 and more, from what fitted there
+};
+
 /// Judges a drawn case.
-/// @param truth ids of the causes at work; empty for none and for causes without a name
-/// @param thorough whether to look for the best wrong cause, which takes most of the time
-/// @param hopeless a likeness from which on the case will be drawn again, so that no more need be known
-/// @param only_these suspects to look at; all when empty
 template <class Context, class Values>
 Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout, const Context& context,
-                  const std::vector<Effect<Context, Values>>& effects, const std::vector<Free>& slack,
-                  const std::vector<std::string>& truth, bool thorough, double gate, double hopeless = 2.0,
-                  const std::vector<std::string>& only_these = {}) {
+                  const std::vector<Effect<Context, Values>>& effects, const std::vector<Free>& slack, const Inquiry& inquiry) {
   Assessment result;
-  const auto only = [&](const std::vector<std::string>& ids) {
-    std::vector<Free> free = slack;
-    for (const auto& id : ids) free = joined(free, named(effects, id).suspect(context));
-    return free;
-  };
+  const auto& truth = inquiry.truth;
   // With two causes each has to be visible beside the other.
-  std::vector<std::vector<std::string>> kept = {{}};
-  if (truth.size() == 2) kept = {{truth[0]}, {truth[1]}};
+  std::vector<std::vector<Free>> kept = {slack};
+  if (truth.size() == 2) kept = {joined(slack, named(effects, truth[0]).suspect(context)), joined(slack, named(effects, truth[1]).suspect(context))};
   std::vector<typename Scenario<Values>::Explained> without;
   result.visible_train = result.visible_heldout = 1e9;
-  for (const auto& ids : kept) {
-    without.push_back(train.explained(context.model, only(ids), 12));
+  for (auto& free : kept) {
+    without.push_back(train.explained(context.model, free, 12));
     result.visible_train = std::min(result.visible_train, without.back().worst_rms);
-    if (result.visible_train < gate) return result;
-    result.visible_heldout = std::min(result.visible_heldout, heldout.explained(context.model, only(ids), 12).worst_rms);
-    if (result.visible_heldout < gate) return result;
+    if (result.visible_train < inquiry.gate) return result;
+    if (!inquiry.seeds) result.visible_heldout = std::min(result.visible_heldout, heldout.explained(context.model, free, 12).worst_rms);
+    if (result.visible_heldout < inquiry.gate) return result;
+    for (auto& f : free) f.starts = {without.back().fitted[f.index]};  // a suspect begins where its absence ended
   }
-  if (!thorough) return result;
-  for (const auto& suspect : effects) {
-    if (!suspect.possible(context) || std::count(truth.begin(), truth.end(), suspect.id)) continue;
+  if (!inquiry.thorough) return result;
+  for (const auto& effect : effects) {
+    if (!effect.possible(context) || std::count(truth.begin(), truth.end(), effect.id)) continue;
     const bool richer = std::any_of(truth.begin(), truth.end(), [&](const std::string& id) {
-      return std::count(suspect.contains.begin(), suspect.contains.end(), id) > 0;
+      return std::count(effect.contains.begin(), effect.contains.end(), id) > 0;
     });
-    if (richer || (!only_these.empty() && !std::count(only_these.begin(), only_these.end(), suspect.id))) continue;
-    double likeness = 0.0, left = 1e9;
+    if (richer) continue;
+    const Suspect* seed = nullptr;
+    if (inquiry.seeds) {
+      for (const auto& earlier : inquiry.seeds->suspects)
+        if (earlier.id == effect.id && earlier.likeness >= 0.9) seed = &earlier;
+      if (!seed) continue;
+    }
+    Suspect suspect{effect.id, 0.0, {}};
     for (std::size_t i = 0; i < kept.size(); ++i) {
-      auto ids = kept[i];
-      ids.push_back(suspect.id);
-      const auto explained = train.explained(context.model, only(ids), truth.size() == 2 ? 6 : 8);
-      const double cosine = std::sqrt(std::max(0.0, 1.0 - explained.sum_of_squares / without[i].sum_of_squares));
-      likeness = std::max(likeness, cosine);
-      left = std::min(left, explained.worst_rms);
+      const auto free = joined(kept[i], effect.suspect(context));
+      auto explained = train.explained(context.model, free, truth.size() == 2 ? 6 : 8, seed ? seed->fitted[i] : Fitted{});
+      suspect.likeness = std::max(suspect.likeness, std::sqrt(std::max(0.0, 1.0 - explained.sum_of_squares / without[i].sum_of_squares)));
+      suspect.fitted.push_back(explained.fitted);
+      result.left_over = std::min(result.left_over, explained.worst_rms);
     }
-    result.others.emplace_back(suspect.id, likeness);
-    if (result.confused_with.empty() || likeness > result.confusability) {
-      result.confusability = likeness;
-      result.confused_with = suspect.id;
-      result.left_over = left;
-    }
-    if (likeness >= hopeless) return result;
+    result.suspects.push_back(suspect);
+    if (suspect.likeness >= inquiry.hopeless) break;
   }
-  std::sort(result.others.begin(), result.others.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  result.sort();
   if (truth.empty() && result.beyond_catalogue()) {
     // A cause without a name: two named ones together must not do either.
-    for (std::size_t first = 0; first < std::min<std::size_t>(2, result.others.size()); ++first)
-      for (std::size_t second = first + 1; second < std::min<std::size_t>(8, result.others.size()); ++second)
-        result.left_over = std::min(result.left_over, train.explained(context.model, only({result.others[first].first, result.others[second].first}), 6).worst_rms);
+    const auto& all = result.suspects;
+    for (std::size_t first = 0; first < std::min<std::size_t>(2, all.size()); ++first)
+      for (std::size_t second = first + 1; second < std::min<std::size_t>(8, all.size()); ++second) {
+        const auto free = joined(joined(kept[0], named(effects, all[first].id).suspect(context)), named(effects, all[second].id).suspect(context));
+        result.left_over = std::min(result.left_over, train.explained(context.model, free, 6).worst_rms);
+      }
   }
   return result;
 }

@@ -201,21 +201,22 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
     DrawnCase drawn;
     if (!order.effects.empty() || unknown != AxisUnknown::none) {
       const double limit_s = order.effects.size() == 2 ? 8.0 : 10.0;
-      const double hopeless = unknown != AxisUnknown::none || (order.clear && patience > 1) ? 0.999 : 2.0;
-      const auto judge = [&](double window_s, bool thorough, const std::vector<std::string>& suspects) {
+      Inquiry inquiry{order.effects, order.thorough, order.gate};
+      const auto judge = [&](double window_s) {
         return assess(axis_scenario(first, floors, window_s, limit_s), axis_scenario(second, floors, window_s, limit_s), c, axis_effects(),
-                      axis_slack(c), order.effects, thorough, order.gate, hopeless, suspects);
+                      axis_slack(c), inquiry);
       };
-      drawn.assessment = judge(axis_horizon_s, order.thorough, {});
+      drawn.assessment = judge(axis_horizon_s);
       if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
       if (order.thorough) {
-        // What looks alike over half a second may not do so over three.
-        std::vector<std::string> alike;
-        for (const auto& other : drawn.assessment.others)
-          if (other.second >= 0.9) alike.push_back(other.first);
-        if (!alike.empty()) drawn.assessment.least(judge(3.0, true, alike));
+        if (drawn.assessment.confusability() >= 0.9) {
+          // What looks alike over half a second may not do so over three.
+          const Assessment half_second = drawn.assessment;
+          inquiry.seeds = &half_second;
+          drawn.assessment.least(judge(3.0));
+        }
         if (unknown != AxisUnknown::none && !drawn.assessment.beyond_catalogue()) continue;
-        if (order.clear && drawn.assessment.confusability >= 0.9 && --patience > 0) continue;
+        if (order.clear && drawn.assessment.confusability() >= 0.9 && --patience > 0) continue;
       }
     }
     SquaredErrors all_before = before, all_perfect = perfect;

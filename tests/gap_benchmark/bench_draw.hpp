@@ -222,13 +222,13 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
 
     DrawnCase drawn;
     if (!order.effects.empty() || unknown != BenchUnknown::none) {
-      drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors), c, bench_effects(),
-                                bench_slack(c), order.effects, order.thorough, order.gate,
-                                unknown != BenchUnknown::none || (order.clear && patience > 1) ? 0.9 : 2.0);
+      Inquiry inquiry{order.effects, order.thorough, order.gate};
+      if (unknown != BenchUnknown::none || (order.clear && patience > 1)) inquiry.hopeless = 0.9;
+      drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors), c, bench_effects(), bench_slack(c), inquiry);
       if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
       if (order.thorough) {
         if (unknown != BenchUnknown::none && !drawn.assessment.beyond_catalogue()) continue;
-        if (order.clear && drawn.assessment.confusability >= 0.9 && --patience > 0) continue;
+        if (order.clear && drawn.assessment.confusability() >= 0.9 && --patience > 0) continue;
       }
     }
     // The shrinkage of the population: more held-out recordings of the same kind.

@@ -225,8 +225,8 @@ TEST_CASE("a cause is recognised by its own fit and a stranger is not") {
   order.clear = true;
   Random random(5);
   const DrawnCase drawn = draw_bench_case(order, random);
-  CHECK(drawn.assessment.confusability < 0.9);
-  CHECK(drawn.assessment.others.size() > 8);
+  CHECK(drawn.assessment.confusability() < 0.9);
+  CHECK(drawn.assessment.suspects.size() > 8);
 }
 
 TEST_CASE("what the judge sees does not name the cause") {

@@ -85,7 +85,9 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
 }
 
 /// The best fit from the two best combinations of the listed starting values.
-inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Free>& free, int iterations, double enough = 0.0) {
+/// @param seed a further start, or empty
+inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Free>& free, const std::vector<double>& seed, int iterations,
+                                double enough = 0.0) {
   std::vector<std::pair<double, std::vector<double>>> starts;
   std::vector<std::size_t> choice(free.size(), 0);
   for (std::size_t j = 0; j <= free.size();) {
@@ -96,6 +98,7 @@ inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Fr
     while (j < free.size() && ++choice[j] == free[j].starts.size()) choice[j++] = 0;
     if (j == free.size()) break;
   }
+  if (!seed.empty()) starts.emplace_back(0.0, seed);
   if (starts.size() > 2)
     for (auto& start : starts) start.first = residuals(start.second).squaredNorm();
   std::sort(starts.begin(), starts.end());

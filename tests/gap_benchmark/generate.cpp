@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string out, only;
   unsigned long long seed = 1;
-  int count = 5, threads = 2;
+  int count = 5, threads = 2, one = -1;
   bool quick = false, leave_one_out = true;
 };
 
@@ -35,6 +35,7 @@ constexpr const char* usage =
     "usage: gap_benchmark_generate --out DIR --seed S [options]\n"
     "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
     "  --only LIST   effect ids, none, pairs, unknown, with commas between\n"
+    "  --case N      draw only this case of the plan\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
     "  --quick       do not look for the best wrong cause (no confusability in the labels)\n"
     "  --no-leave-one-out\n";
@@ -51,6 +52,7 @@ bool parse(int argc, char** argv, Options& options) {
       else if (option == "--seed") options.seed = std::stoull(value());
       else if (option == "--only") options.only = value();
       else if (option == "--count") options.count = std::stoi(value());
+      else if (option == "--case") options.one = std::stoi(value());
       else if (option == "--threads") options.threads = std::stoi(value());
       else if (option == "--quick") options.quick = true;
       else if (option == "--no-leave-one-out") options.leave_one_out = false;
@@ -74,11 +76,11 @@ Json complete(DrawnCase& drawn, const CaseOrder& order) {
   const Assessment& a = drawn.assessment;
   Json label = drawn.label;
   label["visible"] = {{"train", a.visible_train}, {"heldout", a.visible_heldout}};
-  if (order.thorough && !a.others.empty()) {
-    label["confusability"] = a.confusability;
-    label["confused_with"] = a.confused_with;
+  if (order.thorough && !a.suspects.empty()) {
+    label["confusability"] = a.confusability();
+    label["confused_with"] = a.confused_with();
     label["left_over"] = a.left_over;
-    for (const auto& other : a.others) label["likeness"][other.first] = other.second;
+    for (const auto& suspect : a.suspects) label["likeness"][suspect.id] = suspect.likeness;
   }
   return label;
 }
@@ -93,12 +95,14 @@ int main(int argc, char** argv) {
     std::cerr << "gap_benchmark_generate: nothing is called " << options.only << "\n";
     return 2;
   }
+  std::filesystem::create_directories(options.out + "/sealed");
   std::vector<Json> labels(orders.size());
   std::mutex talking;
   std::atomic<std::size_t> next{0};
   std::atomic<int> failed{0};
   const auto work = [&] {
     for (std::size_t i; (i = next++) < orders.size();) {
+      if (options.one >= 0 && i != static_cast<std::size_t>(options.one)) continue;
       const CaseOrder& order = orders[i];
       Random random(options.seed * 0x100000001b3ull + i);
       const auto began = std::chrono::steady_clock::now();
@@ -113,7 +117,7 @@ int main(int argc, char** argv) {
         labels[i] = complete(drawn, order);
         char text[200];
         std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s", drawn.train.rows(), drawn.assessment.visible_train,
-                      drawn.assessment.visible_heldout, drawn.assessment.confusability, drawn.assessment.confused_with.c_str());
+                      drawn.assessment.visible_heldout, drawn.assessment.confusability(), drawn.assessment.confused_with().c_str());
         line = text;
       } catch (const std::exception& error) {
         ++failed;
@@ -167,7 +171,6 @@ int main(int argc, char** argv) {
     list << "\n";
     sealed["leave_one_out"][numbered("L%04d", i)] = {{"case", drawn_jobs[i].first}, {"without", drawn_jobs[i].second}};
   }
-  std::filesystem::create_directories(options.out + "/sealed");
   std::ofstream file(options.out + "/sealed/labels.json");
   file << sealed.dump(1) << "\n";
   if (!file || !list) {

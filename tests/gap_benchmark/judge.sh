@@ -16,11 +16,9 @@ if [ "$1" = --one ]; then
   out=$directory/reports/$job
   mkdir -p "$out"
   rm -f "$out"/*
-  # What a user's program can see is this directory and no other.
-  set -- "$@" ""
   options=""
   for id; do
-    [ -z "$id" ] || options="$options --without $id"
+    options="$options --without $id"
   done
   began=$(date +%s.%N)
   status=0
@@ -41,4 +39,4 @@ program=$1 directory=$2 at_once=${3:-2}
 [ -r "$directory/jobs.txt" ] || { echo "judge.sh: $directory/jobs.txt is missing" >&2; exit 2; }
 mkdir -p "$directory/reports"
 # One line of jobs.txt is one run; a line's words become arguments.
-xargs -P "$at_once" -L 1 "$0" --one "$program" "$directory" <"$directory/jobs.txt"
+xargs -P "$at_once" -L 1 sh "$0" --one "$program" "$directory" <"$directory/jobs.txt"
