@@ -174,9 +174,17 @@ inline void localise_axis(const Model& model, const Recording& recording, double
       report(out, signal, submodel, instruments.explained(), block.variable, "With angle and rate held against each other", block.words, observed);
     }
   }
-  if (!torque.gap()) return;
+  if (!torque.gap() || (torque.explained() < 0.3 && torque.before() < 15.0)) return;
   const Observed observed = observe_torque(*model.axis, rows);
   const std::string signal = rows.has_rate ? "rate_dps" : "angle_deg";
+  if (torque.left() > 15.0 && torque.choice.best.seen_total > 0.03 * torque.choice.none.seen_total) {
+    const UnnamedTorque unnamed = judge.unnamed(torque.judged);
+    if (unnamed.left < 0.5 * torque.choice.best.seen_total) {
+      report(out, signal, unnamed.submodel, 1.0 - unnamed.left / torque.choice.none.seen_total, unnamed.variable,
+             "Given the measured motion and command", unnamed.words, observed);
+      return;
+    }
+  }
   if (torque.any() && torque.explained() > 0.3) {
     for (std::size_t k = 0; k < torque.worth.size(); ++k) {
       const Block& block = torque.judged.blocks[torque.choice.best.blocks[k]];
@@ -197,6 +205,15 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   if (model.has_current() && rows.has_power && rows.has_current) current.emplace(judge_current(model, rows, slack));
   const bool current_gap = current && current->gap();
 
+  double offset_A = 0.0;
+  if (current_gap) {
+    Eigen::Index at = current->judged.problem.nuisance.cols();
+    for (const std::size_t i : current->choice.best.blocks) {
+      const Block& block = current->judged.blocks[i];
+      if (block.submodel == "sensing.current") offset_A = current->choice.best.coefficients[at];
+      at += block.columns.cols();
+    }
+  }
   struct Heated {
     HeatSource source;
     Verdicts verdicts;
@@ -205,7 +222,7 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   std::vector<Heated> heated;
   if (model.has_thermal() && rows.has_temperature) {
     for (const HeatSource source : {HeatSource::law, HeatSource::measured_current, HeatSource::electrical_power}) {
-      Eigen::VectorXd heat = heat_of(model, rows, source);
+      Eigen::VectorXd heat = heat_of(model, rows, source, offset_A);
       if (heat.size() == 0) continue;
       // Where law and measurement agree there is one heat, and the law's carries no noise.
       if (!current_gap && !heated.empty()) break;
@@ -254,15 +271,21 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   const Observed observed = observe_heat(rows, judge);
   const std::string given = "Given the heat and the air temperature";
   const Verdicts& v = best->verdicts;
-  if (v.any() && v.explained() > 0.3 && v.left() < 60.0) {
-    for (std::size_t k = 0; k < v.worth.size(); ++k) {
-      const Block& block = v.judged.blocks[v.choice.best.blocks[k]];
-      report(out, "motor_C", block.submodel, v.worth[k], block.variable, given, block.words, observed);
+  if (v.left() > 8.0 && v.explained() < 0.99 && v.choice.best.seen_total > 0.03 * v.choice.none.seen_total) {
+    auto [submodel, left] = judge.unnamed(v.judged);
+    if (left < 0.5 * v.choice.best.seen_total) {
+      if (submodel != "thermal.storage") submodel = scatters_with_rise(observed) ? "thermal.loss" : "thermal.heating";
+      const double share = std::min(1.0, std::max(0.0, 1.0 - left / v.choice.none.seen_total));
+      report(out, "motor_C", submodel, share, submodel == "thermal.storage" ? "motor_C" : "", given,
+             submodel == "thermal.storage" ? "a heat capacity with a peak at some temperature" : "nothing recorded orders it; a course of its own in time", observed);
+      return;
     }
-    return;
   }
-  report(out, "motor_C", v.any() ? v.judged.blocks[v.choice.best.blocks[0]].submodel : "thermal.heating", v.any() ? v.explained() : 0.0, "",
-         given, "no smooth freedom in one submodel helps much, the best", observed);
+  for (std::size_t k = 0; k < v.worth.size(); ++k) {
+    const Block& block = v.judged.blocks[v.choice.best.blocks[k]];
+    report(out, "motor_C", block.submodel, v.worth[k], block.variable, given, block.words, observed);
+  }
+  if (v.worth.empty()) report(out, "motor_C", "thermal.heating", 0.0, "", given, "no freedom in one submodel helps; the best", observed);
 }
 
 }  // namespace detail

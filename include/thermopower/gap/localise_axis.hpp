@@ -103,6 +103,7 @@ public:
   struct One {
     Eigen::Index begin, end;  ///< rows [begin, end) inside its support
     double middle, half;      ///< s
+    std::size_t weights;      ///< where its weights begin
   };
 
   Bumps(const AxisRows& rows, const Eigen::VectorXd& needed, int half_rows, Eigen::Index most) : a_(rows) {
@@ -115,10 +116,15 @@ public:
       for (Eigen::Index i = run.begin + half_rows + 1; i + half_rows + 1 < run.end; i += half_rows) {
         if (number++ % keep != 0) continue;
         if (a_.t_s[i + half_rows] - a_.t_s[i - half_rows] > 2.5 * half) continue;  // a hole in the stamps
-        One one{i - half_rows, i + half_rows + 1, a_.t_s[i], half};
+        One one{i - half_rows, i + half_rows + 1, a_.t_s[i], half, bump_.size()};
         bool whole = true;
         for (Eigen::Index k = one.begin; k < one.end; ++k) whole = whole && std::isfinite(needed[k]);
-        if (whole) list_.push_back(one);
+        if (!whole) continue;
+        list_.push_back(one);
+        for (Eigen::Index k = one.begin; k < one.end; ++k) {
+          bump_.push_back(bump(one, a_.t_s[k]) * width(k));
+          slope_.push_back(-slope(one, a_.t_s[k]) * width(k));
+        }
       }
     }
   }
@@ -128,12 +134,12 @@ public:
 
   /// Integral of the bump times sampled values.
   Eigen::VectorXd integral(const Eigen::VectorXd& values) const {
-    return sum([&](const One& one, Eigen::Index k) { return bump(one, a_.t_s[k]) * width(k) * values[k]; });
+    return sum(bump_, values);
   }
 
   /// Integral of minus the bump's derivative times sampled values: of the bump times their derivative.
   Eigen::VectorXd derivative(const Eigen::VectorXd& values) const {
-    return sum([&](const One& one, Eigen::Index k) { return -slope(one, a_.t_s[k]) * width(k) * values[k]; });
+    return sum(slope_, values);
   }
 
   /// Integral of the bump times values that are held over the interval that starts at their row, `delay_s` later.
@@ -156,18 +162,20 @@ public:
     double sum = 0.0;
     if (list_.empty()) return 1.0;
     const One& one = list_[list_.size() / 2];
-    for (Eigen::Index k = one.begin; k < one.end; ++k) sum += std::pow(slope(one, a_.t_s[k]) * width(k), 2.0);
+    for (Eigen::Index k = 0; k < one.end - one.begin; ++k) sum += std::pow(slope_[one.weights + static_cast<std::size_t>(k)], 2.0);
     return std::sqrt(sum);
   }
 
 private:
   double bump(const One& one, double t) const {
     const double s = (t - one.middle) / one.half;
-    return std::fabs(s) < 1.0 ? 315.0 / 256.0 / one.half * std::pow(1.0 - s * s, 4.0) : 0.0;
+    const double q = 1.0 - s * s;
+    return q > 0.0 ? 315.0 / 256.0 / one.half * q * q * q * q : 0.0;
   }
   double slope(const One& one, double t) const {
     const double s = (t - one.middle) / one.half;
-    return std::fabs(s) < 1.0 ? -8.0 * s * 315.0 / 256.0 / (one.half * one.half) * std::pow(1.0 - s * s, 3.0) : 0.0;
+    const double q = 1.0 - s * s;
+    return q > 0.0 ? -8.0 * s * 315.0 / 256.0 / (one.half * one.half) * q * q * q : 0.0;
   }
   double area(const One& one, double t) const {  // integral of the bump up to t
     const double s = std::min(1.0, std::max(-1.0, (t - one.middle) / one.half)), q = s * s;
@@ -183,18 +191,25 @@ private:
     }
     return a_.runs.front();
   }
-  template <class Term>
-  Eigen::VectorXd sum(const Term& term) const {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
+  Eigen::VectorXd sum(const std::vector<double>& weights, const Eigen::VectorXd& values) const {
+    Eigen::VectorXd out(size());
     for (Eigen::Index r = 0; r < size(); ++r) {
       const One& one = list_[static_cast<std::size_t>(r)];
-      for (Eigen::Index k = one.begin; k < one.end; ++k) out[r] += term(one, k);
+      out[r] = values.segment(one.begin, one.end - one.begin)
+                   .dot(Eigen::Map<const Eigen::VectorXd>(weights.data() + one.weights, one.end - one.begin));
     }
     return out;
   }
 
   const AxisRows& a_;
   std::vector<One> list_;
+  std::vector<double> bump_, slope_;  ///< weights of values and of minus derivatives, bump after bump
+};
+
+/// A torque that no block of few directions describes.
+struct UnnamedTorque {
+  std::string submodel, variable, words;
+  double left = std::numeric_limits<double>::infinity();  ///< sum of squares, as if it had no more directions than a block
 };
 
 /// The torques, given the measured motion.
@@ -258,6 +273,7 @@ public:
     };
     const Eigen::VectorXd direction = rate.array().unaryExpr([&](double w) { return std::tanh(w / std::max(2.0 * a_.rate_noise, 1e-9)); });
     const Eigen::VectorXd speed = rate.cwiseAbs();
+    add("mechanical.friction", "rate_dps", "a friction that takes an angle to turn round", split(turning(rate)), 0.0);
     add("mechanical.friction", "rate_dps", "a friction of the same size at every rate", {sampled(direction)});
     // At rest, dry friction takes whatever the drive gives.
     const Eigen::VectorXd moving = rate.array().abs().unaryExpr([&](double w) { return w > 4.0 * a_.rate_noise ? 1.0 : 0.0; });
@@ -303,7 +319,55 @@ public:
     return j;
   }
 
+  /// Whom to accuse when no block helps: friction or load that change with time or position in a way of their own.
+  UnnamedTorque unnamed(const Judged& j) const {
+    const double sigma = std::max(a_.rate_noise, 1e-9) * m_.inertia_kgm2;
+    const double narrow_weight = 1.0 / (sigma * narrow_.derivative_gain()), wide_weight = 1.0 / (sigma * wide_.derivative_gain());
+    const Eigen::Index rows = j.problem.y.size();
+    UnnamedTorque best;
+    const auto attempt = [&](const char* submodel, const char* variable, const char* words, const Eigen::MatrixXd& samples) {
+      Eigen::MatrixXd columns(rows, samples.cols());
+      for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+        columns.col(k) << narrow_.integral(samples.col(k)) * narrow_weight, wide_.integral(samples.col(k)) * wide_weight;
+      }
+      const double n = static_cast<double>(rows), spent = static_cast<double>(samples.cols());
+      const double left = quick_fit(j.problem, columns) * n * n / std::pow(std::max(1.0, n - 4.0 * spent), 2.0);
+      if (left < best.left) best = {submodel, variable, words, left};
+    };
+    const Eigen::VectorXd direction = a_.rate.array().unaryExpr([&](double w) { return std::tanh(w / std::max(2.0 * a_.rate_noise, 1e-9)); });
+    const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(a_.rate.size(), 0.0, 1.0);
+    Eigen::MatrixXd friction(a_.rate.size(), 24);
+    friction << scaled(even_hats(order, 12), direction), scaled(even_hats(order, 12), a_.rate);
+    attempt("mechanical.friction", "t_s", "a friction that changes in the course of time", friction);
+    attempt("mechanical.load", "t_s", "a torque of its own course in time", even_hats(order, 48));
+    if (a_.has_angle) {
+      attempt("mechanical.friction", "angle_deg", "a friction that depends on the angle", scaled(even_hats(a_.angle, 24), direction));
+      attempt("mechanical.load", "angle_deg", "a torque of its own course over the angle", even_hats(a_.angle, 48));
+    }
+    return best;
+  }
+
 private:
+  // Dry friction that builds up over an angle after each reversal (Dahl's state), for several angles.
+  Eigen::MatrixXd turning(const Eigen::VectorXd& rate) const {
+    const double reach = std::max(a_.has_angle ? a_.angle.maxCoeff() - a_.angle.minCoeff() : 1.0, 1e-3);
+    Eigen::MatrixXd out(rate.size(), 4);
+    for (Eigen::Index k = 0; k < out.cols(); ++k) {
+      const double width = std::min(0.5, reach) * std::pow(0.3, static_cast<double>(k) + 1.0);
+      for (const RunSpan& run : a_.runs) {
+        double z = 0.0;
+        for (Eigen::Index i = run.begin; i < run.end; ++i) {
+          out(i, k) = z;
+          if (i + 1 == run.end) break;
+          const double moved = 0.5 * (rate[i] + rate[i + 1]) * (a_.t_s[i + 1] - a_.t_s[i]);
+          const double goal = moved > 0.0 ? 1.0 : -1.0;
+          z = goal + (z - goal) * std::exp(-std::fabs(moved) / width);
+        }
+      }
+    }
+    return out;
+  }
+
   // A torque that repeats n times a turn: the best n of a scan.
   template <class Both>
   void add_periodic(Judged& j, const Both& both) const {
@@ -316,12 +380,10 @@ private:
       Eigen::MatrixXd columns(j.problem.y.size(), 2);
       columns.col(0) = both(narrow_.integral(sine), wide_.integral(sine));
       columns.col(1) = both(narrow_.integral(cosine), wide_.integral(cosine));
-      Block block{"mechanical.load", "angle_deg", "a torque that repeats " + std::to_string(count) + " times a turn", columns};
-      const std::vector<Block> one{block};
-      const double left = BlockFitter(j.problem, one).fit({0}).seen_total;
+      const double left = quick_fit(j.problem, columns);
       if (left < least) {
         least = left;
-        best = std::move(block);
+        best = {"mechanical.load", "angle_deg", "a torque that repeats " + std::to_string(count) + " times a turn", columns};
       }
     }
     if (std::isfinite(least)) {
@@ -359,13 +421,11 @@ private:
       Eigen::MatrixXd columns(j.problem.y.size(), 2);
       columns.col(0) = both(narrow_.derivative(relative), wide_.derivative(relative));
       columns.col(1) = w * w * both(narrow_.integral(twist), wide_.integral(twist));
-      Block block{"mechanical.structure", "acceleration_rad_per_s2", "", columns};
-      const std::vector<Block> one{block};
-      const double left = BlockFitter(j.problem, one).fit({0}).seen_total;
+      const double left = quick_fit(j.problem, columns);
       if (left < least) {
         least = left;
         at = hertz;
-        best = std::move(block);
+        best = {"mechanical.structure", "acceleration_rad_per_s2", "", columns};
       }
     };
     const double highest = std::min(40.0, 0.3 / a_.interval_s);

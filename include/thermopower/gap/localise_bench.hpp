@@ -6,6 +6,8 @@
 #include <thermopower/gap/localise_rows.hpp>
 #include <thermopower/gap/model.hpp>
 
+#include <cstdio>
+
 /// @file localise_bench.hpp
 /// A motor on a bench: the current given the measured temperature, the temperature given the heat.
 
@@ -221,12 +223,14 @@ inline Judged judge_current(const Model& model, const BenchRows& b, double slack
 enum class HeatSource { law, measured_current, electrical_power };
 
 /// Heat into the motor in W by one source; empty where it is not to be had.
-inline Eigen::VectorXd heat_of(const Model& model, const BenchRows& b, HeatSource source) {
+/// @param offset_A what the current sensor reads too much
+inline Eigen::VectorXd heat_of(const Model& model, const BenchRows& b, HeatSource source, double offset_A = 0.0) {
   const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
   const bool polynomial = std::holds_alternative<ThesisThermalModel>(model.thermal);
   const Eigen::Index n = b.t_s.size();
   Eigen::VectorXd heat(n);
-  const Eigen::VectorXd measured = b.has_current ? held(&b.current_A, b.runs, n, 0.0) : Eigen::VectorXd();
+  Eigen::VectorXd measured = b.has_current ? held(&b.current_A, b.runs, n, 0.0) : Eigen::VectorXd();
+  measured.array() -= offset_A;
   switch (source) {
     case HeatSource::law:
       if (!b.has_power || !model.has_current()) return {};
@@ -315,22 +319,32 @@ public:
     add("thermal.loss", "rise_K", "another conductance", scale_loss, -unbounded);
     add("thermal.loss", "rise_K", "a loss that is there without a rise", response(loss_), -unbounded);
     add("thermal.loss", "rise_K", "a conductance that depends on the rise", responses(scaled(even_hats(rise, 4), loss)), -unbounded);
-    add("thermal.storage", "motor_C", "a heat capacity that depends on the temperature", by_capacity(), -unbounded);
+    add("thermal.storage", "motor_C", "a heat capacity that depends on the temperature", by_capacity(7), -unbounded);
     add("thermal.heating", "heat_W", "a heat that is not in proportion to the law's", responses(scaled(even_hats(heat_, 4), heat_)), -unbounded);
     if (b_.has_power && polynomial_) {
       Eigen::VectorXd supply(n);
       for (Eigen::Index i = 0; i < n; ++i) supply[i] = b_.v_rms_V[i] > 0.0 ? heat_[i] * (b_.supply_V[i] / b_.v_rms_V[i] - 1.0) : 0.0;
       add("thermal.heating", "v_rms_V", "heat by the power at the supply and not at the motor", response(supply), 0.0);
     }
-    Eigen::MatrixXd fast(n, 5), lagging(n, 5);
-    double tau = std::max(2.0 * b_.interval_s, 0.004 * time_constant_s_);
-    const double ratio = std::pow(std::max(0.4 * time_constant_s_ / tau, 1.5), 0.25);
-    for (Eigen::Index k = 0; k < 5; ++k, tau *= ratio) {
-      fast.col(k) = lag(heat_, tau, true);
-      lagging.col(k) = lag(baseline_, tau, false) - baseline_;
-    }
+    Eigen::MatrixXd fast(n, 5);
+    const double shortest = std::max(2.0 * b_.interval_s, 0.004 * time_constant_s_), longest = std::max(0.4 * time_constant_s_, 1.5 * shortest);
+    for (Eigen::Index k = 0; k < 5; ++k) fast.col(k) = lag(heat_, shortest * std::pow(longest / shortest, static_cast<double>(k) / 4.0), true);
     add("thermal.storage", "dT_dt", "a part that follows the heat faster than the whole", fast, 0.0);
-    add("sensing.temperature", "dT_dt", "a reading that comes after the temperature", lagging, 0.0);
+    Eigen::VectorXd latest;
+    double least = unbounded, at = 0.0;
+    for (int k = 0; k < 14; ++k) {
+      const double tau = shortest * std::pow(longest / shortest, k / 13.0);
+      const Eigen::VectorXd column = thin_(lag(baseline_, tau, false) - baseline_);
+      const double left = quick_fit(j.problem, column);
+      if (left < least) {
+        least = left;
+        latest = column;
+        at = tau;
+      }
+    }
+    char words[80];
+    std::snprintf(words, sizeof words, "a reading that comes %.3g s after the temperature", at);
+    j.blocks.push_back({"sensing.temperature", "dT_dt", words, latest, 0.0, unbounded, 1});
     for (const Column& column : b_.covariates) {
       const Eigen::VectorXd z = column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
       const double scale = std::max(z.cwiseAbs().maxCoeff(), 1e-12);
@@ -350,6 +364,34 @@ public:
       }
     }
     return j;
+  }
+
+  /// Whom to accuse when no block helps: a heat of its own course in time, a conductance of its own course, or a store at some
+  /// temperature, whichever follows the residual best for its number of directions.
+  /// @return submodel and the sum of squares it leaves, as if it had no more directions than a block
+  std::pair<std::string, double> unnamed(const Judged& j) const {
+    const Eigen::Index rows = j.problem.y.size(), knots = std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, rows / 20));
+    const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(b_.t_s.size(), 0.0, 1.0);
+    const Eigen::MatrixXd course = even_hats(order, static_cast<int>(knots));
+    const Eigen::VectorXd rise = b_.winding_C - b_.ambient_C;
+    std::pair<std::string, double> best{"", std::numeric_limits<double>::infinity()};
+    const auto attempt = [&](const char* submodel, const Eigen::MatrixXd& columns) {
+      const double n = static_cast<double>(rows), k = static_cast<double>(columns.cols());
+      const double left = quick_fit(j.problem, columns) * n * n / std::pow(std::max(1.0, n - 2.0 * k), 2.0);
+      if (left < best.second) best = {submodel, left};
+    };
+    // Both may lean on a loss that is constantly wrong: only what changes with time is to tell them apart.
+    Eigen::MatrixXd heat(rows, course.cols() + 2), loss(rows, course.cols() + 2);
+    heat.col(course.cols()) = loss.col(course.cols()) = thin_(response(loss_.cwiseProduct(rise)));
+    heat.col(course.cols() + 1) = loss.col(course.cols() + 1) = thin_(response(loss_));
+    for (Eigen::Index k = 0; k < course.cols(); ++k) {
+      heat.col(k) = thin_(response(loss_.cwiseProduct(course.col(k))));
+      loss.col(k) = thin_(response(loss_.cwiseProduct(rise).cwiseProduct(course.col(k))));
+    }
+    attempt("thermal.heating", heat);
+    attempt("thermal.loss", loss);
+    attempt("thermal.storage", thin_(by_capacity(24)));
+    return best;
   }
 
   /// J/K, W and W of each row: what multiplies dT/dt, what the baseline loses at the measured temperature, what it is heated by.
@@ -397,9 +439,8 @@ private:
     return out;
   }
 
-  Eigen::MatrixXd by_capacity() const {
+  Eigen::MatrixXd by_capacity(Eigen::Index bins) const {
     const double from = b_.winding_C.minCoeff(), to = b_.winding_C.maxCoeff();
-    constexpr Eigen::Index bins = 7;
     const double width = (to - from) / static_cast<double>(bins);
     Eigen::MatrixXd out(b_.winding_C.size(), bins);
     for (Eigen::Index k = 0; k < bins; ++k) {

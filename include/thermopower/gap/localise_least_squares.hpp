@@ -97,6 +97,20 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
   return x;
 }
 
+/// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a scan.
+inline double quick_fit(const Problem& problem, const Eigen::MatrixXd& columns) {
+  const Eigen::Index bounded = problem.nuisance.cols(), width = bounded + problem.free.cols() + columns.cols();
+  Eigen::MatrixXd x(problem.y.size(), width);
+  x << problem.nuisance, problem.free, columns;
+  const Eigen::VectorXd scale = x.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+  const Eigen::MatrixXd gram = scale.asDiagonal() * (x.transpose() * x) * scale.asDiagonal() + 1e-8 * Eigen::MatrixXd::Identity(width, width);
+  const Eigen::VectorXd moment = scale.asDiagonal() * (x.transpose() * problem.y);
+  Eigen::VectorXd upper = Eigen::VectorXd::Constant(width, std::numeric_limits<double>::infinity());
+  for (Eigen::Index k = 0; k < bounded; ++k) upper[k] = scale[k] > 0.0 ? problem.slack / scale[k] : 0.0;
+  const Eigen::VectorXd solution = bounded_solve(gram, moment, -upper, upper);
+  return std::max(0.0, problem.y.squaredNorm() - 2.0 * moment.dot(solution) + solution.dot(gram * solution));
+}
+
 /// What a set of blocks makes of a problem.
 struct BlockFit {
   std::vector<std::size_t> blocks;  ///< which
@@ -272,7 +286,11 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   const auto simplest = [&](const std::vector<BlockFit>& fits, std::size_t best) {
     std::size_t pick = best;
     for (std::size_t i = 0; i < fits.size(); ++i) {
-      if (fits[i].directions < fits[pick].directions && fits[i].unseen_total <= 1.35 * fits[best].unseen_total + 0.15 * floor) pick = i;
+      if (fits[i].directions >= fits[pick].directions) continue;
+      const double more = fits[i].unseen_total - fits[best].unseen_total;
+      const bool as_good = more <= 0.35 * fits[best].unseen_total + 0.15 * floor;
+      const bool all_but_a_trace = more <= 0.003 * (choice.none.unseen_total - floor) && fits[i].unseen_total < 12.0 * floor;
+      if (as_good || all_but_a_trace) pick = i;
     }
     return pick;
   };
@@ -288,7 +306,9 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
       if (doubles.back().unseen_total < doubles[best].unseen_total) best = doubles.size() - 1;
     }
   }
-  if (doubles.empty() || doubles[best].unseen_total > 0.4 * singles[least].unseen_total) return choice;
+  // A second block must matter: next to the first, and next to all there was to explain.
+  const double gained = doubles.empty() ? 0.0 : singles[least].unseen_total - doubles[best].unseen_total;
+  if (gained < 0.6 * singles[least].unseen_total || gained < 0.004 * (choice.none.unseen_total - floor)) return choice;
   choice.best = doubles[simplest(doubles, best)];
   // The one of the two that explains more alone comes first.
   auto& order = choice.best.blocks;

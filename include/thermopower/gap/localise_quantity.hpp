@@ -89,6 +89,22 @@ inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
   return o;
 }
 
+/// Whether a missing heat scatters in proportion to the rise, as a conductance of its own course would make it, rather than alike
+/// at every rise: the likelier of two normal laws, after what is constant, or in proportion to rise or heat, has been taken off.
+inline bool scatters_with_rise(const Observed& o) {
+  const Eigen::Index n = o.value.size();
+  const OrderingAxis *rise = o.find("rise_K"), *heat = o.find("heat_W");
+  if (n < 12 || rise == nullptr || heat == nullptr) return false;
+  Eigen::MatrixXd x(n, 3);
+  x << Eigen::VectorXd::Ones(n), rise->values, heat->values;
+  const Eigen::VectorXd left = o.value - x * x.colPivHouseholderQr().solve(o.value);
+  const double typical = std::sqrt(rise->values.squaredNorm() / static_cast<double>(n));
+  const Eigen::VectorXd scale = rise->values.cwiseAbs().cwiseMax(0.1 * typical);
+  const double alike = std::log(left.squaredNorm() / static_cast<double>(n));
+  const double with_rise = std::log(left.cwiseQuotient(scale).squaredNorm() / static_cast<double>(n)) + 2.0 * scale.array().log().mean();
+  return with_rise < alike;
+}
+
 /// Missing torque: J dw/dt + b w - Kt i, averaged over short stretches.
 inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
   Observed o{a.has_rate ? "rate_dps" : "angle_deg", "missing torque", "N m", {}, {}, a.interval_s};

@@ -127,12 +127,13 @@ inline Eigen::MatrixXd scaled(const Eigen::MatrixXd& columns, const Eigen::Vecto
 inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::VectorXd& variable, int bins, Eigen::Index shift = 0) {
   const std::vector<double> edges = equal_count_edges(variable, bins);
   if (edges.size() < 3) return 0.0;
-  std::vector<double> sum(edges.size(), 0.0), count(edges.size(), 0.0);
+  const Eigen::Index bands = static_cast<Eigen::Index>(edges.size());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(bands), count = Eigen::VectorXd::Zero(bands);
   double total = 0.0, square = 0.0, n = 0.0;
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const double v = value[(i + shift) % value.size()];
     if (!std::isfinite(v) || !std::isfinite(variable[i])) continue;
-    const std::size_t k = static_cast<std::size_t>(std::upper_bound(edges.begin() + 1, edges.end() - 1, variable[i]) - edges.begin());
+    const Eigen::Index k = std::upper_bound(edges.begin() + 1, edges.end() - 1, variable[i]) - edges.begin();
     sum[k] += v;
     count[k] += 1.0;
     total += v;
@@ -142,7 +143,7 @@ inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::Vecto
   if (n < 4.0) return 0.0;
   const double variance = square - total * total / n;
   double between = -total * total / n;
-  for (std::size_t k = 0; k < sum.size(); ++k) {
+  for (Eigen::Index k = 0; k < bands; ++k) {
     if (count[k] > 0.0) between += sum[k] * sum[k] / count[k];
   }
   return variance > 0.0 ? std::min(1.0, std::max(0.0, between / variance)) : 0.0;
