@@ -39,13 +39,14 @@ public:
   void window(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state, Sink&& sink) const {
     const double start_s = inputs_.t_s[run.begin];
     const double delay_s = instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
-    Eigen::Index commanded = begin;  // row whose command reaches the drive now
-    while (commanded > run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
+    // Row whose command reaches the drive now; before its first row a run is idle.
+    Eigen::Index commanded = begin;
+    while (commanded >= run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;
       sink(row, read(t_s, Scalar(state.angle_rad * (1.0 / rad_per_deg)),
                      Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))));
-      if (row + 1 < run.end) interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run.end, state);
+      if (row + 1 < run.end) interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run, state);
     }
   }
 
@@ -56,33 +57,33 @@ private:
     return readings;
   }
 
-  Scalar torque(Eigen::Index commanded, Eigen::Index row, double t_s) const {
+  Scalar torque(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
     DriveTerms<Scalar> terms;
     terms.t_s = t_s;
     terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
-    terms.drive_A = constant<Scalar>(inputs_.drive_A[commanded]);
+    terms.drive_A = constant<Scalar>(commanded >= run.begin ? inputs_.drive_A[commanded] : 0.0);
     terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
     for (const auto& effect : instance_.drive) effect(terms);
     return terms.torque_constant_Nm_per_A * terms.drive_A;
   }
 
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,
-                Eigen::Index run_end, AxisState<Scalar>& state) const {
+                const RunSpan& run, AxisState<Scalar>& state) const {
     if (!instance_.axis_structure.delayed) {
-      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), torque(row, row, from_s));
+      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), torque(row, run, row, from_s));
       return;
     }
     // The command switches inside the interval, at its stamp plus the delay: any delay acts smoothly.
     const Scalar& delay_s = instance_.axis_structure.delay_s;
     Scalar now_s = constant<Scalar>(from_s);
-    while (commanded + 1 < run_end) {
+    while (commanded + 1 < run.end) {
       const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
       if (!(value_of(switch_s) < to_s)) break;
-      step_.advance(state, value_of(now_s), Scalar(switch_s - now_s), torque(commanded, row, value_of(now_s)));
+      step_.advance(state, value_of(now_s), Scalar(switch_s - now_s), torque(commanded, run, row, value_of(now_s)));
       if (value_of(switch_s) > value_of(now_s)) now_s = switch_s;
       ++commanded;
     }
-    step_.advance(state, value_of(now_s), Scalar(to_s - now_s), torque(commanded, row, value_of(now_s)));
+    step_.advance(state, value_of(now_s), Scalar(to_s - now_s), torque(commanded, run, row, value_of(now_s)));
   }
 
   const Instance<Scalar>& instance_;

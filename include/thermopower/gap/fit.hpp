@@ -91,9 +91,9 @@ public:
 
 private:
   struct Eliminated {
-    Eigen::Matrix3d inverse;     ///< of the starts' own block
+    Eigen::Matrix2d inverse;     ///< of the starts' own block
     Eigen::MatrixXd coupling;    ///< starts by coordinates
-    Eigen::Vector3d gradient;
+    Eigen::Vector2d gradient;
   };
 
   void linearise(FitResult& at) {
@@ -126,12 +126,12 @@ private:
                    double& prior) {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     const auto own = residuals.jacobian.leftCols(n);
-    const auto starts = residuals.jacobian.rightCols(3);
+    const auto starts = residuals.jacobian.rightCols(2);
     const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
     Eliminated& part = eliminated_[i];
-    Eigen::Matrix3d block = starts.transpose() * starts;
+    Eigen::Matrix2d block = starts.transpose() * starts;
     block.diagonal() += weight;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 2; ++k)
       if (!(block(k, k) > 0.0)) block(k, k) = 1.0;
     part.inverse = block.inverse();
     part.coupling = starts.transpose() * own;

@@ -23,8 +23,9 @@ struct Segment {
   bool carries_on = false;    ///< states that nobody measures come from the segment before
 };
 
-/// Unknown start of a segment; a fit estimates it along with the parameters.
-using Start = Eigen::Vector3d;
+/// Unknown start of a segment; a fit estimates it along with the parameters. Of an axis: angle in deg, rate in
+/// deg/s; on the bench: the measured node in K, then what a hidden one differs from it.
+using Start = Eigen::Vector2d;
 
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
@@ -47,9 +48,9 @@ struct FitProblem {
     if (segment.axis) {
       // The row itself is among the data: the prior only has to keep an unmeasured start bounded.
       const bool angle = segment.inputs->judged(Signal::angle_deg), rate = segment.inputs->judged(Signal::rate_dps);
-      return {angle ? 0.01 / sigma[2] : 1e3, rate ? 0.01 / sigma[3] : 1e-4, 0.0};
+      return {angle ? 0.01 / sigma[2] : 1e3, rate ? 0.01 / sigma[3] : 1e-4};
     }
-    return {0.01 / sigma[1], 0.3, 0.3};  // K; hidden nodes within a few kelvin of the measured one
+    return {0.01 / sigma[1], 0.3};  // a hidden node lies within a few kelvin of the measured one
   }
 
   /// Simulates all segments and hands each one's residuals to `use(segment index, residuals)`.
@@ -58,13 +59,13 @@ struct FitProblem {
                 const std::vector<Start>& starts, bool with_jacobian, Use&& use) const {
     const int parameters = static_cast<int>(list.size());
     std::vector<Residuals> all(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) reserve(segments[i], with_jacobian ? parameters + 3 : 0, all[i]);
+    for (std::size_t i = 0; i < segments.size(); ++i) reserve(segments[i], with_jacobian ? parameters + 2 : 0, all[i]);
     if (!with_jacobian) {
       pass<double>(explanation, list, at, starts, 0, 0, all);
     } else {
       // Passes of dual_width directions; the last one carries the starts, too.
-      for (int first = 0; first < parameters + 3; first += dual_width)
-        pass<Dual>(explanation, list, at, starts, first, std::min(dual_width, parameters + 3 - first), all);
+      for (int first = 0; first < parameters + 2; first += dual_width)
+        pass<Dual>(explanation, list, at, starts, first, std::min(dual_width, parameters + 2 - first), all);
     }
     for (std::size_t i = 0; i < all.size(); ++i) use(i, all[i]);
   }
@@ -98,8 +99,8 @@ private:
     AxisState<Scalar> carried{still, still, still, still};
     for (std::size_t i = 0; i < segments.size(); ++i) {
       const Segment& segment = segments[i];
-      std::array<Scalar, 3> start;
-      for (int k = 0; k < 3; ++k) {
+      std::array<Scalar, 2> start;
+      for (int k = 0; k < 2; ++k) {
         start[static_cast<std::size_t>(k)] = constant<Scalar>(starts[i][k]);
         const int direction = parameters + k - first;
         if (direction >= 0 && direction < directions) seed(start[static_cast<std::size_t>(k)], direction);
@@ -133,7 +134,7 @@ private:
 
   template <class Scalar, class Put>
   static void simulate_bench(const Instance<Scalar>& instance, const Segment& segment,
-                             const std::array<Scalar, 3>& start, Put&& put) {
+                             const std::array<Scalar, 2>& start, Put&& put) {
     const Inputs& inputs = *segment.inputs;
     typename BenchRollout<Scalar>::Feed feed;
     feed.measured_motor = !inputs.judged(Signal::motor_C);
@@ -143,10 +144,10 @@ private:
     state.winding_C += start[0];
     state.surface_C = state.winding_C + start[1];
     state.thermometer_C = state.winding_C;
-    // With a lagging thermometer the measured start is the thermometer's, and the winding's is unknown.
+    // With a lagging thermometer the measured start is its own, and the winding's is the hidden one.
     if (instance.thermal_structure.lagged) {
-      state.winding_C += start[2];
-      state.surface_C += start[2];
+      state.winding_C += start[1];
+      state.surface_C = state.winding_C;
     }
     rollout.run(segment.begin, segment.end, inputs.t_s[segment.run.begin], state,
                 [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
@@ -157,7 +158,7 @@ private:
 
   template <class Scalar, class Put>
   static void simulate_axis(const Instance<Scalar>& instance, const Segment& segment,
-                            const std::array<Scalar, 3>& start, AxisState<Scalar>& carried, Put&& put) {
+                            const std::array<Scalar, 2>& start, AxisState<Scalar>& carried, Put&& put) {
     const Inputs& inputs = *segment.inputs;
     const AxisRollout<Scalar> rollout(instance, inputs);
     AxisState<Scalar> state = measured_start(rollout, inputs, segment.run, segment.begin);
