@@ -4,6 +4,7 @@
 // thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the gap shrinks with it.
 
 #include "atomic_file.hpp"
+#include "engine.hpp"
 #include "header_export.hpp"
 #include "input_error.hpp"
 #include "model_file.hpp"
@@ -13,8 +14,7 @@
 #include "report_json.hpp"
 #include "summary.hpp"
 
-#include <thermopower/gap/diagnose.hpp>
-#include <thermopower/gap/simulate.hpp>
+#include <thermopower/gap/splitting.hpp>
 #include <thermopower/gap/standard_catalogue.hpp>
 #include <thermopower/version.hpp>
 
@@ -156,18 +156,25 @@ int diagnose(const Arguments& arguments) {
     options.without = arguments.without;
     options.threads = arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
     options.seed = arguments.seed;
+    if (held_out.empty()) {
+      for (auto& recording : recordings) {
+        auto [first, last] = gap::split(recording, options.held_out_fraction);
+        recording = std::move(first);
+        held_out.push_back(std::move(last));
+      }
+    }
     progress.stage("diagnosing");
-    diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
+    diagnosis = files::run_diagnosis(model, recordings, held_out, options);
     diagnosis.findings.insert(diagnosis.findings.begin(), findings.begin(), findings.end());
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
     if (!arguments.html.empty()) outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
-                  files::predictions_csv(model, diagnosis.augmented, held_out.empty() ? recordings : held_out, arguments.horizon_s, catalogue));
+                  files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s, catalogue));
     }
     if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
-    if (!arguments.header.empty()) outputs.put(arguments.header, files::motor_model_header(diagnosis));
+    if (!arguments.header.empty()) outputs.put(arguments.header, files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
     outputs.commit();
   }
   std::fputs(files::summary(diagnosis).c_str(), stdout);

@@ -124,6 +124,12 @@ std::string summary(const Diagnosis& diagnosis) {
   return out;
 }
 
+std::string one_sentence(const Diagnosis& diagnosis) {
+  std::string out = std::string("verdict ") + to_string(diagnosis.verdict);
+  for (const auto& cause : diagnosis.cause) out += (&cause == &diagnosis.cause.front() ? ", " : " + ") + cause.effect;
+  return out;
+}
+
 std::string catalogue_text(const std::vector<EffectInfo>& effects) {
   std::string out;
   for (const auto& effect : effects) {

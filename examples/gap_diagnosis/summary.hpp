@@ -14,6 +14,9 @@ namespace thermopower::gap::files {
 /// gap shrinks, and the next experiment. Plain text of at most 100 columns.
 std::string summary(const Diagnosis& diagnosis);
 
+/// @brief Verdict and causes in one line, for places with room for no more.
+std::string one_sentence(const Diagnosis& diagnosis);
+
 /// @brief The catalogue as text: id, submodel, equation, parameters with units and bounds, needs.
 std::string catalogue_text(const std::vector<EffectInfo>& effects);
 
