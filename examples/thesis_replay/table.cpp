@@ -89,6 +89,10 @@ std::optional<double> Table::number_if_any(size_t row, const std::string& column
   return value;
 }
 
+void Table::refuse(size_t row, const std::string& column, const std::string& why) const {
+  fail(rows_.at(row).line, "column '" + column + "': " + shown(text(row, column)) + "; " + why);
+}
+
 size_t Table::index_of(const std::string& column) const {
   const auto found = std::find(header_.begin(), header_.end(), column);
   if (found == header_.end()) fail(1, "column '" + column + "' is missing");

@@ -29,6 +29,8 @@ class Table {
   double number(size_t row, const std::string& column) const;
   /// The field as a number, or nothing when it is empty.
   std::optional<double> number_if_any(size_t row, const std::string& column) const;
+  /// Refuses a field for a reason of the caller's: what is wrong, and what was expected. @throws TableError always
+  [[noreturn]] void refuse(size_t row, const std::string& column, const std::string& why) const;
 
  private:
   struct Row {

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# Runs thesis_replay as a user would: on its data, and on data that is damaged.
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+
+# expect(<exit status> <text in what it prints> <arguments>...)
+function(expect status text)
+  execute_process(COMMAND ${PROGRAM} ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE err)
+  string(FIND "${out}${err}" "${text}" found)
+  if(NOT result EQUAL status OR found EQUAL -1)
+    message(SEND_ERROR "thesis_replay ${ARGN}\nexit status ${result}, expected ${status}; expected text: ${text}\n${out}${err}")
+  endif()
+endfunction()
+
+expect(0 "BGM5208-200-12: model less measurement" --data ${DATA} --csv ${WORK}/traces.csv --svg ${WORK}/picture.svg)
+file(STRINGS ${WORK}/traces.csv traces)
+list(LENGTH traces rows)
+file(READ ${WORK}/picture.svg picture)
+if(rows LESS 500 OR NOT picture MATCHES "</svg>")
+  message(SEND_ERROR "traces.csv has ${rows} rows; picture.svg must be complete")
+endif()
+
+expect(0 "Folder with table4_1.csv" --help)
+expect(2 "nonsense" --nonsense)
+expect(2 "air" --air warm)
+expect(2 "air" --air 99)
+expect(3 "/nowhere/table4_1.csv: cannot be opened; expected a CSV file" --data /nowhere)
+expect(3 "${WORK}/absent/x.csv: cannot be written" --data ${DATA} --csv ${WORK}/absent/x.csv)
+if(EXISTS ${WORK}/absent)
+  message(SEND_ERROR "a failed run must leave nothing behind")
+endif()
+
+# damage(<file> <pattern> <replacement> <expected text>): one change in one table.
+function(damage file pattern replacement text)
+  file(REMOVE_RECURSE ${WORK}/data)
+  file(COPY ${DATA}/ DESTINATION ${WORK}/data)
+  file(READ ${WORK}/data/${file} contents)
+  string(REGEX REPLACE "${pattern}" "${replacement}" changed "${contents}")
+  if(changed STREQUAL contents)
+    message(SEND_ERROR "the damage to ${file} did nothing")
+  endif()
+  file(WRITE ${WORK}/data/${file} "${changed}")
+  expect(3 "${WORK}/data/${file}:${text}" --data ${WORK}/data)
+endfunction()
+
+damage(table4_3.csv "T_motor_C" "temperature" "1: column 'T_motor_C' is missing")
+damage(table4_3.csv "2,51.9,25" "2,51.9" "4: 3 fields; expected 4 as in the header")
+damage(table4_3.csv "2,51.9,25" "2,51;9,25" "4: column 'T_motor_C': '51")
+damage(table4_3.csv "2,51.9,25" "2,,25" "4: column 'T_motor_C': empty; expected a number")
+damage(table4_3.csv "2,51.9,25" "2,nan,25" "4: column 'T_motor_C': 'nan'; expected a finite number")
+damage(table5_4.csv "33.0,32.9" "33.0x,32.9" "14: column 'T_measured_C': '33.0x'; expected a finite number")
+damage(table4_1.csv "BGM2606-90T,1,50,5.76" "\"BGM2606-90T,1,50,5.76" "2: not a CSV row")
+damage(table4_3.csv "2,51.9,25" "0.5,51.9,25" "4: column 't_min': '0.5'; expected 0 in the first row of an experiment, and later")
+damage(table4_3.csv "10,38.8,25" "10.03,38.8,25" "12: column 't_min': '10.03'; expected whole tenths")
+damage(table4_1.csv ",1,50,5.76" ",1,500,5.76" "2: column 'power_param': '500'; expected 1 .. 255")
