@@ -57,6 +57,24 @@ enum class ConfigError : uint8_t {
   air_error_K = 42,                   ///< Must be finite and not negative.
   hold_s = 43,                        ///< Must be finite, above 0 and at most 10 s.
   horizon_s = 44,                     ///< Must be finite and not below hold_s.
+  current_std_A = 45,                 ///< Must be finite and above 0.
+  current_step_A = 46,                ///< Must be finite and not negative.
+  voltage_std_fraction = 47,          ///< Must be finite and not negative.
+  heat_error = 48,                    ///< A fraction; must be above 0 and at most 1.
+  gate_sigma = 49,                    ///< Must be finite and above 0.
+  variance_s = 50,                    ///< Must be finite and above 0.
+  slots = 51,                         ///< Must be at least 2.
+  interval_s = 52,                    ///< Must be above 0, and long enough for the memory to last a year.
+  change_K = 53,                      ///< Must be finite and not negative.
+  offset_fraction = 54,               ///< A node's place between two others; must be within its kind's range.
+  derating_K = 55,                    ///< Must be finite and above 0.
+  tolerance_deg = 56,                 ///< Must be finite and above 0.
+  learning_per_s = 57,                ///< Must be finite and above 0.
+  forgetting_per_s = 58,              ///< Must be finite and not negative.
+  highest_power = 59,                 ///< Must not be below the least power.
+  nominal_supply_V = 60,              ///< Must be finite and above 0.
+  magnet_tempco_per_K = 61,           ///< Must be within 0 .. 0.01 per kelvin.
+  pose_deg = 62,                      ///< The last pose must be above the first, both finite.
   user_defined = 128                  ///< Codes from here up are free for policies of your own.
 };
 

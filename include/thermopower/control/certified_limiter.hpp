@@ -54,7 +54,7 @@ struct SquareHeat {
 /// @tparam Heat     `LinearHeat` or `SquareHeat`
 ///
 /// Guarantees, for every actuator, air and supply within the bounds and every demand, when each step comes at most `hold_s` after the
-/// last: no limit is exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling, in constant air, the
+/// last, from any start inside the safe set (`State::is_certified`): no limit is exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling, in constant air, the
 /// power settles and stays (no dithering); a fault gives the least power and forgets nothing.
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
@@ -103,6 +103,8 @@ class CertifiedLimiter {
     CertifiedNode node;      ///< Which limit sets the ceiling.
     float headroom_W;        ///< Heat that could be added to the power granted.
     float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever reached.
+    bool is_certified;       ///< The bounds are where the least power keeps them below the limits for ever. False only after a start
+                             ///< that was too hot already, or a late step; the guarantee then begins when this turns true.
     uint16_t late_steps;     ///< Steps longer than `hold_s`: the guarantee did not cover them. Stops at 65535.
   };
 
@@ -173,9 +175,10 @@ class CertifiedLimiter {
     const State state = {network_.winding_C(), network_.body_C(), ceiling(),
                          Heat::power(static_cast<uint8_t>(network_.sustainable() + 1)), node_,
                          static_cast<float>(ceiling_ - acting_) * (1.0f / 255.0f) * config_.use.heat.heat_when_hot_W,
-                         network_.seconds_to_limit(acting_), late_steps_};
+                         network_.seconds_to_limit(acting_), is_certified(), late_steps_};
     return state;
   }
+  bool is_certified() const noexcept { return network_.is_certified(); }   ///< As in State, without the rest.
   float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
   const Config& config() const noexcept { return config_; }                ///< What was declared.

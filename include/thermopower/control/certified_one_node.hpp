@@ -117,6 +117,8 @@ class CertifiedOneNode {
   /// The largest count that is bearable for ever in this air.
   uint8_t sustainable() const noexcept { return detail::count_within(limit_ - base_, to_air_now_, 254); }
 
+  /// True when the bound is inside the set that the least power never leaves. It stays true once it is, within the contract.
+  bool is_certified() const noexcept { return limit_ - base_ - room() >= -64; }
   /// Always true: there is no second node that could hand on heat.
   bool is_below(uint8_t) const noexcept { return true; }
 

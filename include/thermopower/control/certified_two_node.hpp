@@ -206,6 +206,11 @@ class CertifiedTwoNode {
     return count.count;
   }
 
+  /// True when both bounds are inside the set that the least power never leaves. It stays true once it is, within the contract.
+  bool is_certified() const noexcept {
+    const Room room = this->room();
+    return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
+  }
   /// True when the winding has no more heat to hand on than it would have at this count for ever.
   bool is_below(uint8_t count) const noexcept { return room().apart <= count * (across_now_ + soak_now_); }
 
@@ -250,6 +255,9 @@ class CertifiedTwoNode {
     room.mean_left = mean_limit_ - base_ - room.mean;
     return room;
   }
+
+  // The limits are kept half a millikelvin low; what roundings may add to a bound is a hundredth of that.
+  static constexpr detail::KelvinUnits rounding_units() { return 64; }
 
   static float crossing_s(float from_K, float to_K, float limit_K, float rate_per_s) noexcept {
     if (from_K >= limit_K) return 0.0f;

@@ -20,7 +20,7 @@ int main(int argument_count, char** arguments) {
     const double danger = dangers[random() % 4];
     const int steps = static_cast<int>(log_uniform(random, 20.0, 1000.0));
     const Excess excess = run(random, declared, draw_truth(random, declared, danger), i % 2 ? danger : -1.0, steps);
-    if (excess.winding_K > 0.0 || excess.body_K > 0.0 || excess.over_bound_K > 0.0) ++exceeded;
+    if (excess.winding_K > 0.0 || excess.body_K > 0.0 || excess.over_bound_K > 0.0 || excess.lost_certificate) ++exceeded;
     if (excess.winding_K > -1.0 || excess.body_K > -1.0) ++within_1_K;
     winding_K = std::max(winding_K, excess.winding_K);
     body_K = std::max(body_K, excess.body_K);
@@ -31,7 +31,7 @@ int main(int argument_count, char** arguments) {
   std::printf("actuators inside their bounds   %ld\n", actuators);
   std::printf("steps simulated                 %ld, %.1f %% of them limited\n", total, 100.0 * static_cast<double>(limited) / static_cast<double>(total));
   std::printf("came within 1 K of a limit      %ld\n", within_1_K);
-  std::printf("exceeded a limit or a bound     %ld\n", exceeded);
+  std::printf("exceeded a limit or a bound,\nor left the safe set            %ld\n", exceeded);
   std::printf("closest to its limit, K         winding %.6f, body %.6f\n", -winding_K, -body_K);
   std::printf("closest to its upper bound, K   %.6f\n", -over_bound_K);
   return exceeded == 0 ? 0 : 1;

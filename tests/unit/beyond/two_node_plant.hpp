@@ -158,6 +158,7 @@ struct Excess {
   double winding_K = -1e9, body_K = -1e9;      ///< Highest temperature above its limit.
   double over_bound_K = -1e9;                  ///< Highest temperature above the limiter's own upper bound.
   int limited = 0;                             ///< Steps that were held back.
+  bool lost_certificate = false;               ///< The limiter's bounds left its safe set.
 };
 
 /// One run of a limiter on one actuator.
@@ -177,6 +178,11 @@ inline Excess run(Random& random, const Declared& declared, Truth truth, double 
   if (start_mean > 0 && plant.body_C + start_mean > limit_body) plant.winding_C = plant.body_C;
   limiter.start(static_cast<float>(plant.winding_C) + 1e-4f, static_cast<float>(plant.body_C) + 1e-4f);
 
+  if (!limiter.is_certified()) {  // hotter than the least power can make good: there is nothing to promise yet
+    plant.winding_C = plant.body_C = std::min(truth.air_C, air);
+    limiter.start(static_cast<float>(plant.winding_C) + 1e-4f, static_cast<float>(plant.body_C) + 1e-4f);
+  }
+
   const Adversary adversary = {static_cast<Adversary::Kind>(random() % Adversary::kinds), 1 + static_cast<int>(log_uniform(random, 1.0, 100.0))};
   const bool has_jitter = chance(random, 0.5);
   const double hold = static_cast<double>(declared.config.use.hold_s);
@@ -195,6 +201,7 @@ inline Excess run(Random& random, const Declared& declared, Truth truth, double 
         reads_air ? static_cast<float>(read_air) : thermopower::detail::not_a_number()};
     const thermopower::LimitedPower granted = limiter.step(inputs, step == 0 ? 0.0f : static_cast<float>(dt));
     if (granted.reason != thermopower::LimitReason::none) ++excess.limited;
+    if (!limiter.is_certified()) excess.lost_certificate = true;
     if (step > 0) {
       excess.over_bound_K = std::max({excess.over_bound_K, plant.winding_C - static_cast<double>(limiter.winding_upper_C()),
                                       plant.body_C - static_cast<double>(limiter.body_upper_C())});
