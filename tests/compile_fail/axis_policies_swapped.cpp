@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+// expect: the second parameter of AxisController must be a power law
+
+#include <thermopower/thermopower.hpp>
+namespace tp = thermopower;
+
+#if defined(MISUSE)
+tp::AxisController<tp::motors::Bgm2606_90t, tp::SafetyLimiter<>, tp::StepPowerLaw<>, tp::NoGain> axis;
+#else
+tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::NoGain> axis;
+#endif
