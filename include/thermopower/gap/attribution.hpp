@@ -86,12 +86,16 @@ public:
     return candidate;
   }
 
-  /// Goes on from where a fit stopped.
+  /// Goes on from where a fit stopped, possibly on other data.
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
-    candidate.fit = fitter.minimise(candidate.fit.at, options, &candidate.fit.starts);
+    const bool same = candidate.fit.starts.size() == problem_.segments.size();
+    candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
     candidate.train = sums(candidate, problem_, &candidate.fit.starts);
   }
+
+  /// What is fitted to.
+  const FitProblem& problem() const { return problem_; }
 
   /// Fits many explanations.
   std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations, const FitOptions& options) const {

@@ -26,15 +26,16 @@ class AxisStep {
 public:
   explicit AxisStep(const Instance<Scalar>& instance) : instance_(instance) {
     const auto& shape = instance.axis_structure;
-    near_inertia_kgm2_ = instance.inertia_kgm2;
+    Scalar near_inertia_kgm2 = instance.inertia_kgm2;
     if (shape.compliant) {
-      near_inertia_kgm2_ = instance.inertia_kgm2 * (1.0 - shape.far_share);
+      near_inertia_kgm2 = instance.inertia_kgm2 * (1.0 - shape.far_share);
       far_inertia_kgm2_ = instance.inertia_kgm2 * shape.far_share;
-      const Scalar reduced = near_inertia_kgm2_ * shape.far_share;
+      const Scalar reduced = near_inertia_kgm2 * shape.far_share;
       spring_Nm_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_rad_per_s;
       damper_Nms_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_damping * 2.0;
     }
-    double fastest = std::abs(value_of(instance.viscous_Nms_per_rad) / value_of(near_inertia_kgm2_));
+    per_near_inertia_ = 1.0 / near_inertia_kgm2;
+    double fastest = std::abs(value_of(instance.viscous_Nms_per_rad) / value_of(near_inertia_kgm2));
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
   }
@@ -57,19 +58,12 @@ private:
   };
 
   Balance balance(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
-    const Scalar viscous = instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
-    if (instance_.axis.empty()) {
-      const Scalar zero = constant<Scalar>(0.0);
-      return {drive_Nm - viscous, zero, zero};
-    }
-    AxisTerms<Scalar> terms;
-    terms.t_s = t_s;
-    terms.angle_rad = state.angle_rad;
-    terms.rate_rad_per_s = state.rate_rad_per_s;
-    terms.drive_Nm = drive_Nm;
-    terms.load_Nm = terms.friction_forward_Nm = terms.friction_backward_Nm = constant<Scalar>(0.0);
+    const Scalar zero = constant<Scalar>(0.0);
+    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero};
     for (const auto& effect : instance_.axis) effect(terms);
-    return {drive_Nm + terms.load_Nm - viscous, terms.friction_forward_Nm, terms.friction_backward_Nm};
+    terms.load_Nm += drive_Nm;
+    terms.load_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+    return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm};
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {
@@ -77,43 +71,37 @@ private:
   }
 
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
-  Slope slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction) const {
+  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction, Slope& rate) const {
     const bool compliant = instance_.axis_structure.compliant;
-    Slope rate;
-    const Scalar zero = constant<Scalar>(0.0);
-    Scalar spring_Nm = zero;
-    if (compliant) spring_Nm = spring(state);
     if (direction == 0) {
-      rate.angle = rate.rate = zero;
+      rate.angle = rate.rate = constant<Scalar>(0.0);
     } else {
-      const Balance now = balance(state, t_s, drive_Nm);
       rate.angle = state.rate_rad_per_s;
-      rate.rate = now.torque_Nm;
-      if (!instance_.axis.empty()) {
+      if (instance_.axis.empty()) {
+        rate.rate = drive_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+      } else {
+        const Balance now = balance(state, t_s, drive_Nm);
+        rate.rate = now.torque_Nm;
         if (direction > 0) rate.rate -= now.forward_Nm;
         else rate.rate += now.backward_Nm;
       }
-      if (compliant) rate.rate += spring_Nm;
-      rate.rate /= near_inertia_kgm2_;
+      if (compliant) rate.rate += spring(state);
+      rate.rate *= per_near_inertia_;
     }
     if (compliant) {
       rate.twist = state.twist_rate_rad_per_s;
-      rate.twist_rate = -spring_Nm / far_inertia_kgm2_ - rate.rate;
-    } else {
-      rate.twist = rate.twist_rate = zero;
+      rate.twist_rate = -spring(state) / far_inertia_kgm2_ - rate.rate;
     }
-    return rate;
   }
 
-  AxisState<Scalar> moved(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s) const {
-    AxisState<Scalar> to = from;
-    to.angle_rad += rate.angle * h_s;
-    to.rate_rad_per_s += rate.rate * h_s;
+  /// Writes only what moves: a rigid axis has no twist.
+  void move(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s, AxisState<Scalar>& to) const {
+    to.angle_rad = from.angle_rad + rate.angle * h_s;
+    to.rate_rad_per_s = from.rate_rad_per_s + rate.rate * h_s;
     if (instance_.axis_structure.compliant) {
-      to.twist_rad += rate.twist * h_s;
-      to.twist_rate_rad_per_s += rate.twist_rate * h_s;
+      to.twist_rad = from.twist_rad + rate.twist * h_s;
+      to.twist_rate_rad_per_s = from.twist_rate_rad_per_s + rate.twist_rate * h_s;
     }
-    return to;
   }
 
   /// One Runge-Kutta step; `bend` is how far the acceleration strays from a straight line, as a rate.
@@ -121,19 +109,29 @@ private:
                                 int direction, double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
-    const Slope k1 = slope(from, t_s, drive_Nm, direction);
-    const Slope k2 = slope(moved(from, k1, half_s), t_s + 0.5 * h, drive_Nm, direction);
-    const Slope k3 = slope(moved(from, k2, half_s), t_s + 0.5 * h, drive_Nm, direction);
-    const Slope k4 = slope(moved(from, k3, h_s), t_s + h, drive_Nm, direction);
+    Slope k1, k2, k3, k4;
+    AxisState<Scalar> point = from;
+    slope(from, t_s, drive_Nm, direction, k1);
+    move(from, k1, half_s, point);
+    slope(point, t_s + 0.5 * h, drive_Nm, direction, k2);
+    move(from, k2, half_s, point);
+    slope(point, t_s + 0.5 * h, drive_Nm, direction, k3);
+    move(from, k3, h_s, point);
+    slope(point, t_s + h, drive_Nm, direction, k4);
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
-    Slope mean;
-    mean.angle = (k1.angle + 2.0 * (k2.angle + k3.angle) + k4.angle) * (1.0 / 6.0);
-    mean.rate = (k1.rate + 2.0 * (k2.rate + k3.rate) + k4.rate) * (1.0 / 6.0);
+    const auto mean = [](Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
+      a += d;
+      a += 2.0 * (b + c);
+      a *= 1.0 / 6.0;
+    };
+    mean(k1.angle, k2.angle, k3.angle, k4.angle);
+    mean(k1.rate, k2.rate, k3.rate, k4.rate);
     if (instance_.axis_structure.compliant) {
-      mean.twist = (k1.twist + 2.0 * (k2.twist + k3.twist) + k4.twist) * (1.0 / 6.0);
-      mean.twist_rate = (k1.twist_rate + 2.0 * (k2.twist_rate + k3.twist_rate) + k4.twist_rate) * (1.0 / 6.0);
+      mean(k1.twist, k2.twist, k3.twist, k4.twist);
+      mean(k1.twist_rate, k2.twist_rate, k3.twist_rate, k4.twist_rate);
     }
-    return moved(from, mean, h_s);
+    move(from, k1, h_s, point);
+    return point;
   }
 
   int direction_of(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
@@ -173,7 +171,8 @@ private:
       }
       Scalar cut_s = left_s * (before / (before - after));
       AxisState<Scalar> at_cut = runge_kutta(state, t_s, cut_s, drive_Nm, direction, bend);
-      const Slope there = slope(at_cut, t_s, drive_Nm, direction);
+      Slope there;
+      slope(at_cut, t_s, drive_Nm, direction, there);
       if (value_of(there.rate) * direction < 0.0) {
         const Scalar correction_s = at_cut.rate_rad_per_s / there.rate;
         const double corrected = value_of(cut_s) - value_of(correction_s);
@@ -191,7 +190,7 @@ private:
   }
 
   const Instance<Scalar>& instance_;
-  Scalar near_inertia_kgm2_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
+  Scalar per_near_inertia_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
   double longest_s_ = 1e9;
 };
 

@@ -48,7 +48,7 @@ public:
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
-    FitProblem problem = problem_of(train_inputs_), check = problem_of(held_out_inputs_);
+    FitProblem problem = problem_of(train_inputs_, 3000, 5000), check = problem_of(held_out_inputs_, 2000, 3000);
     std::vector<Candidate> candidates = search(problem, check);
     stage("which");
     const Conclusion conclusion = conclude(candidates, options_);
@@ -107,11 +107,11 @@ private:
   }
 
   /// The thinned data of a fit.
-  FitProblem problem_of(const std::vector<Inputs>& inputs) {
+  FitProblem problem_of(const std::vector<Inputs>& inputs, Eigen::Index bench_rows, Eigen::Index axis_rows) {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
-          400, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
+          300, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
       thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share) : one);
     }
     FitProblem problem;
@@ -165,22 +165,23 @@ private:
   }
 
   std::vector<Candidate> search(FitProblem& problem, FitProblem& check) {
-    const Attribution attribution(problem, slack_, options_.threads);
-    Candidate empty = attribution.fit({}, {});
-    measure_noise(problem, empty);
-    empty = attribution.fit({}, {}, &empty);
-    measure_noise(problem, empty);
-    SearchOptions how;
-    how.threads = options_.threads;
+    FitProblem coarse_problem = problem_of(train_inputs_, 1000, 1600);
+    const Attribution coarse(coarse_problem, slack_, options_.threads), fine(problem, slack_, options_.threads);
+    for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
+    problem.sigma = coarse_problem.sigma;
+    const Search searching(coarse, fine, options_.threads);
     const std::vector<Explanation> causes = singles();
-    Search searching(attribution, problem, how);
     std::vector<Candidate> candidates = searching.run_singles(causes);
-    measure_noise(problem, Search::best(candidates));
-    searching.renew(candidates);
-    searching.run_sets(candidates, causes, options_.effects_at_once);
-    measure_noise(problem, Search::best(candidates));
-    searching.renew(candidates);
-    check.sigma = problem.sigma;
+    const auto renew = [&] {
+      measure_noise(problem, Search::best(candidates));
+      coarse_problem.sigma = check.sigma = problem.sigma;
+      searching.renew(candidates);
+    };
+    renew();
+    if (options_.effects_at_once > 1) {
+      searching.run_sets(candidates, causes, options_.effects_at_once, 1.15);
+      renew();
+    }
     in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
       candidates[i].held_out = Attribution::sums(candidates[i], check, nullptr);
     });
@@ -222,8 +223,6 @@ private:
     result_.timings.push_back({name, std::chrono::duration<double>(now - since_).count()});
     since_ = now;
   }
-
-  static constexpr Eigen::Index bench_rows = 3000, axis_rows = 5000;
 
   const Model model_;
   const Options options_;

@@ -13,42 +13,45 @@
 
 namespace thermopower::gap {
 
-/// How a search for explanations is limited.
-struct SearchOptions {
-  unsigned threads = 1;
-  double enough = 1.1;    ///< mean square of every signal below which no further effect is looked for
-};
-
-/// Finds the explanations worth weighing: none, every single one, and the pairs that promise most.
+/// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
+///
+/// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more of it
+/// (`fine`). Every candidate it returns has its residuals on the fine data.
 class Search {
 public:
-  Search(const Attribution& attribution, const FitProblem& problem, const SearchOptions& options)
-      : attribution_(attribution), problem_(problem), options_(options) {}
+  Search(const Attribution& coarse, const Attribution& fine, unsigned threads)
+      : coarse_(coarse), fine_(fine), threads_(threads) {}
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
     FitOptions quick;
-    quick.iterations = 8;
-    quick.relative_decrease = 1e-4;
+    quick.iterations = 10;
+    quick.relative_decrease = 1e-3;
     std::vector<Explanation> all{Explanation{}};
     all.insert(all.end(), singles.begin(), singles.end());
-    std::vector<Candidate> candidates = attribution_.fit_all(all, quick);
-    polish_best(candidates, 6);
+    std::vector<Candidate> candidates = coarse_.fit_all(all, quick);
+    refine(candidates, 0, 7);
     return candidates;
   }
 
-  /// Adds sets of causes where single ones leave something.
-  void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest) const {
+  /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
+  void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
+                double enough) const {
     for (int size = 2; size <= largest; ++size) {
-      if (satisfied(best(candidates))) break;
+      const Candidate& leader = best(candidates);
+      bool satisfied = true;
+      for (std::size_t i = 0; i < signal_count; ++i) satisfied = satisfied && leader.train.mean(i) <= enough;
+      if (satisfied) break;
       join(candidates, singles, size);
     }
   }
 
-  /// Fits the best candidates, and the empty one, anew: the noise has changed.
+  /// Fits the best candidates, and looks at all others, anew: the noise has changed.
   void renew(std::vector<Candidate>& candidates) const {
-    for (Candidate& one : candidates) one.train = Attribution::sums(one, problem_, &one.fit.starts);
-    polish_best(candidates, 6);
+    in_parallel(candidates.size(), threads_, [&](std::size_t i) {
+      candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), &candidates[i].fit.starts);
+    });
+    refine(candidates, candidates.size(), 4);
   }
 
   /// The candidate with the least deviance, whatever its size.
@@ -60,7 +63,7 @@ public:
   }
 
   /// Sum over the signals of samples times the logarithm of the mean square: twice the negative log likelihood
-  /// where the noise of every signal is unknown.
+  /// where the noise of every signal is unknown. No credit is given below the noise.
   static double fitness(const Candidate& candidate) {
     double sum = 0.0;
     for (std::size_t i = 0; i < signal_count; ++i)
@@ -70,67 +73,73 @@ public:
   }
 
 private:
-  bool satisfied(const Candidate& candidate) const {
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (candidate.train.mean(i) > options_.enough) return false;
-    return true;
-  }
-
-  void polish_best(std::vector<Candidate>& candidates, std::size_t count) const {
-    std::vector<std::size_t> order(candidates.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return fitness(candidates[a]) < fitness(candidates[b]);
     });
+    return order;
+  }
+
+  /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end.
+  void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
+    FitOptions look;
+    look.iterations = 2;
+    in_parallel(candidates.size() - first, threads_,
+                [&](std::size_t i) { fine_.polish(candidates[first + i], look); });
+    std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(count, order.size()));
-    FitOptions options;
-    options.iterations = 25;
-    options.relative_decrease = 1e-6;
-    in_parallel(order.size(), options_.threads, [&](std::size_t i) { attribution_.polish(candidates[order[i]], options); });
+    if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
+    FitOptions finish;
+    finish.iterations = 25;
+    finish.relative_decrease = 1e-6;
+    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], finish); });
   }
 
   /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear promise,
   /// the most promising fitted.
   void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
     std::vector<const Candidate*> seeds;
-    for (const Candidate& one : candidates)
-      if (static_cast<int>(one.explanation.size()) == size - 1) seeds.push_back(&one);
-    std::stable_sort(seeds.begin(), seeds.end(),
-                     [](const Candidate* a, const Candidate* b) { return fitness(*a) < fitness(*b); });
-    if (seeds.size() > 5) seeds.resize(5);
-
+    for (std::size_t index : by_fitness(candidates, 0))
+      if (static_cast<int>(candidates[index].explanation.size()) == size - 1 && seeds.size() < 5)
+        seeds.push_back(&candidates[index]);
     struct Promise {
       double cost;
       const Candidate* near;
       Explanation together;
     };
     std::vector<Promise> promises;
-    std::set<std::vector<std::string>> seen;
     for (const Candidate* near : seeds)
-      for (const Explanation& single : singles) {
-        if (near->explanation.includes(single)) continue;
-        const Explanation together = near->explanation.with(single);
-        std::vector<std::string> ids = together.ids(*problem_.model);
-        std::sort(ids.begin(), ids.end());
-        if (seen.insert(ids).second) promises.push_back({0.0, near, together});
-      }
-    in_parallel(promises.size(), options_.threads, [&](std::size_t i) {
-      promises[i].cost = attribution_.promise(*promises[i].near, promises[i].together);
+      for (const Explanation& single : singles)
+        if (!near->explanation.includes(single)) promises.push_back({0.0, near, near->explanation.with(single)});
+    in_parallel(promises.size(), threads_, [&](std::size_t i) {
+      promises[i].cost = coarse_.promise(*promises[i].near, promises[i].together);
     });
-    std::stable_sort(promises.begin(), promises.end(), [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
-    if (promises.size() > 12) promises.resize(12);
-    std::vector<Candidate> joined(promises.size());
+    std::stable_sort(promises.begin(), promises.end(),
+                     [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
+    std::set<std::vector<std::string>> seen;
+    std::vector<Promise> kept;
+    for (Promise& one : promises) {
+      std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
+      std::sort(ids.begin(), ids.end());
+      if (kept.size() < 14 && seen.insert(ids).second) kept.push_back(std::move(one));
+    }
+    std::vector<Candidate> joined(kept.size());
     FitOptions options;
-    options.iterations = 15;
-    in_parallel(promises.size(), options_.threads, [&](std::size_t i) {
-      joined[i] = attribution_.fit(promises[i].together, options, promises[i].near);
+    options.iterations = 12;
+    options.relative_decrease = 1e-3;
+    in_parallel(kept.size(), threads_, [&](std::size_t i) {
+      joined[i] = coarse_.fit(kept[i].together, options, kept[i].near);
     });
+    const std::size_t first = candidates.size();
     for (Candidate& one : joined) candidates.push_back(std::move(one));
+    refine(candidates, first, 5);
   }
 
-  const Attribution& attribution_;
-  const FitProblem& problem_;
-  SearchOptions options_;
+  const Attribution& coarse_;
+  const Attribution& fine_;
+  unsigned threads_;
 };
 
 }  // namespace thermopower::gap

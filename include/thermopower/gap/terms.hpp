@@ -70,10 +70,10 @@ struct DriveTerms {
 /// Torques on the driven inertia.
 template <class Scalar>
 struct AxisTerms {
-  double t_s = 0.0;         ///< time since the start of the run
-  Scalar angle_rad;
-  Scalar rate_rad_per_s;
-  Scalar drive_Nm;          ///< torque of the drive, after its own effects
+  double t_s;                     ///< time since the start of the run
+  const Scalar& angle_rad;
+  const Scalar& rate_rad_per_s;
+  const Scalar& drive_Nm;         ///< torque of the drive, after its own effects
   // to change
   Scalar load_Nm;           ///< added to the drive
   Scalar friction_forward_Nm;   ///< magnitude of dry friction while the rate is positive, >= 0
