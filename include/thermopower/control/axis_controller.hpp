@@ -134,6 +134,7 @@ class AxisController {
   const State& state() const noexcept { return state_; }      ///< After the last step.
   Limiter& limiter() noexcept { return limiter_; }            ///< To tell a limiter what was measured; its own state.
   PowerLaw& power_law() noexcept { return power_law_; }       ///< To tell a law what was measured; its own state.
+  Thermal& thermal() noexcept { return thermal_; }              ///< To tell an observer what was measured.
   const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
 
  private:
@@ -153,8 +154,7 @@ class AxisController {
 
   void estimate_temperature(float dt_s) noexcept {
     if (!detail::is_finite(last_air_C_)) return;
-    // The thesis's assumption, section 4.2: a motor that was just switched on is as warm as the air.
-    if (!is_started_) thermal_.start(last_air_C_);
+    if (!is_started_) detail::start_thermal(thermal_, last_air_C_, 0);
     is_started_ = true;
     const typename Current::State drawn =
         current_.at_power(static_cast<float>(state_.power), last_supply_V_, thermal_.hottest_C());

@@ -63,6 +63,16 @@ uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
   return gain.step(power);
 }
 
+/// Starts a model that nobody told a temperature: its own way, or as warm as the air (the thesis's assumption, section 4.2).
+template <class Thermal>
+auto start_thermal(Thermal& thermal, float air_C, int) noexcept -> decltype(thermal.start_in(air_C)) {
+  return thermal.start_in(air_C);
+}
+template <class Thermal>
+void start_thermal(Thermal& thermal, float air_C, long) noexcept {
+  thermal.start(air_C);
+}
+
 /// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has only one.
 template <class Thermal>
 auto body_of(const Thermal& thermal, int) noexcept -> decltype(thermal.state().body_C + 0.0f) {
