@@ -11,6 +11,7 @@ namespace thermopower {
 
 /// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger, a log of the number or
 /// `name_of()` tell what to mend. Numbers are stable: they are never reused, new ones are added at the end.
+/// @ingroup control
 enum class ConfigError : uint8_t {
   none = 0,                           ///< Every field is in its range.
   supply_V = 1,                       ///< Must be finite and above 0.
@@ -75,13 +76,16 @@ enum class ConfigError : uint8_t {
   nominal_supply_V = 60,              ///< Must be finite and above 0.
   magnet_tempco_per_K = 61,           ///< Must be within 0 .. 0.01 per kelvin.
   pose_deg = 62,                      ///< The last pose must be above the first, both finite.
+  every = 63,                         ///< Must be at least 1, and the phase below it.
   user_defined = 128                  ///< Codes from here up are free for policies of your own.
 };
 
 /// True when a `validate()` found something.
+/// @ingroup control
 constexpr bool is_error(ConfigError error) { return error != ConfigError::none; }
 
 /// The first of two results that is an error: lets a component report its parts in order.
+/// @ingroup control
 constexpr ConfigError first_error(ConfigError first, ConfigError second) { return is_error(first) ? first : second; }
 
 }  // namespace thermopower

@@ -8,6 +8,7 @@
 namespace thermopower {
 
 /// Version of the library, in the sense of semantic versioning 2.0.
+/// @ingroup control
 struct Version {
   static constexpr int major_number() { return 0; }  ///< Incompatible changes.
   static constexpr int minor_number() { return 1; }  ///< Compatible additions.

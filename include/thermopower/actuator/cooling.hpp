@@ -15,7 +15,7 @@
 /// |---|---|---|
 /// | `RateCooling` | k (T - T_air), k in 1/s | the thesis's eq 3.8: only a cooling curve is known |
 /// | `NewtonCooling` | G (T - T_air), G in W/K | the default: a conductance to the air |
-/// | `NaturalConvection` | G |T - T_air|^(1+n) | still air around a warm body, n about 0.25 |
+/// | `NaturalConvection` | G (T - T_air)^(1+n), either sign | still air around a warm body, n about 0.25 |
 /// | `RadiationCooling` | sigma A eps (T^4 - T_air^4) | hot surfaces, thin air, vacuum |
 /// | `ForcedAirflow` | G (1 + g v^n) (T - T_air) | a fan, a propeller's downwash, forward flight |
 /// | `SumOfCooling` | the sum of two | two paths in parallel, e.g. convection and radiation |

@@ -21,11 +21,12 @@ namespace thermopower {
 /// A law of your own is a struct with `typedef ... Scalar`, `Scalar current_A(v_rms_V, motor_C) const` and
 /// `ConfigError validate() const`.
 /// @tparam Law  one of the above
+/// @ingroup actuator
 template <class Law>
 class CurrentModel {
  public:
   typedef Law Config;                    ///< The law's constants are the configuration.
-  typedef typename Law::Scalar Scalar;
+  typedef typename Law::Scalar Scalar;  ///< What it computes in.
 
   /// Every intermediate of one evaluation.
   struct State {
@@ -34,6 +35,7 @@ class CurrentModel {
     Scalar winding_power_W;    ///< V_rms I, eq 4.13: what the thesis calls the motor's power
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit CurrentModel(const Config& config) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.

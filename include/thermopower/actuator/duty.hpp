@@ -12,6 +12,7 @@ namespace thermopower {
 /// Duty cycle of a power parameter, eq 3.10: D = P_param / 255.
 /// @param power_param  0 .. 255 (a real number, so that a simulation may use levels in between)
 /// @return 0 .. 1
+/// @ingroup actuator
 template <class Scalar>
 Scalar duty_from_power(const Scalar& power_param) noexcept {
   typedef typename detail::Numeric<Scalar>::Real Real;
@@ -21,12 +22,14 @@ Scalar duty_from_power(const Scalar& power_param) noexcept {
 /// Root-mean-square voltage of a switched supply, eq 3.11: V_rms = V_supply sqrt(D).
 /// @param supply_V  amplitude of the switched voltage, >= 0
 /// @param duty      0 .. 1; a negative duty gives NaN, which every limiter treats as hot
+/// @ingroup actuator
 template <class Scalar>
 Scalar v_rms_from_duty(const Scalar& supply_V, const Scalar& duty) noexcept {
   return supply_V * detail::Numeric<Scalar>::square_root(duty);
 }
 
 /// V_rms of a power parameter in one call: eq 3.10 in eq 3.11.
+/// @ingroup actuator
 template <class Scalar>
 Scalar v_rms_from_power(const Scalar& supply_V, const Scalar& power_param) noexcept {
   return v_rms_from_duty<Scalar>(supply_V, duty_from_power<Scalar>(power_param));

@@ -11,6 +11,7 @@
 namespace thermopower {
 
 /// Power in the winding: V_rms I (eq 4.13).
+/// @ingroup actuator
 struct AtWinding {
   /// @return W
   template <class Number>
@@ -20,6 +21,7 @@ struct AtWinding {
 };
 
 /// Power drawn from the supply: V_supply I, where the measured current is the supply's own (section 5.3).
+/// @ingroup actuator
 struct AtSupply {
   /// @return W
   template <class Number>
@@ -30,6 +32,7 @@ struct AtSupply {
 
 /// Sums P dt (eq 4.24) and divides by the time (eq 4.25).
 /// @tparam Where  `AtWinding` or `AtSupply`. Numbers of the two are not comparable.
+/// @ingroup actuator
 template <class Where, class Number = float>
 class EnergyMeter {
  public:
@@ -95,6 +98,7 @@ class EnergyMeter {
 
 /// Saving of the second average power against the first, eq 4.26. Of two meters, take `saving_percent`: it compares like with like.
 /// @return percent; NaN when the first is 0
+/// @ingroup actuator
 template <class Number>
 Number difference_percent(Number first, Number second) noexcept {
   if (!(first < Number(0)) && !(first > Number(0))) return static_cast<Number>(NAN);
@@ -114,6 +118,7 @@ struct IsSamePlace<Where, Where> {
 
 /// Saving of the second meter's average power against the first's, eq 4.26. Meters of different places do not compile.
 /// @return percent; NaN when the first average is 0
+/// @ingroup actuator
 template <class First, class Second, class Number>
 Number saving_percent(const EnergyMeter<First, Number>& first, const EnergyMeter<Second, Number>& second) noexcept {
   static_assert(detail::IsSamePlace<First, Second>::value,

@@ -11,9 +11,10 @@
 namespace thermopower {
 
 /// Conductance that grows with the speed of the air: G (1 + g v^n). n is about 0.5 (laminar) to 0.8 (turbulent).
+/// @ingroup actuator
 template <class Number = float>
 struct ForcedAirflow {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G in still air, above 0.
   Number airflow_gain;         ///< g: relative growth at 1 m/s, >= 0.

@@ -19,9 +19,10 @@
 namespace thermopower {
 
 /// Heating of a body with a heat capacity: r = 1 / C.
+/// @ingroup actuator
 template <class Number = float>
 struct HeatCapacityHeating {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number heat_capacity_J_per_K;  ///< C, above 0.
 
@@ -52,9 +53,10 @@ struct HeatCapacityHeating {
 ///
 /// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 = -0.4952; the program
 /// multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by name.
+/// @ingroup actuator
 template <class Number = float>
 struct ThesisHeating {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number slope_V1_J_per_K2;   ///< s1, per volt
   Number slope_V0_J_per_K2;   ///< s0
@@ -63,12 +65,10 @@ struct ThesisHeating {
   Number minimum_V_rms;       ///< At or below this voltage there is no heating (the program: 1 V).
 
   /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
-  static ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1, Number offset_V0,
-                                  Number minimum_V_rms) noexcept {
+  static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1, Number offset_V0,
+                                            Number minimum_V_rms) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    const Real second = Real(60);
-    ThesisHeating law = {slope_V1 * second, slope_V0 * second, offset_V1 * second, offset_V0 * second, minimum_V_rms};
-    return law;
+    return ThesisHeating{slope_V1 * Real(60), slope_V0 * Real(60), offset_V1 * Real(60), offset_V0 * Real(60), minimum_V_rms};
   }
 
   static constexpr bool is_linear() { return false; }         ///< r depends on the temperature.

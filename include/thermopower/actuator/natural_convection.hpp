@@ -12,9 +12,10 @@ namespace thermopower {
 
 /// Natural convection: loss = G (T - T_air) (|T - T_air| / T_ref)^n. At a difference of `reference_K` it equals Newton's G.
 /// n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
+/// @ingroup actuator
 template <class Number = float>
 struct NaturalConvection {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G at a difference of `reference_K`, above 0.
   Number exponent;             ///< n, 0 .. 1.

@@ -11,17 +11,17 @@
 namespace thermopower {
 
 /// Newton's law as a rate, eq 3.8: dT/dt = -k (T - T_air), whatever the heat capacity.
+/// @ingroup actuator
 template <class Number = float>
 struct RateCooling {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number cooling_per_s;  ///< k, above 0. The thesis prints s^-1 but means per minute: use `per_minute`.
 
   /// k as the thesis uses it (0.11 and 0.05 per minute).
-  static RateCooling per_minute(Number cooling_per_min) noexcept {
+  static constexpr RateCooling per_minute(Number cooling_per_min) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    RateCooling law = {cooling_per_min * (Real(1) / Real(60))};
-    return law;
+    return RateCooling{cooling_per_min * (Real(1) / Real(60))};
   }
 
   static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
@@ -37,9 +37,10 @@ struct RateCooling {
 };
 
 /// Newton's law as a conductance: loss = G (T - T_air).
+/// @ingroup actuator
 template <class Number = float>
 struct NewtonCooling {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G, above 0.
 

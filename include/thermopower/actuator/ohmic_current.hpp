@@ -12,9 +12,10 @@ namespace thermopower {
 /// Current law: I = V_rms / R(T) with R(T) = R_ref (1 + a (T - T_ref)).
 /// Take it when the winding's resistance is known or can be measured; it is physical at any voltage and temperature.
 /// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the desk
+/// @ingroup actuator
 template <class Number = float>
 struct OhmicCurrent {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number resistance_ohm;  ///< At `reference_C`, between the terminals that see V_rms. Above 0.
   Number tempco_per_K;    ///< Relative rise per kelvin: copper 0.00393. 0 .. 0.02.

@@ -11,9 +11,10 @@
 namespace thermopower {
 
 /// Radiation to surroundings at air temperature: loss = sigma A eps (T^4 - T_air^4), in kelvin (Stefan-Boltzmann).
+/// @ingroup actuator
 template <class Number = float>
 struct RadiationCooling {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number radiating_area_m2;  ///< A, above 0.
   Number emissivity;         ///< eps, 0 .. 1.

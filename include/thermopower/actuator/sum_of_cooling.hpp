@@ -11,9 +11,10 @@
 namespace thermopower {
 
 /// Two cooling paths in parallel.
+/// @ingroup actuator
 template <class First, class Second>
 struct SumOfCooling {
-  typedef typename First::Scalar Scalar;
+  typedef typename First::Scalar Scalar;  ///< What it computes in.
 
   First first;    ///< One path.
   Second second;  ///< The other; may itself be a sum.

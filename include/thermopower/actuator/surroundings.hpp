@@ -9,6 +9,7 @@
 namespace thermopower {
 
 /// The air around an actuator during one step; constant over the step.
+/// @ingroup actuator
 template <class Number = float>
 struct Surroundings {
   Number air_C;         ///< Air temperature, degC.

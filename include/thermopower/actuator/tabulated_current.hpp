@@ -13,6 +13,7 @@ namespace thermopower {
 
 /// What TabulatedCurrent tabulates: the thesis's law of a motor. A source of your own has the same four functions, all `constexpr`.
 /// @tparam Motor  has a `constexpr current_law<double>()` that is a ThesisCurrent, as the motors in `motors/` do
+/// @ingroup actuator
 template <class Motor>
 struct ThesisCurrentSource {
   /// Current at 0 degC. @return A
@@ -40,10 +41,12 @@ struct CurrentNodes<Source, node_count, Indices<node...> > {
   static constexpr float intercepts[node_count] thermopower_flash = {static_cast<float>(Source::intercept_A(volt(node)))...};
   static constexpr float slopes[node_count] thermopower_flash = {static_cast<float>(Source::slope_A_per_K(volt(node)))...};
 };
+/// @cond
 template <class Source, int node_count, int... node>
 constexpr float CurrentNodes<Source, node_count, Indices<node...> >::intercepts[node_count];
 template <class Source, int node_count, int... node>
 constexpr float CurrentNodes<Source, node_count, Indices<node...> >::slopes[node_count];
+/// @endcond
 
 }  // namespace detail
 
@@ -60,10 +63,11 @@ constexpr float CurrentNodes<Source, node_count, Indices<node...> >::slopes[node
 /// current is NaN, which every limiter treats as hot: an extrapolation would be too low.
 /// @tparam Source      the law: ThesisCurrentSource, or your own
 /// @tparam node_count  entries of the table, 2 .. 255; eight bytes of flash each
+/// @ingroup actuator
 template <class Source, int node_count = 65>
 struct TabulatedCurrent {
   static_assert(node_count >= 2 && node_count <= 255, "thermopower: a current table has 2 to 255 nodes");
-  typedef float Scalar;
+  typedef float Scalar;  ///< What it computes in.
 
   /// Current drawn at a voltage. @return ampere, >= 0; NaN when an input is, and above the table
   float current_A(float v_rms_V, float motor_C) const noexcept {

@@ -19,10 +19,11 @@ namespace thermopower {
 ///
 /// Energy balance: with `HeatCapacityHeating` and a cooling law in watts, C (T2 - T1) is the heat in less the heat lost. With
 /// constant power the temperature settles where the cooling equals r P; for `NewtonCooling` that is T_air + P / G.
+/// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {
  public:
-  typedef typename Heating::Scalar Scalar;
+  typedef typename Heating::Scalar Scalar;  ///< What it computes in.
   static_assert(!Step::needs_linear_laws() || (Heating::is_linear() && Cooling::is_linear()),
                 "thermopower: ExactStep needs linear heating and cooling laws; take LinearizedStep or EulerStep for these");
   static_assert(Heating::is_heat_capacity() || !Cooling::is_in_watts(),
@@ -30,8 +31,8 @@ class ThermalModel {
 
   /// What one tunes: the constants of both laws.
   struct Config {
-    Heating heating;
-    Cooling cooling;
+    Heating heating;  ///< How a watt warms it.
+    Cooling cooling;  ///< How it loses heat.
 
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept { return first_error(heating.validate(), cooling.validate()); }

@@ -16,6 +16,7 @@
 namespace thermopower {
 
 /// Forward Euler, eq 4.21: T += rate dt. Unstable when dt exceeds twice the time constant.
+/// @ingroup actuator
 struct EulerStep {
   static constexpr bool needs_linear_laws() { return false; }  ///< Takes any law.
   /// @param rate_K_per_s  dT/dt at the start of the step
@@ -28,6 +29,7 @@ struct EulerStep {
 };
 
 /// The solution of dT/dt = a - s T for inputs that are constant over the step.
+/// @ingroup actuator
 struct LinearizedStep {
   static constexpr bool needs_linear_laws() { return false; }  ///< Takes any law; exact for a linear one.
   /// @param slope_per_s  s = -d rate / dT, >= 0. A negative slope (runaway) is stepped as 0, that is by Euler.
@@ -40,6 +42,7 @@ struct LinearizedStep {
 };
 
 /// As LinearizedStep, but only for laws that are linear, where it is exact: two half steps equal one whole step.
+/// @ingroup actuator
 struct ExactStep : LinearizedStep {
   static constexpr bool needs_linear_laws() { return true; }  ///< Refuses, at compile time, laws that are not linear.
 };

@@ -16,9 +16,10 @@ namespace thermopower {
 /// `motors/` carry the minus. Take it for the two thesis motors; it is an interpolation of measurements, not physics: outside
 /// 5.8 .. 12.9 V and 25 .. 75 degC it extrapolates, and below about 4 V the 5208's current comes out as zero.
 /// @tparam Number  see OhmicCurrent
+/// @ingroup actuator
 template <class Number = float>
 struct ThesisCurrent {
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   Number slope_V2_A_per_K;  ///< m2, A/(K V^2)
   Number slope_V1_A_per_K;  ///< m1, A/(K V)

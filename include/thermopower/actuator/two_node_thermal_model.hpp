@@ -17,10 +17,11 @@ namespace thermopower {
 ///
 /// Take it when the winding is much faster than the housing, so that a short overload heats copper long before a thermometer on the
 /// housing shows it. Both eigenvalues are real and negative (the network has no way to store what would oscillate).
+/// @ingroup actuator
 template <class Number = float>
 class TwoNodeThermalModel {
  public:
-  typedef Number Scalar;
+  typedef Number Scalar;  ///< What it computes in.
 
   /// What one tunes.
   struct Config {

@@ -10,6 +10,7 @@
 namespace thermopower {
 
 /// Where an air temperature came from.
+/// @ingroup control
 enum class AirSource : uint8_t {
   neither = 0,   ///< No plausible reading: `air_C` is NaN.
   camera = 1,    ///< Only the camera's IMU is plausible.
@@ -21,6 +22,7 @@ enum class AirSource : uint8_t {
 /// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC, and the average would be half the truth. So a
 /// frame that reads exactly 0 is not averaged, nor are two that disagree: the warmer one is taken, because an air that is believed
 /// too warm costs power, and one that is believed too cold costs the motor.
+/// @ingroup control
 class AirTemperature {
  public:
   /// What one tunes.
@@ -49,6 +51,7 @@ class AirTemperature {
     AirSource source;  ///< Which thermometers it rests on.
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit AirTemperature(const Config& config = Config::standard()) noexcept : config_(config) {
     state_.air_C = detail::not_a_number();
     state_.source = AirSource::neither;

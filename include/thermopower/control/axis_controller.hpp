@@ -25,6 +25,7 @@ namespace thermopower {
 ///
 /// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is the least there is. The
 /// temperature is estimated through a fault with the last valid air and supply: the motor stays warm even if its sensor is gone.
+/// @ingroup control
 template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>, class Gain = GainScheduler<> >
 class AxisController {
   static_assert(detail::IsMotor<Motor>::value,
@@ -93,6 +94,7 @@ class AxisController {
     LimitReason reason;   ///< Why `power` is below `demand`.
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit AxisController(const Config& config = Config::standard()) noexcept
       : current_(config.current), thermal_(config.thermal, detail::not_a_number()), power_law_(config.power_law), limiter_(config.limiter),
         gain_(config.gain), config_error_(config.validate()) {

@@ -20,6 +20,7 @@
 namespace thermopower {
 
 /// What one tunes: the gains found at the two ends (section 4.2, auto-tuned).
+/// @ingroup control
 struct GainConfig {
   float gain_low_power;   ///< P at power 0, 0 .. 255.
   float gain_high_power;  ///< P at power 255, 0 .. 255.
@@ -47,16 +48,20 @@ inline uint8_t scheduled_gain(uint8_t power, const GainConfig& config, float rou
 }  // namespace detail
 
 /// Eq 4.27, cut to a whole count as the program does: 22 / 172 / 36 at power 25 for roll / pitch / yaw.
+/// @ingroup control
 struct TruncatedGain {
-  typedef GainConfig Config;
+  typedef GainConfig Config;  ///< What one tunes.
+  /// @return P, 0 .. 255
   static uint8_t gain(uint8_t power, const Config& config) noexcept {
     return detail::scheduled_gain(power, config, 0.0f);
   }
 };
 
 /// Eq 4.27 to the nearest count.
+/// @ingroup control
 struct RoundedGain {
-  typedef GainConfig Config;
+  typedef GainConfig Config;  ///< What one tunes.
+  /// @return P, 0 .. 255
   static uint8_t gain(uint8_t power, const Config& config) noexcept {
     return detail::scheduled_gain(power, config, 0.5f);
   }
@@ -65,6 +70,7 @@ struct RoundedGain {
 /// Gains at equally spaced powers, linearly interpolated. `Table` has `static constexpr uint8_t size()` (2 .. 255) and
 /// `static const uint8_t* gains()`, the address of that many bytes declared with `thermopower_flash`; the first is for power 0, the
 /// last for power 255.
+/// @ingroup control
 template <class Table>
 struct TableGain {
   /// The table is the configuration.
@@ -74,6 +80,7 @@ struct TableGain {
   };
   static_assert(Table::size() >= 2, "thermopower: a gain table needs at least two entries, for power 0 and power 255");
 
+  /// @return P, 0 .. 255
   static uint8_t gain(uint8_t power, const Config&) noexcept {
     const uint16_t position = static_cast<uint16_t>(static_cast<uint16_t>(power) * static_cast<uint16_t>(Table::size() - 1));
     const uint8_t index = static_cast<uint8_t>(position / 255u);
@@ -87,22 +94,26 @@ struct TableGain {
 };
 
 /// No gain to schedule: always 0, which the caller ignores.
+/// @ingroup control
 struct NoGainRule {
   /// Nothing to tune.
   struct Config {
     static Config standard() noexcept { return Config(); }               ///< Nothing to set.
     ConfigError validate() const noexcept { return ConfigError::none; }  ///< Nothing can be wrong.
   };
+  /// @return P, 0 .. 255
   static uint8_t gain(uint8_t, const Config&) noexcept { return 0; }
 };
 
 /// The proportional gain for a power.
 /// @tparam Rule  one of the rules above
+/// @ingroup control
 template <class Rule = RoundedGain>
 class GainScheduler {
  public:
   typedef typename Rule::Config Config;  ///< What one tunes.
 
+  /// @param config  constants; ask `validate()` once
   explicit GainScheduler(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.
@@ -117,6 +128,7 @@ class GainScheduler {
 };
 
 /// For actuators without a gain.
+/// @ingroup control
 typedef GainScheduler<NoGainRule> NoGain;
 
 }  // namespace thermopower

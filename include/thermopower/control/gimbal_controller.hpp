@@ -11,6 +11,7 @@
 namespace thermopower {
 
 /// What goes back to the board: one entry per axis, in the order of the axes.
+/// @ingroup control
 template <uint8_t axis_count>
 struct GimbalCommand {
   uint8_t power[axis_count];        ///< POWER
@@ -19,24 +20,28 @@ struct GimbalCommand {
 };
 
 /// The first wrong field of a gimbal's configuration.
+/// @ingroup control
 struct GimbalConfigError {
   uint8_t axis;       ///< 0 .. number of axes - 1; the number of axes when the field is the gimbal's own.
   ConfigError field;  ///< `ConfigError::none` when all is well.
 };
 
 /// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate to compute with.
+/// @ingroup control
 struct NominalSupply {
   /// @return V
   static float supply_V(float nominal_V, float) noexcept { return nominal_V; }
 };
 
 /// The supply as the board measures it: take it when the measurement has been checked, or the battery sags.
+/// @ingroup control
 struct MeasuredSupply {
   /// @return V
   static float supply_V(float, float measured_V) noexcept { return measured_V; }
 };
 
 /// What one tunes on the gimbal as a whole.
+/// @ingroup control
 struct GimbalConfig {
   float supply_V;                      ///< Nominal supply, above 0. The thesis: 13.
   float minimum_supply_V;              ///< Below this the battery counts as empty or missing. The program: 3.
@@ -58,6 +63,7 @@ struct GimbalConfig {
 };
 
 /// What the gimbal decides on, where it does not come as a telemetry message.
+/// @ingroup control
 template <uint8_t axis_count>
 struct GimbalInputs {
   float error_deg[axis_count];  ///< Position errors, any number of turns.
@@ -105,6 +111,7 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 /// The controller of a whole gimbal.
 /// @tparam Supply  `NominalSupply` or `MeasuredSupply`
 /// @tparam Axes    one AxisController per axis
+/// @ingroup control
 template <class Supply, class... Axes>
 class BasicGimbalController {
  public:
@@ -249,6 +256,7 @@ class BasicGimbalController {
 };
 
 /// The controller of a gimbal whose motors run on a known, stiff supply, as the thesis assumes.
+/// @ingroup control
 template <class... Axes>
 using GimbalController = BasicGimbalController<NominalSupply, Axes...>;
 

@@ -11,6 +11,7 @@ namespace thermopower {
 
 /// The reason behind a power that is less than what was asked for. Numbers are stable, for logs. Below 64 the controller is limiting,
 /// which is its job; from 64 up something is wrong (a fault), and the power is the least there is.
+/// @ingroup control
 enum class LimitReason : uint8_t {
   none = 0,                   ///< The demand was granted.
   safety_temperature = 1,     ///< Eq 4.23: at this rate the limit would be reached within the safety time; the ceiling falls.
@@ -32,9 +33,11 @@ enum class LimitReason : uint8_t {
 };
 
 /// True when the reason is a fault and not the limiter doing its work.
+/// @ingroup control
 constexpr bool is_fault(LimitReason reason) { return static_cast<uint8_t>(reason) >= 64; }
 
 /// What a limiter returns.
+/// @ingroup control
 struct LimitedPower {
   uint8_t power;       ///< Granted power parameter; never above the demand.
   LimitReason reason;  ///< Why it is less than the demand; `none` when it is not.
@@ -42,6 +45,7 @@ struct LimitedPower {
 
 /// What is left to an actuator that is cut: the lowest power parameter the controller board takes (0 is not valid, section 4.2). A
 /// power law that asks for 0, for an actuator that may be switched off, is granted 0.
+/// @ingroup control
 constexpr uint8_t least_power() { return 1; }
 
 }  // namespace thermopower

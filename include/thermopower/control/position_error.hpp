@@ -10,6 +10,7 @@
 namespace thermopower {
 
 /// Folds an angle to -180 .. 180 degrees. Angles beyond a million degrees, NaN and Inf give NaN.
+/// @ingroup control
 inline float wrap_deg(float angle_deg) noexcept {
   if (angle_deg >= -180.0f && angle_deg <= 180.0f) return angle_deg;
   if (!(detail::magnitude(angle_deg) < 1.0e6f)) return detail::not_a_number();
@@ -22,9 +23,11 @@ inline float wrap_deg(float angle_deg) noexcept {
 }
 
 /// Error of an axis, eq 4.19, folded. @return -180 .. 180 degrees
+/// @ingroup control
 inline float position_error_deg(float target_deg, float measured_deg) noexcept { return wrap_deg(target_deg - measured_deg); }
 
 /// The same in the controller's integer units of 360/16384 degree. @return -8192 .. 8191
+/// @ingroup control
 inline int16_t position_error_units(int16_t target, int16_t measured) noexcept {
   const uint16_t turn = 16384u;
   const uint16_t difference = static_cast<uint16_t>(static_cast<uint16_t>(target) - static_cast<uint16_t>(measured));
@@ -33,6 +36,7 @@ inline int16_t position_error_units(int16_t target, int16_t measured) noexcept {
 }
 
 /// Degrees of an angle in units of 360/16384 degree.
+/// @ingroup control
 inline float deg_from_units(int16_t units) noexcept { return static_cast<float>(units) * (360.0f / 16384.0f); }
 
 }  // namespace thermopower

@@ -18,6 +18,7 @@
 namespace thermopower {
 
 /// What one tunes.
+/// @ingroup control
 struct SafetyLimiterConfig {
   float maximum_C;      ///< T_max: above it the power is cut to the least. 0 .. 200 degC. The thesis: 60, because PLA softens.
   float safety_time_s;  ///< t_safety: how long the actuator must be able to go on at its present rate. Above 0. The thesis: 30.
@@ -37,35 +38,41 @@ struct SafetyLimiterConfig {
 };
 
 /// The thesis's rule: one count per call, so the speed depends on the loop rate.
+/// @ingroup control
 struct PerCycle {
   /// The ceiling.
   struct State {
     uint8_t ceiling = 255;  ///< Highest power granted, 1 .. 255.
   };
+  /// One step down, not below the least power.
   static void lower(State& state, const SafetyLimiterConfig&, float) noexcept {
     if (state.ceiling > least_power()) --state.ceiling;
   }
+  /// One step up, not above 255.
   static void raise(State& state, const SafetyLimiterConfig&, float) noexcept {
     if (state.ceiling < 255) ++state.ceiling;
   }
-  static void cut(State& state) noexcept { state.ceiling = least_power(); }
-  static uint8_t ceiling(const State& state) noexcept { return state.ceiling; }
+  static void cut(State& state) noexcept { state.ceiling = least_power(); }  ///< To the least power.
+  static uint8_t ceiling(const State& state) noexcept { return state.ceiling; }  ///< In whole counts.
 };
 
 /// The same rule in counts per second: independent of the loop rate.
+/// @ingroup control
 struct PerSecond {
   /// The ceiling.
   struct State {
     float ceiling = 255.0f;  ///< Highest power granted, 1 .. 255, with its fraction.
   };
+  /// One step down, not below the least power.
   static void lower(State& state, const SafetyLimiterConfig& config, float dt_s) noexcept {
     state.ceiling = detail::at_least(state.ceiling - config.rate_per_s * dt_s, static_cast<float>(least_power()));
   }
+  /// One step up, not above 255.
   static void raise(State& state, const SafetyLimiterConfig& config, float dt_s) noexcept {
     state.ceiling = detail::at_most(state.ceiling + config.rate_per_s * dt_s, 255.0f);
   }
-  static void cut(State& state) noexcept { state.ceiling = static_cast<float>(least_power()); }
-  static uint8_t ceiling(const State& state) noexcept { return static_cast<uint8_t>(state.ceiling); }
+  static void cut(State& state) noexcept { state.ceiling = static_cast<float>(least_power()); }  ///< To the least power.
+  static uint8_t ceiling(const State& state) noexcept { return static_cast<uint8_t>(state.ceiling); }  ///< In whole counts.
 };
 
 /// Limits the power so that the actuator stays below its limit temperature.
@@ -73,6 +80,7 @@ struct PerSecond {
 ///
 /// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time that is NaN, infinite or
 /// impossible (below absolute zero, a negative time) counts as too hot; at equal history a hotter actuator never gets more.
+/// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {
  public:
@@ -86,6 +94,7 @@ class SafetyLimiter {
     float rate_K_per_s;  ///< dT/dt at the power of the last step.
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit SafetyLimiter(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.

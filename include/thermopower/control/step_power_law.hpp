@@ -21,6 +21,7 @@
 namespace thermopower {
 
 /// What one tunes in every stepped rule.
+/// @ingroup control
 struct StepPowerConfig {
   float full_power_error_deg;  ///< Error worth full power: error_max of eq 4.22. Above 0. The program: 1 degree.
   uint8_t power_step;          ///< Power of one level, at least 1, at most 25. The program: 25.
@@ -41,6 +42,7 @@ struct StepPowerConfig {
 };
 
 /// Nothing to remember.
+/// @ingroup control
 struct NoState {};
 
 namespace detail {
@@ -53,9 +55,11 @@ inline uint8_t error_level(float magnitude_deg, const StepPowerConfig& config, u
 }  // namespace detail
 
 /// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).
+/// @ingroup control
 struct ProgrammedLevels {
-  typedef StepPowerConfig Config;
-  typedef NoState State;
+  typedef StepPowerConfig Config;  ///< What one tunes.
+  typedef NoState State;  ///< Nothing to remember.
+  /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
     const uint8_t level = detail::error_level(magnitude_deg, config, 10);
     return static_cast<uint8_t>(config.power_step * (level < 1 ? 1 : level));
@@ -63,9 +67,11 @@ struct ProgrammedLevels {
 };
 
 /// Eq 4.22 as printed: no power below a tenth of the full error, and a cap at 255.
+/// @ingroup control
 struct PrintedLevels {
-  typedef StepPowerConfig Config;
-  typedef NoState State;
+  typedef StepPowerConfig Config;  ///< What one tunes.
+  typedef NoState State;  ///< Nothing to remember.
+  /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
     const uint16_t power = static_cast<uint16_t>(config.power_step * detail::error_level(magnitude_deg, config, 255));
     return static_cast<uint8_t>(power > 255u ? 255u : power);
@@ -73,12 +79,14 @@ struct PrintedLevels {
 };
 
 /// `ProgrammedLevels` that rise at a level's edge and fall only `hysteresis_deg` below it.
+/// @ingroup control
 struct HysteresisLevels {
-  typedef StepPowerConfig Config;
+  typedef StepPowerConfig Config;  ///< What one tunes.
   /// The level held.
   struct State {
     uint8_t level = 1;  ///< 1 .. 10
   };
+  /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State& state) noexcept {
     const uint8_t up = detail::error_level(magnitude_deg, config, 10);
     const uint8_t down = detail::error_level(magnitude_deg + config.hysteresis_deg, config, 10);
@@ -89,9 +97,11 @@ struct HysteresisLevels {
 };
 
 /// Proportional to the error, from one level to ten.
+/// @ingroup control
 struct ContinuousPower {
-  typedef StepPowerConfig Config;
-  typedef NoState State;
+  typedef StepPowerConfig Config;  ///< What one tunes.
+  typedef NoState State;  ///< Nothing to remember.
+  /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
     const uint8_t highest = static_cast<uint8_t>(10u * config.power_step);
     const float power = static_cast<float>(highest) * (magnitude_deg / config.full_power_error_deg);
@@ -102,12 +112,14 @@ struct ContinuousPower {
 
 /// Power demanded by a position error.
 /// @tparam Rule  one of the rules above
+/// @ingroup control
 template <class Rule = ProgrammedLevels>
 class StepPowerLaw {
  public:
   typedef typename Rule::Config Config;  ///< What one tunes.
   typedef typename Rule::State State;    ///< What the rule remembers.
 
+  /// @param config  constants; ask `validate()` once
   explicit StepPowerLaw(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.

@@ -16,6 +16,7 @@ namespace motors {
 /// Valid for V_rms 5.8 .. 12.9 V, motor 25 .. 75 degC (Table 4.1); cooling from Table 4.3.
 ///
 /// As a motor type for `AxisController` it names its models (`Current`, `Thermal`) and gives their constants.
+/// @ingroup motors
 struct Bgm2606_90t {
   typedef CurrentModel<ThesisCurrent<float> > Current;                                      ///< Current law.
   typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, LinearizedStep> Thermal;   ///< Thermal model.
@@ -29,13 +30,13 @@ struct Bgm2606_90t {
   /// Eq 4.16 and 4.17 as the regression of Table 4.9 gives them (the printed slope -0.0002 has one digit; the rounding costs
   /// 1.4 to 4.1 K after three minutes of heating).
   template <class Number = float>
-  static ThesisHeating<Number> heating_law() noexcept {
+  static constexpr ThesisHeating<Number> heating_law() noexcept {
     return ThesisHeating<Number>::per_minute(Number(-0.00024249), Number(0.00620096), Number(0.02545869), Number(-0.10495822),
                                              Number(1));
   }
   /// k = 0.11 per minute, eq 4.9 (which prints it per second).
   template <class Number = float>
-  static RateCooling<Number> cooling_law() noexcept {
+  static constexpr RateCooling<Number> cooling_law() noexcept {
     return RateCooling<Number>::per_minute(Number(0.11));
   }
 
@@ -60,12 +61,12 @@ struct Bgm2606_90t {
     }
     /// Program lines 38 to 41.
     template <class Number = float>
-    static ThesisHeating<Number> heating_law() noexcept {
+    static constexpr ThesisHeating<Number> heating_law() noexcept {
       return ThesisHeating<Number>::per_minute(Number(-0.0002), Number(0.0062), Number(0.0255), Number(-0.105), Number(1));
     }
     /// Program line 30.
     template <class Number = float>
-    static RateCooling<Number> cooling_law() noexcept {
+    static constexpr RateCooling<Number> cooling_law() noexcept {
       return RateCooling<Number>::per_minute(Number(0.11));
     }
 

@@ -17,6 +17,7 @@ namespace motors {
 /// Valid for V_rms 5.8 .. 12.9 V, motor 25 .. 65 degC (Table 4.2); cooling from Table 4.6.
 ///
 /// As a motor type for `AxisController` it names its models (`Current`, `Thermal`) and gives their constants.
+/// @ingroup motors
 struct Bgm5208_200_12 {
   typedef CurrentModel<ThesisCurrent<float> > Current;                                      ///< Current law.
   typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, LinearizedStep> Thermal;   ///< Thermal model.
@@ -29,12 +30,12 @@ struct Bgm5208_200_12 {
   }
   /// Eq 4.18 as the text has it, 1/r = 0.2435 V_rms - 0.4952, unrounded (regression of Table 4.10).
   template <class Number = float>
-  static ThesisHeating<Number> heating_law() noexcept {
+  static constexpr ThesisHeating<Number> heating_law() noexcept {
     return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.243455), Number(-0.495180), Number(1));
   }
   /// k = 0.05 per minute, eq 4.11 (which prints it per second).
   template <class Number = float>
-  static RateCooling<Number> cooling_law() noexcept {
+  static constexpr RateCooling<Number> cooling_law() noexcept {
     return RateCooling<Number>::per_minute(Number(0.05));
   }
 
@@ -61,12 +62,12 @@ struct Bgm5208_200_12 {
     }
     /// Program lines 38 to 41: 0.2435 stands in the slope against temperature.
     template <class Number = float>
-    static ThesisHeating<Number> heating_law() noexcept {
+    static constexpr ThesisHeating<Number> heating_law() noexcept {
       return ThesisHeating<Number>::per_minute(Number(0), Number(0.2435), Number(0), Number(-0.4952), Number(1));
     }
     /// Program line 30.
     template <class Number = float>
-    static RateCooling<Number> cooling_law() noexcept {
+    static constexpr RateCooling<Number> cooling_law() noexcept {
       return RateCooling<Number>::per_minute(Number(0.05));
     }
 
@@ -89,7 +90,7 @@ struct Bgm5208_200_12 {
     }
     /// Eq 4.18 as printed.
     template <class Number = float>
-    static ThesisHeating<Number> heating_law() noexcept {
+    static constexpr ThesisHeating<Number> heating_law() noexcept {
       return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.2435), Number(-0.4952), Number(1));
     }
     /// Constants for `Current`.

@@ -17,6 +17,7 @@ namespace thermopower {
 /// `validate()` is for one actuator: check the constants lane by lane in a plain scalar before packing them.
 /// @tparam Real        float or double
 /// @tparam lane_count  above 0; a multiple of the vector width (8 doubles fill an AVX-512 register, two AVX ones) runs fastest
+/// @ingroup simulation
 template <class Real, int lane_count>
 using Lanes = Eigen::Array<Real, lane_count, 1>;
 
