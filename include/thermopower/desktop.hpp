@@ -7,6 +7,8 @@
 /// The identification and the diagnosis of gaps have umbrellas of their own.
 
 #include "simulation/axis_batch.hpp"
+#include "simulation/rig_ours.hpp"
 #include "simulation/rig_policies.hpp"
+#include "simulation/rig_world.hpp"
 #include "simulation/scenarios.hpp"
 #include "thermopower.hpp"

@@ -28,6 +28,8 @@ struct RigTelemetry {
   float error_deg(std::uint8_t axis) const noexcept {
     return sbgc::angle_deg(static_cast<std::int32_t>(target_units[axis]) - imu_units[axis]);
   }
+  /// Camera angle. @return degrees
+  float imu_angle_deg(std::uint8_t axis) const noexcept { return sbgc::angle_deg(imu_units[axis]); }
   /// Angle to be held. @return degrees
   float target_deg(std::uint8_t axis) const noexcept { return sbgc::angle_deg(target_units[axis]); }
   std::int8_t imu_C() const noexcept { return camera_C; }        ///< degC

@@ -119,10 +119,15 @@ inline Scenario weak_battery(double duration_s = 300.0, std::uint64_t seed = 15)
   return scenario;
 }
 
-/// All of the above, in that order.
-inline std::vector<Scenario> standard_scenarios(double duration_s = 300.0) {
-  return {rest(duration_s), motion(duration_s), gusts(duration_s), impacts(duration_s), hot_start(duration_s),
-          weak_battery(duration_s)};
+/// All of the above, in that order. @param draw  other numbers give other winds, motions and pushes
+inline std::vector<Scenario> standard_scenarios(double duration_s = 300.0, std::uint64_t draw = 0) {
+  const std::uint64_t seed = 11 + 100 * draw;
+  return {rest(duration_s),
+          motion(duration_s, seed),
+          gusts(duration_s, seed + 1),
+          impacts(duration_s, seed + 2),
+          hot_start(duration_s, seed + 3),
+          weak_battery(duration_s, seed + 4)};
 }
 
 }  // namespace thermopower::simulation
