@@ -164,7 +164,7 @@ inline void localise_axis(const Model& model, const Recording& recording, double
         // A gyro's bias drags along a torque that is not there; a drifting angle does not.
         const double pace = instruments.choice.best.coefficients[0];
         Verdicts corrected(judge.judge(slack, -pace));
-        const bool biased = corrected.choice.none.unseen_total < torque.choice.none.unseen_total;
+        const bool biased = corrected.choice.best.unseen_total < torque.choice.best.unseen_total;
         submodel = biased ? "sensing.rate" : "sensing.angle";
         if (biased) {
           signal = "rate_dps";

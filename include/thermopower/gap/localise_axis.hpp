@@ -122,8 +122,9 @@ public:
         if (!whole) continue;
         list_.push_back(one);
         for (Eigen::Index k = one.begin; k < one.end; ++k) {
-          bump_.push_back(bump(one, a_.t_s[k]) * width(k));
-          slope_.push_back(-slope(one, a_.t_s[k]) * width(k));
+          const double from = k == one.begin ? a_.t_s[k] : a_.t_s[k - 1], to = k + 1 == one.end ? a_.t_s[k] : a_.t_s[k + 1];
+          bump_.push_back(0.5 * (area(one, to) - area(one, from)));
+          slope_.push_back(mean_before(one, k) - mean_before(one, k + 1));
         }
       }
     }
@@ -132,12 +133,12 @@ public:
   Eigen::Index size() const { return static_cast<Eigen::Index>(list_.size()); }
   const std::vector<One>& list() const { return list_; }
 
-  /// Integral of the bump times sampled values.
+  /// Integral of the bump times values that are straight between their samples, each interval at its mean.
   Eigen::VectorXd integral(const Eigen::VectorXd& values) const {
     return sum(bump_, values);
   }
 
-  /// Integral of minus the bump's derivative times sampled values: of the bump times their derivative.
+  /// Integral of the bump times the derivative of sampled values.
   Eigen::VectorXd derivative(const Eigen::VectorXd& values) const {
     return sum(slope_, values);
   }
@@ -167,23 +168,15 @@ public:
   }
 
 private:
-  double bump(const One& one, double t) const {
-    const double s = (t - one.middle) / one.half;
-    const double q = 1.0 - s * s;
-    return q > 0.0 ? 315.0 / 256.0 / one.half * q * q * q * q : 0.0;
-  }
-  double slope(const One& one, double t) const {
-    const double s = (t - one.middle) / one.half;
-    const double q = 1.0 - s * s;
-    return q > 0.0 ? -8.0 * s * 315.0 / 256.0 / (one.half * one.half) * q * q * q : 0.0;
+  // Mean of the bump over the interval that ends at a row. Differences of such means integrate the bump times the derivative of a
+  // signal that is straight between its samples without error: as a rate is while the torque is held.
+  double mean_before(const One& one, Eigen::Index k) const {
+    if (k == one.begin || k == one.end) return 0.0;
+    return (area(one, a_.t_s[k]) - area(one, a_.t_s[k - 1])) / (a_.t_s[k] - a_.t_s[k - 1]);
   }
   double area(const One& one, double t) const {  // integral of the bump up to t
     const double s = std::min(1.0, std::max(-1.0, (t - one.middle) / one.half)), q = s * s;
     return 0.5 + 315.0 / 256.0 * s * (1.0 + q * (-4.0 / 3.0 + q * (6.0 / 5.0 + q * (-4.0 / 7.0 + q / 9.0))));
-  }
-  double width(Eigen::Index k) const {
-    const Eigen::Index before = std::max<Eigen::Index>(0, k - 1), after = std::min<Eigen::Index>(a_.t_s.size() - 1, k + 1);
-    return 0.5 * (a_.t_s[after] - a_.t_s[before]);
   }
   const RunSpan& run_of(Eigen::Index row) const {
     for (const RunSpan& run : a_.runs) {
@@ -203,7 +196,7 @@ private:
 
   const AxisRows& a_;
   std::vector<One> list_;
-  std::vector<double> bump_, slope_;  ///< weights of values and of minus derivatives, bump after bump
+  std::vector<double> bump_, slope_;  ///< weights of values and of derivatives, bump after bump
 };
 
 /// A torque that no block of few directions describes.
@@ -273,7 +266,7 @@ public:
     };
     const Eigen::VectorXd direction = rate.array().unaryExpr([&](double w) { return std::tanh(w / std::max(2.0 * a_.rate_noise, 1e-9)); });
     const Eigen::VectorXd speed = rate.cwiseAbs();
-    add("mechanical.friction", "rate_dps", "a friction that takes an angle to turn round", split(turning(rate)), 0.0);
+    add("mechanical.friction", "rate_dps", "a friction that takes an angle to turn round", split(-turning(rate)), 0.0);
     add("mechanical.friction", "rate_dps", "a friction of the same size at every rate", {sampled(direction)});
     // At rest, dry friction takes whatever the drive gives.
     const Eigen::VectorXd moving = rate.array().abs().unaryExpr([&](double w) { return w > 4.0 * a_.rate_noise ? 1.0 : 0.0; });

@@ -22,6 +22,7 @@ struct Observed {
   Eigen::VectorXd value;
   std::vector<OrderingAxis> axes;
   double interval_s = 1.0;  ///< between samples
+  double noise = 0.0;       ///< standard deviation that the sensor alone gives `value`; 0 where unknown
 
   const OrderingAxis* find(const std::string& name) const {
     for (const OrderingAxis& axis : axes) {
@@ -44,7 +45,7 @@ inline std::string unit_of_column(const std::string& name) {
 
 /// Missing voltage: what would have to be added to V_rms for the law to give the measured current.
 inline Observed observe_current(const BenchRows& b, bool as_current) {
-  Observed o{"current_A", as_current ? "missing current" : "missing voltage", as_current ? "A" : "V", {}, {}, b.interval_s};
+  Observed o{"current_A", as_current ? "missing current" : "missing voltage", as_current ? "A" : "V", {}, {}, b.interval_s, 0.0};
   const Thinning thin(b.runs, b.current_A, 4000);
   Eigen::VectorXd value(b.t_s.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
@@ -60,7 +61,7 @@ inline Observed observe_current(const BenchRows& b, bool as_current) {
 
 /// Missing heat: C dT/dt + G (T - Ta) - P, averaged over stretches long enough that the thermometer's noise is small in it.
 inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
-  Observed o{"motor_C", "missing heat", "W", {}, {}, b.interval_s};
+  Observed o{"motor_C", "missing heat", "W", {}, {}, b.interval_s, 0.0};
   AxisRows frame;  // only its times and runs are used
   frame.runs = b.runs;
   frame.t_s = b.t_s;
@@ -79,6 +80,7 @@ inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
   const Eigen::VectorXd slope = bumps.derivative(b.winding_C);
   o.value = bumps.integral(capacity).cwiseProduct(slope) + bumps.integral(loss) - bumps.held_integral(heat);
   o.interval_s *= half;
+  o.noise = sigma * bumps.derivative_gain() * capacity.mean();
   o.axes = {{"rise_K", "K", bumps.integral(b.winding_C - b.ambient_C)},
             {"motor_C", "degC", bumps.integral(b.winding_C)},
             {"heat_W", "W", bumps.held_integral(heat)},
@@ -98,16 +100,20 @@ inline bool scatters_with_rise(const Observed& o) {
   Eigen::MatrixXd x(n, 3);
   x << Eigen::VectorXd::Ones(n), rise->values, heat->values;
   const Eigen::VectorXd left = o.value - x * x.colPivHouseholderQr().solve(o.value);
-  const double typical = std::sqrt(rise->values.squaredNorm() / static_cast<double>(n));
-  const Eigen::VectorXd scale = rise->values.cwiseAbs().cwiseMax(0.1 * typical);
-  const double alike = std::log(left.squaredNorm() / static_cast<double>(n));
-  const double with_rise = std::log(left.cwiseQuotient(scale).squaredNorm() / static_cast<double>(n)) + 2.0 * scale.array().log().mean();
+  const double noise = o.noise * o.noise, all = left.squaredNorm() / static_cast<double>(n);
+  const double scatter = std::max(all - noise, 1e-6 * all), typical = rise->values.squaredNorm() / static_cast<double>(n);
+  double alike = 0.0, with_rise = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double one = scatter + noise, other = scatter * std::max(std::pow(rise->values[i], 2.0) / typical, 1e-4) + noise;
+    alike += std::log(one) + left[i] * left[i] / one;
+    with_rise += std::log(other) + left[i] * left[i] / other;
+  }
   return with_rise < alike;
 }
 
 /// Missing torque: J dw/dt + b w - Kt i, averaged over short stretches.
 inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
-  Observed o{a.has_rate ? "rate_dps" : "angle_deg", "missing torque", "N m", {}, {}, a.interval_s};
+  Observed o{a.has_rate ? "rate_dps" : "angle_deg", "missing torque", "N m", {}, {}, a.interval_s, 0.0};
   const Bumps bumps(a, a.raw_rate, 6, 4000);
   const Eigen::VectorXd acceleration = bumps.derivative(a.rate);
   const Eigen::VectorXd drive = bumps.held_integral(a.drive_A);
@@ -128,7 +134,7 @@ inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
 
 /// What the angle's slope has more than the rate says.
 inline Observed observe_instruments(const AxisRows& a) {
-  Observed o{"angle_deg", "slope of the angle minus rate", "deg/s", {}, {}, a.interval_s};
+  Observed o{"angle_deg", "slope of the angle minus rate", "deg/s", {}, {}, a.interval_s, 0.0};
   const Bumps bumps(a, a.raw_rate + a.raw_angle, 16, 4000);
   const Eigen::VectorXd rate = bumps.integral(a.rate);
   o.value = (bumps.derivative(a.angle) - rate) / rad_per_deg;
