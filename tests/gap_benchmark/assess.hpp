@@ -17,7 +17,7 @@ using Fitted = std::map<int, double>;
 /// A wrong cause, and how well it passes for the true one.
 struct Suspect {
   std::string id;
-  double likeness = 0.0;                ///< 0..1
+  double likeness = 0.0;       ///< 0..1
   std::vector<Fitted> fitted;  ///< what it takes, beside each cause that is kept
 };
 
@@ -33,10 +33,13 @@ struct Assessment {
   std::string confused_with() const { return suspects.empty() ? std::string() : suspects.front().id; }
 
   /// No cause of the catalogue, nor two of them, come near the floor or explain most of it.
-  bool beyond_catalogue() const { return confusability() < 0.9 && left_over > 2.5 && left_over > 0.25 * visible_train; }
+  bool beyond_catalogue() const {
+    return confusability() < 0.9 && left_over > 2.5 && left_over > 0.25 * visible_train;
+  }
 
   void sort() {
-    std::stable_sort(suspects.begin(), suspects.end(), [](const Suspect& a, const Suspect& b) { return a.likeness > b.likeness; });
+    std::stable_sort(suspects.begin(), suspects.end(),
+                     [](const Suspect& a, const Suspect& b) { return a.likeness > b.likeness; });
   }
 
   /// Keeps, for every suspect, the lesser of two likenesses: one view that tells them apart is enough.
@@ -62,7 +65,8 @@ struct Scenario {
 
   /// What is left when the model's free numbers are fitted.
   /// @param seed a solution to try as well
-  Explained explained(const Values& model, const std::vector<Free>& free, int iterations, const Fitted& seed = {}) const {
+  Explained explained(const Values& model, const std::vector<Free>& free, int iterations,
+                      const Fitted& seed = {}) const {
     const auto with = [&](const std::vector<double>& values) {
       Values p = model;
       for (std::size_t j = 0; j < free.size(); ++j) p[static_cast<std::size_t>(free[j].index)] = values[j];
@@ -71,7 +75,8 @@ struct Scenario {
     const Residuals of = [&](const std::vector<double>& values) {
       Eigen::VectorXd r = residuals(with(values));
       // A replay that runs away is as wrong as can be, and no number.
-      for (Eigen::Index i = 0; i < r.size(); ++i) r(i) = std::isfinite(r(i)) ? std::clamp(r(i), -1e6, 1e6) : 1e6;
+      for (Eigen::Index i = 0; i < r.size(); ++i)
+        r(i) = std::isfinite(r(i)) ? std::clamp(r(i), -1e6, 1e6) : 1e6;
       return r;
     };
     std::vector<double> seeded;
@@ -100,41 +105,47 @@ private:
 inline std::vector<Free> joined(std::vector<Free> all, const std::vector<Free>& more) {
   for (const auto& f : more) {
     const auto same = std::find_if(all.begin(), all.end(), [&](const Free& g) { return g.index == f.index; });
-    if (same == all.end())
-      all.push_back(f);
-    else
-      *same = f;
+    if (same == all.end()) all.push_back(f);
+    else *same = f;
   }
   return all;
 }
 
 /// What to look for.
 struct Inquiry {
-  std::vector<std::string> truth;  ///< ids of the causes at work; empty for none and for causes without a name
-  bool thorough = true;            ///< whether to look for the best wrong cause, which takes most of the time
-  double gate = 3.0;               ///< least RMS over the floor; below it nothing more is done
-  double hopeless = 2.0;           ///< a likeness from which on the case is drawn again, so that no more need be known
-  const Assessment* seeds = nullptr;  ///< an earlier look: only its suspects of likeness 0.9 and more, from what fitted there
+  std::vector<std::string>
+      truth;              ///< ids of the causes at work; empty for none and for causes without a name
+  bool thorough = true;   ///< whether to look for the best wrong cause, which takes most of the time
+  double gate = 3.0;      ///< least RMS over the floor; below it nothing more is done
+  double hopeless = 2.0;  ///< a likeness from which on the case is drawn again, so that no more need be known
+  const Assessment* seeds =
+      nullptr;  ///< an earlier look: only its suspects of likeness 0.9 and more, from what fitted there
 };
 
 /// Judges a drawn case.
 template <class Context, class Values>
 Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout, const Context& context,
-                  const std::vector<Effect<Context, Values>>& effects, const std::vector<Free>& slack, const Inquiry& inquiry) {
+                  const std::vector<Effect<Context, Values>>& effects, const std::vector<Free>& slack,
+                  const Inquiry& inquiry) {
   Assessment result;
   const auto& truth = inquiry.truth;
   // With two causes each has to be visible beside the other.
   std::vector<std::vector<Free>> kept = {slack};
-  if (truth.size() == 2) kept = {joined(slack, named(effects, truth[0]).suspect(context)), joined(slack, named(effects, truth[1]).suspect(context))};
+  if (truth.size() == 2)
+    kept = {joined(slack, named(effects, truth[0]).suspect(context)),
+            joined(slack, named(effects, truth[1]).suspect(context))};
   std::vector<typename Scenario<Values>::Explained> without;
   result.visible_train = result.visible_heldout = 1e9;
   for (auto& free : kept) {
     without.push_back(train.explained(context.model, free, 12));
     result.visible_train = std::min(result.visible_train, without.back().worst_rms);
     if (result.visible_train < inquiry.gate) return result;
-    if (!inquiry.seeds) result.visible_heldout = std::min(result.visible_heldout, heldout.explained(context.model, free, 12).worst_rms);
+    if (!inquiry.seeds)
+      result.visible_heldout =
+          std::min(result.visible_heldout, heldout.explained(context.model, free, 12).worst_rms);
     if (result.visible_heldout < inquiry.gate) return result;
-    for (auto& f : free) f.starts = {without.back().fitted[f.index]};  // a suspect begins where its absence ended
+    for (auto& f : free)
+      f.starts = {without.back().fitted[f.index]};  // a suspect begins where its absence ended
   }
   if (!inquiry.thorough) return result;
   for (const auto& effect : effects) {
@@ -152,8 +163,11 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
     Suspect suspect{effect.id, 0.0, {}};
     for (std::size_t i = 0; i < kept.size(); ++i) {
       const auto free = joined(kept[i], effect.suspect(context));
-      auto explained = train.explained(context.model, free, truth.size() == 2 ? 6 : 8, seed ? seed->fitted[i] : Fitted{});
-      suspect.likeness = std::max(suspect.likeness, std::sqrt(std::max(0.0, 1.0 - explained.sum_of_squares / without[i].sum_of_squares)));
+      auto explained =
+          train.explained(context.model, free, truth.size() == 2 ? 6 : 8, seed ? seed->fitted[i] : Fitted{});
+      suspect.likeness =
+          std::max(suspect.likeness,
+                   std::sqrt(std::max(0.0, 1.0 - explained.sum_of_squares / without[i].sum_of_squares)));
       suspect.fitted.push_back(explained.fitted);
       result.left_over = std::min(result.left_over, explained.worst_rms);
     }
@@ -166,7 +180,8 @@ Assessment assess(const Scenario<Values>& train, const Scenario<Values>& heldout
     const auto& all = result.suspects;
     for (std::size_t first = 0; first < std::min<std::size_t>(2, all.size()); ++first)
       for (std::size_t second = first + 1; second < std::min<std::size_t>(8, all.size()); ++second) {
-        const auto free = joined(joined(kept[0], named(effects, all[first].id).suspect(context)), named(effects, all[second].id).suspect(context));
+        const auto free = joined(joined(kept[0], named(effects, all[first].id).suspect(context)),
+                                 named(effects, all[second].id).suspect(context));
         result.left_over = std::min(result.left_over, train.explained(context.model, free, 6).worst_rms);
       }
   }

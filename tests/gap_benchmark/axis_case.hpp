@@ -7,22 +7,32 @@
 
 #include "assess.hpp"
 #include "axis_effects.hpp"
+#include "axis_replay.hpp"
 #include "recording.hpp"
 
 namespace gap_benchmark {
 
 /// How somebody moves an axis: a position loop that follows something, or a bare current.
-enum class Motion { follow_sines, follow_steps, follow_chirp, rate_staircase, open_sines, open_prbs, open_chirp };
+enum class Motion {
+  follow_sines,
+  follow_steps,
+  follow_chirp,
+  rate_staircase,
+  open_sines,
+  open_prbs,
+  open_chirp
+};
 
 inline const char* name(Motion motion) {
-  static const char* const names[] = {"closed loop, multisine", "closed loop, steps", "closed loop, chirp", "closed loop, rate staircase",
-                                      "open loop, multisine", "open loop, PRBS", "open loop, chirp"};
+  static const char* const names[] = {
+      "closed loop, multisine", "closed loop, steps", "closed loop, chirp", "closed loop, rate staircase",
+      "open loop, multisine",   "open loop, PRBS",    "open loop, chirp"};
   return names[static_cast<int>(motion)];
 }
 
 inline Motion any_motion(Random& random) {
-  return random.pick({Motion::follow_sines, Motion::follow_sines, Motion::follow_steps, Motion::follow_chirp, Motion::rate_staircase,
-                      Motion::open_sines, Motion::open_prbs, Motion::open_chirp});
+  return random.pick({Motion::follow_sines, Motion::follow_sines, Motion::follow_steps, Motion::follow_chirp,
+                      Motion::rate_staircase, Motion::open_sines, Motion::open_prbs, Motion::open_chirp});
 }
 
 /// Everything that stays the same between the recordings of one axis.
@@ -53,7 +63,8 @@ struct AxisRecording {
 /// The command of a session, sample by sample.
 class MotionSource {
 public:
-  MotionSource(const AxisSetup& setup, const AxisSession& session, Random& random) : setup_(setup), session_(session) {
+  MotionSource(const AxisSetup& setup, const AxisSession& session, Random& random)
+      : setup_(setup), session_(session) {
     for (int i = 0; i < 4; ++i) {
       frequency_Hz_[i] = random.log_uniform(0.12, i == 3 ? 2.5 : 1.2);
       phase_[i] = random.uniform(0.0, 6.283);
@@ -68,7 +79,8 @@ public:
     switch (session_.motion) {
       case Motion::follow_sines:
         for (int i = 0; i < 4; ++i) {
-          const double omega = two_pi * frequency_Hz_[i], size = setup_.amplitude_deg * weight_[i] / (1.0 + frequency_Hz_[i]);
+          const double omega = two_pi * frequency_Hz_[i],
+                       size = setup_.amplitude_deg * weight_[i] / (1.0 + frequency_Hz_[i]);
           goal_deg += 1.6 * size * std::sin(omega * t_s + phase_[i]);
           goal_dps += 1.6 * size * omega * std::cos(omega * t_s + phase_[i]);
         }
@@ -83,8 +95,10 @@ public:
         goal_dps = (level_ - smooth_) * 6.0;
         break;
       case Motion::follow_chirp: {
-        const double span_s = 20.0, x = std::fmod(t_s, span_s) / span_s, low = 0.15, high = 2.5, ratio = std::log(high / low);
-        const double now_Hz = low * std::exp(ratio * x), turn = two_pi * span_s * low * (std::exp(ratio * x) - 1.0) / ratio + phase_[0];
+        const double span_s = 20.0, x = std::fmod(t_s, span_s) / span_s, low = 0.15, high = 2.5,
+                     ratio = std::log(high / low);
+        const double now_Hz = low * std::exp(ratio * x),
+                     turn = two_pi * span_s * low * (std::exp(ratio * x) - 1.0) / ratio + phase_[0];
         const double size = setup_.amplitude_deg / (1.0 + 1.2 * now_Hz);
         goal_deg = size * std::sin(turn);
         goal_dps = size * two_pi * now_Hz * std::cos(turn);
@@ -97,7 +111,8 @@ public:
         }
         if (std::fabs(angle_deg) > 150.0 && level_ * angle_deg > 0.0) level_ = -level_;
         const double gain = two_pi * setup_.bandwidth_Hz * p[inertia];
-        return clipped((gain * (level_ - rate_dps) + p[viscous] * level_) / degrees_per_radian / p[torque_constant]);
+        return clipped((gain * (level_ - rate_dps) + p[viscous] * level_) / degrees_per_radian /
+                       p[torque_constant]);
       }
       case Motion::open_sines: {
         double sum = 0.0;
@@ -111,12 +126,17 @@ public:
         }
         return clipped(level_ + home(angle_deg));
       case Motion::open_chirp: {
-        const double span_s = 15.0, x = std::fmod(t_s, span_s) / span_s, low = 0.3, high = 5.0, ratio = std::log(high / low);
-        return clipped(0.5 * setup_.top_A * std::sin(two_pi * span_s * low * (std::exp(ratio * x) - 1.0) / ratio + phase_[0]) + home(angle_deg));
+        const double span_s = 15.0, x = std::fmod(t_s, span_s) / span_s, low = 0.3, high = 5.0,
+                     ratio = std::log(high / low);
+        return clipped(0.5 * setup_.top_A *
+                           std::sin(two_pi * span_s * low * (std::exp(ratio * x) - 1.0) / ratio + phase_[0]) +
+                       home(angle_deg));
       }
     }
     const double omega = two_pi * setup_.bandwidth_Hz;
-    const double torque = p[inertia] * (omega * omega * (goal_deg - angle_deg) + 1.6 * omega * (goal_dps - rate_dps)) + p[viscous] * goal_dps;
+    const double torque =
+        p[inertia] * (omega * omega * (goal_deg - angle_deg) + 1.6 * omega * (goal_dps - rate_dps)) +
+        p[viscous] * goal_dps;
     return clipped(torque / degrees_per_radian / p[torque_constant]);
   }
 
@@ -128,7 +148,9 @@ private:
 
   double clipped(double current_A) const { return std::clamp(current_A, -setup_.top_A, setup_.top_A); }
   /// An open loop drifts away; a weak pull keeps it in the room.
-  double home(double angle_deg) const { return -0.05 * setup_.top_A * std::clamp(angle_deg / 90.0, -2.0, 2.0); }
+  double home(double angle_deg) const {
+    return -0.05 * setup_.top_A * std::clamp(angle_deg / 90.0, -2.0, 2.0);
+  }
 };
 
 /// Moves the axis and writes down what the log would hold.
@@ -160,14 +182,19 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
       out.truth.rate_dps.push_back(rate);
       AxisInput u;
       // The loop closes over the sensors' noise; a wrong scale in the log is not in the loop.
-      u.drive_A = source.next(random, t, x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
-                              x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss());
+      u.drive_A =
+          source.next(random, t, x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
+                      x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss());
       u.drive_A = quantise(u.drive_A, 1e-5);
       // The motor warms up, and cools in a pause of the bench: both directions in every recording.
-      u.motor_C = setup.first_C + setup.rise_K * 0.5 * (1.0 - std::cos(6.283 * t / (0.8 * length_s))) + warmth.next(random, c.dt_s);
+      u.motor_C = setup.first_C + setup.rise_K * 0.5 * (1.0 - std::cos(6.283 * t / (0.8 * length_s))) +
+                  warmth.next(random, c.dt_s);
       switch (setup.unknown) {
         case AxisUnknown::gusts: u.hidden_Nm = setup.unknown_size * gust.next(random, c.dt_s); break;
-        case AxisUnknown::vibration: u.hidden_Nm = setup.unknown_size * std::sin(6.2831853 * t / setup.unknown_time_s + session.unknown_phase); break;
+        case AxisUnknown::vibration:
+          u.hidden_Nm =
+              setup.unknown_size * std::sin(6.2831853 * t / setup.unknown_time_s + session.unknown_phase);
+          break;
         case AxisUnknown::wear: u.hidden_wear = t > breaks_s ? setup.unknown_size : 1.0; break;
         default: break;
       }
@@ -182,7 +209,8 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
     for (std::size_t k = 0; k < n; ++k) made.values.push_back(quantise(value(k), std::pow(10.0, -decimals)));
     out.log.columns.push_back(std::move(made));
   };
-  SensorNoise angle_noise(setup.noise_angle_deg, setup.coloured, 4.0), rate_noise(setup.noise_rate_dps, setup.coloured, 4.0);
+  SensorNoise angle_noise(setup.noise_angle_deg, setup.coloured, 4.0),
+      rate_noise(setup.noise_rate_dps, setup.coloured, 4.0);
   const auto lost = [&](std::size_t k) { return k > 0 && setup.missing_cells && random.chance(0.006); };
   column("t_s", 5, [&](std::size_t k) { return out.drive.t_s[k]; });
   if (session.runs > 1) out.log.run = labels;
@@ -195,13 +223,18 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
     const double noisy = quantise(out.truth.rate_dps[k] + rate_noise.next(random), setup.quantum_rate_dps);
     return lost(k) ? missing : noisy;
   });
-  if (c.has_motor) column("motor_C", 1, [&](std::size_t k) { return out.drive.input[k].motor_C + 0.05 * random.gauss(); });
+  if (c.has_motor)
+    column("motor_C", 1, [&](std::size_t k) { return out.drive.input[k].motor_C + 0.05 * random.gauss(); });
   double packets = random.integer(0, 30000);
   for (const auto& decoy : setup.decoys) {
     if (decoy == "packet_counter") column(decoy, 0, [&](std::size_t) { return packets += 1.0; });
     if (decoy == "board_C") column(decoy, 1, [&](std::size_t k) { return board[k] + 0.1 * random.gauss(); });
-    if (decoy == "battery_pct") column(decoy, 0, [&](std::size_t k) { return 97.0 - 4.0 * static_cast<double>(k) / static_cast<double>(n); });
-    if (decoy == "humidity_pct") column(decoy, 1, [&](std::size_t k) { return 41.0 + 0.4 * random.gauss() + std::sin(out.drive.t_s[k] / 9.0); });
+    if (decoy == "battery_pct")
+      column(decoy, 0,
+             [&](std::size_t k) { return 97.0 - 4.0 * static_cast<double>(k) / static_cast<double>(n); });
+    if (decoy == "humidity_pct")
+      column(decoy, 1,
+             [&](std::size_t k) { return 41.0 + 0.4 * random.gauss() + std::sin(out.drive.t_s[k] / 9.0); });
   }
   return out;
 }

@@ -13,7 +13,9 @@ inline nlohmann::ordered_json axis_model_json(const AxisContext& c) {
   nlohmann::ordered_json j;
   j["format"] = "thermopower-model/1";
   j["name"] = "bench axis";
-  j["axis"] = {{"law", "rigid"}, {"inertia_kgm2", c.model[inertia]}, {"viscous_Nms_per_rad", c.model[viscous]},
+  j["axis"] = {{"law", "rigid"},
+               {"inertia_kgm2", c.model[inertia]},
+               {"viscous_Nms_per_rad", c.model[viscous]},
                {"torque_constant_Nm_per_A", c.model[torque_constant]}};
   return j;
 }
@@ -24,12 +26,17 @@ inline AxisSetup draw_axis(const std::vector<std::string>& wanted, Random& rando
   AxisSetup s;
   AxisContext& c = s.context;
   AxisParameters& m = c.model;
-  const auto digits = [](double value) { char t[32]; std::snprintf(t, sizeof t, "%.4g", value); return std::stod(t); };
+  const auto digits = [](double value) {
+    char t[32];
+    std::snprintf(t, sizeof t, "%.4g", value);
+    return std::stod(t);
+  };
   m[inertia] = digits(random.log_uniform(3e-4, 4e-3));
   m[viscous] = digits(m[inertia] / random.log_uniform(0.3, 2.0));
   m[torque_constant] = digits(random.log_uniform(0.06, 0.26));
   c.plant = m;
-  for (const int i : {inertia, viscous, torque_constant}) c.plant[static_cast<std::size_t>(i)] *= 1.0 + random.uniform(-0.035, 0.035);
+  for (const int i : {inertia, viscous, torque_constant})
+    c.plant[static_cast<std::size_t>(i)] *= 1.0 + random.uniform(-0.035, 0.035);
   c.dt_s = random.pick({0.001, 0.002, 0.004, 0.004, 0.005, 0.01, 0.01, 0.01, 0.02});
   if (wants("compliance")) c.dt_s = std::min(c.dt_s, 0.01);
   c.has_motor = wants("torque_fade") || random.chance(0.35);
@@ -78,8 +85,12 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
       s.plant[warming_s] = random.uniform(3.0, 10.0);
       break;
     case AxisUnknown::gusts: s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5); break;
-    case AxisUnknown::wear: s.unknown_size = random.chance(0.6) ? random.uniform(2.0, 4.0) : random.uniform(0.2, 0.45); break;
-    case AxisUnknown::quadratic_drag: s.plant[drag_Nm_per_dps2] = c.torque_Nm * random.uniform(0.6, 2.0) / (c.rate_dps * c.rate_dps); break;
+    case AxisUnknown::wear:
+      s.unknown_size = random.chance(0.6) ? random.uniform(2.0, 4.0) : random.uniform(0.2, 0.45);
+      break;
+    case AxisUnknown::quadratic_drag:
+      s.plant[drag_Nm_per_dps2] = c.torque_Nm * random.uniform(0.6, 2.0) / (c.rate_dps * c.rate_dps);
+      break;
     case AxisUnknown::vibration:
       s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5);
       s.unknown_time_s = 1.0 / random.uniform(2.0, 7.0);
@@ -97,8 +108,9 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
 }
 
 /// Noise-free residuals in windows of `window_s`, over at most `limit_s` of the recording.
-inline Scenario<AxisParameters> axis_scenario(const AxisRecording& recording, const std::vector<double>& floors,
-                                              double window_s, double limit_s) {
+inline Scenario<AxisParameters> axis_scenario(const AxisRecording& recording,
+                                              const std::vector<double>& floors, double window_s,
+                                              double limit_s) {
   Scenario<AxisParameters> scenario;
   scenario.signals = 2;
   AxisDrive drive = recording.drive;
@@ -125,8 +137,8 @@ inline Scenario<AxisParameters> axis_scenario(const AxisRecording& recording, co
 }
 
 /// Squared error of a windowed replay per signal, over the rows that hold a measurement and did not restart.
-inline void add_errors(const AxisParameters& parameters, const AxisDrive& drive, const AxisRecording& recording, bool absolute,
-                       SquaredErrors& errors) {
+inline void add_errors(const AxisParameters& parameters, const AxisDrive& drive,
+                       const AxisRecording& recording, bool absolute, SquaredErrors& errors) {
   const AxisOutput measured{recording.log["angle_deg"], recording.log["rate_dps"]};
   std::vector<char> restarted;
   const AxisOutput y = replay(parameters, drive, measured, axis_horizon_s, 1.0, absolute, &restarted);
@@ -203,11 +215,13 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
       const double limit_s = order.effects.size() == 2 ? 8.0 : 10.0;
       Inquiry inquiry{order.effects, order.thorough, order.gate};
       const auto judge = [&](double window_s) {
-        return assess(axis_scenario(first, floors, window_s, limit_s), axis_scenario(second, floors, window_s, limit_s), c, axis_effects(),
-                      axis_slack(c), inquiry);
+        return assess(axis_scenario(first, floors, window_s, limit_s),
+                      axis_scenario(second, floors, window_s, limit_s), c, axis_effects(), axis_slack(c),
+                      inquiry);
       };
       drawn.assessment = judge(axis_horizon_s);
-      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
+      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate)
+        continue;
       if (order.thorough) {
         if (drawn.assessment.confusability() >= 0.9) {
           // What looks alike over half a second may not do so over three.
@@ -231,20 +245,26 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
     auto& label = drawn.label;
     label["kind"] = "axis";
     label["effects"] = order.effects;
-    label["unknown"] = unknown == AxisUnknown::none ? nlohmann::ordered_json() : nlohmann::ordered_json(axis_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second);
+    label["unknown"] =
+        unknown == AxisUnknown::none
+            ? nlohmann::ordered_json()
+            : nlohmann::ordered_json(axis_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second);
     nlohmann::ordered_json where = nlohmann::ordered_json::array(), values = nlohmann::ordered_json::object();
     for (const auto& id : order.effects) {
       const auto& effect = named(axis_effects(), id);
       where.push_back({{"signals", effect.signals}, {"submodel", effect.submodel}});
-      for (const auto& f : effect.suspect(c)) values[id].push_back(setup.plant[static_cast<std::size_t>(f.index)]);
+      for (const auto& f : effect.suspect(c))
+        values[id].push_back(setup.plant[static_cast<std::size_t>(f.index)]);
     }
     if (unknown == AxisUnknown::eccentric_encoder)
       where.push_back({{"signals", {"angle_deg"}}, {"submodel", "sensing.angle"}});
     else if (unknown != AxisUnknown::none)
       where.push_back({{"signals", {"rate_dps", "angle_deg"}},
                        {"submodel", unknown == AxisUnknown::backlash ? "mechanical.structure"
-                                    : unknown == AxisUnknown::gusts || unknown == AxisUnknown::vibration || unknown == AxisUnknown::end_stop
-                                        ? "mechanical.load" : "mechanical.friction"}});
+                                    : unknown == AxisUnknown::gusts || unknown == AxisUnknown::vibration ||
+                                            unknown == AxisUnknown::end_stop
+                                        ? "mechanical.load"
+                                        : "mechanical.friction"}});
     label["where"] = where;
     label["parameters"] = values;
     label["excitation"] = {name(train.motion), name(heldout.motion)};

@@ -31,39 +31,81 @@ inline const std::vector<AxisEffect>& axis_effects() {
   using List = std::vector<Free>;
   const auto always = [](const Context&) { return true; };
   const std::vector<std::string> motion = {"rate_dps", "angle_deg"};
-  const auto constant = [always, motion](const char* id, const char* submodel, AxisParameter index) {
-    return AxisEffect{id, submodel, motion, always,
-                      [index](Random& r, const Context&, Values& p) { p[index] *= std::exp(r.sign() * r.uniform(0.1, 0.45)); },
-                      [index](const Context& c) { const double x = c.model[index]; return List{{index, 0.35 * x, 2.8 * x, {x}}}; }, {}};
+  const auto constant = [always, motion](const char* id, const char* submodel, AxisParameter parameter) {
+    const auto index = static_cast<std::size_t>(parameter);
+    return AxisEffect{id,
+                      submodel,
+                      motion,
+                      always,
+                      [index](Random& r, const Context&, Values& p) {
+                        p[index] *= std::exp(r.sign() * r.uniform(0.1, 0.45));
+                      },
+                      [index](const Context& c) {
+                        const double x = c.model[index];
+                        return List{{static_cast<int>(index), 0.35 * x, 2.8 * x, {x}}};
+                      },
+                      {}};
   };
   static const std::vector<AxisEffect> effects = {
-      {"coulomb_friction", "mechanical.friction", motion, always,
+      {"coulomb_friction",
+       "mechanical.friction",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) { p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.03, 0.5); },
-       [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}}; }, {}},
-      {"asymmetric_friction", "mechanical.friction", motion, always,
+       [](const Context& c) {
+         return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}};
+       },
+       {}},
+      {"asymmetric_friction",
+       "mechanical.friction",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) {
          p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.05, 0.45);
          p[asymmetry] = r.sign() * r.uniform(0.25, 0.6);
        },
-       [](const Context& c) { return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}, {asymmetry, -1.0, 1.0, {-0.3, 0.3}}}; },
+       [](const Context& c) {
+         return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}},
+                     {asymmetry, -1.0, 1.0, {-0.3, 0.3}}};
+       },
        {"coulomb_friction"}},
-      {"stribeck_friction", "mechanical.friction", motion, always,
+      {"stribeck_friction",
+       "mechanical.friction",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) {
          p[coulomb_Nm] = c.torque_Nm * r.log_uniform(0.1, 0.35);
          p[stick_ratio] = r.uniform(0.5, 1.6);
          p[stribeck_dps] = r.log_uniform(5.0, 40.0);
        },
        [](const Context& c) {
-         return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}}, {stick_ratio, 0.1, 3.0, {0.8}}, {stribeck_dps, 2.0, 80.0, {8.0, 30.0}}};
+         return List{{coulomb_Nm, 0.0, 2.0 * c.torque_Nm, {0.15 * c.torque_Nm}},
+                     {stick_ratio, 0.1, 3.0, {0.8}},
+                     {stribeck_dps, 2.0, 80.0, {8.0, 30.0}}};
        },
        {"coulomb_friction"}},
-      {"load_friction", "mechanical.friction", motion, always,
+      {"load_friction",
+       "mechanical.friction",
+       motion,
+       always,
        [](Random& r, const Context&, Values& p) { p[load_share] = r.uniform(0.08, 0.35); },
-       [](const Context&) { return List{{load_share, 0.0, 0.7, {0.15}}}; }, {}},
-      {"drive_deadband", "mechanical.drive", motion, always,
+       [](const Context&) {
+         return List{{load_share, 0.0, 0.7, {0.15}}};
+       },
+       {}},
+      {"drive_deadband",
+       "mechanical.drive",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) { p[deadband_A] = c.drive_A * r.log_uniform(0.03, 0.4); },
-       [](const Context& c) { return List{{deadband_A, 0.0, 1.5 * c.drive_A, {0.15 * c.drive_A}}}; }, {}},
-      {"imbalance", "mechanical.load", motion, always,
+       [](const Context& c) {
+         return List{{deadband_A, 0.0, 1.5 * c.drive_A, {0.15 * c.drive_A}}};
+       },
+       {}},
+      {"imbalance",
+       "mechanical.load",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) {
          const double size = c.torque_Nm * r.log_uniform(0.04, 0.7), phase = r.uniform(-3.1, 3.1);
          p[unbalance_sin_Nm] = size * std::cos(phase);
@@ -72,17 +114,26 @@ inline const std::vector<AxisEffect>& axis_effects() {
        [](const Context& c) {
          const double m = 3.0 * c.torque_Nm;
          return List{{unbalance_sin_Nm, -m, m, {0.1 * m}}, {unbalance_cos_Nm, -m, m, {0.0}}};
-       }, {}},
-      {"cable_spring", "mechanical.load", motion, always,
+       },
+       {}},
+      {"cable_spring",
+       "mechanical.load",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) {
          p[cable_Nm_per_rad] = c.torque_Nm * r.log_uniform(0.04, 0.6) / c.swing_rad;
          p[cable_Nm] = p[cable_Nm_per_rad] * r.uniform(-0.4, 0.4);
        },
        [](const Context& c) {
          const double m = 3.0 * c.torque_Nm;
-         return List{{cable_Nm_per_rad, 0.0, m / c.swing_rad, {0.1 * m / c.swing_rad}}, {cable_Nm, -m, m, {0.0}}};
-       }, {}},
-      {"cogging", "mechanical.load", motion, always,
+         return List{{cable_Nm_per_rad, 0.0, m / c.swing_rad, {0.1 * m / c.swing_rad}},
+                     {cable_Nm, -m, m, {0.0}}};
+       },
+       {}},
+      {"cogging",
+       "mechanical.load",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) {
          const double size = c.torque_Nm * r.log_uniform(0.04, 0.45), phase = r.uniform(-3.1, 3.1);
          p[cogging_sin_Nm] = size * std::cos(phase);
@@ -91,36 +142,89 @@ inline const std::vector<AxisEffect>& axis_effects() {
        },
        [](const Context& c) {
          const double m = 1.5 * c.torque_Nm;
-         return List{{cogging_sin_Nm, -m, m, {0.05 * m}}, {cogging_cos_Nm, -m, m, {0.0}}, {cogging_count, 4.0, 30.0, {6.0, 12.0, 22.0}}};
-       }, {}},
-      {"compliance", "mechanical.structure", motion, [](const Context& c) { return c.dt_s <= 0.0101; },
+         return List{{cogging_sin_Nm, -m, m, {0.05 * m}},
+                     {cogging_cos_Nm, -m, m, {0.0}},
+                     {cogging_count, 4.0, 30.0, {6.0, 12.0, 22.0}}};
+       },
+       {}},
+      {"compliance",
+       "mechanical.structure",
+       motion,
+       [](const Context& c) { return c.dt_s <= 0.0101; },
        [](Random& r, const Context& c, Values& p) {
          p[far_share] = r.uniform(0.25, 0.75);
          p[spring_Hz] = r.log_uniform(3.5, std::min(18.0, 0.2 / c.dt_s));
          p[spring_damping] = r.log_uniform(0.02, 0.12);
        },
-       [](const Context&) { return List{{far_share, 0.08, 0.92, {0.3, 0.6}}, {spring_Hz, 2.0, 30.0, {5.0, 12.0}}, {spring_damping, 0.005, 0.4, {0.06}}}; }, {}},
-      {"actuation_delay", "mechanical.drive", motion, always,
-       [](Random& r, const Context& c, Values& p) { p[delay_s] = r.uniform(std::max(0.004, 0.4 * c.dt_s), 0.028); },
-       [](const Context&) { return List{{delay_s, 0.0, 0.06, {0.005, 0.015}}}; }, {}},
-      {"torque_saturation", "mechanical.drive", motion, always,
+       [](const Context&) {
+         return List{{far_share, 0.08, 0.92, {0.3, 0.6}},
+                     {spring_Hz, 2.0, 30.0, {5.0, 12.0}},
+                     {spring_damping, 0.005, 0.4, {0.06}}};
+       },
+       {}},
+      {"actuation_delay",
+       "mechanical.drive",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         p[delay_s] = r.uniform(std::max(0.004, 0.4 * c.dt_s), 0.028);
+       },
+       [](const Context&) {
+         return List{{delay_s, 0.0, 0.06, {0.005, 0.015}}};
+       },
+       {}},
+      {"torque_saturation",
+       "mechanical.drive",
+       motion,
+       always,
        [](Random& r, const Context& c, Values& p) { p[torque_limit_Nm] = c.torque_Nm * r.uniform(0.7, 1.7); },
-       [](const Context& c) { return List{{torque_limit_Nm, 0.2 * c.torque_Nm, 4.0 * c.torque_Nm, {0.9 * c.torque_Nm, 1.5 * c.torque_Nm}}}; }, {}},
-      {"torque_fade", "mechanical.drive", motion, [](const Context& c) { return c.has_motor; },
+       [](const Context& c) {
+         return List{
+             {torque_limit_Nm, 0.2 * c.torque_Nm, 4.0 * c.torque_Nm, {0.9 * c.torque_Nm, 1.5 * c.torque_Nm}}};
+       },
+       {}},
+      {"torque_fade",
+       "mechanical.drive",
+       motion,
+       [](const Context& c) { return c.has_motor; },
        [](Random& r, const Context&, Values& p) { p[fade_per_K] = r.uniform(0.0015, 0.006); },
-       [](const Context&) { return List{{fade_per_K, 0.0, 0.015, {0.002}}}; }, {}},
+       [](const Context&) {
+         return List{{fade_per_K, 0.0, 0.015, {0.002}}};
+       },
+       {}},
       constant("calibration.inertia", "mechanical.structure", inertia),
       constant("calibration.viscous", "mechanical.friction", viscous),
       constant("calibration.torque_constant", "mechanical.drive", torque_constant),
-      {"angle_scale", "sensing.angle", {"angle_deg"}, always,
-       [](Random& r, const Context&, Values& p) { p[angle_gain] = r.pick({57.29577951, 18.0, 1.0 / 18.0, 10.0, 2.0, 0.5, 1.25, 0.8, 1.1, 0.9, 0.01745329}); },
-       [](const Context&) { return List{{angle_gain, 0.01, 80.0, {0.02, 0.9, 1.5, 18.0, 57.0}}}; }, {}},
-      {"angle_bias_drift", "sensing.angle", {"angle_deg", "rate_dps"}, always,
+      {"angle_scale",
+       "sensing.angle",
+       {"angle_deg"},
+       always,
+       [](Random& r, const Context&, Values& p) {
+         p[angle_gain] =
+             r.pick({57.29577951, 18.0, 1.0 / 18.0, 10.0, 2.0, 0.5, 1.25, 0.8, 1.1, 0.9, 0.01745329});
+       },
+       [](const Context&) {
+         return List{{angle_gain, 0.01, 80.0, {0.02, 0.9, 1.5, 18.0, 57.0}}};
+       },
+       {}},
+      {"angle_bias_drift",
+       "sensing.angle",
+       {"angle_deg", "rate_dps"},
+       always,
        [](Random& r, const Context&, Values& p) { p[angle_drift_dps] = r.sign() * r.log_uniform(0.4, 4.0); },
-       [](const Context&) { return List{{angle_drift_dps, -12.0, 12.0, {0.2}}}; }, {}},
-      {"rate_bias", "sensing.rate", {"rate_dps", "angle_deg"}, always,
+       [](const Context&) {
+         return List{{angle_drift_dps, -12.0, 12.0, {0.2}}};
+       },
+       {}},
+      {"rate_bias",
+       "sensing.rate",
+       {"rate_dps", "angle_deg"},
+       always,
        [](Random& r, const Context&, Values& p) { p[rate_bias_dps] = r.sign() * r.log_uniform(0.5, 6.0); },
-       [](const Context&) { return List{{rate_bias_dps, -20.0, 20.0, {0.3}}}; }, {}},
+       [](const Context&) {
+         return List{{rate_bias_dps, -20.0, 20.0, {0.3}}};
+       },
+       {}},
   };
   return effects;
 }
@@ -136,7 +240,19 @@ inline std::vector<Free> axis_slack(const AxisContext& c, double slack = 0.04) {
 }
 
 /// Causes that no catalogue of INTERFACE lists.
-enum class AxisUnknown { none, backlash, notch, magnetic_memory, warming_grease, gusts, wear, quadratic_drag, vibration, eccentric_encoder, end_stop };
+enum class AxisUnknown {
+  none,
+  backlash,
+  notch,
+  magnetic_memory,
+  warming_grease,
+  gusts,
+  wear,
+  quadratic_drag,
+  vibration,
+  eccentric_encoder,
+  end_stop
+};
 
 inline const std::vector<std::pair<AxisUnknown, std::string>>& axis_unknowns() {
   static const std::vector<std::pair<AxisUnknown, std::string>> list = {

@@ -5,27 +5,56 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace gap_benchmark {
 
 /// Every number an axis can have; an effect is off at zero (gains: at one).
 enum AxisParameter : int {
   // what the simulation under test knows
-  inertia, viscous, torque_constant,
+  inertia,
+  viscous,
+  torque_constant,
   // friction
-  coulomb_Nm, asymmetry, stick_ratio, stribeck_dps, load_share,
+  coulomb_Nm,
+  asymmetry,
+  stick_ratio,
+  stribeck_dps,
+  load_share,
   // drive
-  deadband_A, delay_s, torque_limit_Nm, fade_per_K,
+  deadband_A,
+  delay_s,
+  torque_limit_Nm,
+  fade_per_K,
   // what depends on the angle
-  unbalance_sin_Nm, unbalance_cos_Nm, cable_Nm_per_rad, cable_Nm, cogging_sin_Nm, cogging_cos_Nm, cogging_count,
+  unbalance_sin_Nm,
+  unbalance_cos_Nm,
+  cable_Nm_per_rad,
+  cable_Nm,
+  cogging_sin_Nm,
+  cogging_cos_Nm,
+  cogging_count,
   // a spring between motor and load
-  far_share, spring_Hz, spring_damping,
+  far_share,
+  spring_Hz,
+  spring_damping,
   // sensors
-  angle_gain, angle_drift_dps, rate_bias_dps,
+  angle_gain,
+  angle_drift_dps,
+  rate_bias_dps,
   // effects that have no name in the catalogue
-  gap_deg, notch_Nm, notch_deg, notch_width_deg, magnetic_Nm, magnetic_deg, drag_Nm_per_dps2, warming_share, warming_s,
-  eccentric_deg, eccentric_count, stop_deg, stop_Nm_per_rad,
+  gap_deg,
+  notch_Nm,
+  notch_deg,
+  notch_width_deg,
+  magnetic_Nm,
+  magnetic_deg,
+  drag_Nm_per_dps2,
+  warming_share,
+  warming_s,
+  eccentric_deg,
+  eccentric_count,
+  stop_deg,
+  stop_Nm_per_rad,
   axis_parameter_count
 };
 
@@ -50,14 +79,15 @@ struct AxisInput {
   double hidden_Nm = 0.0, hidden_wear = 1.0;  ///< disturbances that no column shows
 };
 
-/// Motor side and far side of the spring, in rad; `turned` is the magnetic memory, `warm` the warmth of the grease.
+/// Motor side and far side of the spring, in rad; `turned` is the magnetic memory, `warm` the warmth of the
+/// grease.
 struct AxisState {
   double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, turned = 0.0, warm = 0.0;
 };
 
-/// An axis with dry friction, as physics: it slides, or it sticks and holds still. Classical Runge-Kutta at a quarter
-/// of a millisecond inside each phase; the moment at which it comes to rest is located, not stepped over, and a delayed
-/// command switches at its own instant.
+/// An axis with dry friction, as physics: it slides, or it sticks and holds still. Classical Runge-Kutta at a
+/// quarter of a millisecond inside each phase; the moment at which it comes to rest is located, not stepped
+/// over, and a delayed command switches at its own instant.
 class AxisPlant {
 public:
   explicit AxisPlant(const AxisParameters& parameters, double step_scale = 1.0) : p_(parameters) {
@@ -75,18 +105,22 @@ public:
   double delay() const { return p_[delay_s]; }
 
   double sensed_angle_deg(const AxisState& x, double run_time_s) const {
-    return p_[angle_gain] * (x.angle * degrees_per_radian + p_[eccentric_deg] * std::sin(p_[eccentric_count] * x.angle)) +
+    return p_[angle_gain] *
+               (x.angle * degrees_per_radian + p_[eccentric_deg] * std::sin(p_[eccentric_count] * x.angle)) +
            p_[angle_drift_dps] * run_time_s;
   }
   double sensed_rate_dps(const AxisState& x) const { return x.rate * degrees_per_radian + p_[rate_bias_dps]; }
 
-  /// Puts what the sensors say into the state; what nobody measures is kept, as far as it hangs on the motor by its twist.
+  /// Puts what the sensors say into the state; what nobody measures is kept, as far as it hangs on the motor
+  /// by its twist.
   /// @param absolute keep the far side where it was, instead of how far it was twisted
-  void restart(AxisState& x, double angle_deg, double rate_dps, double run_time_s, bool first, bool absolute) const {
+  void restart(AxisState& x, double angle_deg, double rate_dps, double run_time_s, bool first,
+               bool absolute) const {
     double angle = (angle_deg - p_[angle_drift_dps] * run_time_s) / p_[angle_gain] / degrees_per_radian;
     if (p_[eccentric_deg] != 0.0) {
       const double seen = angle;
-      for (int i = 0; i < 20; ++i) angle = seen - p_[eccentric_deg] / degrees_per_radian * std::sin(p_[eccentric_count] * angle);
+      for (int i = 0; i < 20; ++i)
+        angle = seen - p_[eccentric_deg] / degrees_per_radian * std::sin(p_[eccentric_count] * angle);
     }
     const double rate = (rate_dps - p_[rate_bias_dps]) / degrees_per_radian;
     if (first) {
@@ -105,7 +139,8 @@ public:
   /// Motor torque for a current, N m.
   double motor_torque(const AxisInput& u) const {
     const double beyond = std::max(0.0, std::fabs(u.drive_A) - p_[deadband_A]);
-    double torque = p_[torque_constant] * (1.0 - p_[fade_per_K] * (u.motor_C - fade_reference_C)) * std::copysign(beyond, u.drive_A);
+    double torque = p_[torque_constant] * (1.0 - p_[fade_per_K] * (u.motor_C - fade_reference_C)) *
+                    std::copysign(beyond, u.drive_A);
     if (p_[torque_limit_Nm] > 0.0) torque = std::clamp(torque, -p_[torque_limit_Nm], p_[torque_limit_Nm]);
     return torque;
   }
@@ -136,14 +171,21 @@ public:
         // It came to rest on the way: find when.
         double low = 0.0, high = left_s, rate_low = before.rate, rate_high = x.rate;
         for (int k = 0; k < 40 && high - low > 1e-12; ++k) {
-          double middle = k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * rate_low / (rate_low - rate_high);
+          double middle =
+              k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * rate_low / (rate_low - rate_high);
           middle = std::clamp(middle, low, high);
           x = stepped(before, held, way, false, middle);
           if (std::fabs(x.rate) < 1e-12) {
             low = high = middle;
             break;
           }
-          if (x.rate * way > 0.0) { low = middle; rate_low = x.rate; } else { high = middle; rate_high = x.rate; }
+          if (x.rate * way > 0.0) {
+            low = middle;
+            rate_low = x.rate;
+          } else {
+            high = middle;
+            rate_high = x.rate;
+          }
         }
         x = stepped(before, held, way, false, high);
         x.rate = 0.0;
@@ -202,7 +244,8 @@ private:
       torque -= p_[unbalance_sin_Nm] * std::sin(angle) + p_[unbalance_cos_Nm] * std::cos(angle);
     if (p_[stop_Nm_per_rad] > 0.0) {
       const double over = std::fabs(angle) - p_[stop_deg] / degrees_per_radian;
-      if (over > 0.0) torque -= std::copysign(p_[stop_Nm_per_rad] * over, angle) + 0.004 * p_[stop_Nm_per_rad] * rate;
+      if (over > 0.0)
+        torque -= std::copysign(p_[stop_Nm_per_rad] * over, angle) + 0.004 * p_[stop_Nm_per_rad] * rate;
     }
     return torque;
   }
@@ -215,7 +258,8 @@ private:
     if (dry_ || p_[coulomb_Nm] > 0.0) torque -= b * x.rate;
     else torque -= b * held.wear * x.rate;
     if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
-      torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) + p_[cogging_cos_Nm] * std::cos(p_[cogging_count] * x.angle);
+      torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) +
+                p_[cogging_cos_Nm] * std::cos(p_[cogging_count] * x.angle);
     if (p_[magnetic_Nm] > 0.0) torque -= p_[magnetic_Nm] * x.turned;
     if (p_[drag_Nm_per_dps2] > 0.0) {
       const double v = x.rate * degrees_per_radian;
@@ -237,87 +281,26 @@ private:
       d[2] = x.far_rate;
       d[3] = (spring_torque(x) + load_torque(x.far_angle, x.far_rate)) / (p_[inertia] * p_[far_share]);
     }
-    if (p_[magnetic_Nm] > 0.0) d[4] = (x.rate - std::fabs(x.rate) * x.turned) * degrees_per_radian / p_[magnetic_deg];
-    if (p_[warming_share] > 0.0) d[5] = (std::min(1.0, std::fabs(x.rate) * degrees_per_radian / 80.0) - x.warm) / p_[warming_s];
+    if (p_[magnetic_Nm] > 0.0)
+      d[4] = (x.rate - std::fabs(x.rate) * x.turned) * degrees_per_radian / p_[magnetic_deg];
+    if (p_[warming_share] > 0.0)
+      d[5] = (std::min(1.0, std::fabs(x.rate) * degrees_per_radian / 80.0) - x.warm) / p_[warming_s];
     return d;
   }
 
   static AxisState moved(const AxisState& x, const Rates& d, double h) {
-    return {x.angle + h * d[0], x.rate + h * d[1], x.far_angle + h * d[2], x.far_rate + h * d[3], x.turned + h * d[4], x.warm + h * d[5]};
+    return {x.angle + h * d[0],    x.rate + h * d[1],   x.far_angle + h * d[2],
+            x.far_rate + h * d[3], x.turned + h * d[4], x.warm + h * d[5]};
   }
 
   AxisState stepped(const AxisState& x, const Held& held, double way, bool stuck, double h) const {
     const Rates a = rates(x, held, way, stuck), b = rates(moved(x, a, 0.5 * h), held, way, stuck),
-                c = rates(moved(x, b, 0.5 * h), held, way, stuck), d = rates(moved(x, c, h), held, way, stuck);
+                c = rates(moved(x, b, 0.5 * h), held, way, stuck),
+                d = rates(moved(x, c, h), held, way, stuck);
     Rates mean;
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (a[i] + 2.0 * (b[i] + c[i]) + d[i]) / 6.0;
     return moved(x, mean, h);
   }
 };
-
-/// Everything that goes into a replay of an axis.
-struct AxisDrive {
-  std::vector<double> t_s;
-  std::vector<AxisInput> input;
-  std::vector<std::size_t> run_start;
-};
-
-struct AxisOutput {
-  std::vector<double> angle_deg, rate_dps;
-};
-
-/// Carries an axis from row `k` to row `k + 1`, with the command as late as it is.
-/// @param run_first first row of the run; before it the command was zero
-inline void advance_row(const AxisPlant& plant, AxisState& x, const AxisDrive& drive, std::size_t run_first, std::size_t k, double end_s) {
-  double now_s = drive.t_s[k];
-  AxisInput u = drive.input[k];
-  if (plant.delay() <= 0.0) {
-    plant.advance(x, u, end_s - now_s);
-    return;
-  }
-  // The last row whose command has arrived by now, if any.
-  std::size_t arrived = k + 1;
-  while (arrived > run_first && drive.t_s[arrived - 1] + plant.delay() > now_s + 1e-12) --arrived;
-  while (now_s < end_s) {
-    u.drive_A = arrived > run_first ? drive.input[arrived - 1].drive_A : 0.0;
-    const double next_s = arrived <= k ? std::min(end_s, drive.t_s[arrived] + plant.delay()) : end_s;
-    plant.advance(x, u, next_s - now_s);
-    now_s = next_s;
-    ++arrived;
-  }
-}
-
-/// Replay in windows that restart from what was measured.
-/// @param restarted receives true for the rows at which a window began
-inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& drive, const AxisOutput& measured, double window_s,
-                         double step_scale = 1.0, bool absolute = false, std::vector<char>* restarted = nullptr,
-                         std::size_t rows = static_cast<std::size_t>(-1)) {
-  const AxisPlant plant(parameters, step_scale);
-  AxisOutput out;
-  AxisState x;
-  std::size_t run = 0, first = 0;
-  double window_start_s = 0.0;
-  rows = std::min(rows, drive.t_s.size());
-  for (std::size_t k = 0; k < rows; ++k) {
-    const bool starts = run < drive.run_start.size() && drive.run_start[run] == k;
-    if (starts) {
-      first = k;
-      ++run;
-    } else {
-      advance_row(plant, x, drive, first, k - 1, drive.t_s[k]);
-    }
-    const double run_time_s = drive.t_s[k] - drive.t_s[first];
-    const bool usable = !std::isnan(measured.angle_deg[k]) && !std::isnan(measured.rate_dps[k]);
-    const bool again = starts || (usable && drive.t_s[k] - window_start_s >= window_s - 1e-9);
-    if (again) {
-      plant.restart(x, measured.angle_deg[k], measured.rate_dps[k], run_time_s, starts, absolute);
-      window_start_s = drive.t_s[k];
-    }
-    if (restarted) restarted->push_back(again);
-    out.angle_deg.push_back(plant.sensed_angle_deg(x, run_time_s));
-    out.rate_dps.push_back(plant.sensed_rate_dps(x));
-  }
-  return out;
-}
 
 }  // namespace gap_benchmark

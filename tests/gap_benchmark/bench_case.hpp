@@ -37,7 +37,7 @@ struct BenchSession {
 struct BenchRecording {
   BenchParameters exact{};  ///< the plant, with the hidden temperatures this recording began with
   BenchDrive drive;         ///< true inputs, true temperature at the starts
-  BenchOutput truth;  ///< noise-free outputs
+  BenchOutput truth;        ///< noise-free outputs
   Recording log;
 };
 
@@ -45,13 +45,15 @@ inline std::vector<double> bench_stamps(const BenchSetup& setup, double length_s
   std::vector<double> t;
   for (double s = 0.0; s <= length_s; s += setup.dt_s) {
     if (setup.gaps && !t.empty() && random.chance(0.004)) s += setup.dt_s * random.integer(1, 8);
-    t.push_back(std::round((s + (setup.jitter && !t.empty() ? random.uniform(-0.2, 0.2) * setup.dt_s : 0.0)) * 1e3) * 1e-3);
+    t.push_back(
+        std::round((s + (setup.jitter && !t.empty() ? random.uniform(-0.2, 0.2) * setup.dt_s : 0.0)) * 1e3) *
+        1e-3);
   }
   return t;
 }
 
-/// Runs the motor and writes down what the log would hold. The same setup and session with another `random` is
-/// another recording of the same kind.
+/// Runs the motor and writes down what the log would hold. The same setup and session with another `random`
+/// is another recording of the same kind.
 inline BenchRecording record(const BenchSetup& setup, const BenchSession& session, Random random) {
   const BenchContext& c = setup.context;
   const BenchPlant plant(setup.plant);
@@ -62,18 +64,24 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
   for (int run = 0; run < session.runs; ++run) {
     const auto t = bench_stamps(setup, session.length_s / session.runs, random);
     PowerProfile power(session.kind, setup.tau_s, setup.top_power, setup.limit_C, random);
-    Wander air(0.35, 400.0), supply(0.006 * c.nominal_V, 900.0), gust(0.5, 30.0), motion(70.0, 6.0), loss(0.4, 0.6 * setup.tau_s);
-    const double swing_K = random.uniform(0.0, 1.2), swing_s = random.uniform(3000.0, 9000.0), swing_phase = random.uniform(0.0, 6.3);
-    double wind_mps = 0.0, wind_until_s = -1.0, moving = 0.0, moving_until_s = -1.0, neighbour_goal_C = 30.0, neighbour_until_s = -1.0;
-    double neighbour_C = session.ambient_C + random.uniform(2.0, 30.0), contact_ohm = 0.0, contact_until_s = -1.0, hidden_W = 0.0,
-           heater_until_s = -1.0, board_C = session.ambient_C + 6.0;
+    Wander air(0.35, 400.0), supply(0.006 * c.nominal_V, 900.0), gust(0.5, 30.0), motion(70.0, 6.0),
+        loss(0.4, 0.6 * setup.tau_s);
+    const double swing_K = random.uniform(0.0, 1.2), swing_s = random.uniform(3000.0, 9000.0),
+                 swing_phase = random.uniform(0.0, 6.3);
+    double wind_mps = 0.0, wind_until_s = -1.0, moving = 0.0, moving_until_s = -1.0, neighbour_goal_C = 30.0,
+           neighbour_until_s = -1.0;
+    double neighbour_C = session.ambient_C + random.uniform(2.0, 30.0), contact_ohm = 0.0,
+           contact_until_s = -1.0, hidden_W = 0.0, heater_until_s = -1.0, board_C = session.ambient_C + 6.0;
     BenchState x;
     const std::size_t first = out.drive.t_s.size();
     for (std::size_t k = 0; k < t.size(); ++k) {
       const double elapsed_s = k ? t[k] - t[k - 1] : 0.0;
       BenchInput u;
-      u.ambient_C = session.ambient_C + swing_K * std::sin(6.283 * t[k] / swing_s + swing_phase) + air.next(random, elapsed_s);
-      u.supply_V = c.nominal_V + (c.has_supply ? supply.next(random, elapsed_s) - 0.01 * c.nominal_V * t[k] / session.length_s : 0.0);
+      u.ambient_C = session.ambient_C + swing_K * std::sin(6.283 * t[k] / swing_s + swing_phase) +
+                    air.next(random, elapsed_s);
+      u.supply_V = c.nominal_V + (c.has_supply ? supply.next(random, elapsed_s) -
+                                                     0.01 * c.nominal_V * t[k] / session.length_s
+                                               : 0.0);
       if (t[k] >= wind_until_s) {
         wind_mps = random.chance(0.35) ? 0.0 : random.uniform(0.8, 9.0);
         wind_until_s = t[k] + setup.tau_s * random.log_uniform(0.15, 1.2);
@@ -92,7 +100,9 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
       u.neighbour_C = neighbour_C;
       switch (setup.unknown) {
         case BenchUnknown::periodic_heat:
-          u.hidden_W = setup.unknown_size * (std::sin(6.2831853 * t[k] / setup.unknown_time_s + session.unknown_phase) > 0.0 ? 1.0 : 0.0);
+          u.hidden_W =
+              setup.unknown_size *
+              (std::sin(6.2831853 * t[k] / setup.unknown_time_s + session.unknown_phase) > 0.0 ? 1.0 : 0.0);
           break;
         case BenchUnknown::random_heat:
           if (t[k] >= heater_until_s) {
@@ -109,7 +119,8 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
           u.hidden_ohm = contact_ohm;
           break;
         case BenchUnknown::loosening:
-          u.hidden_loss = t[k] > (0.35 + 0.2 * session.unknown_phase / 6.2832) * t.back() ? setup.unknown_size : 1.0;
+          u.hidden_loss =
+              t[k] > (0.35 + 0.2 * session.unknown_phase / 6.2832) * t.back() ? setup.unknown_size : 1.0;
           break;
         case BenchUnknown::draughts:
           u.hidden_loss = std::exp(setup.unknown_size * loss.next(random, elapsed_s));
@@ -117,11 +128,13 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
         default: break;
       }
       if (k == 0) {
-        x.winding_C = x.housing_C = x.sensor_C = x.soak_C = u.ambient_C + (run ? session.run_gap_K : random.uniform(0.0, 4.0));
+        x.winding_C = x.housing_C = x.sensor_C = x.soak_C =
+            u.ambient_C + (run ? session.run_gap_K : random.uniform(0.0, 4.0));
         if (setup.warm_start && run == 0) {
           BenchInput before = u;
           before.power_param = std::round(setup.top_power * random.uniform(0.3, 0.9));
-          for (int i = 0; i < 100 && x.winding_C < setup.limit_C - 15.0; ++i) plant.advance(x, before, setup.tau_s * 0.01);
+          for (int i = 0; i < 100 && x.winding_C < setup.limit_C - 15.0; ++i)
+            plant.advance(x, before, setup.tau_s * 0.01);
           x.charge_Ah = 0.0;
           out.exact[housing_start_K] = x.housing_C - x.winding_C;
           out.exact[winding_start_K] = x.winding_C - x.sensor_C;
@@ -138,7 +151,8 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
       out.drive.input.push_back(u);
       out.truth.current_A.push_back(plant.sensed_current(u, x));
       out.truth.motor_C.push_back(sensed_C);
-      board_C += (session.ambient_C + 8.0 + 6.0 * std::sin(t[k] / 700.0) - board_C) * (1.0 - std::exp(-elapsed_s / 200.0));
+      board_C += (session.ambient_C + 8.0 + 6.0 * std::sin(t[k] / 700.0) - board_C) *
+                 (1.0 - std::exp(-elapsed_s / 200.0));
       board.push_back(board_C);
       humidity.push_back(45.0 + 6.0 * std::sin(t[k] / 1300.0 + swing_phase) + 0.4 * random.gauss());
       labels.push_back("run" + std::to_string(run + 1));
@@ -151,7 +165,8 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
     for (std::size_t k = 0; k < n; ++k) made.values.push_back(value(k));
     out.log.columns.push_back(std::move(made));
   };
-  SensorNoise current_noise(setup.noise_current_A, setup.coloured, 4.0), motor_noise(setup.noise_motor_C, setup.coloured, 4.0);
+  SensorNoise current_noise(setup.noise_current_A, setup.coloured, 4.0),
+      motor_noise(setup.noise_motor_C, setup.coloured, 4.0);
   const auto lost = [&] { return setup.missing_cells && random.chance(0.008); };
   const auto& in = out.drive.input;
   column("t_s", 3, [&](std::size_t k) { return out.drive.t_s[k]; });
@@ -166,17 +181,28 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
     const double noisy = quantise(out.truth.motor_C[k] + motor_noise.next(random), setup.quantum_motor_C);
     return k > 0 && lost() ? missing : noisy;
   });
-  column("ambient_C", 4, [&](std::size_t k) { return quantise(in[k].ambient_C + setup.noise_ambient_C * random.gauss(), setup.quantum_ambient_C); });
-  if (c.has_supply) column("supply_V", 3, [&](std::size_t k) { return in[k].supply_V + 0.001 * c.nominal_V * random.gauss(); });
-  if (c.has_airspeed) column("airspeed_mps", 2, [&](std::size_t k) { return in[k].airspeed_mps > 0.0 ? std::max(0.0, in[k].airspeed_mps + 0.05 * random.gauss()) : 0.0; });
-  if (c.has_neighbour) column("neighbour_C", 1, [&](std::size_t k) { return in[k].neighbour_C + 0.3 * random.gauss(); });
+  column("ambient_C", 4, [&](std::size_t k) {
+    return quantise(in[k].ambient_C + setup.noise_ambient_C * random.gauss(), setup.quantum_ambient_C);
+  });
+  if (c.has_supply)
+    column("supply_V", 3,
+           [&](std::size_t k) { return in[k].supply_V + 0.001 * c.nominal_V * random.gauss(); });
+  if (c.has_airspeed)
+    column("airspeed_mps", 2, [&](std::size_t k) {
+      return in[k].airspeed_mps > 0.0 ? std::max(0.0, in[k].airspeed_mps + 0.05 * random.gauss()) : 0.0;
+    });
+  if (c.has_neighbour)
+    column("neighbour_C", 1, [&](std::size_t k) { return in[k].neighbour_C + 0.3 * random.gauss(); });
   if (c.has_rate) column("rate_dps", 2, [&](std::size_t k) { return in[k].rate_dps + 0.2 * random.gauss(); });
   double battery = 99.0 - random.uniform(0.0, 20.0), packets = random.integer(0, 4000);
   for (const auto& decoy : setup.decoys) {
     if (decoy == "humidity_pct") column(decoy, 1, [&](std::size_t k) { return humidity[k]; });
     if (decoy == "board_C") column(decoy, 1, [&](std::size_t k) { return board[k] + 0.1 * random.gauss(); });
-    if (decoy == "battery_pct") column(decoy, 0, [&](std::size_t k) { return battery - 12.0 * static_cast<double>(k) / static_cast<double>(n); });
-    if (decoy == "packet_counter") column(decoy, 0, [&](std::size_t) { return packets += random.chance(0.02) ? 2.0 : 1.0; });
+    if (decoy == "battery_pct")
+      column(decoy, 0,
+             [&](std::size_t k) { return battery - 12.0 * static_cast<double>(k) / static_cast<double>(n); });
+    if (decoy == "packet_counter")
+      column(decoy, 0, [&](std::size_t) { return packets += random.chance(0.02) ? 2.0 : 1.0; });
     if (decoy == "rssi_dBm") column(decoy, 0, [&](std::size_t) { return -58.0 + 4.0 * random.gauss(); });
   }
   // What stands in the file is what counts, to the last decimal.

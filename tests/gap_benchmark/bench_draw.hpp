@@ -17,13 +17,28 @@ inline nlohmann::ordered_json bench_model_json(const BenchContext& c) {
   const auto& m = c.model;
   if (!c.current_is_input) j["supply"] = {{"nominal_V", c.nominal_V}};
   if (c.thesis()) {
-    j["current"] = {{"law", "thesis"}, {"slope_V2_mA_per_K", m[slope_V2]}, {"slope_V1_mA_per_K", m[slope_V1]}, {"slope_V0_mA_per_K", m[slope_V0]},
-                    {"base_mA", m[base_mA]}, {"exponent", m[exponent]}, {"minimum_V_rms", 1.0}};
-    j["thermal"] = {{"law", "thesis"}, {"cooling_per_min", m[cooling_per_min]}, {"rinv_slope_V1", m[rinv_slope_V1]}, {"rinv_slope_V0", m[rinv_slope_V0]},
-                    {"rinv_offset_V1", m[rinv_offset_V1]}, {"rinv_offset_V0", m[rinv_offset_V0]}, {"minimum_V_rms", 1.0}};
+    j["current"] = {{"law", "thesis"},
+                    {"slope_V2_mA_per_K", m[slope_V2]},
+                    {"slope_V1_mA_per_K", m[slope_V1]},
+                    {"slope_V0_mA_per_K", m[slope_V0]},
+                    {"base_mA", m[base_mA]},
+                    {"exponent", m[exponent]},
+                    {"minimum_V_rms", 1.0}};
+    j["thermal"] = {{"law", "thesis"},
+                    {"cooling_per_min", m[cooling_per_min]},
+                    {"rinv_slope_V1", m[rinv_slope_V1]},
+                    {"rinv_slope_V0", m[rinv_slope_V0]},
+                    {"rinv_offset_V1", m[rinv_offset_V1]},
+                    {"rinv_offset_V0", m[rinv_offset_V0]},
+                    {"minimum_V_rms", 1.0}};
   } else {
-    j["current"] = {{"law", "ohmic"}, {"resistance_ohm", m[resistance_ohm]}, {"tempco_per_K", m[tempco_per_K]}, {"reference_C", m[reference_C]}};
-    j["thermal"] = {{"law", "lumped"}, {"heat_capacity_J_per_K", m[heat_capacity]}, {"conductance_W_per_K", m[conductance]}};
+    j["current"] = {{"law", "ohmic"},
+                    {"resistance_ohm", m[resistance_ohm]},
+                    {"tempco_per_K", m[tempco_per_K]},
+                    {"reference_C", m[reference_C]}};
+    j["thermal"] = {{"law", "lumped"},
+                    {"heat_capacity_J_per_K", m[heat_capacity]},
+                    {"conductance_W_per_K", m[conductance]}};
   }
   return j;
 }
@@ -39,10 +54,19 @@ inline BenchSetup draw_bench(const std::vector<std::string>& wanted, bool thesis
   if (thesis) {
     c.nominal_V = 13.0;
     m[thesis_law] = 1.0;
-    m[slope_V2] = -0.0134; m[slope_V1] = 0.0156; m[slope_V0] = 0.0167; m[base_mA] = 0.1551; m[exponent] = 3.4591;
-    m[cooling_per_min] = 0.11; m[rinv_slope_V1] = -0.0002; m[rinv_slope_V0] = 0.0062; m[rinv_offset_V1] = 0.0255; m[rinv_offset_V0] = -0.105;
+    m[slope_V2] = -0.0134;
+    m[slope_V1] = 0.0156;
+    m[slope_V0] = 0.0167;
+    m[base_mA] = 0.1551;
+    m[exponent] = 3.4591;
+    m[cooling_per_min] = 0.11;
+    m[rinv_slope_V1] = -0.0002;
+    m[rinv_slope_V0] = 0.0062;
+    m[rinv_offset_V1] = 0.0255;
+    m[rinv_offset_V0] = -0.105;
     const double bigger = random.uniform(0.7, 1.5);  // other motors of the family
-    for (const int i : {rinv_slope_V1, rinv_slope_V0, rinv_offset_V1, rinv_offset_V0}) m[static_cast<std::size_t>(i)] *= bigger;
+    for (const int i : {rinv_slope_V1, rinv_slope_V0, rinv_offset_V1, rinv_offset_V0})
+      m[static_cast<std::size_t>(i)] *= bigger;
     m[cooling_per_min] *= random.uniform(0.6, 1.3);
     m[heat_capacity] = 60.0 * 0.3 * bigger;
     m[conductance] = m[heat_capacity] * m[cooling_per_min] / 60.0;
@@ -62,7 +86,13 @@ inline BenchSetup draw_bench(const std::vector<std::string>& wanted, bool thesis
     if (wants("winding_tempco") || (wanted.empty() && random.chance(0.05))) c.knows_tempco = false;
     s.limit_C = 22.0 + top_rise_K * random.uniform(0.6, 0.95);
   }
-  const auto digits = [](double value) { return std::stod([&] { char t[32]; std::snprintf(t, sizeof t, "%.5g", value); return std::string(t); }()); };
+  const auto digits = [](double value) {
+    return std::stod([&] {
+      char t[32];
+      std::snprintf(t, sizeof t, "%.5g", value);
+      return std::string(t);
+    }());
+  };
   for (auto& value : m) value = digits(value);
 
   const double off = thesis ? 0.02 : 0.035;
@@ -71,7 +101,8 @@ inline BenchSetup draw_bench(const std::vector<std::string>& wanted, bool thesis
     const auto i = static_cast<std::size_t>(f.index);
     c.plant[i] = m[i] * (1.0 + random.uniform(-off, off));
   }
-  // Copper is copper: without a coefficient in the model there must be none in the motor, unless that is the story.
+  // Copper is copper: without a coefficient in the model there must be none in the motor, unless that is the
+  // story.
   if (!c.knows_tempco) m[tempco_per_K] = c.plant[tempco_per_K] = 0.0;
   c.has_airspeed = wants("forced_airflow") || random.chance(0.25);
   c.has_neighbour = wants("neighbour_heating") || random.chance(0.25);
@@ -149,7 +180,8 @@ inline void draw_unknown(BenchSetup& s, BenchUnknown unknown, Random& random) {
   }
 }
 
-inline Scenario<BenchParameters> bench_scenario(const BenchSetup& setup, const BenchRecording& recording, const std::vector<double>& floors) {
+inline Scenario<BenchParameters> bench_scenario(const BenchSetup& setup, const BenchRecording& recording,
+                                                const std::vector<double>& floors) {
   Scenario<BenchParameters> scenario;
   const bool current = setup.context.has_current && !setup.context.current_is_input;
   scenario.signals = current ? 2 : 1;
@@ -179,10 +211,12 @@ inline Scenario<BenchParameters> bench_scenario(const BenchSetup& setup, const B
 /// Squared error of a replay per signal, over the rows that hold a measurement.
 inline void add_errors(const BenchOutput& y, const BenchRecording& recording, SquaredErrors& errors) {
   errors["motor_C"].add(y.motor_C, recording.log["motor_C"]);
-  if (recording.log.has("current_A") && recording.log.has("power_param")) errors["current_A"].add(y.current_A, recording.log["current_A"]);
+  if (recording.log.has("current_A") && recording.log.has("power_param"))
+    errors["current_A"].add(y.current_A, recording.log["current_A"]);
 }
 
-/// One case on the bench, drawn until its cause is plain in both recordings; throws when that does not happen.
+/// One case on the bench, drawn until its cause is plain in both recordings; throws when that does not
+/// happen.
 inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
   int patience = 8;
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -198,8 +232,10 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     const auto unknown = static_cast<BenchUnknown>(order.unknown);
     if (unknown == BenchUnknown::intermittent_contact && (!c.has_current || c.current_is_input)) continue;
     draw_unknown(setup, unknown, random);
-    const bool thresholds = unknown == BenchUnknown::melting || unknown == BenchUnknown::hidden_fan || unknown == BenchUnknown::shorted_turns;
-    BenchSession train{PowerProfile::any(random), c.length_s, random.uniform(16.0, 30.0), 0.0, random.uniform(0.0, 6.28), 1};
+    const bool thresholds = unknown == BenchUnknown::melting || unknown == BenchUnknown::hidden_fan ||
+                            unknown == BenchUnknown::shorted_turns;
+    BenchSession train{PowerProfile::any(random), c.length_s, random.uniform(16.0, 30.0), 0.0,
+                       random.uniform(0.0, 6.28), 1};
     if (random.chance(0.2)) {
       train.runs = random.integer(2, 3);
       setup.warm_start = false;
@@ -224,8 +260,10 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     if (!order.effects.empty() || unknown != BenchUnknown::none) {
       Inquiry inquiry{order.effects, order.thorough, order.gate};
       if (unknown != BenchUnknown::none || (order.clear && patience > 1)) inquiry.hopeless = 0.9;
-      drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors), c, bench_effects(), bench_slack(c), inquiry);
-      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate) continue;
+      drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors),
+                                c, bench_effects(), bench_slack(c), inquiry);
+      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate)
+        continue;
       if (order.thorough) {
         if (unknown != BenchUnknown::none && !drawn.assessment.beyond_catalogue()) continue;
         if (order.clear && drawn.assessment.confusability() >= 0.9 && --patience > 0) continue;
@@ -244,22 +282,33 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     auto& label = drawn.label;
     label["kind"] = c.thesis() ? "thesis" : "bench";
     label["effects"] = order.effects;
-    label["unknown"] = unknown == BenchUnknown::none ? nlohmann::ordered_json() : nlohmann::ordered_json(bench_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second);
+    label["unknown"] =
+        unknown == BenchUnknown::none
+            ? nlohmann::ordered_json()
+            : nlohmann::ordered_json(bench_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second);
     nlohmann::ordered_json where = nlohmann::ordered_json::array(), values = nlohmann::ordered_json::object();
     for (const auto& id : order.effects) {
       const auto& effect = named(bench_effects(), id);
       where.push_back({{"signals", effect.signals}, {"submodel", effect.submodel}});
-      for (const auto& f : effect.suspect(c)) values[id].push_back(setup.plant[static_cast<std::size_t>(f.index)]);
+      for (const auto& f : effect.suspect(c))
+        values[id].push_back(setup.plant[static_cast<std::size_t>(f.index)]);
     }
     if (unknown == BenchUnknown::intermittent_contact || unknown == BenchUnknown::shorted_turns)
       where.push_back({{"signals", {"current_A"}}, {"submodel", "electrical"}});
     else if (unknown != BenchUnknown::none)
-      where.push_back({{"signals", {"motor_C"}}, {"submodel", unknown == BenchUnknown::melting ? "thermal.storage" : unknown == BenchUnknown::periodic_heat || unknown == BenchUnknown::random_heat ? "thermal.heating" : "thermal.loss"}});
+      where.push_back(
+          {{"signals", {"motor_C"}},
+           {"submodel", unknown == BenchUnknown::melting ? "thermal.storage"
+                        : unknown == BenchUnknown::periodic_heat || unknown == BenchUnknown::random_heat
+                            ? "thermal.heating"
+                            : "thermal.loss"}});
     label["where"] = where;
     label["parameters"] = values;
     label["excitation"] = {PowerProfile::name(train.kind), PowerProfile::name(heldout.kind)};
     label["interval_s"] = setup.dt_s;
-    label["noise"] = {{"current_A", setup.noise_current_A}, {"motor_C", setup.noise_motor_C}, {"ambient_C", setup.noise_ambient_C}};
+    label["noise"] = {{"current_A", setup.noise_current_A},
+                      {"motor_C", setup.noise_motor_C},
+                      {"ambient_C", setup.noise_ambient_C}};
     write_gap(label, before, perfect, all_before, all_perfect);
     return drawn;
   }

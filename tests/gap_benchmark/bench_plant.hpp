@@ -13,19 +13,59 @@ namespace gap_benchmark {
 /// Plain indices, so that a fit can move any of them.
 enum BenchParameter : int {
   // what the simulation under test knows
-  resistance_ohm, tempco_per_K, reference_C, heat_capacity, conductance,
+  resistance_ohm,
+  tempco_per_K,
+  reference_C,
+  heat_capacity,
+  conductance,
   // the thesis's law, in its own units
-  thesis_law, slope_V2, slope_V1, slope_V0, base_mA, exponent, cooling_per_min, rinv_slope_V1, rinv_slope_V0,
-  rinv_offset_V1, rinv_offset_V0,
+  thesis_law,
+  slope_V2,
+  slope_V1,
+  slope_V0,
+  base_mA,
+  exponent,
+  cooling_per_min,
+  rinv_slope_V1,
+  rinv_slope_V0,
+  rinv_offset_V1,
+  rinv_offset_V0,
   // electrical effects
-  series_ohm, internal_ohm, volt_per_Ah, dead_duty, emf_V_per_dps, current_offset_A, current_gain,
+  series_ohm,
+  internal_ohm,
+  volt_per_Ah,
+  dead_duty,
+  emf_V_per_dps,
+  current_offset_A,
+  current_gain,
   // thermal effects
-  winding_share, coupling_W_per_K, radiation_W_per_K4, convection_exponent, convection_reference_K, airflow_gain,
-  airflow_exponent, air_bias_K, neighbour_W_per_K, motion_W_per_dps2, sensor_lag_s, sensor_gain, supply_heating,
+  winding_share,
+  coupling_W_per_K,
+  radiation_W_per_K4,
+  convection_exponent,
+  convection_reference_K,
+  airflow_gain,
+  airflow_exponent,
+  air_bias_K,
+  neighbour_W_per_K,
+  motion_W_per_dps2,
+  sensor_lag_s,
+  sensor_gain,
+  supply_heating,
   // what nobody measures at the start of a run
-  housing_start_K, winding_start_K,
+  housing_start_K,
+  winding_start_K,
   // effects that have no name in the catalogue
-  fan_gain, fan_on_C, fan_off_C, latent_J, melting_C, melting_width_K, short_share, short_C, soak_W_per_K, soak_J_per_K,
+  fan_gain,
+  fan_on_C,
+  fan_off_C,
+  latent_J,
+  melting_C,
+  melting_width_K,
+  short_share,
+  short_C,
+  soak_W_per_K,
+  soak_J_per_K,
   bench_parameter_count
 };
 
@@ -42,7 +82,8 @@ inline BenchParameters bench_defaults() {
 
 /// What holds over one interval of the log. The hidden ones are disturbances that no column shows.
 struct BenchInput {
-  double power_param = 0.0, supply_V = 12.0, ambient_C = 20.0, airspeed_mps = 0.0, neighbour_C = 20.0, rate_dps = 0.0;
+  double power_param = 0.0, supply_V = 12.0, ambient_C = 20.0, airspeed_mps = 0.0, neighbour_C = 20.0,
+         rate_dps = 0.0;
   double measured_current_A = -1.0;  ///< when not negative: the heating is computed from it
   double hidden_W = 0.0, hidden_ohm = 0.0, hidden_loss = 1.0;
 };
@@ -52,15 +93,16 @@ struct BenchState {
   bool fan = false;
 };
 
-/// A motor under power on a bench, as physics and not as a list of corrections: winding, housing, thermometer,
-/// battery. Integrated by classical Runge-Kutta at a small fraction of the fastest time constant; the moment a
-/// thermostat switches is found by bisection.
+/// A motor under power on a bench, as physics and not as a list of corrections: winding, housing,
+/// thermometer, battery. Integrated by classical Runge-Kutta at a small fraction of the fastest time
+/// constant; the moment a thermostat switches is found by bisection.
 class BenchPlant {
 public:
   explicit BenchPlant(const BenchParameters& parameters, double step_scale = 1.0) : p_(parameters) {
     double fastest_s = p_[thesis_law] > 0.0 ? 60.0 / std::max(p_[cooling_per_min], 1e-3)
                                             : p_[heat_capacity] / std::max(p_[conductance], 1e-9);
-    if (two_nodes()) fastest_s = std::min(fastest_s, p_[winding_share] * p_[heat_capacity] / p_[coupling_W_per_K]);
+    if (two_nodes())
+      fastest_s = std::min(fastest_s, p_[winding_share] * p_[heat_capacity] / p_[coupling_W_per_K]);
     if (p_[sensor_lag_s] > 0.0) fastest_s = std::min(fastest_s, p_[sensor_lag_s]);
     if (p_[soak_J_per_K] > 0.0) fastest_s = std::min(fastest_s, p_[soak_J_per_K] / p_[soak_W_per_K]);
     step_s_ = std::min(0.5, fastest_s / 12.0);
@@ -72,12 +114,13 @@ public:
 
   double resistance(double winding_C) const {
     double r = p_[resistance_ohm] * (1.0 + p_[tempco_per_K] * (winding_C - p_[reference_C]));
-    if (p_[short_share] > 0.0) r *= 1.0 - p_[short_share] / (1.0 + std::exp(-(winding_C - p_[short_C]) / 0.7));
+    if (p_[short_share] > 0.0)
+      r *= 1.0 - p_[short_share] / (1.0 + std::exp(-(winding_C - p_[short_C]) / 0.7));
     return r;
   }
 
-  /// RMS current through the winding. The bus capacitor sees the mean of the pulses, duty times the pulse current,
-  /// so that is what sags the supply and empties the battery.
+  /// RMS current through the winding. The bus capacitor sees the mean of the pulses, duty times the pulse
+  /// current, so that is what sags the supply and empties the battery.
   double current(const BenchInput& u, const BenchState& x) const {
     const double duty = std::max(0.0, std::min(1.0, u.power_param / 255.0) - p_[dead_duty]);
     if (duty <= 0.0) return 0.0;
@@ -89,7 +132,8 @@ public:
       const double slope = (p_[slope_V2] * v + p_[slope_V1]) * v + p_[slope_V0];
       return std::max(0.0, slope * x.winding_C + p_[base_mA] * std::pow(v, p_[exponent])) * 1e-3;
     }
-    const double total_ohm = resistance(x.winding_C) + p_[series_ohm] + u.hidden_ohm + p_[internal_ohm] * duty;
+    const double total_ohm =
+        resistance(x.winding_C) + p_[series_ohm] + u.hidden_ohm + p_[internal_ohm] * duty;
     return std::max(0.0, open_V * root - p_[emf_V_per_dps] * std::fabs(u.rate_dps)) / total_ohm;
   }
 
@@ -181,7 +225,8 @@ private:
       base = capacity * p_[cooling_per_min] / 60.0;
     }
     Rates d{};
-    const double heat_W = heating(u, x), outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + u.hidden_W;
+    const double heat_W = heating(u, x),
+                 outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + u.hidden_W;
     const double soak_W = p_[soak_J_per_K] > 0.0 ? p_[soak_W_per_K] * (x.winding_C - x.soak_C) : 0.0;
     if (two_nodes()) {
       const double across = p_[coupling_W_per_K] * (x.winding_C - x.housing_C);
@@ -233,7 +278,8 @@ struct BenchOutput {
 };
 
 /// Free-running replay of whole runs from their first measured temperature.
-inline BenchOutput replay(const BenchParameters& parameters, const BenchDrive& drive, double step_scale = 1.0) {
+inline BenchOutput replay(const BenchParameters& parameters, const BenchDrive& drive,
+                          double step_scale = 1.0) {
   const BenchPlant plant(parameters, step_scale);
   BenchOutput out;
   out.current_A.reserve(drive.t_s.size());
@@ -242,10 +288,8 @@ inline BenchOutput replay(const BenchParameters& parameters, const BenchDrive& d
   std::size_t run = 0;
   for (std::size_t k = 0; k < drive.t_s.size(); ++k) {
     const bool starts = run < drive.run_start.size() && drive.run_start[run] == k;
-    if (starts)
-      x = plant.start(drive.input[k], drive.start_C[run++]);
-    else
-      plant.advance(x, drive.input[k - 1], drive.t_s[k] - drive.t_s[k - 1]);
+    if (starts) x = plant.start(drive.input[k], drive.start_C[run++]);
+    else plant.advance(x, drive.input[k - 1], drive.t_s[k] - drive.t_s[k - 1]);
     out.current_A.push_back(plant.sensed_current(drive.input[k], x));
     out.motor_C.push_back(plant.sensed_temperature(drive.input[k], x));
   }

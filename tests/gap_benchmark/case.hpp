@@ -17,11 +17,11 @@ namespace gap_benchmark {
 struct CaseOrder {
   bool axis = false, thesis = false;
   std::vector<std::string> effects;
-  int unknown = 0;          ///< number of the cause outside the catalogue, 0 for none
-  bool thorough = true;     ///< look for the best wrong cause, too
-  bool clear = false;       ///< draw again, a few times, when a wrong cause passes for the true one
-  double gate = 3.0;        ///< least RMS of the cause over the floor, in train and in held-out
-  int replicates = 12;      ///< further held-out recordings for the shrinkage of the population
+  int unknown = 0;       ///< number of the cause outside the catalogue, 0 for none
+  bool thorough = true;  ///< look for the best wrong cause, too
+  bool clear = false;    ///< draw again, a few times, when a wrong cause passes for the true one
+  double gate = 3.0;     ///< least RMS of the cause over the floor, in train and in held-out
+  int replicates = 12;   ///< further held-out recordings for the shrinkage of the population
 };
 
 struct DrawnCase {
@@ -47,16 +47,17 @@ struct SquaredError {
 
 using SquaredErrors = std::map<std::string, SquaredError>;
 
-/// `floor` is what the true model scores on this very recording; `shrunk_population` is what it would achieve over
-/// many held-out recordings of the same kind, which is what a confidence interval has to cover.
-inline void write_gap(nlohmann::ordered_json& label, SquaredErrors& before, SquaredErrors& perfect, SquaredErrors& all_before,
-                      SquaredErrors& all_perfect) {
+/// `floor` is what the true model scores on this very recording; `shrunk_population` is what it would achieve
+/// over many held-out recordings of the same kind, which is what a confidence interval has to cover.
+inline void write_gap(nlohmann::ordered_json& label, SquaredErrors& before, SquaredErrors& perfect,
+                      SquaredErrors& all_before, SquaredErrors& all_perfect) {
   for (const auto& entry : before) {
     const std::string& signal = entry.first;
-    label["gap"][signal] = {{"before", entry.second.rms()},
-                            {"floor", perfect[signal].rms()},
-                            {"shrunk_sample", 1.0 - perfect[signal].rms() / entry.second.rms()},
-                            {"shrunk_population", 1.0 - all_perfect[signal].rms() / all_before[signal].rms()}};
+    label["gap"][signal] = {
+        {"before", entry.second.rms()},
+        {"floor", perfect[signal].rms()},
+        {"shrunk_sample", 1.0 - perfect[signal].rms() / entry.second.rms()},
+        {"shrunk_population", 1.0 - all_perfect[signal].rms() / all_before[signal].rms()}};
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// What the benchmark itself has to be right about, before it may judge anything: the physics of its plants, the step of
-// its integrators, its random numbers, its statistics, and that it tells the judge nothing.
+// What the benchmark itself has to be right about, before it may judge anything: the physics of its plants,
+// the step of its integrators, its random numbers, its statistics, and that it tells the judge nothing.
 
 #include "../catch.hpp"
 
@@ -82,7 +82,9 @@ TEST_CASE("heat in is heat out plus heat stored, with two nodes and every kind o
     plant.advance(b, u, 0.5 * h);
     x = b;
     plant.advance(x, u, 0.5 * h);
-    const auto net = [&](const BenchState& s) { return plant.heating(u, s) - plant.loss(u, s.housing_C, false, p[conductance]); };
+    const auto net = [&](const BenchState& s) {
+      return plant.heating(u, s) - plant.loss(u, s.housing_C, false, p[conductance]);
+    };
     balance_J += h / 6.0 * (net(a) + 4.0 * net(b) + net(x));
   }
   const double stored_J = 60.0 * (0.2 * (x.winding_C - 20.0) + 0.8 * (x.housing_C - 20.0));
@@ -118,9 +120,9 @@ TEST_CASE("a rigid axis follows the exponential of the textbook, and dry frictio
   x = AxisState{};
   x.rate = 1.0;
   AxisPlant(p).advance(x, AxisInput{}, 3.0);
-  CHECK(x.rate == 0.0);                                   // at rest, and not chattering around it
+  CHECK(x.rate == 0.0);                          // at rest, and not chattering around it
   CHECK(agree(x.angle, 0.5 * 1.0 / 2.0, 1e-6));  // v^2 / (2 F / J)
-  u.drive_A = 0.9 * 2e-3 / 0.15;                          // not enough to break away
+  u.drive_A = 0.9 * 2e-3 / 0.15;                 // not enough to break away
   AxisPlant(p).advance(x, u, 1.0);
   CHECK(x.rate == 0.0);
 }
@@ -154,11 +156,13 @@ TEST_CASE("halving the step of the plants changes a recording by less than a hun
     CHECK(furthest(coarse.motor_C, fine.motor_C) < 0.01 * setup.noise_motor_C);
     CHECK(furthest(coarse.current_A, fine.current_A) < 0.01 * setup.noise_current_A);
   }
-  for (const BenchUnknown unknown : {BenchUnknown::melting, BenchUnknown::hidden_fan, BenchUnknown::shorted_turns}) {
+  for (const BenchUnknown unknown :
+       {BenchUnknown::melting, BenchUnknown::hidden_fan, BenchUnknown::shorted_turns}) {
     BenchSetup setup = draw_bench({}, false, random);
     draw_unknown(setup, unknown, random);
     const BenchRecording made = record(setup, BenchSession{}, Random(4));
-    const BenchOutput coarse = replay(made.exact, made.drive, 1.0), fine = replay(made.exact, made.drive, 0.5);
+    const BenchOutput coarse = replay(made.exact, made.drive, 1.0),
+                      fine = replay(made.exact, made.drive, 0.5);
     CHECK(furthest(coarse.motor_C, fine.motor_C) < 0.01 * setup.noise_motor_C);
   }
   for (const auto& effect : axis_effects()) {
@@ -187,7 +191,8 @@ TEST_CASE("the true model replays its own recording to the noise of its sensors"
   const BenchRecording made = record(bench, BenchSession{}, Random(7));
   SquaredErrors errors;
   add_errors(replay(made.exact, drive_from_log(bench, made)), made, errors);
-  CHECK(errors["motor_C"].rms() < 1.5 * std::hypot(bench.noise_motor_C, bench.quantum_motor_C / std::sqrt(12.0)) + 0.03);
+  CHECK(errors["motor_C"].rms() <
+        1.5 * std::hypot(bench.noise_motor_C, bench.quantum_motor_C / std::sqrt(12.0)) + 0.03);
   CHECK(errors["motor_C"].rms() > 0.9 * bench.noise_motor_C);
 
   AxisSetup axis = draw_axis({}, random);
@@ -246,7 +251,9 @@ TEST_CASE("the plan holds every effect, and its order says nothing") {
   CHECK(orders.size() >= 300);
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis))
-      CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) { return o.axis == axis && o.effects == std::vector<std::string>{id}; }) == 5);
+      CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
+              return o.axis == axis && o.effects == std::vector<std::string>{id};
+            }) == 5);
   int neighbours = 0;
   for (std::size_t i = 1; i < orders.size(); ++i) neighbours += orders[i].effects == orders[i - 1].effects;
   CHECK(neighbours < 40);

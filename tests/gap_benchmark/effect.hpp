@@ -21,7 +21,8 @@ struct Effect {
   std::function<bool(const Context&)> possible;
   std::function<void(Random&, const Context&, Values&)> draw;
   std::function<std::vector<Free>(const Context&)> suspect;
-  std::vector<std::string> contains;  ///< causes of which this one is the richer kind: no rivals, but the same and more
+  std::vector<std::string>
+      contains;  ///< causes of which this one is the richer kind: no rivals, but the same and more
 };
 
 template <class EffectType>

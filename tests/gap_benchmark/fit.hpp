@@ -25,10 +25,10 @@ struct Fit {
   double sum_of_squares = 0.0;
 };
 
-/// Bounded Levenberg-Marquardt with one-sided differences, inside the unit box. Slow, plain, and good enough to
-/// ask how well one cause can pass for another.
-inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::vector<double> values, int iterations,
-               double enough = 0.0) {
+/// Bounded Levenberg-Marquardt with one-sided differences, inside the unit box. Slow, plain, and good enough
+/// to ask how well one cause can pass for another.
+inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::vector<double> values,
+               int iterations, double enough = 0.0) {
   const auto n = static_cast<Eigen::Index>(free.size());
   Eigen::VectorXd r = residuals(values);
   Fit best{values, r.squaredNorm()};
@@ -50,7 +50,8 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
     const double before = best.sum_of_squares;
     for (int attempt = 0; attempt < 7 && !moved; ++attempt) {
       Eigen::MatrixXd damped = normal;
-      damped.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(n, 1e-12 * normal.trace() + 1e-300);
+      damped.diagonal() +=
+          damping * normal.diagonal() + Eigen::VectorXd::Constant(n, 1e-12 * normal.trace() + 1e-300);
       // A number that leans on its bound and wants to go further is held there, or it drags the others along.
       for (Eigen::Index j = 0; j < n; ++j) {
         const Free& f = free[static_cast<std::size_t>(j)];
@@ -86,13 +87,14 @@ inline Fit fit(const Residuals& residuals, const std::vector<Free>& free, std::v
 
 /// The best fit from the two best combinations of the listed starting values.
 /// @param seed a further start, or empty
-inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Free>& free, const std::vector<double>& seed, int iterations,
-                                double enough = 0.0) {
+inline Fit fit_from_best_starts(const Residuals& residuals, const std::vector<Free>& free,
+                                const std::vector<double>& seed, int iterations, double enough = 0.0) {
   std::vector<std::pair<double, std::vector<double>>> starts;
   std::vector<std::size_t> choice(free.size(), 0);
   for (std::size_t j = 0; j <= free.size();) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < free.size(); ++i) values.push_back(std::clamp(free[i].starts[choice[i]], free[i].from, free[i].to));
+    for (std::size_t i = 0; i < free.size(); ++i)
+      values.push_back(std::clamp(free[i].starts[choice[i]], free[i].from, free[i].to));
     starts.emplace_back(0.0, values);
     j = 0;
     while (j < free.size() && ++choice[j] == free[j].starts.size()) choice[j++] = 0;

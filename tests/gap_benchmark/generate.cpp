@@ -3,8 +3,8 @@
 //
 // Draws recordings whose cause is known, and seals the causes in a file of their own:
 //   DIR/cases/NNN/{model.json,train.csv,heldout.csv}   what the judge sees
-//   DIR/jobs.txt                                       job, case, and the effects to take out of the catalogue
-//   DIR/sealed/labels.json                             what only the scorer sees
+//   DIR/jobs.txt                                       job, case, and the effects to take out of the
+//   catalogue DIR/sealed/labels.json                             what only the scorer sees
 
 #include <atomic>
 #include <chrono>
@@ -116,8 +116,9 @@ int main(int argc, char** argv) {
         std::ofstream(directory + "/model.json") << drawn.model.dump(1) << "\n";
         labels[i] = complete(drawn, order);
         char text[200];
-        std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s", drawn.train.rows(), drawn.assessment.visible_train,
-                      drawn.assessment.visible_heldout, drawn.assessment.confusability(), drawn.assessment.confused_with().c_str());
+        std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s",
+                      drawn.train.rows(), drawn.assessment.visible_train, drawn.assessment.visible_heldout,
+                      drawn.assessment.confusability(), drawn.assessment.confused_with().c_str());
         line = text;
       } catch (const std::exception& error) {
         ++failed;
@@ -169,7 +170,8 @@ int main(int argc, char** argv) {
     list << numbered("L%04d", i) << " " << drawn_jobs[i].first;
     for (const auto& id : drawn_jobs[i].second) list << " " << id.get<std::string>();
     list << "\n";
-    sealed["leave_one_out"][numbered("L%04d", i)] = {{"case", drawn_jobs[i].first}, {"without", drawn_jobs[i].second}};
+    sealed["leave_one_out"][numbered("L%04d", i)] = {{"case", drawn_jobs[i].first},
+                                                     {"without", drawn_jobs[i].second}};
   }
   std::ofstream file(options.out + "/sealed/labels.json");
   file << sealed.dump(1) << "\n";

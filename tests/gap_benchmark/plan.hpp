@@ -16,33 +16,54 @@ using Pair = std::pair<const char*, const char*>;
 /// Two causes at once: in different submodels, in the same one, and such as hide each other.
 inline const std::vector<Pair>& bench_pairs() {
   static const std::vector<Pair> pairs = {
-      {"second_thermal_mass", "current_sensor_offset"}, {"second_thermal_mass", "ambient_bias"},
-      {"second_thermal_mass", "forced_airflow"},        {"second_thermal_mass", "motion_heating"},
-      {"radiation", "series_resistance"},               {"natural_convection", "supply_sag"},
-      {"natural_convection", "dead_time"},              {"thermometer_lag", "supply_sag"},
-      {"thermometer_lag", "dead_time"},                 {"thermometer_lag", "neighbour_heating"},
-      {"forced_airflow", "neighbour_heating"},          {"forced_airflow", "current_sensor_gain"},
-      {"forced_airflow", "calibration.conductance"},    {"ambient_bias", "winding_tempco"},
-      {"ambient_bias", "series_resistance"},            {"ambient_bias", "neighbour_heating"},
-      {"back_emf", "motion_heating"},                   {"back_emf", "current_sensor_offset"},
-      {"dead_time", "current_sensor_offset"},           {"series_resistance", "calibration.heat_capacity"},
-      {"thermometer_gain", "calibration.resistance"},   {"neighbour_heating", "motion_heating"},
+      {"second_thermal_mass", "current_sensor_offset"},
+      {"second_thermal_mass", "ambient_bias"},
+      {"second_thermal_mass", "forced_airflow"},
+      {"second_thermal_mass", "motion_heating"},
+      {"radiation", "series_resistance"},
+      {"natural_convection", "supply_sag"},
+      {"natural_convection", "dead_time"},
+      {"thermometer_lag", "supply_sag"},
+      {"thermometer_lag", "dead_time"},
+      {"thermometer_lag", "neighbour_heating"},
+      {"forced_airflow", "neighbour_heating"},
+      {"forced_airflow", "current_sensor_gain"},
+      {"forced_airflow", "calibration.conductance"},
+      {"ambient_bias", "winding_tempco"},
+      {"ambient_bias", "series_resistance"},
+      {"ambient_bias", "neighbour_heating"},
+      {"back_emf", "motion_heating"},
+      {"back_emf", "current_sensor_offset"},
+      {"dead_time", "current_sensor_offset"},
+      {"series_resistance", "calibration.heat_capacity"},
+      {"thermometer_gain", "calibration.resistance"},
+      {"neighbour_heating", "motion_heating"},
   };
   return pairs;
 }
 
 inline const std::vector<Pair>& axis_pairs() {
   static const std::vector<Pair> pairs = {
-      {"coulomb_friction", "imbalance"},       {"coulomb_friction", "actuation_delay"},
-      {"coulomb_friction", "cable_spring"},    {"coulomb_friction", "drive_deadband"},
-      {"coulomb_friction", "compliance"},      {"coulomb_friction", "torque_fade"},
-      {"coulomb_friction", "rate_bias"},       {"coulomb_friction", "calibration.inertia"},
-      {"coulomb_friction", "angle_scale"},     {"coulomb_friction", "cogging"},
-      {"coulomb_friction", "torque_saturation"}, {"imbalance", "cogging"},
-      {"imbalance", "cable_spring"},           {"imbalance", "load_friction"},
-      {"imbalance", "angle_bias_drift"},       {"imbalance", "actuation_delay"},
-      {"stribeck_friction", "cogging"},        {"asymmetric_friction", "cogging"},
-      {"cable_spring", "actuation_delay"},     {"actuation_delay", "calibration.viscous"},
+      {"coulomb_friction", "imbalance"},
+      {"coulomb_friction", "actuation_delay"},
+      {"coulomb_friction", "cable_spring"},
+      {"coulomb_friction", "drive_deadband"},
+      {"coulomb_friction", "compliance"},
+      {"coulomb_friction", "torque_fade"},
+      {"coulomb_friction", "rate_bias"},
+      {"coulomb_friction", "calibration.inertia"},
+      {"coulomb_friction", "angle_scale"},
+      {"coulomb_friction", "cogging"},
+      {"coulomb_friction", "torque_saturation"},
+      {"imbalance", "cogging"},
+      {"imbalance", "cable_spring"},
+      {"imbalance", "load_friction"},
+      {"imbalance", "angle_bias_drift"},
+      {"imbalance", "actuation_delay"},
+      {"stribeck_friction", "cogging"},
+      {"asymmetric_friction", "cogging"},
+      {"cable_spring", "actuation_delay"},
+      {"actuation_delay", "calibration.viscous"},
   };
   return pairs;
 }
@@ -57,18 +78,24 @@ inline std::vector<std::string> all_ids(bool axis) {
 }
 
 inline std::string title(const CaseOrder& order) {
-  if (order.unknown) return order.axis ? axis_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second : bench_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second;
-  if (order.effects.empty()) return order.axis ? "none (axis)" : order.thesis ? "none (thesis)" : "none (bench)";
+  if (order.unknown)
+    return order.axis ? axis_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second
+                      : bench_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second;
+  if (order.effects.empty())
+    return order.axis ? "none (axis)" : order.thesis ? "none (thesis)" : "none (bench)";
   return order.effects.size() == 1 ? order.effects[0] : order.effects[0] + " + " + order.effects[1];
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
 /// @param only comma-separated effect ids, `none`, `pairs` or `unknown`; everything when empty
 /// With 5 recordings per effect: 190 single effects, 60 none, 48 pairs, 45 outside the catalogue.
-inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only, bool thorough) {
+inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
+                                   bool thorough) {
   Random random(seed ^ 0x5eedull);
   std::vector<CaseOrder> orders;
-  const auto wanted = [&](const std::string& kind) { return only.empty() || ("," + only + ",").find("," + kind + ",") != std::string::npos; };
+  const auto wanted = [&](const std::string& kind) {
+    return only.empty() || ("," + only + ",").find("," + kind + ",") != std::string::npos;
+  };
   const auto scaled = [&](int at_five) { return only.empty() ? std::max(1, at_five * count / 5) : count; };
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis)) {
@@ -78,7 +105,8 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
         order.axis = axis;
         order.effects = {id};
         order.thesis = id == "supply_power_heating";
-        order.clear = i % 10 < 7;  // most are told apart by somebody who looks; the others test the honest class
+        order.clear =
+            i % 10 < 7;  // most are told apart by somebody who looks; the others test the honest class
         orders.push_back(order);
       }
     }

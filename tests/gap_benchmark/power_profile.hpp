@@ -23,13 +23,22 @@ public:
   }
 
   static const char* name(Kind kind) {
-    static const char* const names[] = {"staircase", "steps", "prbs", "cycles with rests", "chirp", "multisine",
+    static const char* const names[] = {"staircase",
+                                        "steps",
+                                        "prbs",
+                                        "cycles with rests",
+                                        "chirp",
+                                        "multisine",
                                         "closed loop on temperature"};
     return names[static_cast<int>(kind)];
   }
 
   PowerProfile(Kind kind, double time_constant_s, double top, double limit_C, Random& random)
-      : kind_(kind), tau_s_(time_constant_s), top_(top), limit_C_(limit_C), phase_(random.uniform(0.0, 6.28)) {
+      : kind_(kind),
+        tau_s_(time_constant_s),
+        top_(top),
+        limit_C_(limit_C),
+        phase_(random.uniform(0.0, 6.28)) {
     for (auto& period : periods_s_) period = tau_s_ * random.log_uniform(0.15, 3.0);
     for (auto& phase : phases_) phase = random.uniform(0.0, 6.28);
     setpoint_C_ = limit_C_ - random.uniform(8.0, 25.0);
@@ -58,8 +67,9 @@ private:
     switch (kind_) {
       case Kind::staircase:
         if (t_s >= until_s_) {
-          level_ = level_ + 25.0 * random.integer(1, 3) > top_ || random.chance(0.15) ? 25.0 * random.integer(0, 2)
-                                                                                     : level_ + 25.0 * random.integer(1, 3);
+          level_ = level_ + 25.0 * random.integer(1, 3) > top_ || random.chance(0.15)
+                       ? 25.0 * random.integer(0, 2)
+                       : level_ + 25.0 * random.integer(1, 3);
           until_s_ = t_s + tau_s_ * random.uniform(0.3, 0.9);
         }
         return std::min(level_, top_);
@@ -85,7 +95,8 @@ private:
       case Kind::chirp: {
         // The period falls from 3 time constants to 0.2, over and over.
         const double span_s = 6.0 * tau_s_, x = std::fmod(t_s, span_s) / span_s, ratio = std::log(15.0);
-        const double angle = 6.283185307 * span_s / (3.0 * tau_s_) * (std::exp(ratio * x) - 1.0) / ratio + phase_;
+        const double angle =
+            6.283185307 * span_s / (3.0 * tau_s_) * (std::exp(ratio * x) - 1.0) / ratio + phase_;
         return 0.5 * top_ * (1.0 + std::sin(angle));
       }
       case Kind::multisine: {

@@ -84,7 +84,8 @@ private:
 /// A slowly wandering quantity: a first-order Gauss-Markov process sampled at its own times.
 class Wander {
 public:
-  Wander(double deviation, double time_constant_s) : deviation_(deviation), time_constant_s_(time_constant_s) {}
+  Wander(double deviation, double time_constant_s)
+      : deviation_(deviation), time_constant_s_(time_constant_s) {}
 
   double next(Random& random, double elapsed_s) {
     if (!started_) {

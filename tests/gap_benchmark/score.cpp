@@ -23,8 +23,8 @@ std::string join(const Explanation& ids) {
 
 std::string top_level(const std::string& submodel) { return submodel.substr(0, submodel.find('.')); }
 
-/// A current sensor and a winding cannot be told apart when nothing but the current is measured, nor can a thermometer and
-/// a heat path; on an axis the angle checks the rate, and no such excuse holds.
+/// A current sensor and a winding cannot be told apart when nothing but the current is measured, nor can a
+/// thermometer and a heat path; on an axis the angle checks the rate, and no such excuse holds.
 bool same_place(const std::string& reported, const std::string& truth, const std::string& kind) {
   if (kind == "axis") return top_level(reported) == top_level(truth);
   const auto place = [](const std::string& submodel) -> std::string {
@@ -68,22 +68,27 @@ private:
   std::map<std::string, Row> rows_;
   std::vector<double> seconds_, class_sizes_, floor_ratios_;
 
-  void miss(const std::string& job, const std::string& what, const std::string& truth, const Verdict& v, const std::string& reason) {
+  void miss(const std::string& job, const std::string& what, const std::string& truth, const Verdict& v,
+            const std::string& reason) {
     char odds[24] = "";
     if (!v.cause.empty()) std::snprintf(odds, sizeof odds, " (p %.2f)", v.probability);
-    misses_.push_back({job, what, truth, v.verdict + (v.cause.empty() ? "" : ": " + join(v.cause) + odds), reason});
+    misses_.push_back(
+        {job, what, truth, v.verdict + (v.cause.empty() ? "" : ": " + join(v.cause) + odds), reason});
   }
 
   static std::string why(const Verdict& v, const Json& label, const Explanation& truth) {
     if (v.verdict.rfind("exit", 0) == 0 || v.verdict == "missing") return "no report";
-    if (v.verdict == "no_gap") return "gap not seen, though " + rounded(number(label["visible"], "heldout")) + " times the floor";
+    if (v.verdict == "no_gap")
+      return "gap not seen, though " + rounded(number(label["visible"], "heldout")) + " times the floor";
     if (v.verdict == "unexplained") return "called unexplained";
     if (v.verdict == "insufficient") return "called insufficient";
-    if (std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end())) return "named more than there is";
+    if (std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end()))
+      return "named more than there is";
     std::string reason;
     for (const auto& id : v.cause) {
       const double likeness = label.contains("likeness") ? number(label["likeness"], id.c_str(), -1.0) : -1.0;
-      if (likeness >= 0.0) reason += (reason.empty() ? "" : ", ") + id + " passes for it to " + rounded(likeness);
+      if (likeness >= 0.0)
+        reason += (reason.empty() ? "" : ", ") + id + " passes for it to " + rounded(likeness);
     }
     return reason.empty() ? "another cause" : reason;
   }
@@ -103,7 +108,10 @@ private:
     for (const auto& id : label["effects"]) truth.insert(id.get<std::string>());
     const bool unknown = label["unknown"].is_string();
     const std::string name = unknown ? text(label, "unknown") : truth.empty() ? "none" : join(truth);
-    confusion_[unknown ? "outside the catalogue" : truth.size() == 2 ? "two effects" : name][v.named() ? (v.cause == truth ? "(right)" : join(v.cause)) : v.verdict]++;
+    confusion_[unknown ? "outside the catalogue"
+               : truth.size() == 2
+                   ? "two effects"
+                   : name][v.named() ? (v.cause == truth ? "(right)" : join(v.cause)) : v.verdict]++;
 
     if (truth.empty() && !unknown) {
       const bool false_gap = v.verdict != "no_gap" && v.verdict != "insufficient";
@@ -117,9 +125,11 @@ private:
       const bool right = v.verdict == "unexplained";
       tallies_.add("unknown", right);
       if (!right) {
-        std::string reason = "left of it by the catalogue: " + rounded(number(label, "left_over")) + " times the floor";
+        std::string reason =
+            "left of it by the catalogue: " + rounded(number(label, "left_over")) + " times the floor";
         for (const auto& id : v.cause)
-          if (label.contains("likeness")) reason += ", " + id + " passes for it to " + rounded(number(label["likeness"], id.c_str()));
+          if (label.contains("likeness"))
+            reason += ", " + id + " passes for it to " + rounded(number(label["likeness"], id.c_str()));
         miss(job, "unknown", name, v, reason);
       }
       return;
@@ -145,29 +155,37 @@ private:
         row.clear_top += top;
         if (!top) miss(job, in_class ? "top-1, in class" : "top-1 and class", name, v, why(v, label, truth));
       } else if (!in_class) {
-        miss(job, "class", name, v, why(v, label, truth) + "; confusability " + rounded(confusability) + " with " + text(label, "confused_with"));
+        miss(job, "class", name, v,
+             why(v, label, truth) + "; confusability " + rounded(confusability) + " with " +
+                 text(label, "confused_with"));
       }
     } else {
-      const bool both = v.named() && std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end());
+      const bool both =
+          v.named() && std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end());
       tallies_.add("both", both);
       tallies_.add("both_exactly", top);
       tallies_.add("both_in_class", in_class);
       if (!both) {
         std::string reason = why(v, label, truth);
         for (const auto& id : truth)
-          if (v.cause.count(id)) reason = "only " + id + " found, the other " + rounded(number(label["visible"], "heldout")) + " times the floor beside it";
+          if (v.cause.count(id))
+            reason = "only " + id + " found, the other " + rounded(number(label["visible"], "heldout")) +
+                     " times the floor beside it";
         miss(job, in_class ? "pair, in class" : "pair", name, v, reason);
       }
     }
     judge_gap(job, label, v, name, top, report);
   }
 
-  void judge_where(const std::string& job, const Json& label, const Verdict& v, const std::string& kind, const std::string& name) {
+  void judge_where(const std::string& job, const Json& label, const Verdict& v, const std::string& kind,
+                   const std::string& name) {
     bool right = false, fine = false;
     if (!v.where.empty())
       for (const auto& place : label["where"]) {
         const auto& signals = place["signals"];
-        const bool signal = std::any_of(signals.begin(), signals.end(), [&](const Json& s) { return s.get<std::string>() == v.where.front().signal; });
+        const bool signal = std::any_of(signals.begin(), signals.end(), [&](const Json& s) {
+          return s.get<std::string>() == v.where.front().signal;
+        });
         const std::string submodel = text(place, "submodel");
         if (signal && same_place(v.where.front().submodel, submodel, kind)) right = true;
         if (signal && v.where.front().submodel == submodel) fine = true;
@@ -177,14 +195,17 @@ private:
     Row& row = rows_[name];
     if (label["effects"].size() == 1) row.where += right;
     if (!right) {
-      std::string said = v.where.empty() ? "nowhere" : v.where.front().signal + ", " + v.where.front().submodel;
+      std::string said =
+          v.where.empty() ? "nowhere" : v.where.front().signal + ", " + v.where.front().submodel;
       std::string meant;
-      for (const auto& place : label["where"]) meant += (meant.empty() ? "" : " or ") + text(place, "submodel");
+      for (const auto& place : label["where"])
+        meant += (meant.empty() ? "" : " or ") + text(place, "submodel");
       misses_.push_back({job, "where", name, said, "it is " + meant});
     }
   }
 
-  void judge_gap(const std::string& job, const Json& label, const Verdict& v, const std::string& name, bool top, const std::string& report) {
+  void judge_gap(const std::string& job, const Json& label, const Verdict& v, const std::string& name,
+                 bool top, const std::string& report) {
     if (!v.named() || !label.contains("gap")) return;
     bool low = true;
     std::string worst;
@@ -204,14 +225,16 @@ private:
       if (g.floor > 0.0) floor_ratios_.push_back(g.floor / floor);
       // An interval is judged where the cause is right and there is something to shrink.
       if (top && before > 1.5 * floor) {
-        const double population = number(entry.value(), "shrunk_population"), sample = number(entry.value(), "shrunk_sample");
+        const double population = number(entry.value(), "shrunk_population"),
+                     sample = number(entry.value(), "shrunk_sample");
         const bool covers = g.has_interval && g.low <= population && population <= g.high;
         tallies_.add("coverage", covers);
         tallies_.add("coverage_sample", g.has_interval && g.low <= sample && sample <= g.high);
         if (!covers) tallies_.add("coverage_below", g.has_interval && population < g.low);
       }
       const double recomputed = predicted_rms(directory_ + "/cases/" + job, report, entry.key());
-      if (recomputed >= 0.0 && g.after > 0.0) tallies_.add("honest", std::fabs(recomputed / g.after - 1.0) < 0.05);
+      if (recomputed >= 0.0 && g.after > 0.0)
+        tallies_.add("honest", std::fabs(recomputed / g.after - 1.0) < 0.05);
     }
     tallies_.add("after", low);
     if (!low) misses_.push_back({job, "after", name, join(v.cause), worst});
@@ -229,23 +252,30 @@ private:
       const Verdict whole = read_verdict(directory_ + "/reports/" + original);
       const bool same = whole.verdict == v.verdict && whole.cause == v.cause;
       tallies_.add("bystanders", same);
-      if (!same) miss(job, "bystanders", *truth.begin(), v, "with the whole catalogue: " + whole.verdict + " " + join(whole.cause));
+      if (!same)
+        miss(job, "bystanders", *truth.begin(), v,
+             "with the whole catalogue: " + whole.verdict + " " + join(whole.cause));
       return;
     }
     double likeness = 0.0;
-    if (v.cause.size() == 1 && label.contains("likeness")) likeness = number(label["likeness"], v.cause.begin()->c_str());
+    if (v.cause.size() == 1 && label.contains("likeness"))
+      likeness = number(label["likeness"], v.cause.begin()->c_str());
     bool to_the_floor = !v.gap.empty();
     for (const auto& g : label["gap"].items()) {
       const auto found = v.gap.find(g.key());
-      to_the_floor = to_the_floor && found != v.gap.end() && found->second.after < 1.1 * number(g.value(), "floor");
+      to_the_floor =
+          to_the_floor && found != v.gap.end() && found->second.after < 1.1 * number(g.value(), "floor");
     }
     const bool confident = v.verdict == "explained" && v.probability > 0.9;
     const bool equivalent = confident && (likeness >= 0.9 || to_the_floor);
-    const bool right = v.verdict == "unexplained" || v.verdict == "ambiguous" || (v.verdict == "explained" && !confident) || equivalent;
+    const bool right = v.verdict == "unexplained" || v.verdict == "ambiguous" ||
+                       (v.verdict == "explained" && !confident) || equivalent;
     tallies_.add("left_out", right);
     tallies_.add("left_out_unexplained", v.verdict == "unexplained");
     tallies_.add("left_out_equivalent", equivalent);
-    if (!right) miss(job, "left out", *truth.begin() + " (case " + original + ")", v, v.cause.size() == 1 ? "passes for it to " + rounded(likeness) : "a confident neighbour");
+    if (!right)
+      miss(job, "left out", *truth.begin() + " (case " + original + ")", v,
+           v.cause.size() == 1 ? "passes for it to " + rounded(likeness) : "a confident neighbour");
   }
 };
 
@@ -262,15 +292,19 @@ void Score::print(std::ostream& out) const {
     out << "| " << what << " | " << rounded(a) << unit << " (95 %: " << rounded(b) << unit << ") | | | |\n";
   };
   line("wall time of a diagnosis, median", quantile(seconds_, 0.5), quantile(seconds_, 0.95), " s");
-  line("explanations in the reported class, median", quantile(class_sizes_, 0.5), quantile(class_sizes_, 0.95), "");
-  line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5), quantile(floor_ratios_, 0.95), "");
+  line("explanations in the reported class, median", quantile(class_sizes_, 0.5),
+       quantile(class_sizes_, 0.95), "");
+  line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5),
+       quantile(floor_ratios_, 0.95), "");
 
-  out << "\n## Effect by effect\n\n| effect | cases | named | of those told apart | in class | where | mean confusability |\n|---|---|---|---|---|---|---|\n";
+  out << "\n## Effect by effect\n\n| effect | cases | named | of those told apart | in class | where | mean "
+         "confusability |\n|---|---|---|---|---|---|---|\n";
   for (const auto& entry : rows_) {
     const Row& r = entry.second;
     if (!r.cases) continue;
-    out << "| `" << entry.first << "` | " << r.cases << " | " << r.top << " | " << r.clear_top << " / " << r.clear << " | " << r.in_class << " | " << r.where
-        << " | " << rounded(r.confusability / r.cases) << " |\n";
+    out << "| `" << entry.first << "` | " << r.cases << " | " << r.top << " | " << r.clear_top << " / "
+        << r.clear << " | " << r.in_class << " | " << r.where << " | " << rounded(r.confusability / r.cases)
+        << " |\n";
   }
   out << "\n## What was taken for what\n\n| truth | answers |\n|---|---|\n";
   for (const auto& entry : confusion_) {
@@ -282,13 +316,22 @@ void Score::print(std::ostream& out) const {
   if (misses_.empty()) out << "Nothing.\n";
   else {
     out << "| job | what | truth | answer | reason |\n|---|---|---|---|---|\n";
-    for (const auto& m : misses_) out << "| " << m.job << " | " << m.what << " | " << m.truth << " | " << m.answer << " | " << m.reason << " |\n";
+    for (const auto& m : misses_)
+      out << "| " << m.job << " | " << m.what << " | " << m.truth << " | " << m.answer << " | " << m.reason
+          << " |\n";
   }
+}
+
+int usage() {
+  std::cerr
+      << "usage: gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--require NAME=RATE ...]\n";
+  return 2;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc % 2 == 0) return usage();
   std::string directory, out_path, heading;
   std::vector<std::pair<std::string, double>> required;
   for (int i = 1; i + 1 < argc; i += 2) {
@@ -298,12 +341,9 @@ int main(int argc, char** argv) {
     else if (option == "--heading") heading = value;
     else if (option == "--require" && value.find('=') != std::string::npos)
       required.emplace_back(value.substr(0, value.find('=')), std::stod(value.substr(value.find('=') + 1)));
-    else directory.clear(), i = argc;
+    else return usage();
   }
-  if (directory.empty()) {
-    std::cerr << "usage: gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--require NAME=RATE ...]\n";
-    return 2;
-  }
+  if (directory.empty()) return usage();
   try {
     Score score(directory);
     score.run();

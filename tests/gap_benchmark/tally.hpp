@@ -54,8 +54,8 @@ public:
       if (!tally.total) continue;
       const auto interval = wilson(tally.hits, tally.total);
       char text[120];
-      std::snprintf(text, sizeof text, "%.1f %% | %.1f to %.1f %% | %d / %d", 100.0 * tally.rate(), 100.0 * interval.first,
-                    100.0 * interval.second, tally.hits, tally.total);
+      std::snprintf(text, sizeof text, "%.1f %% | %.1f to %.1f %% | %d / %d", 100.0 * tally.rate(),
+                    100.0 * interval.first, 100.0 * interval.second, tally.hits, tally.total);
       out << "| " << tally.title << " | " << text << " | " << tally.target << " |\n";
     }
   }
@@ -70,7 +70,8 @@ private:
       {"where", "signal and submodel right, from residuals alone", "at least 95 %"},
       {"coverage", "interval covers the shrinkage over many recordings", "90 to 98 %"},
       {"after", "held-out gap below 1.3 times the floor, of the explained", "at least 90 %"},
-      {"left_out", "cause left out of the catalogue: unexplained or an honest class", "never a confident neighbour"},
+      {"left_out", "cause left out of the catalogue: unexplained or an honest class",
+       "never a confident neighbour"},
       {"top1_all", "cause named, all single effects", ""},
       {"both_exactly", "both of two causes named and nothing else", ""},
       {"both_in_class", "both of two causes inside the reported class", ""},

@@ -66,7 +66,9 @@ inline Verdict read_verdict(const std::string& directory) {
     return v;
   }
   v.verdict = text(report, "verdict");
-  const auto list = [&](const char* key) { return report.contains(key) && report[key].is_array() ? report[key] : Json::array(); };
+  const auto list = [&](const char* key) {
+    return report.contains(key) && report[key].is_array() ? report[key] : Json::array();
+  };
   v.probability = 1.0;
   for (const auto& cause : list("cause")) {
     v.cause.insert(text(cause, "effect"));
@@ -81,15 +83,17 @@ inline Verdict read_verdict(const std::string& directory) {
         if (id.is_string()) ids.insert(id.get<std::string>());
     if (!ids.empty()) v.alternatives.push_back(ids);
   }
-  for (const auto& place : list("where")) v.where.push_back({text(place, "signal"), text(place, "submodel"), number(place, "share")});
+  for (const auto& place : list("where"))
+    v.where.push_back({text(place, "signal"), text(place, "submodel"), number(place, "share")});
   if (report.contains("gap") && report["gap"].is_object())
     for (const auto& entry : report["gap"].items()) {
       Verdict::Gap g;
       g.before = number(entry.value(), "before");
       g.after = number(entry.value(), "after");
       g.floor = number(entry.value(), "noise_floor");
-      if (entry.value().contains("ci95") && entry.value()["ci95"].is_array() && entry.value()["ci95"].size() == 2 &&
-          entry.value()["ci95"][0].is_number() && entry.value()["ci95"][1].is_number()) {
+      if (entry.value().contains("ci95") && entry.value()["ci95"].is_array() &&
+          entry.value()["ci95"].size() == 2 && entry.value()["ci95"][0].is_number() &&
+          entry.value()["ci95"][1].is_number()) {
         g.has_interval = true;
         g.low = entry.value()["ci95"][0].get<double>();
         g.high = entry.value()["ci95"][1].get<double>();
@@ -125,7 +129,8 @@ inline std::map<std::string, std::vector<double>> read_columns(const std::string
 }
 
 /// RMSE of the predictions a run left behind against the held-out log; negative where there are none.
-inline double predicted_rms(const std::string& case_directory, const std::string& report_directory, const std::string& signal) {
+inline double predicted_rms(const std::string& case_directory, const std::string& report_directory,
+                            const std::string& signal) {
   const auto predicted = read_columns(report_directory + "/predictions.csv");
   const auto measured = read_columns(case_directory + "/heldout.csv");
   const auto p = predicted.find(signal + "_augmented");

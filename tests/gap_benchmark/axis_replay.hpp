@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "axis_plant.hpp"
+
+namespace gap_benchmark {
+
+/// Everything that goes into a replay of an axis.
+struct AxisDrive {
+  std::vector<double> t_s;
+  std::vector<AxisInput> input;
+  std::vector<std::size_t> run_start;
+};
+
+struct AxisOutput {
+  std::vector<double> angle_deg, rate_dps;
+};
+
+/// Carries an axis from row `k` to row `k + 1`, with the command as late as it is.
+/// @param run_first first row of the run; before it the command was zero
+inline void advance_row(const AxisPlant& plant, AxisState& x, const AxisDrive& drive, std::size_t run_first,
+                        std::size_t k, double end_s) {
+  double now_s = drive.t_s[k];
+  AxisInput u = drive.input[k];
+  if (plant.delay() <= 0.0) {
+    plant.advance(x, u, end_s - now_s);
+    return;
+  }
+  // The last row whose command has arrived by now, if any.
+  std::size_t arrived = k + 1;
+  while (arrived > run_first && drive.t_s[arrived - 1] + plant.delay() > now_s + 1e-12) --arrived;
+  while (now_s < end_s) {
+    u.drive_A = arrived > run_first ? drive.input[arrived - 1].drive_A : 0.0;
+    const double next_s = arrived <= k ? std::min(end_s, drive.t_s[arrived] + plant.delay()) : end_s;
+    plant.advance(x, u, next_s - now_s);
+    now_s = next_s;
+    ++arrived;
+  }
+}
+
+/// Replay in windows that restart from what was measured.
+/// @param restarted receives true for the rows at which a window began
+inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& drive, const AxisOutput& measured,
+                         double window_s, double step_scale = 1.0, bool absolute = false,
+                         std::vector<char>* restarted = nullptr,
+                         std::size_t rows = static_cast<std::size_t>(-1)) {
+  const AxisPlant plant(parameters, step_scale);
+  AxisOutput out;
+  AxisState x;
+  std::size_t run = 0, first = 0;
+  double window_start_s = 0.0;
+  rows = std::min(rows, drive.t_s.size());
+  for (std::size_t k = 0; k < rows; ++k) {
+    const bool starts = run < drive.run_start.size() && drive.run_start[run] == k;
+    if (starts) {
+      first = k;
+      ++run;
+    } else {
+      advance_row(plant, x, drive, first, k - 1, drive.t_s[k]);
+    }
+    const double run_time_s = drive.t_s[k] - drive.t_s[first];
+    const bool usable = !std::isnan(measured.angle_deg[k]) && !std::isnan(measured.rate_dps[k]);
+    const bool again = starts || (usable && drive.t_s[k] - window_start_s >= window_s - 1e-9);
+    if (again) {
+      plant.restart(x, measured.angle_deg[k], measured.rate_dps[k], run_time_s, starts, absolute);
+      window_start_s = drive.t_s[k];
+    }
+    if (restarted) restarted->push_back(again);
+    out.angle_deg.push_back(plant.sensed_angle_deg(x, run_time_s));
+    out.rate_dps.push_back(plant.sensed_rate_dps(x));
+  }
+  return out;
+}
+
+}  // namespace gap_benchmark
