@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -30,19 +30,22 @@ std::string default_data() {
   return THERMOPOWER_SOURCE_DATA;
 }
 
-/// Writes beside the target and renames, so that a target is whole or as it was.
+/// Writes beside the target and renames, so that a target is whole or as it was. What is no file (a pipe, a terminal) is written to.
 void write_whole(const std::string& path, const std::string& contents) {
-  const std::string partial = path + ".part";
+  std::error_code status;
+  const bool is_special = fs::exists(path, status) && !fs::is_regular_file(path, status);
+  const std::string partial = is_special ? path : path + ".part";
   {
     std::ofstream file(partial, std::ios::binary | std::ios::trunc);
     file << contents;
     file.flush();
     if (!file) {
       std::error_code ignored;
-      fs::remove(partial, ignored);
+      if (!is_special) fs::remove(partial, ignored);
       throw std::runtime_error(path + ": cannot be written; expected a path in a writable directory");
     }
   }
+  if (is_special) return;
   std::error_code error;
   fs::rename(partial, path, error);
   if (!error) return;
@@ -61,7 +64,12 @@ int main(int argc, char** argv) {
   app.add_option("--csv", csv, "Write every curve to this file");
   app.add_option("--svg", svg, "Write a picture of every experiment to this file");
   app.add_option("--air", air_C, "Air temperature of chapter 5 in degC, which the text does not give (25.5 .. 26.3 fits)")
-      ->check(CLI::Range(0.0, 50.0))
+      ->check([](const std::string& text) {
+        // Not CLI::Range, which lets NaN pass.
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        return *end == 0 && value >= 0.0 && value <= 50.0 ? std::string() : "expected 0 .. 50, in degC";
+      }, "0 .. 50")
       ->capture_default_str();
   try {
     app.parse(argc, argv);
