@@ -112,7 +112,7 @@ private:
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
           300, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
-      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share) : one);
+      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share, model_) : one);
     }
     FitProblem problem;
     problem.model = &model_;

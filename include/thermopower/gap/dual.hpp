@@ -30,48 +30,48 @@ public:
   void seed(int direction) { slope_[direction] = 1.0; }
 
   Dual operator-() const { return chain(*this, -value_, -1.0); }
-  Dual& operator+=(const Dual& b) {
+  [[gnu::always_inline]] Dual& operator+=(const Dual& b) {
     value_ += b.value_;
     for (int i = 0; i < dual_width; ++i) slope_[i] += b.slope_[i];
     return *this;
   }
-  Dual& operator-=(const Dual& b) {
+  [[gnu::always_inline]] Dual& operator-=(const Dual& b) {
     value_ -= b.value_;
     for (int i = 0; i < dual_width; ++i) slope_[i] -= b.slope_[i];
     return *this;
   }
-  Dual& operator*=(const Dual& b) {
+  [[gnu::always_inline]] Dual& operator*=(const Dual& b) {
     for (int i = 0; i < dual_width; ++i) slope_[i] = slope_[i] * b.value_ + value_ * b.slope_[i];
     value_ *= b.value_;
     return *this;
   }
-  Dual& operator/=(const Dual& b) {
+  [[gnu::always_inline]] Dual& operator/=(const Dual& b) {
     const double inverse = 1.0 / b.value_;
     value_ *= inverse;
     for (int i = 0; i < dual_width; ++i) slope_[i] = (slope_[i] - value_ * b.slope_[i]) * inverse;
     return *this;
   }
-  Dual& operator+=(double b) { return value_ += b, *this; }
-  Dual& operator-=(double b) { return value_ -= b, *this; }
-  Dual& operator*=(double b) {
+  [[gnu::always_inline]] Dual& operator+=(double b) { return value_ += b, *this; }
+  [[gnu::always_inline]] Dual& operator-=(double b) { return value_ -= b, *this; }
+  [[gnu::always_inline]] Dual& operator*=(double b) {
     value_ *= b;
     for (int i = 0; i < dual_width; ++i) slope_[i] *= b;
     return *this;
   }
-  Dual& operator/=(double b) { return *this *= 1.0 / b; }
+  [[gnu::always_inline]] Dual& operator/=(double b) { return *this *= 1.0 / b; }
 
-  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
-  friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
-  friend Dual operator+(Dual a, double b) { return a += b; }
-  friend Dual operator-(Dual a, double b) { return a -= b; }
-  friend Dual operator*(Dual a, double b) { return a *= b; }
-  friend Dual operator/(Dual a, double b) { return a /= b; }
-  friend Dual operator+(double a, Dual b) { return b += a; }
-  friend Dual operator-(double a, const Dual& b) { return chain(b, a - b.value_, -1.0); }
-  friend Dual operator*(double a, Dual b) { return b *= a; }
-  friend Dual operator/(double a, const Dual& b) { return chain(b, a / b.value_, -a / (b.value_ * b.value_)); }
+  [[gnu::always_inline]] friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  [[gnu::always_inline]] friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  [[gnu::always_inline]] friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
+  [[gnu::always_inline]] friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
+  [[gnu::always_inline]] friend Dual operator+(Dual a, double b) { return a += b; }
+  [[gnu::always_inline]] friend Dual operator-(Dual a, double b) { return a -= b; }
+  [[gnu::always_inline]] friend Dual operator*(Dual a, double b) { return a *= b; }
+  [[gnu::always_inline]] friend Dual operator/(Dual a, double b) { return a /= b; }
+  [[gnu::always_inline]] friend Dual operator+(double a, Dual b) { return b += a; }
+  [[gnu::always_inline]] friend Dual operator-(double a, const Dual& b) { return chain(b, a - b.value_, -1.0); }
+  [[gnu::always_inline]] friend Dual operator*(double a, Dual b) { return b *= a; }
+  [[gnu::always_inline]] friend Dual operator/(double a, const Dual& b) { return chain(b, a / b.value_, -a / (b.value_ * b.value_)); }
 
   friend bool operator<(const Dual& a, const Dual& b) { return a.value_ < b.value_; }
   friend bool operator>(const Dual& a, const Dual& b) { return a.value_ > b.value_; }

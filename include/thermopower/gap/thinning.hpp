@@ -5,111 +5,199 @@
 #include <thermopower/gap/fit_problem.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace thermopower::gap {
 
-namespace detail {
-
-/// Mean of the values of rows [begin, end), or their root mean square; NaN where a third of them is missing.
-inline double mean_of(const Eigen::VectorXd& values, Eigen::Index begin, Eigen::Index end, bool squared) {
-  if (end == begin + 1) return values[begin];
-  double sum = 0.0;
-  int count = 0;
-  for (Eigen::Index row = begin; row < end; ++row)
-    if (std::isfinite(values[row])) sum += squared ? values[row] * values[row] : values[row], ++count;
-  if (3 * count < 2 * static_cast<int>(end - begin)) return missing;
-  return squared ? std::sqrt(sum / count) : sum / count;
-}
-
-}  // namespace detail
-
-/// A bench recording with neighbouring rows of equal power averaged, about `rows` of them left.
+/// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
-/// Temperatures and currents are smooth while the power is constant, so a mean over a block says as much as its
-/// samples. Each block becomes two rows: its start, which switches the inputs, and its centre, which carries the
-/// averaged outputs with their number in `repeats`.
-inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows) {
-  const Eigen::Index longest = (2 * full.rows() + rows - 1) / rows;
-  if (longest < 5) return full;
-  struct Block {
-    Eigen::Index begin, end;
+/// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its
+/// samples. Where the power switches within a block, the block is short against every time constant the baseline
+/// knows (`longest_s`), and the order of the powers is forgotten while their durations are kept: up to three levels,
+/// once before the block's centre and once after it. Outputs are means with their number in `repeats`.
+class BenchThinning {
+public:
+  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s) : full_(full), longest_s_(longest_s) {
+    block_ = (2 * full.rows() + rows - 1) / rows;
+  }
+
+  /// The shorter recording, or the full one where there is nothing to gain.
+  Inputs run() {
+    if (block_ < 5) return full_;
+    Inputs thin = full_;
+    thin.runs.clear();
+    for (const RunSpan& span : full_.runs) {
+      const Eigen::Index begin = static_cast<Eigen::Index>(rows_.size());
+      for (Eigen::Index row = span.begin; row < span.end;) row = add_block(span, row);
+      thin.runs.push_back({begin, static_cast<Eigen::Index>(rows_.size()), span.label});
+    }
+    if (10 * rows_.size() > 8 * static_cast<std::size_t>(full_.rows())) return full_;
+    const Eigen::Index count = static_cast<Eigen::Index>(rows_.size());
+    thin.t_s.resize(count);
+    thin.repeats.setOnes(count);
+    for (Eigen::Index i = 0; i < count; ++i) thin.t_s[i] = rows_[static_cast<std::size_t>(i)].t_s;
+    gather(full_.power_param, thin.power_param, false);
+    gather(full_.supply_V, thin.supply_V, false);
+    gather(full_.ambient_C, thin.ambient_C, false);
+    gather(full_.airspeed_mps, thin.airspeed_mps, false);
+    gather(full_.neighbour_C, thin.neighbour_C, false);
+    gather(full_.covariate_rate_dps, thin.covariate_rate_dps, true);
+    gather(full_.held_motor_C, thin.held_motor_C, false);
+    gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
+    gather(full_.held_current_A, thin.held_current_A, true);
+    observe(Signal::motor_C, thin);
+    observe(Signal::current_A, thin);
+    return thin;
+  }
+
+private:
+  /// One row of the result: the rows of the full recording that its inputs and outputs are the means of.
+  struct Row {
+    double t_s = 0.0;
+    std::vector<Eigen::Index> of;               ///< inputs
+    Eigen::Index motor_begin = 0, motor_end = 0;  ///< motor_C; empty: none
+    bool current = false;                       ///< whether current_A is the mean over `of`
   };
-  std::vector<Block> blocks;
-  std::vector<std::size_t> first_of_run;
-  const Eigen::VectorXd& power = full.power_param;
-  for (const RunSpan& run : full.runs) {
-    first_of_run.push_back(blocks.size());
-    for (Eigen::Index row = run.begin; row < run.end;) {
-      Eigen::Index end = row + 1;
-      const double power_now = power.size() > 0 ? power[row] : 0.0;
-      // The first rows of a run stay as they are: the start is measured there.
-      while (row > run.begin + 2 && end < run.end && end - row < longest && (power.size() == 0 || power[end] == power_now))
-        ++end;
-      blocks.push_back({row, end});
-      row = end;
+
+  Eigen::Index add_block(const RunSpan& span, Eigen::Index row) {
+    Eigen::Index longest = block_;
+    if (row < span.begin + 3) longest = 1;  // the start is measured there
+    const Eigen::Index same = constant_until(row, std::min(span.end, row + longest));
+    if (3 * (same - row) >= longest || longest == 1) {
+      add_uniform(row, same);
+      return same;
+    }
+    Eigen::Index end = row + 1;
+    while (end < std::min(span.end, row + longest) && full_.t_s[end] - full_.t_s[row] < longest_s_) ++end;
+    if (end - row < 8) {
+      for (Eigen::Index one = row; one < end; ++one) add_uniform(one, one + 1);
+      return end;
+    }
+    add_mixed(row, end, end < span.end ? full_.t_s[end] : full_.t_s[end - 1]);
+    return end;
+  }
+
+  /// The value that makes the heat of a row: its power, or where that is not recorded its current.
+  double level(Eigen::Index row) const {
+    if (full_.power_param.size() > 0) return full_.power_param[row];
+    if (full_.heat == HeatSource::drive) return std::abs(full_.drive_A[row]);
+    return full_.held_current_A.size() > 0 ? full_.held_current_A[row] : 0.0;
+  }
+
+  Eigen::Index constant_until(Eigen::Index row, Eigen::Index limit) const {
+    Eigen::Index end = row + 1;
+    // A measured current is never constant: what is within a twentieth counts as such.
+    const double slack = full_.power_param.size() > 0 ? 0.0 : 0.05 * std::abs(level(row));
+    while (end < limit && std::abs(level(end) - level(row)) <= slack && full_.t_s[end] - full_.t_s[row] < 4.0 * longest_s_)
+      ++end;
+    return end;
+  }
+
+  void add_uniform(Eigen::Index begin, Eigen::Index end) {
+    Row row;
+    for (Eigen::Index one = begin; one < end; ++one) row.of.push_back(one);
+    row.t_s = full_.t_s[begin];
+    if (end - begin > 1) {
+      rows_.push_back(row);
+      row.t_s = full_.t_s.segment(begin, end - begin).mean();
+    }
+    row.motor_begin = begin;
+    row.motor_end = end;
+    row.current = true;
+    rows_.push_back(std::move(row));
+  }
+
+  void add_mixed(Eigen::Index begin, Eigen::Index end, double until_s) {
+    std::vector<Eigen::Index> order;
+    for (Eigen::Index one = begin; one < end; ++one) order.push_back(one);
+    std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return level(a) < level(b); });
+    // Cut at the two widest steps of the level.
+    std::array<std::size_t, 2> cuts{0, 0};
+    std::array<double, 2> widest{0.0, 0.0};
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      const double step = level(order[i]) - level(order[i - 1]);
+      if (step > widest[0]) {
+        widest[1] = widest[0], cuts[1] = cuts[0];
+        widest[0] = step, cuts[0] = i;
+      } else if (step > widest[1]) {
+        widest[1] = step, cuts[1] = i;
+      }
+    }
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<std::size_t> edges{0, cuts[0], cuts[1], order.size()};
+    const double whole_s = until_s - full_.t_s[begin], share_s = 0.5 * whole_s / static_cast<double>(order.size());
+    double now_s = full_.t_s[begin];
+    for (int half = 0; half < 2; ++half) {
+      bool first = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (edges[k + 1] == edges[k]) continue;
+        Row row;
+        row.of.assign(order.begin() + static_cast<std::ptrdiff_t>(edges[k]),
+                      order.begin() + static_cast<std::ptrdiff_t>(edges[k + 1]));
+        row.t_s = now_s;
+        if (half == 1 && first) row.motor_begin = begin, row.motor_end = end;
+        row.current = half == 1 && level(row.of.back()) - level(row.of.front()) <= 0.02 * std::abs(level(row.of.back()));
+        now_s += share_s * static_cast<double>(row.of.size());
+        first = false;
+        rows_.push_back(std::move(row));
+      }
     }
   }
-  first_of_run.push_back(blocks.size());
-  Inputs thin = full;
-  const Eigen::Index count = 2 * static_cast<Eigen::Index>(blocks.size());
-  thin.t_s.resize(count);
-  thin.repeats.setOnes(count);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Block& block = blocks[i];
-    const Eigen::Index at = 2 * static_cast<Eigen::Index>(i);
-    thin.t_s[at] = full.t_s[block.begin];
-    thin.t_s[at + 1] = full.t_s.segment(block.begin, block.end - block.begin).mean();
-    thin.repeats[at + 1] = static_cast<double>(block.end - block.begin);
-  }
-  std::vector<Eigen::Index> kept;  // lone rows have no separate centre
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Eigen::Index at = 2 * static_cast<Eigen::Index>(i);
-    kept.push_back(at);
-    if (blocks[i].end - blocks[i].begin > 1) kept.push_back(at + 1);
-  }
-  const Eigen::Index left = static_cast<Eigen::Index>(kept.size());
-  Eigen::VectorXd t_s(left), repeats(left);
-  std::vector<Eigen::Index> row_of_block(blocks.size() + 1, left);
-  for (Eigen::Index i = 0; i < left; ++i) {
-    const Eigen::Index at = kept[static_cast<std::size_t>(i)];
-    t_s[i] = thin.t_s[at];
-    repeats[i] = thin.repeats[at];
-    if (at % 2 == 0) row_of_block[static_cast<std::size_t>(at / 2)] = i;
-  }
-  thin.t_s = t_s;
-  thin.repeats = repeats;
-  const auto average = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to, bool output, bool squared = false) {
+
+  void gather(const Eigen::VectorXd& from, Eigen::VectorXd& to, bool squared) const {
     if (from.size() == 0) return;
-    Eigen::VectorXd values(left);
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      const double mean = detail::mean_of(from, blocks[i].begin, blocks[i].end, squared);
-      const Eigen::Index row = row_of_block[i];
-      const bool lone = blocks[i].end - blocks[i].begin == 1;
-      values[row] = output && !lone ? missing : mean;
-      if (!lone) values[row + 1] = mean;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      double sum = 0.0;
+      const std::vector<Eigen::Index>& of = rows_[i].of;
+      for (Eigen::Index row : of) sum += squared ? from[row] * from[row] : from[row];
+      const double mean = sum / static_cast<double>(of.size());
+      values[static_cast<Eigen::Index>(i)] = of.size() == 1 ? from[of[0]] : squared ? std::sqrt(mean) : mean;
     }
-    to = values;
-  };
-  average(full.power_param, thin.power_param, false);
-  // Heat goes with the square of these.
-  average(full.drive_A, thin.drive_A, false, true);
-  average(full.supply_V, thin.supply_V, false);
-  average(full.ambient_C, thin.ambient_C, false);
-  average(full.airspeed_mps, thin.airspeed_mps, false);
-  average(full.neighbour_C, thin.neighbour_C, false);
-  average(full.covariate_rate_dps, thin.covariate_rate_dps, false);
-  average(full.covariate_motor_C, thin.covariate_motor_C, false);
-  average(full.held_current_A, thin.held_current_A, false, true);
-  average(full.held_motor_C, thin.held_motor_C, false);
-  for (std::size_t signal = 0; signal < full.measured.size(); ++signal)
-    average(full.measured[signal], thin.measured[signal], true);
-  for (std::size_t i = 0; i < thin.runs.size(); ++i) {
-    thin.runs[i].begin = row_of_block[first_of_run[i]];
-    thin.runs[i].end = row_of_block[first_of_run[i + 1]];
+    to = std::move(values);
   }
-  return thin;
+
+  void observe(Signal signal, Inputs& thin) const {
+    if (!full_.judged(signal)) return;
+    const Eigen::VectorXd& from = full_.of(signal);
+    Eigen::VectorXd& to = thin.measured[static_cast<std::size_t>(signal)];
+    to = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows_.size()), missing);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Row& row = rows_[i];
+      double sum = 0.0, count = 0.0, asked = 0.0;
+      const auto add = [&](Eigen::Index one) {
+        asked += 1.0;
+        if (std::isfinite(from[one])) sum += from[one], count += 1.0;
+      };
+      if (signal == Signal::motor_C)
+        for (Eigen::Index one = row.motor_begin; one < row.motor_end; ++one) add(one);
+      else if (row.current)
+        for (Eigen::Index one : row.of) add(one);
+      if (count <= 0.0 || 3.0 * count < 2.0 * asked) continue;
+      to[static_cast<Eigen::Index>(i)] = sum / count;
+      // Rows carry one weight for both signals: they have the same number of samples wherever both are observed,
+      // but for mixed blocks, where the temperature's is the larger and the current's counts.
+      thin.repeats[static_cast<Eigen::Index>(i)] = count;
+    }
+  }
+
+  const Inputs& full_;
+  Eigen::Index block_ = 1;
+  double longest_s_ = 1.0;
+  std::vector<Row> rows_;
+};
+
+/// Shortens a bench recording; blocks of mixed power stay within a fiftieth of the baseline's time constant.
+inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& model) {
+  double tau_s = 100.0;
+  if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
+    tau_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
+  else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
+    tau_s = 60.0 / polynomial->cooling_per_min;
+  return BenchThinning(full, rows, 0.02 * tau_s).run();
 }
 
 /// Keeps some of the segments of a moving axis, in contiguous stretches spread over the recording, with about
