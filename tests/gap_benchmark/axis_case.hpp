@@ -47,11 +47,12 @@ struct AxisSetup {
   double unknown_size = 0.0, unknown_time_s = 1.0;
 };
 
-/// What differs between the recordings of one axis.
+/// What one experiment on the axis is: it can be done again, with other switching times and noise.
 struct AxisSession {
   Motion motion = Motion::follow_sines;
   double length_s = 40.0, unknown_phase = 0.0;
   int runs = 1;
+  std::uint64_t seed = 1;  ///< of what belongs to the experiment: frequencies, where it starts from
 };
 
 struct AxisRecording {
@@ -161,11 +162,12 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
   std::vector<std::string> labels;
   std::vector<double> board;
   for (int run = 0; run < session.runs; ++run) {
-    MotionSource source(setup, session, random);
+    Random fixed(session.seed + static_cast<std::uint64_t>(run));
+    MotionSource source(setup, session, fixed);
     Wander gust(1.0, 0.4), warmth(0.15, 3.0);
     const double start_s = 0.0, length_s = session.length_s / session.runs;
     AxisState x;
-    x.angle = x.far_angle = session.runs > 1 || random.chance(0.3) ? random.uniform(-0.3, 0.3) : 0.0;
+    x.angle = x.far_angle = session.runs > 1 || fixed.chance(0.3) ? fixed.uniform(-0.3, 0.3) : 0.0;
     const std::size_t first = out.drive.t_s.size();
     out.drive.run_start.push_back(first);
     const double breaks_s = length_s * (0.35 + 0.3 * session.unknown_phase / 6.2832);

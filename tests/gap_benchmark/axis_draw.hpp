@@ -174,7 +174,7 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
   for (int attempt = 0; attempt < 80; ++attempt) {
     AxisSetup setup = draw_axis(order.effects, random);
     AxisContext& c = setup.context;
-    AxisSession train{any_motion(random), random.pick({25.0, 30.0, 40.0, 40.0, 60.0}), 0.0, 1};
+    AxisSession train{any_motion(random), random.pick({25.0, 30.0, 40.0, 40.0, 60.0}), 0.0, 1, 0};
     while (train.length_s / c.dt_s > 22000.0) train.length_s *= 0.7;
     if (random.chance(0.15)) train.runs = random.integer(2, 3);
     AxisSession heldout = train;
@@ -183,6 +183,8 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
     heldout.runs = 1;
     train.unknown_phase = random.uniform(0.0, 6.28);
     heldout.unknown_phase = random.uniform(0.0, 6.28);
+    train.seed = random.bits();
+    heldout.seed = random.bits();
     measure_session(setup, train, Random(random.bits()));
     setup.plant = c.plant;
     bool possible = true;

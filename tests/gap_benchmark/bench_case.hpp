@@ -27,11 +27,12 @@ struct BenchSetup {
   double unknown_size = 0.0, unknown_time_s = 0.0;
 };
 
-/// What differs between the recordings of one bench.
+/// What one experiment on the bench is: it can be done again, with other switching times, weather and noise.
 struct BenchSession {
   PowerProfile::Kind kind = PowerProfile::Kind::steps;
   double length_s = 3000.0, ambient_C = 22.0, run_gap_K = 0.0, unknown_phase = 0.0;
   int runs = 1;
+  std::uint64_t seed = 1;  ///< of what belongs to the experiment: levels, frequencies, where it starts from
 };
 
 struct BenchRecording {
@@ -63,11 +64,12 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
   std::vector<std::string> labels;
   for (int run = 0; run < session.runs; ++run) {
     const auto t = bench_stamps(setup, session.length_s / session.runs, random);
-    PowerProfile power(session.kind, setup.tau_s, setup.top_power, setup.limit_C, random);
+    Random fixed(session.seed + static_cast<std::uint64_t>(run));
+    PowerProfile power(session.kind, setup.tau_s, setup.top_power, setup.limit_C, fixed);
     Wander air(0.35, 400.0), supply(0.006 * c.nominal_V, 900.0), gust(0.5, 30.0), motion(70.0, 6.0),
         loss(0.4, 0.6 * setup.tau_s);
-    const double swing_K = random.uniform(0.0, 1.2), swing_s = random.uniform(3000.0, 9000.0),
-                 swing_phase = random.uniform(0.0, 6.3);
+    const double swing_K = fixed.uniform(0.0, 1.2), swing_s = fixed.uniform(3000.0, 9000.0),
+                 swing_phase = fixed.uniform(0.0, 6.3);
     double wind_mps = 0.0, wind_until_s = -1.0, moving = 0.0, moving_until_s = -1.0, neighbour_goal_C = 30.0,
            neighbour_until_s = -1.0;
     double neighbour_C = session.ambient_C + random.uniform(2.0, 30.0), contact_ohm = 0.0,
@@ -129,10 +131,10 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
       }
       if (k == 0) {
         x.winding_C = x.housing_C = x.sensor_C = x.soak_C =
-            u.ambient_C + (run ? session.run_gap_K : random.uniform(0.0, 4.0));
+            u.ambient_C + (run ? session.run_gap_K : fixed.uniform(0.0, 4.0));
         if (setup.warm_start && run == 0) {
           BenchInput before = u;
-          before.power_param = std::round(setup.top_power * random.uniform(0.3, 0.9));
+          before.power_param = std::round(setup.top_power * fixed.uniform(0.3, 0.9));
           for (int i = 0; i < 100 && x.winding_C < setup.limit_C - 15.0; ++i)
             plant.advance(x, before, setup.tau_s * 0.01);
           x.charge_Ah = 0.0;

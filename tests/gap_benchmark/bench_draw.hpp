@@ -235,7 +235,7 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     const bool thresholds = unknown == BenchUnknown::melting || unknown == BenchUnknown::hidden_fan ||
                             unknown == BenchUnknown::shorted_turns;
     BenchSession train{PowerProfile::any(random), c.length_s, random.uniform(16.0, 30.0), 0.0,
-                       random.uniform(0.0, 6.28), 1};
+                       random.uniform(0.0, 6.28), 1, random.bits()};
     if (random.chance(0.2)) {
       train.runs = random.integer(2, 3);
       setup.warm_start = false;
@@ -246,6 +246,7 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     heldout.length_s *= 0.6;
     heldout.runs = 1;
     heldout.unknown_phase = random.uniform(0.0, 6.28);
+    heldout.seed = random.bits();
     if (!thresholds) heldout.ambient_C = random.uniform(16.0, 30.0);
 
     const BenchRecording first = record(setup, train, Random(random.bits()));
