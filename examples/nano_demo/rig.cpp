@@ -16,7 +16,7 @@ constexpr std::uint16_t receive_head = 25, receive_tail = 26, transmit_head = 27
 constexpr std::uint8_t buffer_mask = 63;
 constexpr std::uint8_t command_frame_bytes = 36;
 
-std::uint64_t cycles_of_us(double us) { return static_cast<std::uint64_t>(std::llround(us * cycles_per_us)); }
+std::uint64_t cycles_of_us(double us) { return static_cast<std::uint64_t>(std::ceil(us * cycles_per_us)); }  // never short of it
 double us_of_cycles(std::uint64_t cycle) { return static_cast<double>(cycle) / cycles_per_us; }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST_CASE("a missing frame IMU does not halve the air temperature") {
   original::Program<float> program;
   for (const nano::Update& update : rig.updates()) {
     CHECK(is_least(update.power));
-    CHECK(program.update(update.telemetry, static_cast<std::uint32_t>(update.first_out_cycle / 16)).power[0] == 250);
+    CHECK(program.update(update.telemetry, static_cast<std::uint32_t>(update.last_in_cycle / 16)).power[0] == 250);
   }
 }
 
@@ -177,7 +177,7 @@ TEST_CASE("time does not wrap after 65 ms") {
   long agreeing = 0, agreeing_wrapped = 0, long_cycles = 0;
   std::uint64_t before = 0;
   for (const nano::Update& update : rig.updates()) {
-    const auto micros = static_cast<std::uint32_t>(update.first_out_cycle / 16);
+    const auto micros = static_cast<std::uint32_t>(update.last_in_cycle / 16);
     agreeing += std::abs(int(true_time.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
     agreeing_wrapped += std::abs(int(wrapping.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
     long_cycles += before != 0 && update.first_out_cycle - before > 65536 * 16;

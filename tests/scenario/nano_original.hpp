@@ -87,13 +87,15 @@ class Program {
     return index == 0 ? small : (index == 1 ? pitch : large);
   }
 
+  static Real power(Real base, Real exponent) { return static_cast<Real>(pow(base, exponent)); }
+
   // Lines 147 to 152 and 227 to 263.
   void warm(Axis& axis, const Constants& motor, Real supply_V, Real elapsed_s) const {
-    const Real volt = supply_V * pow(Real(axis.power) / Real(255), Real(0.5));
+    const Real volt = supply_V * power(Real(axis.power) / Real(255), Real(0.5));
     Real heating_per_min = 0;
     if (volt > 1) {
-      const Real slope = motor.slope_V2 * pow(volt, Real(2)) + motor.slope_V1 * volt + motor.slope_V0;
-      const Real current_mA = axis.motor_C * slope + motor.base * pow(volt, motor.exponent);
+      const Real slope = motor.slope_V2 * power(volt, Real(2)) + motor.slope_V1 * volt + motor.slope_V0;
+      const Real current_mA = axis.motor_C * slope + motor.base * power(volt, motor.exponent);
       const Real positive_mA = current_mA > 0 ? current_mA : Real(0);
       const Real rise = Real(1) / ((motor.rise_sV * volt + motor.rise_s) * axis.motor_C + (motor.rise_oV * volt + motor.rise_o));
       if (rise > 0) heating_per_min = rise * (positive_mA / Real(1000) * volt);
@@ -105,8 +107,8 @@ class Program {
 
   // Lines 188 to 210.
   static void limit(Axis& axis) {
-    Real error = fabs(axis.error_deg);
-    while (error > 180) error = fabs(error - Real(360));
+    Real error = Real(fabs(axis.error_deg));
+    while (error > 180) error = Real(fabs(error - Real(360)));
     axis.level = static_cast<int>(error * Real(10));
     axis.level = axis.level < 1 ? 1 : (axis.level > 10 ? 10 : axis.level);
     axis.power = static_cast<uint8_t>(25 * axis.level);
