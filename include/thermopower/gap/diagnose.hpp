@@ -48,11 +48,12 @@ public:
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
-    FitProblem problem = problem_of(train_inputs_, 3000, 5000), check = problem_of(held_out_inputs_, 2000, 3000);
+    FitProblem problem = problem_of(train_inputs_, 2500, 4000, fit_horizon_s()),
+               check = problem_of(held_out_inputs_, 2000, 3000, fit_horizon_s());
     std::vector<Candidate> candidates = search(problem, check);
     stage("which");
     const Conclusion conclusion = conclude(candidates, options_);
-    report(candidates, conclusion, problem, check);
+    report(candidates, conclusion, problem);
     stage("how far");
     return std::move(result_);
   }
@@ -107,7 +108,7 @@ private:
   }
 
   /// The thinned data of a fit.
-  FitProblem problem_of(const std::vector<Inputs>& inputs, Eigen::Index bench_rows, Eigen::Index axis_rows) {
+  FitProblem problem_of(const std::vector<Inputs>& inputs, Eigen::Index bench_rows, Eigen::Index axis_rows, double horizon_s) {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
@@ -117,7 +118,7 @@ private:
     FitProblem problem;
     problem.model = &model_;
     problem.catalogue = &catalogue_;
-    problem.segments = thinned_axis(cut(*thin, fit_horizon_s()), axis_rows);
+    problem.segments = thinned_axis(cut(*thin, horizon_s), axis_rows);
     kept_.push_back(std::move(thin));
     return problem;
   }
@@ -128,6 +129,7 @@ private:
     return rows;
   }
 
+  /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
   double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
 
   std::vector<Explanation> singles() const {
@@ -165,7 +167,7 @@ private:
   }
 
   std::vector<Candidate> search(FitProblem& problem, FitProblem& check) {
-    FitProblem coarse_problem = problem_of(train_inputs_, 1000, 1600);
+    FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, std::min(0.5, options_.horizon_s));
     const Attribution coarse(coarse_problem, slack_, options_.threads), fine(problem, slack_, options_.threads);
     for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
     problem.sigma = coarse_problem.sigma;
@@ -179,18 +181,35 @@ private:
     };
     renew();
     if (options_.effects_at_once > 1) {
-      searching.run_sets(candidates, causes, options_.effects_at_once, 1.15);
+      searching.run_sets(candidates, causes, options_.effects_at_once, 1.8);
       renew();
     }
-    in_parallel(candidates.size(), options_.threads, [&](std::size_t i) {
-      candidates[i].held_out = Attribution::sums(candidates[i], check, nullptr);
-    });
+    judge(candidates, check);
     weigh(candidates, correlation_of(Search::best(candidates), problem));
     return candidates;
   }
 
-  void report(std::vector<Candidate>& candidates, const Conclusion& conclusion, const FitProblem& problem,
-              const FitProblem& check) {
+  /// Scores the empty explanation and the best ones on held-out data. The others are out of the running: they are
+  /// given what the empty one scores there.
+  void judge(std::vector<Candidate>& candidates, const FitProblem& check) const {
+    std::vector<std::size_t> order(candidates.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return Search::fitness(candidates[a]) < Search::fitness(candidates[b]);
+    });
+    order.resize(std::min<std::size_t>(order.size(), 14));
+    if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
+    in_parallel(order.size(), options_.threads, [&](std::size_t i) {
+      candidates[order[i]].held_out = Attribution::sums(candidates[order[i]], check, nullptr);
+    });
+    for (Candidate& one : candidates) {
+      double samples = 0.0;
+      for (double count : one.held_out.samples) samples += count;
+      if (!(samples > 0.0)) one.held_out = candidates.front().held_out;
+    }
+  }
+
+  void report(std::vector<Candidate>& candidates, const Conclusion& conclusion, const FitProblem& problem) {
     result_.verdict = conclusion.verdict;
     result_.reason = conclusion.reason;
     result_.none_of_these = conclusion.none_of_these;
@@ -207,7 +226,8 @@ private:
     result_.recalibrated = augmented(model_, recalibrated.explanation, recalibrated.list, recalibrated.fit.at);
     if (named) result_.augmented = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
-    score(result_, model_, full, held_out_inputs_, check.sigma, named ? result_.augmented : augmented(model_, chosen.explanation, chosen.list, chosen.fit.at), options_, catalogue_);
+    score(result_, model_, full, held_out_inputs_,
+          augmented(model_, chosen.explanation, chosen.list, chosen.fit.at), options_, catalogue_);
     if (named) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)

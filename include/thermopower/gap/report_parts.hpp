@@ -116,11 +116,20 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
 
 /// Scores and curves on held-out data.
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
-                  const std::vector<Inputs>& inputs, const std::array<double, signal_count>& sigma,
-                  const Model& fitted, const Options& options, const Catalogue& catalogue) {
+                  const std::vector<Inputs>& inputs, const Model& fitted, const Options& options, const Catalogue& catalogue) {
   const Errors before = errors_of(model, segments, catalogue);
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
   const Errors after = errors_of(result.augmented, segments, catalogue);
+  const Errors best = errors_of(fitted, segments, catalogue);
+  std::array<double, signal_count> sigma{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    std::vector<bool> gaps(best.of[i].size(), false);
+    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = best.segment[i][k] != best.segment[i][k - 1];
+    double quantum = 0.0;
+    for (const Inputs& one : inputs)
+      if (one.judged(static_cast<Signal>(i))) quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
+    sigma[i] = std::max(white_sd(best.of[i], gaps), quantum / std::sqrt(12.0));
+  }
   const std::array<double, signal_count> floor = noise_floor(fitted, segments, sigma, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;

@@ -85,7 +85,7 @@ private:
   /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end.
   void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
     FitOptions look;
-    look.iterations = 2;
+    look.iterations = 1;
     in_parallel(candidates.size() - first, threads_,
                 [&](std::size_t i) { fine_.polish(candidates[first + i], look); });
     std::vector<std::size_t> order = by_fitness(candidates, 0);

@@ -61,12 +61,49 @@ inline double worst_level(const Candidate& candidate) {
   return worst;
 }
 
+/// Sum over the signals of what is above the noise, in units of its variance.
+inline double excess(const Candidate& candidate) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    sum += std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
+  return sum;
+}
+
+/// The smallest part of a set of causes that does its work: a further cause is only named where the set without it
+/// stays clearly above the noise and the further one takes away at least half of what is left. Otherwise it mends
+/// small errors of the others' equations.
+inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen) {
+  for (bool smaller = true; smaller;) {
+    smaller = false;
+    std::size_t part = 0;
+    for (std::size_t i = 1; i < candidates.size(); ++i) {
+      const bool within = candidates[i].explanation.size() + 1 == candidates[chosen].explanation.size() &&
+                          candidates[chosen].explanation.includes(candidates[i].explanation);
+      if (within && (part == 0 || candidates[i].deviance < candidates[part].deviance)) part = i;
+    }
+    if (part != 0 && (worst_level(candidates[part]) < 1.4 || excess(candidates[chosen]) > 0.5 * excess(candidates[part]))) {
+      chosen = part;
+      smaller = true;
+    }
+  }
+  return chosen;
+}
+
+/// The largest probability among explanations that are no larger than one: what its rivals are measured against.
+inline double likeliest_of(const std::vector<Candidate>& candidates, const Candidate& chosen) {
+  double largest = 0.0;
+  for (const Candidate& one : candidates)
+    if (one.explanation.size() <= chosen.explanation.size()) largest = std::max(largest, one.probability);
+  return largest;
+}
+
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Options& options) {
   Conclusion result;
   const Candidate& empty = candidates.front();
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
+  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen);
   const Candidate& best = candidates[result.chosen];
   if (result.chosen == 0 || !matters(best, empty, options.tolerance)) {
     // Nothing helps: either nothing is missing, or nothing known.
@@ -89,8 +126,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
   }
   std::vector<std::size_t> order;
   for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (i != result.chosen && candidates[i].probability > 0.01 &&
-        !candidates[i].explanation.includes(best.explanation))
+    if (i != result.chosen && candidates[i].probability > 0.02 * likeliest_of(candidates, best) &&
+        candidates[i].explanation.size() <= best.explanation.size())
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return candidates[a].probability > candidates[b].probability; });
