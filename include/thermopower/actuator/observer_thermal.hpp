@@ -20,9 +20,12 @@ class ObservedThermal {
   struct Config {
     TemperatureObserverConfig observer;  ///< Model and noise.
     float maximum_C;                     ///< Where an unknown actuator is assumed to be: its limit. 0 .. 200 degC.
+    uint8_t every;                       ///< Step the observer in every n-th step only, with the mean heat. At least 1.
+    uint8_t phase;                       ///< In which of them, below `every`: give each axis its own, and they take turns.
 
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
+      if (every < 1 || phase >= every) return ConfigError::every;
       return first_error(observer.validate(), detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C));
     }
   };
@@ -40,7 +43,7 @@ class ObservedThermal {
   ObservedThermal(const Config& config, float motor_C) noexcept
       : observer_(config.observer, config.maximum_C, 0.0f), maximum_C_(config.maximum_C),
         per_capacity_(1.0f / config.observer.thermal.winding_heat_capacity_J_per_K),
-        coupling_W_per_K_(config.observer.thermal.coupling_W_per_K) {
+        coupling_W_per_K_(config.observer.thermal.coupling_W_per_K), every_(config.every), turn_(config.phase) {
     start(motor_C);
   }
 
@@ -60,9 +63,19 @@ class ObservedThermal {
 
   /// Advances by `dt_s` seconds (>= 0). Heat or air that is NaN makes the temperatures NaN, which every limiter treats as hot.
   const State& step(const Inputs& inputs, float dt_s) noexcept {
+    float power_W = inputs.power_W;
+    if (every_ > 1) {
+      pending_s_ += dt_s;
+      pending_J_ += power_W * dt_s;
+      if (++turn_ < every_) return state_;
+      turn_ = 0;
+      dt_s = pending_s_;
+      if (dt_s > 0.0f) power_W = pending_J_ / dt_s;
+      pending_s_ = pending_J_ = 0.0f;
+    }
     const float across_W = coupling_W_per_K_ * (state_.winding_C - state_.body_C);
-    observer_.step(inputs.power_W, inputs.around.air_C, dt_s);
-    store((inputs.power_W - across_W) * per_capacity_);
+    observer_.step(power_W, inputs.around.air_C, dt_s);
+    store((power_W - across_W) * per_capacity_);
     return state_;
   }
 
@@ -82,6 +95,8 @@ class ObservedThermal {
   TemperatureObserver observer_;
   State state_;
   float maximum_C_, per_capacity_, coupling_W_per_K_;
+  float pending_s_ = 0.0f, pending_J_ = 0.0f;
+  uint8_t every_, turn_;
 };
 
 }  // namespace thermopower

@@ -77,24 +77,26 @@ struct HeatBounds {
 struct CertifiedUse {
   HeatBounds heat;      ///< What full POWER does.
   float highest_air_C;  ///< The air is never warmer than this. Not below `heat.coldest_C`.
-  float hold_s;         ///< A power acts for at most this long before the next step can lower it. Above 0, at most 10.
+  float hold_s;         ///< A ceiling acts for at most this long before the next plan can lower it. Above 0, at most 10.
   float horizon_s;      ///< How long a power must be bearable to be granted: how gently authority falls. At least `hold_s`.
+  uint8_t every;        ///< Plan in every n-th step only, at least 1; `hold_s` must cover that many steps.
+  uint8_t phase;        ///< In which of them, below `every`: give each axis its own, and they take turns.
 };
 
 /// Carries a step's length through the network's two time constants: the part of the way to its final value that a node goes.
 struct CertifiedTravel {
-  detail::UnitFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
-  detail::UnitFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
+  detail::FineFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
+  detail::FineFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
 
   /// @param fastest_per_s  rate with the smallest heat capacity  @param slowest_per_s  with the largest
   static CertifiedTravel over(float fastest_per_s, float slowest_per_s, float dt_s) noexcept {
-    const float fast = fastest_per_s * dt_s, slow = slowest_per_s * dt_s;
-    // Taylor's series of 1 - exp(-x) ends above it after an odd term and below it after an even one, for every x >= 0.
-    const float above = fast < 1.0f ? fast * (1.0f - fast * (0.5f - fast * (1.0f / 6.0f))) : 1.0f;
+    const float slow = slowest_per_s * dt_s;
     const float below = slow < 1.0f ? slow * (1.0f - 0.5f * slow) : 0.5f;
-    const CertifiedTravel travel = {detail::fraction_up(above), detail::fraction_down(below)};
+    const CertifiedTravel travel = {detail::fine_up(above(fastest_per_s * dt_s)), detail::fine_down(below)};
     return travel;
   }
+  /// Not below 1 - exp(-x). Taylor's series ends above it after an odd term, and below it after an even one, for every x >= 0.
+  static float above(float x) noexcept { return x < 1.0f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f; }
 };
 
 /// How much less heat a warm winding takes: a chord over 1/R(T), which is convex, so the chord lies above it.
@@ -104,18 +106,23 @@ class CertifiedRelief {
   void set(const HeatBounds& heat, float hot_C, float end_C) noexcept {
     const float resistance = heat.heat_when_cold_W / heat.heat_when_hot_W - 1.0f;  // relative rise from coldest to hot
     const float at_end = resistance * (end_C - heat.coldest_C) / (hot_C - heat.coldest_C);
-    per_K_ = detail::fraction_down(at_end / (1.0f + at_end) / (end_C - heat.coldest_C));
+    const float per_K = at_end / (1.0f + at_end) / (end_C - heat.coldest_C);
+    const int32_t fine = detail::rounded_down(per_K * 8388608.0f);  // 2^-23 per kelvin: up to 0.78 % per kelvin
+    per_K_ = static_cast<uint16_t>(fine < 0xffffL ? fine : 0xffffL);
     end_ = detail::celsius_units(end_C - heat.coldest_C);
+    if (end_ > 255L * 262144L) end_ = 255L * 262144L;
   }
   /// Heat at a winding temperature as a fraction of the heat at the coldest, not below the truth. @param over_coldest  difference
   detail::UnitFraction at(detail::KelvinUnits over_coldest) const noexcept {
     const detail::KelvinUnits over = over_coldest < end_ ? over_coldest : end_;
     if (over <= 0) return detail::whole_fraction();
-    return static_cast<detail::UnitFraction>(detail::whole_fraction() - (detail::part_down(over, per_K_) << 13));
+    const uint16_t coarse = static_cast<uint16_t>(static_cast<uint32_t>(over) >> 10);  // 1/256 K
+    const uint16_t relief = static_cast<uint16_t>((static_cast<uint32_t>(coarse) * per_K_) >> 15);
+    return static_cast<detail::UnitFraction>(detail::whole_fraction() - relief);
   }
 
  private:
-  detail::UnitFraction per_K_ = 0;
+  uint16_t per_K_ = 0;
   detail::KelvinUnits end_ = 0;
 };
 

@@ -13,13 +13,17 @@ namespace detail {
 
 /// A temperature or temperature difference in 2^-18 K, +-8191 K.
 typedef int32_t KelvinUnits;
-/// A fraction 0 .. 1 in 2^-31.
-typedef int32_t UnitFraction;
+/// A fraction 0 .. 1 in 2^-16: coarse, and a multiplication by it is cheap.
+typedef uint16_t UnitFraction;
+/// A fraction 0 .. 1 in 2^-32: fine enough for the part of an hour that ten milliseconds are.
+typedef uint32_t FineFraction;
 
 /// Units in a kelvin.
 constexpr float units_per_K() { return 262144.0f; }
-/// 1 - 2^-31: the largest fraction.
-constexpr UnitFraction whole_fraction() { return 0x7fffffffL; }
+/// 1 - 2^-16: the largest coarse fraction. What stands for a whole is multiplied by `whole_margin()` to make up for it.
+constexpr UnitFraction whole_fraction() { return 0xffffu; }
+/// 1 + 2^-15.
+constexpr float whole_margin() { return 1.0f + 1.0f / 32768.0f; }
 /// Covers the rounding of the float arithmetic that made a constant: 2^-18, sixty-four float roundings.
 constexpr float float_margin() { return 1.0f / 262144.0f; }
 /// The most that full power may warm a node in the end: sums of two such rises and a temperature stay in range.
@@ -40,9 +44,25 @@ inline int32_t rounded_down(float value) noexcept {
 /// A difference of temperature, towards hot. @param difference_K  >= 0
 inline KelvinUnits kelvin_up(float difference_K) noexcept { return rounded_up(difference_K * units_per_K()); }
 /// A fraction, towards one. @param fraction  >= 0
-inline UnitFraction fraction_up(float fraction) noexcept { return rounded_up(fraction * 2147483648.0f); }
+inline UnitFraction fraction_up(float fraction) noexcept {
+  const int32_t whole = rounded_up(fraction * 65536.0f);
+  return whole < 0xffffL ? static_cast<UnitFraction>(whole) : whole_fraction();
+}
 /// A fraction, towards zero.
-inline UnitFraction fraction_down(float fraction) noexcept { return rounded_down(fraction * 2147483648.0f); }
+inline UnitFraction fraction_down(float fraction) noexcept {
+  const int32_t whole = rounded_down(fraction * 65536.0f);
+  return whole < 0xffffL ? static_cast<UnitFraction>(whole) : whole_fraction();
+}
+/// A fine fraction, towards one.
+inline FineFraction fine_up(float fraction) noexcept {
+  const float wide = fraction * (1.0f + float_margin()) * 4294967296.0f + 1.0f;
+  return wide < 4294967000.0f ? static_cast<FineFraction>(wide) : 0xffffffffUL;
+}
+/// A fine fraction, towards zero. @param fraction  0 .. 0.99
+inline FineFraction fine_down(float fraction) noexcept {
+  const float narrow = fraction * (1.0f - float_margin()) * 4294967296.0f - 1.0f;
+  return narrow > 0.0f ? static_cast<FineFraction>(narrow) : 0u;
+}
 /// An absolute temperature, towards 0 degC by less than a unit. NaN and what is beyond 4000 degC count as 4000 degC.
 inline KelvinUnits celsius_units(float temperature_C) noexcept {
   if (!(temperature_C < 4000.0f)) return static_cast<KelvinUnits>(4000.0f * units_per_K());
@@ -53,11 +73,10 @@ inline float celsius_from(KelvinUnits units) noexcept { return static_cast<float
 
 /// floor(value * fraction): for both signs, the largest whole number that is not above.
 inline int32_t part_down(int32_t value, UnitFraction fraction) noexcept {
-  // The low word is dropped first: a 64-bit shift by 31 would cost an 8-bit chip more than the product.
-  const int64_t product = static_cast<int64_t>(value) * fraction;
-  const uint32_t high = static_cast<uint32_t>(product >> 32);
-  const uint32_t low = static_cast<uint32_t>(product);
-  return static_cast<int32_t>((high << 1) | (low >> 31));
+  // In 16-bit pieces, which an 8-bit chip multiplies in hardware; a 64-bit product would cost it ten times as much.
+  const int16_t high = static_cast<int16_t>(value >> 16);
+  const uint16_t low = static_cast<uint16_t>(value);
+  return static_cast<int32_t>(high) * fraction + static_cast<int32_t>((static_cast<uint32_t>(low) * fraction) >> 16);
 }
 /// Not below value * fraction.
 inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept { return part_down(value, fraction) + 1; }
@@ -87,14 +106,22 @@ class UpperBound {
     if (high_ < floor) set(floor);
   }
   /// Adds way * fraction, exactly.
-  void go(KelvinUnits way, UnitFraction fraction) noexcept {
-    const int64_t product = static_cast<int64_t>(way) * fraction;
-    const uint32_t product_low = static_cast<uint32_t>(product);
-    const uint32_t twice_low = product_low << 1;
-    const uint32_t twice_high = (static_cast<uint32_t>(product >> 32) << 1) | (product_low >> 31);
-    low_ += twice_low;
-    high_ += static_cast<KelvinUnits>(twice_high);
-    if (low_ < twice_low) ++high_;
+  void go(KelvinUnits way, FineFraction fraction) noexcept {
+    const int16_t way_high = static_cast<int16_t>(way >> 16);
+    const uint16_t way_low = static_cast<uint16_t>(way);
+    const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16), fraction_low = static_cast<uint16_t>(fraction);
+    const uint32_t lowest = static_cast<uint32_t>(way_low) * fraction_low;
+    const int32_t signed_middle = static_cast<int32_t>(way_high) * fraction_low;
+    uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(signed_middle);
+    KelvinUnits highest = signed_middle >> 16;
+    if (fraction_high != 0) {
+      const uint32_t other_middle = static_cast<uint32_t>(way_low) * fraction_high;
+      middle += static_cast<uint16_t>(other_middle);
+      highest += static_cast<int32_t>(way_high) * fraction_high + static_cast<KelvinUnits>(other_middle >> 16);
+    }
+    const uint32_t added = (middle << 16) | static_cast<uint16_t>(lowest);
+    low_ += added;
+    high_ += highest + static_cast<KelvinUnits>(middle >> 16) + (low_ < added ? 1 : 0);
   }
 
  private:

@@ -53,7 +53,7 @@ struct SquareHeat {
 /// @tparam Network  `CertifiedTwoNode` or `CertifiedOneNode`
 /// @tparam Heat     `LinearHeat` or `SquareHeat`
 ///
-/// Guarantees, for every actuator, air and supply within the bounds and every demand, when each step comes at most `hold_s` after the
+/// Guarantees, for every actuator, air and supply within the bounds and every demand, when each plan comes at most `hold_s` after the
 /// last, from any start inside the safe set (`State::is_certified`): no limit is exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling, in constant air, the
 /// power settles and stays (no dithering); a fault gives the least power and forgets nothing.
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
@@ -63,17 +63,21 @@ class CertifiedLimiter {
   struct Config {
     typename Network::Config network;  ///< Bounds and limits of the actuator.
     CertifiedUse use;                  ///< Bounds of its surroundings.
-    float air_error_K;                 ///< The air may be warmer than measured by this until the next step, >= 0.
+    float air_error_K;                 ///< The air may be warmer than measured by this until the next plan, >= 0.
 
     /// No bounds suit every actuator: `validate()` refuses these by name until they are set. Hold 0.1 s, horizon 30 s, air +-5 K.
     static Config standard() noexcept {
       const float unset = detail::not_a_number();
-      const Config config = {Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f}, 5.0f};
+      const Config config = {Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f, 1, 0}, 5.0f};
       return config;
     }
     /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the actuator would be too hot in
     /// that air at the least power: no limiter could help.
     ConfigError validate() const noexcept {
+      return is_error(validate_fields()) ? validate_fields() : Network(network, use).feasible();
+    }
+    /// The same, but for whether the bounds can be met together.
+    ConfigError validate_fields() const noexcept {
       if (is_error(first_error(network.validate(), use.heat.validate())))
         return first_error(network.validate(), use.heat.validate());
       if (is_error(detail::require_within(use.heat.coldest_C, -60.0f, network.hottest_C() - 1.0f, ConfigError::coldest_C)))
@@ -82,8 +86,9 @@ class CertifiedLimiter {
         return ConfigError::highest_air_C;
       if (is_error(detail::require_positive(use.hold_s, ConfigError::hold_s)) || use.hold_s > 10.0f) return ConfigError::hold_s;
       if (!detail::is_finite(use.horizon_s) || use.horizon_s < use.hold_s) return ConfigError::horizon_s;
+      if (use.every < 1 || use.phase >= use.every) return ConfigError::every;
       if (is_error(detail::require_not_negative(air_error_K, ConfigError::air_error_K))) return ConfigError::air_error_K;
-      return Network(network, use).feasible();
+      return ConfigError::none;
     }
   };
 
@@ -105,11 +110,17 @@ class CertifiedLimiter {
     float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever reached.
     bool is_certified;       ///< The bounds are where the least power keeps them below the limits for ever. False only after a start
                              ///< that was too hot already, or a late step; the guarantee then begins when this turns true.
-    uint16_t late_steps;     ///< Steps longer than `hold_s`: the guarantee did not cover them. Stops at 65535.
+    uint16_t late_steps;     ///< Times longer than `hold_s` from plan to plan: the guarantee did not cover them. Stops at 65535.
   };
 
   explicit CertifiedLimiter(const Config& config = Config::standard()) noexcept
-      : config_(config), config_error_(config.validate()), network_(config.network, config.use), travel_(network_.travel(0.0f)) {}
+      : network_(config.network, config.use), travel_(network_.travel(0.0f)), highest_air_C_(config.use.highest_air_C),
+        air_error_K_(config.air_error_K), coldest_C_(config.use.heat.coldest_C),
+        per_supply_V_(config.use.heat.supply_error < 1.0f
+                          ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
+                          : detail::not_a_number()),
+        count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
+        config_error_(first_error(config.validate_fields(), network_.feasible())), every_(config.use.every), turn_(config.use.phase) {}
 
   /// First constant out of its range, or ConfigError::none. Anything but none keeps the power at its least.
   ConfigError validate() const noexcept { return config_error_; }
@@ -125,20 +136,12 @@ class CertifiedLimiter {
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
     if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
-    advance(dt_s);
-    observe(inputs.air_C, inputs.supply_V);
-
-    CertifiedCount largest = network_.largest();
     const uint8_t wanted = static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
-    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises to what can be kept for ever, or not at all.
-    if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
-      const uint8_t sustainable = network_.sustainable();
-      const bool may_rise = sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
-      largest.count = may_rise ? sustainable : ceiling_;
-      if (largest.node == CertifiedNode::none) largest.node = node_;
+    pass(dt_s);
+    if (++turn_ >= every_) {
+      turn_ = 0;
+      plan(inputs, wanted);
     }
-    ceiling_ = largest.count;
-    node_ = largest.node;
     is_limiting_ = wanted > ceiling_;
     acting_ = is_limiting_ ? ceiling_ : wanted;
 
@@ -153,12 +156,18 @@ class CertifiedLimiter {
   /// Least power for a reason found elsewhere, a known time after the last step.
   LimitedPower cut_after(LimitReason reason, uint8_t demand, float dt_s) noexcept {
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(reason, demand);
-    if (!is_error(config_error_)) advance(dt_s);
+    if (!is_error(config_error_)) {
+      pass(dt_s);
+      advance();
+    }
     return least(reason, demand);
   }
   /// The same when the time is not known: the power of the last step is assumed to have acted for `hold_s`, and nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
-    if (!is_error(config_error_)) network_.advance_unknown(acting_);
+    if (!is_error(config_error_)) {
+      if (pending_s_ > 0.0f) advance();
+      network_.advance_unknown(acting_);
+    }
     return least(reason, demand);
   }
   /// What it needs of an axis.
@@ -174,58 +183,88 @@ class CertifiedLimiter {
   State state() const noexcept {
     const State state = {network_.winding_C(), network_.body_C(), ceiling(),
                          Heat::power(static_cast<uint8_t>(network_.sustainable() + 1)), node_,
-                         static_cast<float>(ceiling_ - acting_) * (1.0f / 255.0f) * config_.use.heat.heat_when_hot_W,
+                         static_cast<float>(ceiling_ - acting_) * count_W_,
                          network_.seconds_to_limit(acting_), is_certified(), late_steps_};
     return state;
   }
   bool is_certified() const noexcept { return network_.is_certified(); }   ///< As in State, without the rest.
   float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
-  const Config& config() const noexcept { return config_; }                ///< What was declared.
 
  private:
-  void advance(float dt_s) noexcept {
-    if (!(dt_s == travel_s_)) {
-      travel_s_ = dt_s;
-      travel_ = network_.travel(dt_s);
+  // Between plans only the time and the largest count that acted are kept.
+  void pass(float dt_s) noexcept {
+    pending_s_ += dt_s;
+    if (acting_ > acted_) acted_ = acting_;
+  }
+
+  void advance() noexcept {
+    if (!(pending_s_ == travel_s_)) {
+      travel_s_ = pending_s_;
+      travel_ = network_.travel(pending_s_);
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
-    network_.advance(acting_, travel_);
+    network_.advance(acted_, travel_);
+    pending_s_ = 0.0f;
+    acted_ = 0;
+  }
+
+  void plan(const Inputs& inputs, uint8_t wanted) noexcept {
+    advance();
+    observe(inputs.air_C, inputs.supply_V);
+    CertifiedCount largest = network_.largest();
+    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises to what can be kept for ever, or not at all.
+    if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
+      const uint8_t sustainable = network_.sustainable();
+      const bool may_rise = sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
+      largest.count = may_rise ? sustainable : ceiling_;
+      if (largest.node == CertifiedNode::none) largest.node = node_;
+    }
+    ceiling_ = largest.count;
+    node_ = largest.node;
   }
 
   void observe(float air_C, float supply_V) noexcept {
-    float air_upper_C = config_.use.highest_air_C;
-    const float warmest_C = air_C + config_.air_error_K;
-    if (warmest_C < air_upper_C) air_upper_C = detail::at_least(warmest_C, config_.use.heat.coldest_C);
-    if (!(supply_V == supply_V_)) {
-      supply_V_ = supply_V;
-      const float ratio = supply_V * (1.0f + config_.use.heat.supply_error) / config_.use.heat.highest_supply_V;
-      const bool is_used = ratio >= 0.0f && ratio < 1.0f && config_.use.heat.supply_error < 1.0f;
+    // A NaN is never equal, so it is looked at each time; all else only when it changed: floats are dear on a small chip.
+    if (!(air_C == read_air_C_)) {
+      read_air_C_ = air_C;
+      const float warmest_C = air_C + air_error_K_;
+      air_upper_C_ = highest_air_C_;
+      if (warmest_C < air_upper_C_) air_upper_C_ = detail::at_least(warmest_C, coldest_C_);
+    }
+    if (!(supply_V == read_supply_V_)) {
+      read_supply_V_ = supply_V;
+      const float ratio = supply_V * per_supply_V_;
+      const bool is_used = ratio >= 0.0f && ratio < 1.0f;
       supply_squared_ = is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
     }
-    network_.surroundings(air_upper_C, supply_squared_);
+    network_.surroundings(air_upper_C_, supply_squared_);
   }
 
   LimitedPower least(LimitReason reason, uint8_t demand) noexcept {
     observe(detail::not_a_number(), detail::not_a_number());
     acting_ = 0;
     ceiling_ = 0;
+    turn_ = static_cast<uint8_t>(every_ - 1);  // plan at once when the fault is over
     node_ = CertifiedNode::none;
     is_limiting_ = false;
     const LimitedPower least = {demand < least_power() ? demand : least_power(), reason};
     return least;
   }
 
-  Config config_;
-  ConfigError config_error_;
   Network network_;
   typename Network::Travel travel_;
+  float highest_air_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_;
   float travel_s_ = 0.0f;
-  float supply_V_ = detail::not_a_number();
+  float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number(), air_upper_C_ = 0.0f;
   detail::UnitFraction supply_squared_ = detail::whole_fraction();
   uint16_t late_steps_ = 0;
-  uint8_t acting_ = 0;   // count that has acted since the last step
+  float pending_s_ = 0.0f;
+  uint8_t acting_ = 0;   // count that acts since the last step
+  uint8_t acted_ = 0;    // largest count that acted since the last plan
   uint8_t ceiling_ = 0;
+  ConfigError config_error_;
+  uint8_t every_, turn_;
   CertifiedNode node_ = CertifiedNode::none;
   bool is_limiting_ = false;
 };

@@ -42,13 +42,13 @@ class CertifiedOneNode {
   };
 
   /// Constants once; the bound starts at the limit (hot), the safe guess for an actuator that this limiter has guarded before.
-  CertifiedOneNode(const Config& config, const CertifiedUse& use) noexcept : config_(config) {
-    const float count_W = use.heat.heat_when_cold_W * (1.0f / 255.0f);
+  CertifiedOneNode(const Config& config, const CertifiedUse& use) noexcept {
+    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
     fastest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.lowest;
     slowest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.highest;
     to_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
     hold_s_ = use.hold_s;
-    hold_ = travel(use.hold_s).body;
+    hold_ = detail::fraction_up(CertifiedTravel::above(fastest_per_s_ * use.hold_s));
     horizon_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_per_s_ * use.horizon_s));
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
@@ -92,7 +92,7 @@ class CertifiedOneNode {
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
     const detail::KelvinUnits way = base_ + count * to_air_now_ - node_.below();
-    if (way > 0) node_.go(way, hold_.heating);
+    if (way > 0) node_.go(way, travel(hold_s_).body.heating);
   }
   /// Takes note of the air and the supply until the next step. See CertifiedTwoNode.
   void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
@@ -101,9 +101,11 @@ class CertifiedOneNode {
       base_ = detail::celsius_units(air_C) + 1 + to_air_;
     }
     const detail::KelvinUnits above = room();
-    const detail::UnitFraction relief = relief_.at(base_ + above - detail::part_up(above, hold_.heating) - coldest_);
+    const detail::UnitFraction relief = relief_.at(base_ + above - detail::part_up(above, hold_) - coldest_);
     to_air_now_ = detail::part_up(
-        to_air_, supply_squared == detail::whole_fraction() ? relief : detail::part_up(relief, supply_squared));
+        to_air_, supply_squared == detail::whole_fraction()
+                     ? relief
+                     : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared)));
   }
 
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold.
@@ -111,7 +113,7 @@ class CertifiedOneNode {
     CertifiedCount largest = {254, CertifiedNode::none};
     const detail::KelvinUnits above = room(), left = limit_ - base_ - above;
     largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_), CertifiedNode::body);
-    largest.fit(left + detail::part_down(above, hold_.heating), detail::part_up(to_air_now_, hold_.heating), CertifiedNode::body);
+    largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_), CertifiedNode::body);
     return largest;
   }
   /// The largest count that is bearable for ever in this air.
@@ -124,7 +126,6 @@ class CertifiedOneNode {
 
   float winding_C() const noexcept { return detail::celsius_from(node_.above()); }  ///< Upper bound of the node.
   float body_C() const noexcept { return winding_C(); }                             ///< The same node.
-  const Config& config() const noexcept { return config_; }                         ///< What was declared.
 
   /// Time until the limit is reached at a constant count; infinite when it never is. 0 when it is reached.
   float seconds_to_limit(uint8_t count) const noexcept {
@@ -138,12 +139,10 @@ class CertifiedOneNode {
  private:
   detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }
 
-  Config config_;
   float fastest_per_s_, slowest_per_s_, hold_s_;
   detail::KelvinUnits to_air_, to_air_now_, coldest_, limit_;
-  detail::UnitFraction horizon_;
+  detail::UnitFraction horizon_, hold_;
   CertifiedRelief relief_;
-  CertifiedTravel hold_;
   detail::UpperBound node_;
   detail::KelvinUnits base_ = 0;
   float air_C_ = detail::not_a_number();

@@ -66,7 +66,7 @@ class CertifiedTwoNode {
   };
 
   /// Constants once; both bounds start at the limits (hot), the safe guess for an actuator that this limiter has guarded before.
-  CertifiedTwoNode(const Config& config, const CertifiedUse& use) noexcept : config_(config) {
+  CertifiedTwoNode(const Config& config, const CertifiedUse& use) noexcept {
     const Bounds& winding = config.winding_heat_capacity_J_per_K;
     const Bounds& body = config.body_heat_capacity_J_per_K;
     const float least_capacity = winding.lowest + body.lowest;
@@ -79,7 +79,7 @@ class CertifiedTwoNode {
     fastest_body_per_s_ = body_rate / least_capacity;
     slowest_body_per_s_ = body_rate / (winding.highest + body.highest);
 
-    const float count_W = use.heat.heat_when_cold_W * (1.0f / 255.0f);
+    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
     across_ = detail::kelvin_up(count_W / winding_rate);
     soak_ = detail::kelvin_up(count_W * use.hold_s / least_capacity);
     to_air_ = detail::kelvin_up(count_W / body_rate);
@@ -89,12 +89,13 @@ class CertifiedTwoNode {
     least_mean_ = detail::kelvin_up(detail::celsius_from(gap_) * (1.0f - body_share) / body_share);
 
     hold_s_ = use.hold_s;
-    hold_ = travel(use.hold_s);
+    hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
+    hold_body_ = detail::fraction_up(part_of_hold(fastest_body_per_s_));
     horizon_winding_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_winding_per_s_ * use.horizon_s));
     horizon_body_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
 
     coldest_ = detail::celsius_units(use.heat.coldest_C);
-    set_limits(use, 1.0f - body_share, count_W);
+    set_limits(config, use, 1.0f - body_share, count_W);
     // A chord for each bound, so that each is exact at its own limit.
     winding_relief_.set(use.heat, config.maximum_winding_C, config.maximum_winding_C);
     mean_relief_.set(use.heat, config.maximum_winding_C, detail::celsius_from(mean_limit_));
@@ -109,7 +110,7 @@ class CertifiedTwoNode {
   /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the limit starts at the limit
   void start(float winding_C, float body_C) noexcept {
     const float hot = body_C > winding_C ? body_C : winding_C;
-    winding_.set(!(hot <= config_.maximum_winding_C) ? hottest_or(hot) : detail::celsius_units(hot) + 1);
+    winding_.set(detail::is_finite(hot) ? detail::celsius_units(hot) + 1 : winding_limit_);
     if (!detail::is_finite(body_C) || !detail::is_finite(winding_C)) {
       mean_.set(mean_limit_);
       return;
@@ -155,7 +156,7 @@ class CertifiedTwoNode {
   /// Carries both bounds over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
-    advance(count, hold_);
+    advance(count, travel(hold_s_));
     winding_.raise(winding.above());
     mean_.raise(mean.above());
   }
@@ -173,36 +174,26 @@ class CertifiedTwoNode {
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
   CertifiedCount largest() const noexcept {
     const Room room = this->room();
-    const detail::KelvinUnits rise = across_now_ + soak_now_;
-    const detail::KelvinUnits jump = soak_now_ + detail::part_up(across_now_, hold_.winding.heating);
-    const detail::KelvinUnits fed = detail::part_up(jump, weight_);
     CertifiedCount largest = {254, CertifiedNode::none};
     // Horizon: how authority falls. Not needed for safety.
-    const detail::KelvinUnits per_count = to_air_now_ + detail::part_up(rise, weight_);
-    const detail::KelvinUnits slow = detail::part_up(per_count, horizon_body_);
     const detail::KelvinUnits lost = detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
-    largest.fit(room.mean_left + lost, slow, CertifiedNode::body);
-    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost,
-                slow + detail::part_up(rise, horizon_winding_), CertifiedNode::winding);
+    largest.fit(room.mean_left + lost, sizes_.slow, CertifiedNode::body);
+    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost, sizes_.slow_winding, CertifiedNode::winding);
     // One hold: what the proof rests on.
-    largest.fit(room.winding_left + detail::part_down(room.apart, hold_.winding.heating),
-                detail::part_up(rise, hold_.winding.heating), CertifiedNode::winding);
-    largest.fit(room.winding_left + room.apart, jump, CertifiedNode::winding);
-    const detail::KelvinUnits weighted = detail::part_up(room.winding, weight_);
-    largest.fit(room.mean_left + detail::part_down(room.mean - weighted, hold_.body.heating),
-                detail::part_up(fed + to_air_now_, hold_.body.heating), CertifiedNode::body);
-    largest.fit(room.mean_left + room.mean - weighted, fed + detail::part_up(to_air_now_, hold_.body.heating), CertifiedNode::body);
+    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding, CertifiedNode::winding);
+    largest.fit(room.winding_left + room.apart, sizes_.jump, CertifiedNode::winding);
+    const detail::KelvinUnits spare = room.mean - room.weighted;
+    largest.fit(room.mean_left + detail::part_down(spare, hold_body_), sizes_.held_body, CertifiedNode::body);
+    largest.fit(room.mean_left + spare, sizes_.fed, CertifiedNode::body);
     return largest;
   }
 
   /// The largest count that is bearable for ever in this air. (28)
   uint8_t sustainable() const noexcept {
-    const detail::KelvinUnits rise = across_now_ + soak_now_;
-    const detail::KelvinUnits per_count = to_air_now_ + detail::part_up(rise, weight_);
     const detail::KelvinUnits mean = mean_limit_ - base_, winding = winding_limit_ - base_;
     CertifiedCount count = {254, CertifiedNode::none};
-    count.fit(mean - detail::part_up(mean + gap_, weight_), per_count, CertifiedNode::body);
-    count.fit(winding - detail::part_up(winding, weight_) - gap_, per_count + rise, CertifiedNode::winding);
+    count.fit(mean - detail::part_up(mean + gap_, weight_), sizes_.settled, CertifiedNode::body);
+    count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_, CertifiedNode::winding);
     return count.count;
   }
 
@@ -216,7 +207,6 @@ class CertifiedTwoNode {
 
   float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }  ///< Upper bound of the winding.
   float body_C() const noexcept { return detail::celsius_from(mean_.above()); }        ///< Upper bound of the body, now and after a cut.
-  const Config& config() const noexcept { return config_; }                            ///< What was declared.
 
   /// Time until a node reaches its limit at a constant count; infinite when none does. 0 when one is there.
   float seconds_to_limit(uint8_t count) const noexcept {
@@ -238,7 +228,12 @@ class CertifiedTwoNode {
  private:
   // All of it above the base: the temperature that the least power would reach in the hottest air (11).
   struct Room {
-    detail::KelvinUnits winding, mean, apart, winding_left, mean_left;
+    detail::KelvinUnits winding, mean, weighted, apart, winding_left, mean_left;
+  };
+
+  // Kelvin per count in the conditions of largest(); they change only when the heat per count does.
+  struct Sizes {
+    detail::KelvinUnits settled, slow, slow_winding, held_winding, jump, held_body, fed;
   };
 
   Room room() const noexcept {
@@ -247,8 +242,8 @@ class CertifiedTwoNode {
     if (room.mean < least_mean_) room.mean = least_mean_;
     room.winding = winding_.above() - base_;
     if (room.winding < room.mean + gap_) room.winding = room.mean + gap_;
-    const detail::KelvinUnits floor = detail::part_up(room.winding, weight_);
-    if (room.mean < floor) room.mean = floor;
+    room.weighted = detail::part_up(room.winding, weight_);
+    if (room.mean < room.weighted) room.mean = room.weighted;
     room.apart = room.winding - room.mean - gap_;
     if (room.apart < 0) room.apart = 0;
     room.winding_left = winding_limit_ - base_ - room.winding;
@@ -265,15 +260,13 @@ class CertifiedTwoNode {
     return static_cast<float>(logf((to_K - from_K) / (to_K - limit_K))) / rate_per_s;
   }
 
-  float share() const noexcept { return static_cast<float>(weight_) * (1.0f / 2147483648.0f); }
-
-  detail::KelvinUnits hottest_or(float known_C) const noexcept {
-    return known_C < 1000.0f ? detail::celsius_units(known_C) + 1 : winding_limit_;
-  }
+  float share() const noexcept { return static_cast<float>(weight_) * (1.0f / 65536.0f); }
+  float part_of_hold(float rate_per_s) const noexcept { return CertifiedTravel::above(rate_per_s * hold_s_); }
 
   // What the mean cannot pass however long the count acts: the box below it is invariant (29).
   detail::KelvinUnits soaked_late(uint8_t count) noexcept {
     take(detail::whole_fraction(), detail::whole_fraction());
+    taken_winding_ = -1000L * 262144L;  // to be taken anew
     const float apart_K = detail::celsius_from(gap_ + count * (across_now_ + soak_now_));
     const float to_air_K = detail::celsius_from(count * to_air_now_);
     const detail::KelvinUnits settled = base_ + detail::kelvin_up((to_air_K + share() * apart_K) / (1.0f - share()));
@@ -285,48 +278,66 @@ class CertifiedTwoNode {
   }
 
 
+  // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a little, so that it need not
+  // be taken anew before a bound has moved by about as much.
   void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
-    const Room now = room();
-    // Heat falls as the winding warms; taken where each bound will be lowest within the next hold.
-    const detail::UnitFraction winding =
-        winding_relief_.at(base_ + now.winding - detail::part_up(now.apart, hold_.winding.heating) - coldest_);
-    const detail::UnitFraction body = mean_relief_.at(base_ + now.mean - detail::part_up(now.mean, hold_.body.heating) - coldest_);
-    take(supply(winding, supply_squared), supply(body, supply_squared));
+    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
+    if (supply_squared == taken_supply_ && winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
+        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
+      return;
+    taken_supply_ = supply_squared;
+    taken_winding_ = winding;
+    taken_mean_ = mean;
+    const detail::KelvinUnits fall = winding > mean ? detail::part_up(winding - mean, hold_winding_) : 0;
+    const detail::KelvinUnits over = mean > base_ ? detail::part_up(mean - base_, hold_body_) : 0;
+    take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
+         supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
   }
+  static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
   static detail::UnitFraction supply(detail::UnitFraction relief, detail::UnitFraction supply_squared) noexcept {
-    return supply_squared == detail::whole_fraction() ? relief : detail::part_up(relief, supply_squared);
+    return supply_squared == detail::whole_fraction() ? relief : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared));
   }
   void take(detail::UnitFraction winding, detail::UnitFraction body) noexcept {
     across_now_ = detail::part_up(across_, winding);
     soak_now_ = detail::part_up(soak_, body);
     to_air_now_ = detail::part_up(to_air_, body);
+    const detail::KelvinUnits rise = across_now_ + soak_now_;
+    sizes_.settled = to_air_now_ + detail::part_up(rise, weight_);
+    sizes_.slow = detail::part_up(sizes_.settled, horizon_body_);
+    sizes_.slow_winding = sizes_.slow + detail::part_up(rise, horizon_winding_);
+    sizes_.held_winding = detail::part_up(rise, hold_winding_);
+    sizes_.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
+    const detail::KelvinUnits fed = detail::part_up(sizes_.jump, weight_);
+    sizes_.held_body = detail::part_up(fed + to_air_now_, hold_body_);
+    sizes_.fed = fed + detail::part_up(to_air_now_, hold_body_);
   }
 
-  void set_limits(const CertifiedUse& use, float weight, float count_W) noexcept {
+  void set_limits(const Config& config, const CertifiedUse& use, float weight, float count_W) noexcept {
     const float base_C = use.highest_air_C + detail::celsius_from(base_over_air_ + 2);
     const float gap_K = detail::celsius_from(gap_ + 2);
-    const float mean_C = detail::at_most(config_.maximum_body_C, config_.maximum_winding_C - gap_K);
+    const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
     // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
-    const float winding_C = detail::at_most(config_.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
+    const float winding_C = detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
     const float rounding_K = 0.0005f;
     mean_limit_ = detail::celsius_units(mean_C - rounding_K);
     winding_limit_ = detail::celsius_units(winding_C - rounding_K);
     feasible_ = ConfigError::none;
     if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) || !(winding_C > mean_C + gap_K - 0.001f))
       feasible_ = ConfigError::highest_air_C;
-    const float rise_K = 255.0f * count_W * (1.0f / config_.least_conductance_W_per_K + 1.0f / config_.least_coupling_W_per_K +
-                                               use.hold_s / config_.body_heat_capacity_J_per_K.lowest);
+    const float rise_K = 255.0f * count_W * (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
+                                               use.hold_s / config.body_heat_capacity_J_per_K.lowest);
     if (!(rise_K < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
   }
 
-  Config config_;
   float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
   detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
   detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step
   detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, winding_limit_, mean_limit_;
-  detail::UnitFraction weight_, horizon_winding_, horizon_body_;
+  detail::UnitFraction weight_, hold_winding_, hold_body_, horizon_winding_, horizon_body_;
   CertifiedRelief winding_relief_, mean_relief_;
-  Travel hold_;
+  Sizes sizes_;
+  detail::KelvinUnits taken_winding_ = -1000L * 262144L, taken_mean_ = 0;
+  detail::UnitFraction taken_supply_ = 0;
   detail::UpperBound winding_, mean_;
   detail::KelvinUnits base_ = 0;
   float air_C_ = detail::not_a_number();

@@ -94,6 +94,8 @@ inline Declared draw_bounds(Random& random) {
         declared.reference_C, static_cast<float>(coldest), static_cast<float>(limit_winding));
     declared.config.use.highest_air_C = static_cast<float>(air);
     declared.config.use.hold_s = static_cast<float>(hold);
+    declared.config.use.every = chance(random, 0.5) ? 1 : static_cast<std::uint8_t>(1 + random() % 5);
+    declared.config.use.phase = static_cast<std::uint8_t>(random() % declared.config.use.every);
     declared.config.use.horizon_s = static_cast<float>(hold * log_uniform(random, 1.0, 1000.0));
     declared.config.air_error_K = static_cast<float>(uniform(random, 0.0, 10.0));
     if (!thermopower::is_error(declared.config.validate())) return declared;
@@ -185,13 +187,18 @@ inline Excess run(Random& random, const Declared& declared, Truth truth, double 
 
   const Adversary adversary = {static_cast<Adversary::Kind>(random() % Adversary::kinds), 1 + static_cast<int>(log_uniform(random, 1.0, 100.0))};
   const bool has_jitter = chance(random, 0.5);
-  const double hold = static_cast<double>(declared.config.use.hold_s);
+  // A hair less than its share, so that the float sum of several steps does not pass the hold.
+  const double hold = static_cast<double>(declared.config.use.hold_s) / declared.config.use.every *
+                      (declared.config.use.every > 1 ? 0.999999 : 1.0);
   const bool reads_air = chance(random, 0.7);
   const int every = 1 + static_cast<int>(random() % 8);
+  // What was read at a plan must hold until the next one, so air and supply change at plans.
+  const int turns = declared.config.use.every;
+  const auto is_plan = [&](int step) { return (step + 1 + declared.config.use.phase) % turns == 0; };
   Excess excess;
   double dt = hold;
   for (int step = 0; step < steps; ++step) {
-    if (shaken_from >= 0.0 && step % every == 0) shake(random, declared, shaken_from, truth);
+    if (shaken_from >= 0.0 && step % every == 0 && is_plan(step)) shake(random, declared, shaken_from, truth);
     const double error_K = static_cast<double>(declared.config.air_error_K);
     const double supply_error = static_cast<double>(declared.config.use.heat.supply_error);
     const double read_air = truth.air_C + uniform(random, -1.0, 1.0) * error_K;
@@ -202,7 +209,7 @@ inline Excess run(Random& random, const Declared& declared, Truth truth, double 
     const thermopower::LimitedPower granted = limiter.step(inputs, step == 0 ? 0.0f : static_cast<float>(dt));
     if (granted.reason != thermopower::LimitReason::none) ++excess.limited;
     if (!limiter.is_certified()) excess.lost_certificate = true;
-    if (step > 0) {
+    if (step > 0 && is_plan(step)) {  // in between the bounds rest
       excess.over_bound_K = std::max({excess.over_bound_K, plant.winding_C - static_cast<double>(limiter.winding_upper_C()),
                                       plant.body_C - static_cast<double>(limiter.body_upper_C())});
     }
