@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# cmake -DOUT=<directory> -P cmake/arduino_package.cmake: the Arduino library <directory>/thermopower, ready to be copied into a
+# sketchbook's libraries directory. It holds the firmware headers and the two sketches for the Nano, and nothing for the desktop.
+if(NOT OUT)
+  message(FATAL_ERROR "Say where to: cmake -DOUT=<directory> -P cmake/arduino_package.cmake")
+endif()
+get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+include(${CMAKE_CURRENT_LIST_DIR}/version.cmake)
+thermopower_version(${root} version)
+
+set(package ${OUT}/thermopower)
+file(REMOVE_RECURSE ${package})
+file(GLOB umbrella ${root}/include/thermopower/*.hpp)
+list(FILTER umbrella EXCLUDE REGEX "/desktop\\.hpp$")
+file(COPY ${umbrella} DESTINATION ${package}/src/thermopower)
+foreach(part actuator control detail motors sbgc)
+  file(COPY ${root}/include/thermopower/${part} DESTINATION ${package}/src/thermopower)
+endforeach()
+# The Arduino builder finds a library by a header in the root of its sources.
+file(WRITE ${package}/src/thermopower.h "#pragma once\n#include \"thermopower/thermopower.hpp\"\n")
+foreach(sketch nano_gimbal gimbal_controller)
+  file(COPY ${root}/examples/${sketch}/${sketch}.ino DESTINATION ${package}/examples/${sketch})
+endforeach()
+file(COPY ${root}/packaging/keywords.txt ${root}/LICENSE DESTINATION ${package})
+configure_file(${root}/packaging/library.properties.in ${package}/library.properties @ONLY)
