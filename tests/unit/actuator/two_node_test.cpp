@@ -159,3 +159,14 @@ TEST_CASE("in single precision no network gives NaN, also where the eigenvalues 
     REQUIRE(model.state().winding_C < 27.0f);
   }
 }
+
+TEST_CASE("a network whose time constants lie eight decades apart keeps its slow one in single precision") {
+  tp::TwoNodeThermalModel<float> quick({0.01f, 1000.0f, 10.0f, {0.01f}}, 60.0f);
+  Model exact({0.01, 1000.0, 10.0, {0.01}}, 60.0);
+  for (int i = 0; i < 3; ++i) {
+    quick.step({0.0f, 0.0f, {20.0f, 0.0f}}, 50000.0f);
+    exact.step({0.0, 0.0, {20.0, 0.0}}, 50000.0);
+    CHECK(static_cast<double>(quick.state().body_C) == Near(exact.state().body_C).margin(0.01));
+  }
+  CHECK(exact.state().body_C < 35.0);
+}
