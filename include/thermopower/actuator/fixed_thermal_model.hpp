@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "fixed_heating.hpp"
+
+/// @file fixed_thermal_model.hpp
+/// The temperature of an actuator with one node in whole numbers: eq 3.9 by eq 4.21.
+
+namespace thermopower {
+
+/// One-node thermal model that takes 16-bit multiplications where ThermalModel takes a floating-point library: CurrentModel,
+/// heating law, cooling law and step in one. Take it on a chip without a floating-point unit, when the supply is known and the motor's
+/// constants need not change at run time; otherwise take ThermalModel.
+///
+/// The heating depends on the power of the last command and on the temperature, and both are known long before the next telemetry
+/// comes: `prepare()` computes it while the program would wait, and `step()` only adds.
+///
+/// Error against ThermalModel in double precision, for the thesis motors at 13 V: at most 0.1 K over an hour in closed loop. The
+/// temperature is kept to 1.2e-7 K; heat is exchanged with the air at the temperature to the nearest 2^-7 K. The temperature saturates
+/// at -50 and 180 degC. Never unstable: the largest k that fits (0.029 per s) times the longest step (16.8 s) is below 1.
+/// @tparam Source  the motor: fixed_source.hpp
+/// @ingroup actuator
+template <class Source>
+class FixedThermalModel {
+ public:
+  /// What one logs.
+  struct State {
+    FixedTemperature motor;  ///< Temperature after the last step.
+    FixedRate heating;       ///< r P of the power given to `prepare()`, at the temperature then.
+  };
+
+  /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates
+  void start(FixedTemperature motor) noexcept {
+    state_.motor = within_range(motor);
+    state_.heating = 0;
+  }
+
+  /// Computes the heating for the next step. @param power  power parameter that acts from now on
+  void prepare(uint8_t power) noexcept { state_.heating = FixedHeating<Source>::rate(power, detail::rounded_celsius(state_.motor)); }
+
+  /// Advances by eq 4.21 with the heating prepared. @param air  -60 .. 125 degC
+  /// @return dT/dt at the start of the step, which eq 4.23 uses
+  FixedRate step(FixedCelsius air, FixedTicks ticks) noexcept {
+    constexpr int16_t cooling_factor = static_cast<int16_t>(detail::nearest(
+        detail::lesser(Source::cooling_per_s() / detail::fixed_ticks_per_s() * 4294967296.0, 32767.0)));
+    static_assert(cooling_factor >= 300 && cooling_factor < 32767,
+                  "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within 2.7e-4 .. 0.0298 per second); "
+                  "take ThermalModel");
+    const int16_t above_air = static_cast<int16_t>(detail::rounded_celsius(state_.motor) - air);
+    const FixedRate rate = state_.heating - static_cast<int32_t>(above_air) * cooling_factor;
+    state_.motor = within_range(state_.motor + detail::scaled(rate, ticks));
+    return rate;
+  }
+
+  const State& state() const noexcept { return state_; }                      ///< After the last step.
+  float motor_C() const noexcept { return celsius_of(state_.motor); }         ///< The temperature, for a log.
+
+ private:
+  static FixedTemperature within_range(FixedTemperature value) noexcept {
+    constexpr FixedTemperature coldest = detail::fixed_temperature(detail::fixed_coldest_C());
+    constexpr FixedTemperature hottest = detail::fixed_temperature(detail::fixed_hottest_C());
+    return value > hottest ? hottest : (value < coldest ? coldest : value);
+  }
+
+  State state_ = {0, 0};
+};
+
+}  // namespace thermopower

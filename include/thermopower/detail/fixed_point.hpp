@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <stdint.h>
+
+/// @file fixed_point.hpp
+/// Units and products of the fixed-point controllers. Each unit is chosen so that the shifts between them are whole bytes, which an
+/// 8-bit chip gets for nothing.
+
+namespace thermopower {
+
+/// A temperature or a difference of temperatures in 2^-23 K: -256 .. 256 degC.
+typedef int32_t FixedTemperature;
+/// A temperature in 2^-7 K: the upper half of a FixedTemperature.
+typedef int16_t FixedCelsius;
+/// A rate of temperature change in 2^-39 K per tick (7.1e-9 K/s): -15 .. 15 K/s.
+typedef int32_t FixedRate;
+/// A time in ticks of 256 us, 0 .. 16.8 s. Longer is taken for that.
+typedef uint16_t FixedTicks;
+
+namespace detail {
+
+/// Ticks in a second.
+constexpr double fixed_ticks_per_s() { return 3906.25; }
+/// Units of a FixedRate in 1 K/s.
+constexpr double fixed_rate_per_K_per_s() { return 549755813888.0 / fixed_ticks_per_s(); }
+/// No FixedTemperature leaves -50 .. 180 degC: what is hotter or colder counts as that. With these ends no sum of a temperature and a
+/// step overflows.
+constexpr double fixed_coldest_C() { return -50.0; }
+/// @copydoc fixed_coldest_C
+constexpr double fixed_hottest_C() { return 180.0; }
+/// No heating rate is above this: 3.8 K/s.
+constexpr int32_t fixed_most_heating() { return 0x20000000; }
+
+/// The nearest whole number, at compile time.
+constexpr int32_t nearest(double value) { return static_cast<int32_t>(value < 0.0 ? value - 0.5 : value + 0.5); }
+/// A temperature in its fixed-point unit, at compile time.
+constexpr FixedTemperature fixed_temperature(double temperature_C) { return nearest(temperature_C * 8388608.0); }
+/// The lesser of two numbers, at compile time.
+constexpr double lesser(double left, double right) { return left < right ? left : right; }
+/// The greater of two numbers, at compile time.
+constexpr double greater(double left, double right) { return left > right ? left : right; }
+/// Absolute value, at compile time.
+constexpr double absolute(double value) { return value < 0.0 ? -value : value; }
+
+/// value * factor / 65536 to the nearest whole number (halves up).
+[[gnu::noinline]] inline int32_t scaled(int32_t value, uint16_t factor) noexcept {
+  const int16_t high = static_cast<int16_t>(value >> 16);
+  const uint16_t low = static_cast<uint16_t>(value);
+  const uint32_t rest = static_cast<uint32_t>(low) * factor + 0x8000u;
+  return static_cast<int32_t>(high) * factor + static_cast<int32_t>(rest >> 16);
+}
+
+/// left * right / 32768, rounded down; the product must fit.
+inline int16_t product_q15(int16_t left, int16_t right) noexcept {
+  const uint32_t product = static_cast<uint32_t>(static_cast<int32_t>(left) * right);
+  return static_cast<int16_t>((product << 1) >> 16);
+}
+
+/// change * share / 256, rounded down.
+inline int16_t part_of(int16_t change, uint8_t share) noexcept {
+  const int8_t high = static_cast<int8_t>(static_cast<uint16_t>(change) >> 8);
+  const uint8_t low = static_cast<uint8_t>(change);
+  const int16_t whole = static_cast<int16_t>(static_cast<int16_t>(high) * static_cast<int16_t>(share));
+  return static_cast<int16_t>(whole + static_cast<int16_t>((static_cast<uint16_t>(low) * share) >> 8));
+}
+
+/// A temperature to 2^-7 K, to the nearest.
+inline FixedCelsius rounded_celsius(FixedTemperature temperature) noexcept {
+  return static_cast<FixedCelsius>((temperature + 0x8000) >> 16);
+}
+
+}  // namespace detail
+
+/// Degrees of a fixed-point temperature, for a log.
+inline float celsius_of(FixedTemperature temperature) noexcept { return static_cast<float>(temperature) * (1.0f / 8388608.0f); }
+/// A rate in K/s, for a log.
+inline float K_per_s_of(FixedRate rate) noexcept { return static_cast<float>(rate) * static_cast<float>(3906.25 / 549755813888.0); }
+
+/// Turns a clock in microseconds that wraps at 2^32 into elapsed ticks; what is less than a tick is kept for the next time, so that
+/// no time is lost in the long run.
+class FixedClock {
+ public:
+  /// Ticks since the last call (since `start()` or 0 at the first). @param now_us  at most 71 minutes after the last call
+  FixedTicks elapsed(uint32_t now_us) noexcept {
+    const uint32_t ticks = (now_us - last_us_) >> 8;
+    last_us_ += ticks << 8;
+    return ticks > 0xFFFFu ? static_cast<FixedTicks>(0xFFFFu) : static_cast<FixedTicks>(ticks);
+  }
+  /// Starts here.
+  void start(uint32_t now_us) noexcept { last_us_ = now_us; }
+
+ private:
+  uint32_t last_us_ = 0;
+};
+
+}  // namespace thermopower
