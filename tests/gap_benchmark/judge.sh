@@ -5,7 +5,7 @@
 # Runs the diagnosis on every job of a benchmark directory, through files only. It knows the cases and nothing of sealed/.
 #   judge.sh PROGRAM DIR [JOBS_AT_ONCE]
 # Each job leaves DIR/reports/JOB/{report.json,predictions.csv,summary.txt,errors.txt,status}; status holds the exit
-# status and the seconds it took.
+# status, the seconds it took by the clock, and the seconds of processor time.
 
 set -eu
 
@@ -26,7 +26,14 @@ if [ "$1" = --one ]; then
   timeout 300 "$program" diagnose --model "$case/model.json" --recording "$case/train.csv" --heldout "$case/heldout.csv" \
     --report "$out/report.json" --predictions "$out/predictions.csv" $options >"$out/summary.txt" 2>"$out/errors.txt" || status=$?
   ended=$(date +%s.%N)
-  echo "$status $(echo "$ended $began" | awk '{ printf "%.2f", $1 - $2 }')" >"$out/status"
+  # The second line of `times` is what the children took, user and system, as 0m1.23s.
+  times >"$out/times"
+  {
+    echo "$status"
+    echo "$ended $began" | awk '{ printf "%.2f\n", $1 - $2 }'
+    awk 'NR == 2 { sum = 0; for (i = 1; i <= 2; ++i) { split($i, part, "m"); sum += 60 * part[1] + part[2] }; printf "%.2f\n", sum }' "$out/times"
+  } >"$out/status"
+  rm -f "$out/times"
   exit 0
 fi
 

@@ -66,7 +66,7 @@ private:
     double confusability = 0.0;
   };
   std::map<std::string, Row> rows_;
-  std::vector<double> seconds_, class_sizes_, floor_ratios_;
+  std::vector<double> seconds_, processor_s_, class_sizes_, floor_ratios_;
 
   void miss(const std::string& job, const std::string& what, const std::string& truth, const Verdict& v,
             const std::string& reason) {
@@ -103,6 +103,7 @@ private:
     const std::string report = directory_ + "/reports/" + job;
     const Verdict v = read_verdict(report);
     seconds_.push_back(v.seconds);
+    processor_s_.push_back(v.processor_s);
     const std::string kind = text(label, "kind");
     Explanation truth;
     for (const auto& id : label["effects"]) truth.insert(id.get<std::string>());
@@ -292,6 +293,7 @@ void Score::print(std::ostream& out) const {
     out << "| " << what << " | " << rounded(a) << unit << " (95 %: " << rounded(b) << unit << ") | | | |\n";
   };
   line("wall time of a diagnosis, median", quantile(seconds_, 0.5), quantile(seconds_, 0.95), " s");
+  line("processor time of a diagnosis, median", quantile(processor_s_, 0.5), quantile(processor_s_, 0.95), " s");
   line("explanations in the reported class, median", quantile(class_sizes_, 0.5),
        quantile(class_sizes_, 0.95), "");
   line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5),

@@ -21,7 +21,7 @@ using Explanation = std::set<std::string>;
 /// What the program answered on one job, read from its files and nothing else.
 struct Verdict {
   int exit_status = -1;
-  double seconds = 0.0;
+  double seconds = 0.0, processor_s = 0.0;
   std::string verdict = "missing";
   Explanation cause;
   std::vector<Explanation> alternatives;
@@ -58,7 +58,7 @@ inline std::string text(const Json& j, const char* key) {
 inline Verdict read_verdict(const std::string& directory) {
   Verdict v;
   std::ifstream status(directory + "/status");
-  status >> v.exit_status >> v.seconds;
+  status >> v.exit_status >> v.seconds >> v.processor_s;
   std::ifstream file(directory + "/report.json");
   const Json report = Json::parse(file, nullptr, false);
   if (!report.is_object()) {
