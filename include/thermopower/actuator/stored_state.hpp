@@ -130,7 +130,10 @@ class StateJournal {
     }
   };
 
-  StateJournal(Memory& memory, const Config& config) noexcept : memory_(memory), config_(config) {}
+  StateJournal(Memory& memory, const Config& config) noexcept : memory_(memory), config_(config) {
+    const StoredState none = {0.0f, 0.0f, 0.0f, 0.0f, StoredState::no_clock(), 0};
+    last_ = none;
+  }
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }

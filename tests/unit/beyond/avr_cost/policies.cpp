@@ -18,6 +18,7 @@
 #include <thermopower/control/node_limits.hpp>
 #include <thermopower/control/sag_aware_law.hpp>
 #include <thermopower/control/voltage_gain.hpp>
+#include <thermopower/detail/flash.hpp>
 
 using namespace thermopower;
 
@@ -130,32 +131,49 @@ static void work() {
   state.write(bytes);
   result = state.read(bytes) ? 1 : 0;
 }
-#elif THERMOPOWER_POLICY == 15  // the whole: three axes, each with observer and certified limiter
-typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<> > Axis;
-// Temperatures move in seconds: each axis observes in one cycle of nine, and plans in another. All axes take turns.
+#else  // the whole: three axes, each with observer and certified limiter
+struct GainTable {
+  static const uint8_t entries[2] thermopower_flash;
+  static constexpr uint8_t size() { return 2; }
+  static const uint8_t* gains() { return entries; }
+};
+const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
+typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable> > > Axis;
+// Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and measures in a third.
+static const uint8_t every = THERMOPOWER_POLICY == 15 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
-  Axis::Config config = Axis::Config::with_gain(GainConfig{20.0f, 4.0f});
+  Axis::Config config = Axis::Config::standard();
   config.limiter = bounds();
-  config.limiter.use.every = config.thermal.every = 9;
-  config.limiter.use.phase = static_cast<uint8_t>(3 * axis);
-  config.thermal.phase = static_cast<uint8_t>(3 * axis + 1);
+  config.limiter.use.every = config.thermal.every = every;
+  config.limiter.use.phase = THERMOPOWER_POLICY == 15 ? static_cast<uint8_t>(3 * axis) : 0;
+  config.thermal.phase = static_cast<uint8_t>(config.limiter.use.phase + 1);
   return config;
 }
 // Made one after the other: three configurations at once would fill the stack of a chip with 2 KB.
 static Axis roll(axis_config(0)), pitch(axis_config(1)), yaw(axis_config(2));
 static WindingResistance winding(copper());
-static void work() {
+static void step(Axis& axis, float dt_s) {
   const Axis::Inputs inputs = {error_deg, supply_V, air_C, LimitReason::none};
-  const float dt_s = cycle_s;
-  result = roll.step(inputs, dt_s).power;
-  result = pitch.step(inputs, dt_s).power;
-  result = yaw.step(inputs, dt_s).power;
-  // The third cycle of each three is for measuring a winding.
-  const uint8_t turn = static_cast<uint8_t>(call % 9);
-  if (turn == 0) roll.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
-  if (turn == 3) pitch.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
-  if (turn == 6) yaw.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
+  result = axis.step(inputs, dt_s).power;
 }
+static void measure(Axis& axis) { axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A)); }
+#if THERMOPOWER_POLICY == 15  // all three in every cycle of 10 ms
+static void work() {
+  step(roll, cycle_s);
+  step(pitch, cycle_s);
+  step(yaw, cycle_s);
+  const uint8_t turn = static_cast<uint8_t>(call % 9);
+  if (turn == 0) measure(roll);
+  if (turn == 3) measure(pitch);
+  if (turn == 6) measure(yaw);
+}
+#else  // one in every cycle of 10 ms, in turn: each axis every 30 ms, as the original program
+static void work() {
+  Axis& axis = call % 3 == 0 ? roll : (call % 3 == 1 ? pitch : yaw);
+  step(axis, 3.0f * cycle_s);
+  if ((call / 3) % 3 == 0) measure(axis);
+}
+#endif
 #endif
 
 int main() {
