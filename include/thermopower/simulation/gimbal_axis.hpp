@@ -57,7 +57,8 @@ class GimbalAxis {
     BaseMotion<Number> base;    ///< What the bearing is fixed to.
   };
 
-  explicit GimbalAxis(const Config& config, const State& state) noexcept : config_(config), state_(state) {}
+  explicit GimbalAxis(const Config& config, const State& state) noexcept
+      : config_(config), per_inertia_(Real(1) / config.inertia_kg_m2), state_(state) {}
 
   /// Advances by `dt_s`; any value at which the axis's fastest motion is resolved. NaN stays NaN.
   const State& step(const Inputs& inputs, Real dt_s) noexcept {
@@ -87,7 +88,7 @@ class GimbalAxis {
     const Number cogging = config_.cogging_Nm * sine(Number(config_.cogging_per_turn * joint));
     const Number cable = config_.cable_Nm_per_rad * (joint - config_.cable_rest_rad);
     const Number friction = config_.friction.torque_Nm(Number(rate_rad_per_s - base_rate));
-    return (inputs.motor_Nm + inputs.disturbance_Nm - weight - cogging - cable - friction) / config_.inertia_kg_m2;
+    return (inputs.motor_Nm + inputs.disturbance_Nm - weight - cogging - cable - friction) * per_inertia_;
   }
 
   const State& state() const noexcept { return state_; }     ///< After the last step.
@@ -95,6 +96,7 @@ class GimbalAxis {
 
  private:
   Config config_;
+  Number per_inertia_;   // four divisions a step less
   State state_;
 };
 
