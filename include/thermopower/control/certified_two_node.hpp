@@ -288,8 +288,10 @@ class CertifiedTwoNode {
     taken_supply_ = supply_squared;
     taken_winding_ = winding;
     taken_mean_ = mean;
-    const detail::KelvinUnits fall = winding > mean ? detail::part_up(winding - mean, hold_winding_) : 0;
-    const detail::KelvinUnits over = mean > base_ ? detail::part_up(mean - base_, hold_body_) : 0;
+    // How far each may fall within a hold, also when it has first moved by the slack, and the air by anything.
+    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
+    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
+    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
     take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
          supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
   }
