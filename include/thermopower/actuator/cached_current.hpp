@@ -9,15 +9,16 @@
 
 namespace thermopower {
 
-/// A `CurrentModel` that remembers its last answer: a square root and a division, or a power, are dear on a small chip, and most cycles
-/// ask the same again. Exact in power and supply; the temperature may have moved by half a kelvin, 0.2 % of a copper winding's current.
+/// A `CurrentModel` that remembers its last answer: a square root and a division, or a power, are dear on a
+/// small chip, and most cycles ask the same again. Exact in power and supply; the temperature may have moved
+/// by half a kelvin, 0.2 % of a copper winding's current.
 /// @tparam Law  as for CurrentModel, with float as its scalar
 template <class Law>
 class CachedCurrent {
  public:
-  typedef Law Config;                                ///< The law's constants are the configuration.
-  typedef float Scalar;                              ///< Firmware only.
-  typedef typename CurrentModel<Law>::State State;   ///< Every intermediate of one evaluation.
+  typedef Law Config;                               ///< The law's constants are the configuration.
+  typedef float Scalar;                             ///< Firmware only.
+  typedef typename CurrentModel<Law>::State State;  ///< Every intermediate of one evaluation.
 
   explicit CachedCurrent(const Config& config) noexcept : model_(config) {
     const State none = {0.0f, 0.0f, 0.0f};
@@ -29,7 +30,8 @@ class CachedCurrent {
 
   /// As `CurrentModel::at_power`. A NaN is never equal to what was asked before, so it is always looked at.
   const State& at_power(float power_param, float supply_V, float motor_C) noexcept {
-    if (power_param == power_ && supply_V == supply_V_ && detail::magnitude(motor_C - motor_C_) < 0.5f) return state_;
+    if (power_param == power_ && supply_V == supply_V_ && detail::magnitude(motor_C - motor_C_) < 0.5f)
+      return state_;
     power_ = power_param;
     supply_V_ = supply_V;
     motor_C_ = motor_C;

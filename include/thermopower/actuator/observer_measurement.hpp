@@ -5,7 +5,8 @@
 #include "../detail/check.hpp"
 
 /// @file observer_measurement.hpp
-/// A winding as its own thermometer: R(T) = R_ref (1 + a (T - T_ref)), so voltage and current give a temperature.
+/// A winding as its own thermometer: R(T) = R_ref (1 + a (T - T_ref)), so voltage and current give a
+/// temperature.
 
 namespace thermopower {
 
@@ -13,7 +14,8 @@ namespace thermopower {
 struct MeasuredTemperature {
   float value_C;  ///< NaN when there is none.
   float std_K;    ///< Standard deviation, above 0.
-  bool is_valid;  ///< False: too little voltage or current to say anything, or a reading that no winding gives.
+  bool is_valid;  ///< False: too little voltage or current to say anything, or a reading that no winding
+                  ///< gives.
 };
 
 /// Winding temperature from V_rms and current. A lost or broken reading is not valid; it never reads as cold.
@@ -21,29 +23,37 @@ class WindingResistance {
  public:
   /// What one tunes.
   struct Config {
-    float resistance_ohm;       ///< At `reference_C`, between the terminals that see V_rms. Above 0.
-    float tempco_per_K;         ///< Copper 0.00393. Above 0, at most 0.02.
-    float reference_C;          ///< -50 .. 200.
-    float minimum_V_rms;        ///< Below this nothing is measured: dead time and back-EMF outweigh the resistance. >= 0.
-    float current_std_A;        ///< Noise of the current sensor. Above 0.
-    float current_step_A;       ///< Resolution of the current: REALTIME_DATA_4 sends whole milliampere, 0.001. >= 0.
-    float voltage_std_fraction; ///< Relative error of V_rms. >= 0.
+    float resistance_ohm;  ///< At `reference_C`, between the terminals that see V_rms. Above 0.
+    float tempco_per_K;    ///< Copper 0.00393. Above 0, at most 0.02.
+    float reference_C;     ///< -50 .. 200.
+    float minimum_V_rms;  ///< Below this nothing is measured: dead time and back-EMF outweigh the resistance.
+                          ///< >= 0.
+    float current_std_A;  ///< Noise of the current sensor. Above 0.
+    float
+        current_step_A;  ///< Resolution of the current: REALTIME_DATA_4 sends whole milliampere, 0.001. >= 0.
+    float voltage_std_fraction;  ///< Relative error of V_rms. >= 0.
 
-    /// Copper, milliampere, 5 mA noise, 1 % of the voltage, from 3 V up; the resistance is NaN until it is set.
+    /// Copper, milliampere, 5 mA noise, 1 % of the voltage, from 3 V up; the resistance is NaN until it is
+    /// set.
     static Config standard() noexcept {
       const Config config = {detail::not_a_number(), 0.00393f, 20.0f, 3.0f, 0.005f, 0.001f, 0.01f};
       return config;
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      if (is_error(detail::require_positive(resistance_ohm, ConfigError::resistance_ohm))) return ConfigError::resistance_ohm;
+      if (is_error(detail::require_positive(resistance_ohm, ConfigError::resistance_ohm)))
+        return ConfigError::resistance_ohm;
       if (is_error(detail::require_positive(tempco_per_K, ConfigError::tempco_per_K)) || tempco_per_K > 0.02f)
         return ConfigError::tempco_per_K;
-      if (is_error(detail::require_within(reference_C, -50.0f, 200.0f, ConfigError::reference_C))) return ConfigError::reference_C;
-      if (is_error(detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms))) return ConfigError::minimum_V_rms;
-      if (is_error(detail::require_positive(current_std_A, ConfigError::current_std_A))) return ConfigError::current_std_A;
-      return first_error(detail::require_not_negative(current_step_A, ConfigError::current_step_A),
-                         detail::require_not_negative(voltage_std_fraction, ConfigError::voltage_std_fraction));
+      if (is_error(detail::require_within(reference_C, -50.0f, 200.0f, ConfigError::reference_C)))
+        return ConfigError::reference_C;
+      if (is_error(detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms)))
+        return ConfigError::minimum_V_rms;
+      if (is_error(detail::require_positive(current_std_A, ConfigError::current_std_A)))
+        return ConfigError::current_std_A;
+      return first_error(
+          detail::require_not_negative(current_step_A, ConfigError::current_step_A),
+          detail::require_not_negative(voltage_std_fraction, ConfigError::voltage_std_fraction));
     }
   };
 
@@ -51,7 +61,8 @@ class WindingResistance {
     per_ohm_ = 1.0f / config.resistance_ohm;
     per_tempco_ = 1.0f / config.tempco_per_K;
     // A value rounded to steps has a variance of step^2 / 12.
-    current_variance_ = config.current_std_A * config.current_std_A + config.current_step_A * config.current_step_A * (1.0f / 12.0f);
+    current_variance_ = config.current_std_A * config.current_std_A +
+                        config.current_step_A * config.current_step_A * (1.0f / 12.0f);
     voltage_variance_ = config.voltage_std_fraction * config.voltage_std_fraction;
   }
 
@@ -61,8 +72,10 @@ class WindingResistance {
   /// @param v_rms_V    voltage at the winding  @param current_A  current in this winding alone, RMS
   MeasuredTemperature measure(float v_rms_V, float current_A) const noexcept {
     MeasuredTemperature measured = {detail::not_a_number(), detail::not_a_number(), false};
-    // Asked this way round so that NaN is not valid. A current under three times its noise could also be a broken wire.
-    if (!(v_rms_V >= config_.minimum_V_rms && v_rms_V < 1.0e4f) || !(current_A > 0.0f && current_A < 1.0e4f)) return measured;
+    // Asked this way round so that NaN is not valid. A current under three times its noise could also be a
+    // broken wire.
+    if (!(v_rms_V >= config_.minimum_V_rms && v_rms_V < 1.0e4f) || !(current_A > 0.0f && current_A < 1.0e4f))
+      return measured;
     if (!(current_A * current_A > 9.0f * current_variance_)) return measured;
     const float per_A = 1.0f / current_A;
     const float ratio = v_rms_V * per_A * per_ohm_;

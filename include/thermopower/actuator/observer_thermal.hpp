@@ -9,9 +9,10 @@
 
 namespace thermopower {
 
-/// Lets an `AxisController` estimate its temperature with a `TemperatureObserver`: name it as `Thermal` in your motor. It steps at a
-/// fifth of the cost of `TwoNodeThermalModel` when the step length does not change, and it starts worst case instead of as warm as
-/// the air. Measurements go in through `axis.thermal().observer()`.
+/// Lets an `AxisController` estimate its temperature with a `TemperatureObserver`: name it as `Thermal` in
+/// your motor. It steps at a fifth of the cost of `TwoNodeThermalModel` when the step length does not change,
+/// and it starts worst case instead of as warm as the air. Measurements go in through
+/// `axis.thermal().observer()`.
 class ObservedThermal {
  public:
   typedef float Scalar;  ///< As the other thermal models have it.
@@ -19,14 +20,15 @@ class ObservedThermal {
   /// What one tunes.
   struct Config {
     TemperatureObserverConfig observer;  ///< Model and noise.
-    float maximum_C;                     ///< Where an unknown actuator is assumed to be: its limit. 0 .. 200 degC.
-    uint8_t every;                       ///< Step the observer in every n-th step only, with the mean heat. At least 1.
-    uint8_t phase;                       ///< In which of them, below `every`: give each axis its own, and they take turns.
+    float maximum_C;  ///< Where an unknown actuator is assumed to be: its limit. 0 .. 200 degC.
+    uint8_t every;    ///< Step the observer in every n-th step only, with the mean heat. At least 1.
+    uint8_t phase;    ///< In which of them, below `every`: give each axis its own, and they take turns.
 
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (every < 1 || phase >= every) return ConfigError::every;
-      return first_error(observer.validate(), detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C));
+      return first_error(observer.validate(),
+                         detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C));
     }
   };
 
@@ -41,9 +43,12 @@ class ObservedThermal {
 
   /// @param motor_C  temperature to start from; NaN: at the limit, and not sure
   ObservedThermal(const Config& config, float motor_C) noexcept
-      : observer_(config.observer, config.maximum_C, 0.0f), maximum_C_(config.maximum_C),
+      : observer_(config.observer, config.maximum_C, 0.0f),
+        maximum_C_(config.maximum_C),
         per_capacity_(1.0f / config.observer.thermal.winding_heat_capacity_J_per_K),
-        coupling_W_per_K_(config.observer.thermal.coupling_W_per_K), every_(config.every), turn_(config.phase) {
+        coupling_W_per_K_(config.observer.thermal.coupling_W_per_K),
+        every_(config.every),
+        turn_(config.phase) {
     start(motor_C);
   }
 
@@ -61,7 +66,8 @@ class ObservedThermal {
     store(0.0f);
   }
 
-  /// Advances by `dt_s` seconds (>= 0). Heat or air that is NaN makes the temperatures NaN, which every limiter treats as hot.
+  /// Advances by `dt_s` seconds (>= 0). Heat or air that is NaN makes the temperatures NaN, which every
+  /// limiter treats as hot.
   const State& step(const Inputs& inputs, float dt_s) noexcept {
     float power_W = inputs.power_W;
     if (every_ > 1) {
@@ -79,11 +85,15 @@ class ObservedThermal {
     return state_;
   }
 
-  TemperatureObserver& observer() noexcept { return observer_; }                           ///< To take in measurements.
-  const TemperatureObserver& observer() const noexcept { return observer_; }               ///< Estimates and their uncertainty.
-  const State& state() const noexcept { return state_; }                                   ///< After the last step.
-  float hottest_C() const noexcept { return detail::at_least(state_.winding_C, state_.body_C); }  ///< The node that decides.
-  float hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }      ///< dT_w/dt.
+  TemperatureObserver& observer() noexcept { return observer_; }  ///< To take in measurements.
+  const TemperatureObserver& observer() const noexcept {
+    return observer_;
+  }                                                       ///< Estimates and their uncertainty.
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+  float hottest_C() const noexcept {
+    return detail::at_least(state_.winding_C, state_.body_C);
+  }  ///< The node that decides.
+  float hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
 
  private:
   void store(float rate_K_per_s) noexcept {

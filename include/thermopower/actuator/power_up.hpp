@@ -6,38 +6,41 @@
 #include "two_node_thermal_model.hpp"
 
 /// @file power_up.hpp
-/// How warm an actuator is when power comes back. Protection relays know four answers; which is right depends on what happened to the
-/// actuator while its controller was off.
+/// How warm an actuator is when power comes back. Protection relays know four answers; which is right depends
+/// on what happened to the actuator while its controller was off.
 ///
 /// | rule | while the controller was off, the actuator | a relay manual calls it |
 /// |---|---|---|
-/// | `AsNewLoad` | drew what it draws now | option 1: the current after power-on counts for the outage |
-/// | `AsOldLoad` | went on drawing what it drew | option 2: the current stayed as it was at the interruption |
+/// | `AsNewLoad` | drew what it draws now | option 1: the current after power-on counts |
+/// | `AsOldLoad` | went on drawing what it drew | option 2: the current stayed as it was |
 /// | `AsStored` | neither warmed nor cooled | option 3: no change of the thermal image |
 /// | `AsPreset` | is as warm as a setting says | option 4: reset to the set value |
 /// | `AsCooled` | was off, and cooled | (a relay cannot know this; a controller on the same switch can) |
 /// | `AsHottest` | may have been anything | worst case: at its limits |
 ///
-/// Numbered as in ABB's REF601/REJ601/REM601 application manual (1MDU07212-YN), "Behavior of thermal image during power down".
-/// Under every rule: a record that is missing or damaged counts as `AsHottest`; a time off that is not known counts as `AsStored`;
-/// and nothing is ever colder than the air. "As warm as the air" is not among the rules.
+/// Numbered as in ABB's REF601/REJ601/REM601 application manual (1MDU07212-YN), "Behavior of thermal image
+/// during power down". Under every rule: a record that is missing or damaged counts as `AsHottest`; a time
+/// off that is not known counts as `AsStored`; and nothing is ever colder than the air. "As warm as the air"
+/// is not among the rules.
 
 namespace thermopower {
 
 /// What is known at power-up.
 struct PowerUpFacts {
-  bool has_stored;       ///< A whole record was found.
-  StoredState stored;    ///< That record.
-  float off_s;           ///< How long the power was off; NaN or negative: not known.
-  float air_C;           ///< Air temperature; NaN: not known, which counts as `AsHottest`.
-  float heat_now_W;      ///< Read by `AsNewLoad`.
-  float preset_C;        ///< Read by `AsPreset`.
+  bool has_stored;                          ///< A whole record was found.
+  StoredState stored;                       ///< That record.
+  float off_s;                              ///< How long the power was off; NaN or negative: not known.
+  float air_C;                              ///< Air temperature; NaN: not known, which counts as `AsHottest`.
+  float heat_now_W;                         ///< Read by `AsNewLoad`.
+  float preset_C;                           ///< Read by `AsPreset`.
   float hottest_winding_C, hottest_body_C;  ///< The limits.
 
-  /// Time off from a clock that went on without power. @param clock_s  `StoredState::no_clock()` when there is none
+  /// Time off from a clock that went on without power. @param clock_s  `StoredState::no_clock()` when there
+  /// is none
   /// @return s; NaN when it cannot be known, also when the clock was set back
   static float off_s_from(const StoredState& stored, uint32_t clock_s) noexcept {
-    if (stored.clock_s == StoredState::no_clock() || clock_s == StoredState::no_clock() || clock_s < stored.clock_s)
+    if (stored.clock_s == StoredState::no_clock() || clock_s == StoredState::no_clock() ||
+        clock_s < stored.clock_s)
       return detail::not_a_number();
     return static_cast<float>(clock_s - stored.clock_s);
   }
@@ -46,15 +49,15 @@ struct PowerUpFacts {
 /// Temperatures to start from.
 struct PowerUpTemperatures {
   float winding_C, body_C;
-  float std_K;             ///< How sure they are: the record's own uncertainty, or half the distance from air to limit.
-  bool rests_on_record;    ///< False: worst case or preset.
+  float std_K;  ///< How sure they are: the record's own uncertainty, or half the distance from air to limit.
+  bool rests_on_record;  ///< False: worst case or preset.
 };
 
 namespace detail {
 inline PowerUpTemperatures hottest(const PowerUpFacts& facts) noexcept {
   const float air_C = is_finite(facts.air_C) ? facts.air_C : 0.0f;
-  const PowerUpTemperatures at = {facts.hottest_winding_C, facts.hottest_body_C, 0.5f * magnitude(facts.hottest_winding_C - air_C),
-                                  false};
+  const PowerUpTemperatures at = {facts.hottest_winding_C, facts.hottest_body_C,
+                                  0.5f * magnitude(facts.hottest_winding_C - air_C), false};
   return at;
 }
 inline PowerUpTemperatures not_below_air(PowerUpTemperatures at, float air_C) noexcept {
@@ -63,8 +66,8 @@ inline PowerUpTemperatures not_below_air(PowerUpTemperatures at, float air_C) no
   return at;
 }
 // Carries the record over the time off, exactly, in one step.
-inline PowerUpTemperatures carried(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config& thermal,
-                                   float heat_W) noexcept {
+inline PowerUpTemperatures carried(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config& thermal, float heat_W) noexcept {
   if (!facts.has_stored || !is_finite(facts.air_C) || !is_finite(heat_W)) return hottest(facts);
   PowerUpTemperatures at = {facts.stored.winding_C, facts.stored.body_C, facts.stored.std_K, true};
   if (facts.off_s >= 0.0f && is_finite(facts.off_s)) {
@@ -81,26 +84,30 @@ inline PowerUpTemperatures carried(const PowerUpFacts& facts, const TwoNodeTherm
 
 /// Drew what it draws now. Take it when the actuator has a supply of its own and its load does not change.
 struct AsNewLoad {
-  static PowerUpTemperatures start(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config& thermal) noexcept {
+  static PowerUpTemperatures start(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, facts.heat_now_W);
   }
 };
 /// Went on drawing what it drew. Take it when a controller was reset and the drive went on.
 struct AsOldLoad {
-  static PowerUpTemperatures start(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config& thermal) noexcept {
+  static PowerUpTemperatures start(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, facts.stored.heat_W);
   }
 };
 /// Neither warmed nor cooled. Take it when the time off is short or not known.
 struct AsStored {
-  static PowerUpTemperatures start(PowerUpFacts facts, const TwoNodeThermalModel<float>::Config& thermal) noexcept {
+  static PowerUpTemperatures start(PowerUpFacts facts,
+                                   const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     facts.off_s = detail::not_a_number();
     return detail::carried(facts, thermal, 0.0f);
   }
 };
 /// As warm as a setting says, whatever was stored.
 struct AsPreset {
-  static PowerUpTemperatures start(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config&) noexcept {
+  static PowerUpTemperatures start(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config&) noexcept {
     if (!detail::is_finite(facts.preset_C) || !detail::is_finite(facts.air_C)) return detail::hottest(facts);
     const PowerUpTemperatures at = {facts.preset_C, facts.preset_C, detail::hottest(facts).std_K, false};
     return detail::not_below_air(at, facts.air_C);
@@ -108,13 +115,15 @@ struct AsPreset {
 };
 /// Was off, and cooled. Take it when controller and actuator share a switch and a clock goes on.
 struct AsCooled {
-  static PowerUpTemperatures start(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config& thermal) noexcept {
+  static PowerUpTemperatures start(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, 0.0f);
   }
 };
 /// May have been anything: at its limits. Take it when nothing was stored, until a resistance was measured.
 struct AsHottest {
-  static PowerUpTemperatures start(const PowerUpFacts& facts, const TwoNodeThermalModel<float>::Config&) noexcept {
+  static PowerUpTemperatures start(const PowerUpFacts& facts,
+                                   const TwoNodeThermalModel<float>::Config&) noexcept {
     return detail::hottest(facts);
   }
 };

@@ -7,7 +7,8 @@
 #include "../detail/check.hpp"
 
 /// @file stored_state.hpp
-/// An actuator's temperatures through a loss of power: a record with a check sum, and a journal that spreads the wear.
+/// An actuator's temperatures through a loss of power: a record with a check sum, and a journal that spreads
+/// the wear.
 ///
 /// A record is 18 bytes, low byte first whatever the machine:
 ///
@@ -69,7 +70,8 @@ struct StoredState {
     for (uint8_t i = 0; i < count; ++i) {
       sum = static_cast<uint16_t>(sum ^ static_cast<uint16_t>(static_cast<uint16_t>(bytes[i]) << 8));
       for (uint8_t step = 0; step < 8; ++step)
-        sum = static_cast<uint16_t>((sum & 0x8000u) != 0 ? static_cast<uint16_t>(sum << 1) ^ 0x1021u : static_cast<uint16_t>(sum << 1));
+        sum = static_cast<uint16_t>((sum & 0x8000u) != 0 ? static_cast<uint16_t>(sum << 1) ^ 0x1021u
+                                                         : static_cast<uint16_t>(sum << 1));
     }
     return sum;
   }
@@ -79,7 +81,9 @@ struct StoredState {
     at[0] = static_cast<uint8_t>(value & 0xffu);
     at[1] = static_cast<uint8_t>(value >> 8);
   }
-  static uint16_t take(const uint8_t* at) noexcept { return static_cast<uint16_t>(at[0] | static_cast<uint16_t>(at[1]) << 8); }
+  static uint16_t take(const uint8_t* at) noexcept {
+    return static_cast<uint16_t>(at[0] | static_cast<uint16_t>(at[1]) << 8);
+  }
   // Rounded up: a temperature must not come back colder than it was. NaN becomes the hottest.
   static uint16_t hundredths(float value) noexcept {
     const float scaled = value * 100.0f;
@@ -107,11 +111,11 @@ class StateJournal {
  public:
   /// What one tunes.
   struct Config {
-    uint16_t start;         ///< First byte in the memory.
-    uint8_t slots;          ///< Records in the ring, 2 .. 255.
-    float interval_s;       ///< Not more often than this. Above 0.
-    float change_K;         ///< Nor unless a temperature has changed by this. >= 0.
-    uint32_t endurance;     ///< Writes that a byte bears: 100000 for an AVR's EEPROM. At least 1.
+    uint16_t start;      ///< First byte in the memory.
+    uint8_t slots;       ///< Records in the ring, 2 .. 255.
+    float interval_s;    ///< Not more often than this. Above 0.
+    float change_K;      ///< Nor unless a temperature has changed by this. >= 0.
+    uint32_t endurance;  ///< Writes that a byte bears: 100000 for an AVR's EEPROM. At least 1.
 
     /// 16 slots from byte 0, once a minute, 2 K, an AVR's EEPROM: three years of changing every minute.
     static Config standard() noexcept {
@@ -122,10 +126,12 @@ class StateJournal {
     float years() const noexcept {
       return static_cast<float>(endurance) * static_cast<float>(slots) * interval_s / 31557600.0f;
     }
-    /// First constant out of its range, or ConfigError::none. A ring that would not last a year is refused as `interval_s`.
+    /// First constant out of its range, or ConfigError::none. A ring that would not last a year is refused as
+    /// `interval_s`.
     ConfigError validate() const noexcept {
       if (slots < 2) return ConfigError::slots;
-      if (is_error(detail::require_positive(interval_s, ConfigError::interval_s)) || years() < 1.0f) return ConfigError::interval_s;
+      if (is_error(detail::require_positive(interval_s, ConfigError::interval_s)) || years() < 1.0f)
+        return ConfigError::interval_s;
       return detail::require_not_negative(change_K, ConfigError::change_K);
     }
   };
@@ -161,13 +167,15 @@ class StateJournal {
     return is_found;
   }
 
-  /// Writes a record when one is due. @param dt_s  time since the last call  @return true when one was written
+  /// Writes a record when one is due. @param dt_s  time since the last call  @return true when one was
+  /// written
   bool step(StoredState now, float dt_s) noexcept {
     if (is_error(config_.validate())) return false;
     if (dt_s > 0.0f) since_s_ += dt_s;
     if (since_s_ < config_.interval_s) return false;
-    const bool has_changed = !has_last_ || !(detail::magnitude(now.winding_C - last_.winding_C) < config_.change_K &&
-                                             detail::magnitude(now.body_C - last_.body_C) < config_.change_K);
+    const bool has_changed =
+        !has_last_ || !(detail::magnitude(now.winding_C - last_.winding_C) < config_.change_K &&
+                        detail::magnitude(now.body_C - last_.body_C) < config_.change_K);
     if (!has_changed) return false;
     now.sequence = next_sequence_++;
     uint8_t bytes[StoredState::size()];
@@ -184,7 +192,9 @@ class StateJournal {
   }
 
  private:
-  size_t address(uint8_t slot) const noexcept { return static_cast<size_t>(config_.start) + static_cast<size_t>(slot) * StoredState::size(); }
+  size_t address(uint8_t slot) const noexcept {
+    return static_cast<size_t>(config_.start) + static_cast<size_t>(slot) * StoredState::size();
+  }
 
   Memory& memory_;
   Config config_;

@@ -8,38 +8,47 @@
 /// @file adaptive_holding_law.hpp
 /// Learns how much power each pose needs to be held, instead of waiting for an error to ask for it.
 ///
-/// The thesis's law gives power in proportion to an error, so an axis that must hold a weight always stands off its target. Here the
-/// power that held the error within its tolerance is remembered for each range of poses; it sinks slowly while the axis stands well,
-/// to find out whether less will do, and rises fast when it does not.
+/// The thesis's law gives power in proportion to an error, so an axis that must hold a weight always stands
+/// off its target. Here the power that held the error within its tolerance is remembered for each range of
+/// poses; it sinks slowly while the axis stands well, to find out whether less will do, and rises fast when
+/// it does not.
 
 namespace thermopower {
 
 /// What one tunes.
 struct AdaptiveHoldingConfig {
-  float tolerance_deg;         ///< Error that is good enough. Above 0.
-  float full_power_error_deg;  ///< Error worth full power at once, whatever was learned. Above `tolerance_deg`.
-  float learning_per_s;        ///< Counts per second that the memory rises at twice the tolerance. Above 0.
-  float forgetting_per_s;      ///< Counts per second that it sinks within the tolerance. >= 0; far below `learning_per_s`.
-  uint8_t least_power;         ///< The memory does not sink below this. At least 1.
-  uint8_t highest_power;       ///< Nor is more than this asked for. Not below `least_power`.
-  float first_pose_deg;        ///< Pose at the first range's edge.
-  float last_pose_deg;         ///< Pose at the last range's edge; above `first_pose_deg`.
+  float tolerance_deg;  ///< Error that is good enough. Above 0.
+  float
+      full_power_error_deg;  ///< Error worth full power at once, whatever was learned. Above `tolerance_deg`.
+  float learning_per_s;      ///< Counts per second that the memory rises at twice the tolerance. Above 0.
+  float forgetting_per_s;    ///< Counts per second that it sinks within the tolerance. >= 0; far below
+                             ///< `learning_per_s`.
+  uint8_t least_power;       ///< The memory does not sink below this. At least 1.
+  uint8_t highest_power;     ///< Nor is more than this asked for. Not below `least_power`.
+  float first_pose_deg;      ///< Pose at the first range's edge.
+  float last_pose_deg;       ///< Pose at the last range's edge; above `first_pose_deg`.
 
-  /// A tenth of a degree, full power at one degree, 40 counts up and 1 down per second, poses -90 .. 90 degrees.
+  /// A tenth of a degree, full power at one degree, 40 counts up and 1 down per second, poses -90 .. 90
+  /// degrees.
   static AdaptiveHoldingConfig standard() noexcept {
     const AdaptiveHoldingConfig config = {0.1f, 1.0f, 40.0f, 1.0f, 10, 250, -90.0f, 90.0f};
     return config;
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
-    if (is_error(detail::require_positive(tolerance_deg, ConfigError::tolerance_deg))) return ConfigError::tolerance_deg;
-    if (!detail::is_finite(full_power_error_deg) || full_power_error_deg <= tolerance_deg) return ConfigError::full_power_error_deg;
-    if (is_error(detail::require_positive(learning_per_s, ConfigError::learning_per_s))) return ConfigError::learning_per_s;
-    if (is_error(detail::require_within(forgetting_per_s, 0.0f, learning_per_s, ConfigError::forgetting_per_s)))
+    if (is_error(detail::require_positive(tolerance_deg, ConfigError::tolerance_deg)))
+      return ConfigError::tolerance_deg;
+    if (!detail::is_finite(full_power_error_deg) || full_power_error_deg <= tolerance_deg)
+      return ConfigError::full_power_error_deg;
+    if (is_error(detail::require_positive(learning_per_s, ConfigError::learning_per_s)))
+      return ConfigError::learning_per_s;
+    if (is_error(
+            detail::require_within(forgetting_per_s, 0.0f, learning_per_s, ConfigError::forgetting_per_s)))
       return ConfigError::forgetting_per_s;
     if (least_power < 1) return ConfigError::least_power;
     if (highest_power < least_power) return ConfigError::highest_power;
-    return detail::is_finite(first_pose_deg) && detail::is_finite(last_pose_deg) && last_pose_deg > first_pose_deg
+    return detail::is_finite(first_pose_deg) && detail::is_finite(last_pose_deg) &&
+                   last_pose_deg > first_pose_deg
                ? ConfigError::none
                : ConfigError::pose_deg;
   }
@@ -48,8 +57,9 @@ struct AdaptiveHoldingConfig {
 /// Power law with a memory per range of poses.
 /// @tparam bins  ranges of poses, 1 .. 64; each costs two bytes
 ///
-/// The power is the memory of this pose plus what the error beyond its tolerance is worth. It never exceeds `highest_power`, and at a
-/// limiter's mercy it stops learning (`hold_memory`): what was not granted is no evidence that it was not enough.
+/// The power is the memory of this pose plus what the error beyond its tolerance is worth. It never exceeds
+/// `highest_power`, and at a limiter's mercy it stops learning (`hold_memory`): what was not granted is no
+/// evidence that it was not enough.
 template <uint8_t bins = 8>
 class AdaptiveHoldingLaw {
   static_assert(bins >= 1 && bins <= 64, "thermopower: AdaptiveHoldingLaw takes 1 .. 64 ranges of poses");
@@ -82,7 +92,8 @@ class AdaptiveHoldingLaw {
   void at_pose(float pose_deg) noexcept {
     const float place = (pose_deg - config_.first_pose_deg) * per_bin_;
     if (!detail::is_finite(place)) return;
-    const uint8_t bin = place >= static_cast<float>(bins) ? static_cast<uint8_t>(bins - 1) : static_cast<uint8_t>(place > 0.0f ? place : 0.0f);
+    const uint8_t bin = place >= static_cast<float>(bins) ? static_cast<uint8_t>(bins - 1)
+                                                          : static_cast<uint8_t>(place > 0.0f ? place : 0.0f);
     if (bin != state_.bin) state_.rest = 0.0f;
     state_.bin = bin;
   }
@@ -107,7 +118,9 @@ class AdaptiveHoldingLaw {
   }
 
   /// Power that holds a range of poses, as learned. @param bin  0 .. bins - 1
-  float learned_power(uint8_t bin) const noexcept { return static_cast<float>(state_.learned[bin < bins ? bin : bins - 1]) * (1.0f / 128.0f); }
+  float learned_power(uint8_t bin) const noexcept {
+    return static_cast<float>(state_.learned[bin < bins ? bin : bins - 1]) * (1.0f / 128.0f);
+  }
   const State& state() const noexcept { return state_; }     ///< What was learned.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
@@ -115,13 +128,17 @@ class AdaptiveHoldingLaw {
   static uint16_t units(float power) noexcept { return static_cast<uint16_t>(power * 128.0f); }
 
   void learn(float beyond_deg, float dt_s) noexcept {
-    // Up in proportion, but no faster than at four times the tolerance: one bump must not teach a pose to cost full power.
-    const float rate = beyond_deg > 0.0f ? config_.learning_per_s * detail::at_most(beyond_deg * per_tolerance_, 3.0f)
-                                         : -config_.forgetting_per_s;
+    // Up in proportion, but no faster than at four times the tolerance: one bump must not teach a pose to
+    // cost full power.
+    const float rate = beyond_deg > 0.0f
+                           ? config_.learning_per_s * detail::at_most(beyond_deg * per_tolerance_, 3.0f)
+                           : -config_.forgetting_per_s;
     state_.rest += rate * dt_s * 128.0f;
-    const int16_t whole = static_cast<int16_t>(detail::at_most(detail::at_least(state_.rest, -32000.0f), 32000.0f));
+    const int16_t whole =
+        static_cast<int16_t>(detail::at_most(detail::at_least(state_.rest, -32000.0f), 32000.0f));
     state_.rest -= static_cast<float>(whole);
-    const int32_t least = units(static_cast<float>(config_.least_power)), most = units(static_cast<float>(config_.highest_power));
+    const int32_t least = units(static_cast<float>(config_.least_power)),
+                  most = units(static_cast<float>(config_.highest_power));
     const int32_t next = static_cast<int32_t>(state_.learned[state_.bin]) + whole;
     state_.learned[state_.bin] = static_cast<uint16_t>(next < least ? least : (next > most ? most : next));
   }

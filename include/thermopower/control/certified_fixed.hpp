@@ -5,8 +5,9 @@
 #include "../detail/check.hpp"
 
 /// @file certified_fixed.hpp
-/// Whole-number arithmetic of the certified limiter: every rounding goes to the safe side, and a PC and an 8-bit chip agree to the
-/// bit. A float's own rounding would decide the result: at 60 degC it is coarser than what a body warms in 10 ms.
+/// Whole-number arithmetic of the certified limiter: every rounding goes to the safe side, and a PC and an
+/// 8-bit chip agree to the bit. A float's own rounding would decide the result: at 60 degC it is coarser than
+/// what a body warms in 10 ms.
 
 namespace thermopower {
 namespace detail {
@@ -20,13 +21,15 @@ typedef uint32_t FineFraction;
 
 /// Units in a kelvin.
 constexpr float units_per_K() { return 262144.0f; }
-/// 1 - 2^-16: the largest coarse fraction. What stands for a whole is multiplied by `whole_margin()` to make up for it.
+/// 1 - 2^-16: the largest coarse fraction. What stands for a whole is multiplied by `whole_margin()` to make
+/// up for it.
 constexpr UnitFraction whole_fraction() { return 0xffffu; }
 /// 1 + 2^-15.
 constexpr float whole_margin() { return 1.0f + 1.0f / 32768.0f; }
 /// Covers the rounding of the float arithmetic that made a constant: 2^-18, sixty-four float roundings.
 constexpr float float_margin() { return 1.0f / 262144.0f; }
-/// The most that full power may warm a node in the end: sums of two such rises and a temperature stay in range.
+/// The most that full power may warm a node in the end: sums of two such rises and a temperature stay in
+/// range.
 constexpr float highest_rise_K() { return 3000.0f; }
 
 /// A positive number not below `value`; saturates.
@@ -63,23 +66,30 @@ inline FineFraction fine_down(float fraction) noexcept {
   const float narrow = fraction * (1.0f - float_margin()) * 4294967296.0f - 1.0f;
   return narrow > 0.0f ? static_cast<FineFraction>(narrow) : 0u;
 }
-/// An absolute temperature, towards 0 degC by less than a unit. NaN and what is beyond 4000 degC count as 4000 degC.
+/// An absolute temperature, towards 0 degC by less than a unit. NaN and what is beyond 4000 degC count as
+/// 4000 degC.
 inline KelvinUnits celsius_units(float temperature_C) noexcept {
   if (!(temperature_C < 4000.0f)) return static_cast<KelvinUnits>(4000.0f * units_per_K());
   return static_cast<KelvinUnits>((temperature_C > -300.0f ? temperature_C : -300.0f) * units_per_K());
 }
 /// Back to a float.
-inline float celsius_from(KelvinUnits units) noexcept { return static_cast<float>(units) * (1.0f / units_per_K()); }
+inline float celsius_from(KelvinUnits units) noexcept {
+  return static_cast<float>(units) * (1.0f / units_per_K());
+}
 
 /// floor(value * fraction): for both signs, the largest whole number that is not above.
 inline int32_t part_down(int32_t value, UnitFraction fraction) noexcept {
-  // In 16-bit pieces, which an 8-bit chip multiplies in hardware; a 64-bit product would cost it ten times as much.
+  // In 16-bit pieces, which an 8-bit chip multiplies in hardware; a 64-bit product would cost it ten times as
+  // much.
   const int16_t high = static_cast<int16_t>(value >> 16);
   const uint16_t low = static_cast<uint16_t>(value);
-  return static_cast<int32_t>(high) * fraction + static_cast<int32_t>((static_cast<uint32_t>(low) * fraction) >> 16);
+  return static_cast<int32_t>(high) * fraction +
+         static_cast<int32_t>((static_cast<uint32_t>(low) * fraction) >> 16);
 }
 /// Not below value * fraction.
-inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept { return part_down(value, fraction) + 1; }
+inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept {
+  return part_down(value, fraction) + 1;
+}
 
 /// How often `size` goes into `room`: the largest count 0 .. `most` with count * size <= room.
 /// @param size  >= 0, and `most` times it must fit
@@ -120,7 +130,8 @@ class UpperBound {
   void go(KelvinUnits way, FineFraction fraction) noexcept {
     const int16_t way_high = static_cast<int16_t>(way >> 16);
     const uint16_t way_low = static_cast<uint16_t>(way);
-    const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16), fraction_low = static_cast<uint16_t>(fraction);
+    const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16),
+                   fraction_low = static_cast<uint16_t>(fraction);
     const uint32_t lowest = static_cast<uint32_t>(way_low) * fraction_low;
     const int32_t signed_middle = static_cast<int32_t>(way_high) * fraction_low;
     uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(signed_middle);
@@ -128,7 +139,8 @@ class UpperBound {
     if (fraction_high != 0) {
       const uint32_t other_middle = static_cast<uint32_t>(way_low) * fraction_high;
       middle += static_cast<uint16_t>(other_middle);
-      highest += static_cast<int32_t>(way_high) * fraction_high + static_cast<KelvinUnits>(other_middle >> 16);
+      highest +=
+          static_cast<int32_t>(way_high) * fraction_high + static_cast<KelvinUnits>(other_middle >> 16);
     }
     const uint32_t added = (middle << 16) | static_cast<uint16_t>(lowest);
     low_ += added;

@@ -7,17 +7,18 @@
 #include "../detail/limiter_call.hpp"
 
 /// @file certified_limiter.hpp
-/// A limiter that is right by proof: no node passes its limit, whatever the actuator's true constants inside the declared bounds.
+/// A limiter that is right by proof: no node passes its limit, whatever the actuator's true constants inside
+/// the declared bounds.
 ///
 /// | network | when to take it |
 /// |---|---|
-/// | `CertifiedTwoNode` | the winding is much faster than the housing, or winding and housing have limits of their own |
+/// | `CertifiedTwoNode` | the winding is much faster than the housing, or both have limits of their own |
 /// | `CertifiedOneNode` | only one time constant is known |
 ///
 /// | heat | POWER p gives at most | when to take it |
 /// |---|---|---|
-/// | `LinearHeat` | p/255 of the heat at full POWER | a winding that follows Ohm's law: V_rms^2 is proportional to POWER |
-/// | `SquareHeat` | (p/255)^2 of it | a current that rises at least with V_rms^3, as the thesis's motors (exponents 3.41 and 3.46) |
+/// | `LinearHeat` | p/255 of the heat at full POWER | Ohm's law: V_rms^2 is proportional to POWER |
+/// | `SquareHeat` | (p/255)^2 of it | a current that rises with V_rms^3 or more: the thesis motors |
 ///
 /// The proof, and what happens outside the bounds: docs/explain/certified-limiter.md.
 
@@ -49,13 +50,16 @@ struct SquareHeat {
   }
 };
 
-/// Grants the largest power with which no node exceeds its limit, whatever the true constants within the bounds.
+/// Grants the largest power with which no node exceeds its limit, whatever the true constants within the
+/// bounds.
 /// @tparam Network  `CertifiedTwoNode` or `CertifiedOneNode`
 /// @tparam Heat     `LinearHeat` or `SquareHeat`
 ///
-/// Guarantees, for every actuator, air and supply within the bounds and every demand, when each plan comes at most `hold_s` after the
-/// last, from any start inside the safe set (`State::is_certified`): no limit is exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling, in constant air, the
-/// power settles and stays (no dithering); a fault gives the least power and forgets nothing.
+/// Guarantees, for every actuator, air and supply within the bounds and every demand, when each plan comes at
+/// most `hold_s` after the last, from any start inside the safe set (`State::is_certified`): no limit is
+/// exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling,
+/// in constant air, the power settles and stays (no dithering); a fault gives the least power and forgets
+/// nothing.
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
  public:
@@ -63,16 +67,18 @@ class CertifiedLimiter {
   struct Config {
     typename Network::Config network;  ///< Bounds and limits of the actuator.
     CertifiedUse use;                  ///< Bounds of its surroundings.
-    float air_error_K;                 ///< The air may be warmer than measured by this until the next plan, >= 0.
+    float air_error_K;  ///< The air may be warmer than measured by this until the next plan, >= 0.
 
-    /// No bounds suit every actuator: `validate()` refuses these by name until they are set. Hold 0.1 s, horizon 30 s, air +-5 K.
+    /// No bounds suit every actuator: `validate()` refuses these by name until they are set. Hold 0.1 s,
+    /// horizon 30 s, air +-5 K.
     static Config standard() noexcept {
       const float unset = detail::not_a_number();
-      const Config config = {Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f, 1, 0}, 5.0f};
+      const Config config = {
+          Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f, 1, 0}, 5.0f};
       return config;
     }
-    /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the actuator would be too hot in
-    /// that air at the least power: no limiter could help.
+    /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the
+    /// actuator would be too hot in that air at the least power: no limiter could help.
     ConfigError validate() const noexcept {
       return is_error(validate_fields()) ? validate_fields() : Network(network, use).feasible();
     }
@@ -80,14 +86,18 @@ class CertifiedLimiter {
     ConfigError validate_fields() const noexcept {
       if (is_error(first_error(network.validate(), use.heat.validate())))
         return first_error(network.validate(), use.heat.validate());
-      if (is_error(detail::require_within(use.heat.coldest_C, -60.0f, network.hottest_C() - 1.0f, ConfigError::coldest_C)))
+      if (is_error(detail::require_within(use.heat.coldest_C, -60.0f, network.hottest_C() - 1.0f,
+                                          ConfigError::coldest_C)))
         return ConfigError::coldest_C;
-      if (is_error(detail::require_within(use.highest_air_C, use.heat.coldest_C, 200.0f, ConfigError::highest_air_C)))
+      if (is_error(detail::require_within(use.highest_air_C, use.heat.coldest_C, 200.0f,
+                                          ConfigError::highest_air_C)))
         return ConfigError::highest_air_C;
-      if (is_error(detail::require_positive(use.hold_s, ConfigError::hold_s)) || use.hold_s > 10.0f) return ConfigError::hold_s;
+      if (is_error(detail::require_positive(use.hold_s, ConfigError::hold_s)) || use.hold_s > 10.0f)
+        return ConfigError::hold_s;
       if (!detail::is_finite(use.horizon_s) || use.horizon_s < use.hold_s) return ConfigError::horizon_s;
       if (use.every < 1 || use.phase >= use.every) return ConfigError::every;
-      if (is_error(detail::require_not_negative(air_error_K, ConfigError::air_error_K))) return ConfigError::air_error_K;
+      if (is_error(detail::require_not_negative(air_error_K, ConfigError::air_error_K)))
+        return ConfigError::air_error_K;
       return ConfigError::none;
     }
   };
@@ -107,20 +117,28 @@ class CertifiedLimiter {
     uint8_t sustainable;     ///< Largest power that is bearable for ever in this air.
     CertifiedNode node;      ///< Which limit sets the ceiling.
     float headroom_W;        ///< Heat that could be added to the power granted.
-    float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever reached.
-    bool is_certified;       ///< The bounds are where the least power keeps them below the limits for ever. False only after a start
-                             ///< that was too hot already, or a late step; the guarantee then begins when this turns true.
-    uint16_t late_steps;     ///< Times longer than `hold_s` from plan to plan: the guarantee did not cover them. Stops at 65535.
+    float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever
+                             ///< reached.
+    bool is_certified;  ///< The bounds are where the least power keeps them below the limits for ever. False
+                        ///< only after a start that was too hot already, or a late step; the guarantee then
+                        ///< begins when this turns true.
+    uint16_t late_steps;  ///< Times longer than `hold_s` from plan to plan: the guarantee did not cover them.
+                          ///< Stops at 65535.
   };
 
   explicit CertifiedLimiter(const Config& config = Config::standard()) noexcept
-      : network_(config.network, config.use), travel_(network_.travel(0.0f)), highest_air_C_(config.use.highest_air_C),
-        air_error_K_(config.air_error_K), coldest_C_(config.use.heat.coldest_C),
+      : network_(config.network, config.use),
+        travel_(network_.travel(0.0f)),
+        highest_air_C_(config.use.highest_air_C),
+        air_error_K_(config.air_error_K),
+        coldest_C_(config.use.heat.coldest_C),
         per_supply_V_(config.use.heat.supply_error < 1.0f
                           ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
                           : detail::not_a_number()),
         count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
-        config_error_(first_error(config.validate_fields(), network_.feasible())), every_(config.use.every), turn_(config.use.phase) {}
+        config_error_(first_error(config.validate_fields(), network_.feasible())),
+        every_(config.use.every),
+        turn_(config.use.phase) {}
 
   /// First constant out of its range, or ConfigError::none. Anything but none keeps the power at its least.
   ConfigError validate() const noexcept { return config_error_; }
@@ -136,7 +154,8 @@ class CertifiedLimiter {
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
     if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
-    const uint8_t wanted = static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
+    const uint8_t wanted =
+        static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
     pass(dt_s);
     if (++turn_ >= every_) {
       turn_ = 0;
@@ -162,7 +181,8 @@ class CertifiedLimiter {
     }
     return least(reason, demand);
   }
-  /// The same when the time is not known: the power of the last step is assumed to have acted for `hold_s`, and nothing to have cooled.
+  /// The same when the time is not known: the power of the last step is assumed to have acted for `hold_s`,
+  /// and nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     if (!is_error(config_error_)) {
       if (pending_s_ > 0.0f) advance();
@@ -181,10 +201,15 @@ class CertifiedLimiter {
 
   /// What one logs, computed when asked for.
   State state() const noexcept {
-    const State state = {network_.winding_C(), network_.body_C(), ceiling(),
-                         Heat::power(static_cast<uint8_t>(network_.sustainable() + 1)), node_,
+    const State state = {network_.winding_C(),
+                         network_.body_C(),
+                         ceiling(),
+                         Heat::power(static_cast<uint8_t>(network_.sustainable() + 1)),
+                         node_,
                          static_cast<float>(ceiling_ - acting_) * count_W_,
-                         network_.seconds_to_limit(acting_), is_certified(), late_steps_};
+                         network_.seconds_to_limit(acting_),
+                         is_certified(),
+                         late_steps_};
     return state;
   }
   bool is_certified() const noexcept { return network_.is_certified(); }   ///< As in State, without the rest.
@@ -213,10 +238,12 @@ class CertifiedLimiter {
     advance();
     observe(inputs.air_C, inputs.supply_V);
     CertifiedCount largest = network_.largest();
-    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises to what can be kept for ever, or not at all.
+    // A ratchet instead of a dead band: while the demand is held back, the ceiling rises to what can be kept
+    // for ever, or not at all.
     if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
       const uint8_t sustainable = network_.sustainable();
-      const bool may_rise = sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
+      const bool may_rise =
+          sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
       largest.count = may_rise ? sustainable : ceiling_;
       if (largest.node == CertifiedNode::none) largest.node = node_;
     }
@@ -225,7 +252,8 @@ class CertifiedLimiter {
   }
 
   void observe(float air_C, float supply_V) noexcept {
-    // A NaN is never equal, so it is looked at each time; all else only when it changed: floats are dear on a small chip.
+    // A NaN is never equal, so it is looked at each time; all else only when it changed: floats are dear on a
+    // small chip.
     if (!(air_C == read_air_C_)) {
       read_air_C_ = air_C;
       const float warmest_C = air_C + air_error_K_;
@@ -260,8 +288,8 @@ class CertifiedLimiter {
   detail::UnitFraction supply_squared_ = detail::whole_fraction();
   uint16_t late_steps_ = 0;
   float pending_s_ = 0.0f;
-  uint8_t acting_ = 0;   // count that acts since the last step
-  uint8_t acted_ = 0;    // largest count that acted since the last plan
+  uint8_t acting_ = 0;  // count that acts since the last step
+  uint8_t acted_ = 0;   // largest count that acted since the last plan
   uint8_t ceiling_ = 0;
   ConfigError config_error_;
   uint8_t every_, turn_;

@@ -5,13 +5,14 @@
 #include "certified_bounds.hpp"
 
 /// @file certified_one_node.hpp
-/// A sound upper bound of the temperature of an actuator that is equally warm everywhere, and the largest power that keeps it below
-/// its limit. Symbols and numbers in brackets are those of docs/explain/certified-limiter.md.
+/// A sound upper bound of the temperature of an actuator that is equally warm everywhere, and the largest
+/// power that keeps it below its limit. Symbols and numbers in brackets are those of
+/// docs/explain/certified-limiter.md.
 
 namespace thermopower {
 
-/// One node with bounds instead of constants: C dT/dt = P - G (T - T_air). G, the air, the supply and the resistance may change at any
-/// time within their bounds, and so may C.
+/// One node with bounds instead of constants: C dT/dt = P - G (T - T_air). G, the air, the supply and the
+/// resistance may change at any time within their bounds, and so may C.
 class CertifiedOneNode {
  public:
   /// What is declared.
@@ -28,9 +29,10 @@ class CertifiedOneNode {
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      return first_error(heat_capacity_J_per_K.validate(ConfigError::heat_capacity_J_per_K),
-                         first_error(detail::require_positive(least_conductance_W_per_K, ConfigError::conductance_W_per_K),
-                                     detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C)));
+      return first_error(
+          heat_capacity_J_per_K.validate(ConfigError::heat_capacity_J_per_K),
+          first_error(detail::require_positive(least_conductance_W_per_K, ConfigError::conductance_W_per_K),
+                      detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C)));
     }
     float hottest_C() const noexcept { return maximum_C; }  ///< Limit of the heated node.
   };
@@ -41,7 +43,8 @@ class CertifiedOneNode {
     bool is_late;          ///< Longer than a hold: outside the contract, but still carried soundly.
   };
 
-  /// Constants once; the bound starts at the limit (hot), the safe guess for an actuator that this limiter has guarded before.
+  /// Constants once; the bound starts at the limit (hot), the safe guess for an actuator that this limiter
+  /// has guarded before.
   CertifiedOneNode(const Config& config, const CertifiedUse& use) noexcept {
     const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
     fastest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.lowest;
@@ -49,13 +52,16 @@ class CertifiedOneNode {
     to_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
     hold_s_ = use.hold_s;
     hold_ = detail::fraction_up(CertifiedTravel::above(fastest_per_s_ * use.hold_s));
-    horizon_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_per_s_ * use.horizon_s));
+    horizon_ =
+        detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_per_s_ * use.horizon_s));
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
     relief_.set(use.heat, config.maximum_C, config.maximum_C);
     feasible_ = ConfigError::none;
-    if (!(config.maximum_C > use.highest_air_C + detail::celsius_from(to_air_) + 0.01f)) feasible_ = ConfigError::highest_air_C;
-    if (!(255.0f * detail::celsius_from(to_air_) < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
+    if (!(config.maximum_C > use.highest_air_C + detail::celsius_from(to_air_) + 0.01f))
+      feasible_ = ConfigError::highest_air_C;
+    if (!(255.0f * detail::celsius_from(to_air_) < detail::highest_rise_K()))
+      feasible_ = ConfigError::heat_when_cold_W;
     node_.set(limit_);
     surroundings(use.highest_air_C, detail::whole_fraction());
   }
@@ -73,7 +79,8 @@ class CertifiedOneNode {
   }
   /// Lowers the bound to a measurement that is never below the truth; NaN changes nothing.
   void tighten(float winding_C, float) noexcept {
-    if (winding_C >= -100.0f && winding_C < detail::celsius_from(node_.below())) node_.set(detail::celsius_units(winding_C) + 1);
+    if (winding_C >= -100.0f && winding_C < detail::celsius_from(node_.below()))
+      node_.set(detail::celsius_units(winding_C) + 1);
   }
 
   /// Prepares a step length.
@@ -83,7 +90,8 @@ class CertifiedOneNode {
   }
   /// Carries the bound over a step during which at most `count` acted.
   void advance(uint8_t count, const Travel& step) noexcept {
-    if (step.is_late) to_air_now_ = to_air_;  // the winding may have cooled, and drawn more, than one hold allows for
+    if (step.is_late)
+      to_air_now_ = to_air_;  // the winding may have cooled, and drawn more, than one hold allows for
     node_.raise(base_);
     const detail::KelvinUnits way = base_ + count * to_air_now_ - node_.below();
     node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
@@ -112,20 +120,25 @@ class CertifiedOneNode {
   CertifiedCount largest() const noexcept {
     CertifiedCount largest = {254, CertifiedNode::none};
     const detail::KelvinUnits above = room(), left = limit_ - base_ - above;
-    largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_), CertifiedNode::body);
-    largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_), CertifiedNode::body);
+    largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_),
+                CertifiedNode::body);
+    largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_),
+                CertifiedNode::body);
     return largest;
   }
   /// The largest count that is bearable for ever in this air.
   uint8_t sustainable() const noexcept { return detail::count_within(limit_ - base_, to_air_now_, 254); }
 
-  /// True when the bound is inside the set that the least power never leaves. It stays true once it is, within the contract.
+  /// True when the bound is inside the set that the least power never leaves. It stays true once it is,
+  /// within the contract.
   bool is_certified() const noexcept { return limit_ - base_ - room() >= -64; }
   /// Always true: there is no second node that could hand on heat.
   bool is_below(uint8_t) const noexcept { return true; }
 
-  float winding_C() const noexcept { return detail::celsius_from(node_.above()); }  ///< Upper bound of the node.
-  float body_C() const noexcept { return winding_C(); }                             ///< The same node.
+  float winding_C() const noexcept {
+    return detail::celsius_from(node_.above());
+  }                                                      ///< Upper bound of the node.
+  float body_C() const noexcept { return winding_C(); }  ///< The same node.
 
   /// Time until the limit is reached at a constant count; infinite when it never is. 0 when it is reached.
   float seconds_to_limit(uint8_t count) const noexcept {

@@ -2,15 +2,17 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "certified_bounds.hpp"
+#include "certified_two_node_config.hpp"
 
 /// @file certified_two_node.hpp
-/// A sound upper bound of a winding's and a body's temperature, and the largest power that keeps both below their limits.
+/// A sound upper bound of a winding's and a body's temperature, and the largest power that keeps both below
+/// their limits.
 ///
-/// The second bound is kept on the mean of winding and body, weighted by heat capacity: what both would become if the heat stored in
-/// the winding went into the body at once. The body can never be warmer than that, however well it is coupled, so a limit on the mean
-/// covers the peak that the body reaches after a cut; and its heat balance does not contain the coupling at all.
-/// Symbols and numbers in brackets are those of docs/explain/certified-limiter.md.
+/// The second bound is kept on the mean of winding and body, weighted by heat capacity: what both would
+/// become if the heat stored in the winding went into the body at once. The body can never be warmer than
+/// that, however well it is coupled, so a limit on the mean covers the peak that the body reaches after a
+/// cut; and its heat balance does not contain the coupling at all. Symbols and numbers in brackets are those
+/// of docs/explain/certified-limiter.md.
 
 namespace thermopower {
 
@@ -18,45 +20,11 @@ namespace thermopower {
 ///
 ///     C_w dT_w/dt = P - K (T_w - T_b),   C_b dT_b/dt = K (T_w - T_b) - G (T_b - T_air)
 ///
-/// K, G, the air, the supply and the resistance may change at any time within their bounds; C_w and C_b are constant but unknown.
+/// K, G, the air, the supply and the resistance may change at any time within their bounds; C_w and C_b are
+/// constant but unknown.
 class CertifiedTwoNode {
  public:
-  /// What is declared.
-  struct Config {
-    Bounds winding_heat_capacity_J_per_K;  ///< C_w
-    Bounds body_heat_capacity_J_per_K;     ///< C_b
-    float least_coupling_W_per_K;          ///< K is never below this. Above 0.
-    float least_conductance_W_per_K;       ///< G is never below this. Above 0.
-    float maximum_winding_C;               ///< Limit of the winding. 0 .. 250 degC.
-    float maximum_body_C;                  ///< Limit of the body. 0 .. 250 degC.
-
-    /// Nothing suits every motor: NaN, which `validate()` refuses by name until it is set.
-    static Config standard() noexcept {
-      const float unset = detail::not_a_number();
-      const Config config = {{unset, unset}, {unset, unset}, unset, unset, unset, unset};
-      return config;
-    }
-    /// The constants of a `TwoNodeThermalModel`, each known to a fraction. @param fraction  0.2 for +-20 %
-    template <class ThermalConfig>
-    static Config around(const ThermalConfig& thermal, float fraction, float maximum_winding_C, float maximum_body_C) noexcept {
-      const Config config = {Bounds::around(thermal.winding_heat_capacity_J_per_K, fraction),
-                             Bounds::around(thermal.body_heat_capacity_J_per_K, fraction),
-                             thermal.coupling_W_per_K * (1.0f - fraction),
-                             thermal.cooling.conductance_W_per_K * (1.0f - fraction), maximum_winding_C, maximum_body_C};
-      return config;
-    }
-    /// First constant out of its range, or ConfigError::none.
-    ConfigError validate() const noexcept {
-      return first_error(
-          first_error(winding_heat_capacity_J_per_K.validate(ConfigError::winding_heat_capacity_J_per_K),
-                      body_heat_capacity_J_per_K.validate(ConfigError::body_heat_capacity_J_per_K)),
-          first_error(first_error(detail::require_positive(least_coupling_W_per_K, ConfigError::coupling_W_per_K),
-                                  detail::require_positive(least_conductance_W_per_K, ConfigError::conductance_W_per_K)),
-                      first_error(detail::require_within(maximum_winding_C, 0.0f, 250.0f, ConfigError::maximum_winding_C),
-                                  detail::require_within(maximum_body_C, 0.0f, 250.0f, ConfigError::maximum_body_C))));
-    }
-    float hottest_C() const noexcept { return maximum_winding_C; }  ///< Limit of the heated node.
-  };
+  typedef CertifiedTwoNodeConfig Config;  ///< What is declared.
 
   /// Lengths of a step, in the form the network needs them.
   struct Travel {
@@ -65,15 +33,16 @@ class CertifiedTwoNode {
     bool is_late;             ///< Longer than a hold: outside the contract, but still carried soundly.
   };
 
-  /// Constants once; both bounds start at the limits (hot), the safe guess for an actuator that this limiter has guarded before.
+  /// Constants once; both bounds start at the limits (hot), the safe guess for an actuator that this limiter
+  /// has guarded before.
   CertifiedTwoNode(const Config& config, const CertifiedUse& use) noexcept {
     const Bounds& winding = config.winding_heat_capacity_J_per_K;
     const Bounds& body = config.body_heat_capacity_J_per_K;
     const float least_capacity = winding.lowest + body.lowest;
     const float winding_share = body.highest / (winding.lowest + body.highest);  // 1 - mu, largest
     const float body_share = body.lowest / (winding.highest + body.lowest);      // 1 - mu, smallest
-    const float winding_rate = config.least_coupling_W_per_K / winding_share;    // W/K between winding and mean
-    const float body_rate = config.least_conductance_W_per_K / body_share;       // W/K between mean and air
+    const float winding_rate = config.least_coupling_W_per_K / winding_share;  // W/K between winding and mean
+    const float body_rate = config.least_conductance_W_per_K / body_share;     // W/K between mean and air
     fastest_winding_per_s_ = winding_rate / winding.lowest;
     slowest_winding_per_s_ = winding_rate / winding.highest;
     fastest_body_per_s_ = body_rate / least_capacity;
@@ -83,7 +52,7 @@ class CertifiedTwoNode {
     across_ = detail::kelvin_up(count_W / winding_rate);
     soak_ = detail::kelvin_up(count_W * use.hold_s / least_capacity);
     to_air_ = detail::kelvin_up(count_W / body_rate);
-    gap_ = across_ + soak_;                                                    // (12): what the least power keeps between the two
+    gap_ = across_ + soak_;  // (12): what the least power keeps between the two
     base_over_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
     weight_ = detail::fraction_up(1.0f - body_share);
     least_mean_ = detail::kelvin_up(detail::celsius_from(gap_) * (1.0f - body_share) / body_share);
@@ -91,8 +60,10 @@ class CertifiedTwoNode {
     hold_s_ = use.hold_s;
     hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
     hold_body_ = detail::fraction_up(part_of_hold(fastest_body_per_s_));
-    horizon_winding_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_winding_per_s_ * use.horizon_s));
-    horizon_body_ = detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
+    horizon_winding_ = detail::fraction_down(
+        1.0f - detail::Numeric<float>::exponential(-fastest_winding_per_s_ * use.horizon_s));
+    horizon_body_ = detail::fraction_down(
+        1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
 
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     set_limits(config, use, 1.0f - body_share, count_W);
@@ -104,10 +75,12 @@ class CertifiedTwoNode {
     surroundings(use.highest_air_C, detail::whole_fraction());
   }
 
-  /// A bound that cannot be met: in the hottest air even the least power is too much, or full power is out of the arithmetic's range.
+  /// A bound that cannot be met: in the hottest air even the least power is too much, or full power is out of
+  /// the arithmetic's range.
   ConfigError feasible() const noexcept { return feasible_; }
 
-  /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the limit starts at the limit
+  /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the
+  /// limit starts at the limit
   void start(float winding_C, float body_C) noexcept {
     const float hot = body_C > winding_C ? body_C : winding_C;
     winding_.set(detail::is_finite(hot) ? detail::celsius_units(hot) + 1 : winding_limit_);
@@ -134,14 +107,16 @@ class CertifiedTwoNode {
   /// Prepares a step length; only a length that changed costs anything.
   Travel travel(float dt_s) const noexcept {
     const Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
-                           CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s), dt_s > hold_s_};
+                           CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s),
+                           dt_s > hold_s_};
     return travel;
   }
 
   /// Carries both bounds over a step during which at most `count` acted. (17) to (20)
   void advance(uint8_t count, const Travel& step) noexcept {
     mean_.raise(base_ + least_mean_);
-    const detail::KelvinUnits soaked = step.is_late ? soaked_late(count) : mean_.above() + gap_ + count * soak_now_;
+    const detail::KelvinUnits soaked =
+        step.is_late ? soaked_late(count) : mean_.above() + gap_ + count * soak_now_;
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
     const detail::KelvinUnits winding_way = soaked + count * across_now_ - winding_.below();
@@ -162,7 +137,8 @@ class CertifiedTwoNode {
   }
 
   /// Takes note of the air and the supply until the next step.
-  /// @param air_C  never below the truth  @param supply_squared  (supply / highest supply)^2, never below the truth
+  /// @param air_C  never below the truth  @param supply_squared  (supply / highest supply)^2, never below the
+  /// truth
   void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
     if (!(air_C == air_C_)) {
       air_C_ = air_C;
@@ -176,11 +152,14 @@ class CertifiedTwoNode {
     const Room room = this->room();
     CertifiedCount largest = {254, CertifiedNode::none};
     // Horizon: how authority falls. Not needed for safety.
-    const detail::KelvinUnits lost = detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
+    const detail::KelvinUnits lost =
+        detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
     largest.fit(room.mean_left + lost, sizes_.slow, CertifiedNode::body);
-    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost, sizes_.slow_winding, CertifiedNode::winding);
+    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost,
+                sizes_.slow_winding, CertifiedNode::winding);
     // One hold: what the proof rests on.
-    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding, CertifiedNode::winding);
+    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding,
+                CertifiedNode::winding);
     largest.fit(room.winding_left + room.apart, sizes_.jump, CertifiedNode::winding);
     const detail::KelvinUnits spare = room.mean - room.weighted;
     largest.fit(room.mean_left + detail::part_down(spare, hold_body_), sizes_.held_body, CertifiedNode::body);
@@ -193,11 +172,13 @@ class CertifiedTwoNode {
     const detail::KelvinUnits mean = mean_limit_ - base_, winding = winding_limit_ - base_;
     CertifiedCount count = {254, CertifiedNode::none};
     count.fit(mean - detail::part_up(mean + gap_, weight_), sizes_.settled, CertifiedNode::body);
-    count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_, CertifiedNode::winding);
+    count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_,
+              CertifiedNode::winding);
     return count.count;
   }
 
-  /// True when both bounds are inside the set that the least power never leaves. It stays true once it is, within the contract.
+  /// True when both bounds are inside the set that the least power never leaves. It stays true once it is,
+  /// within the contract.
   bool is_certified() const noexcept {
     const Room room = this->room();
     return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
@@ -205,8 +186,12 @@ class CertifiedTwoNode {
   /// True when the winding has no more heat to hand on than it would have at this count for ever.
   bool is_below(uint8_t count) const noexcept { return room().apart <= count * (across_now_ + soak_now_); }
 
-  float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }  ///< Upper bound of the winding.
-  float body_C() const noexcept { return detail::celsius_from(mean_.above()); }        ///< Upper bound of the body, now and after a cut.
+  float winding_C() const noexcept {
+    return detail::celsius_from(winding_.above());
+  }  ///< Upper bound of the winding.
+  float body_C() const noexcept {
+    return detail::celsius_from(mean_.above());
+  }  ///< Upper bound of the body, now and after a cut.
 
   /// Time until a node reaches its limit at a constant count; infinite when none does. 0 when one is there.
   float seconds_to_limit(uint8_t count) const noexcept {
@@ -216,11 +201,13 @@ class CertifiedTwoNode {
     const float settled = detail::celsius_from(count * to_air_now_) + share() * apart;
     const float mean_s = crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
                                     detail::celsius_from(room.mean + room.mean_left), fastest_body_per_s_);
-    const float winding_s = crossing_s(detail::celsius_from(room.winding), detail::celsius_from(room.mean) + apart,
-                                       detail::celsius_from(room.winding + room.winding_left), fastest_winding_per_s_);
+    const float winding_s =
+        crossing_s(detail::celsius_from(room.winding), detail::celsius_from(room.mean) + apart,
+                   detail::celsius_from(room.winding + room.winding_left), fastest_winding_per_s_);
     // The winding may also be carried to its limit by a body that warms slowly under it.
-    const float carried_s = crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
-                                       detail::celsius_from(room.winding + room.winding_left) - apart, fastest_body_per_s_);
+    const float carried_s =
+        crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
+                   detail::celsius_from(room.winding + room.winding_left) - apart, fastest_body_per_s_);
     const float winding_first_s = winding_s < carried_s ? winding_s : carried_s;
     return mean_s < winding_first_s ? mean_s : winding_first_s;
   }
@@ -269,7 +256,8 @@ class CertifiedTwoNode {
     taken_winding_ = -1000L * 262144L;  // to be taken anew
     const float apart_K = detail::celsius_from(gap_ + count * (across_now_ + soak_now_));
     const float to_air_K = detail::celsius_from(count * to_air_now_);
-    const detail::KelvinUnits settled = base_ + detail::kelvin_up((to_air_K + share() * apart_K) / (1.0f - share()));
+    const detail::KelvinUnits settled =
+        base_ + detail::kelvin_up((to_air_K + share() * apart_K) / (1.0f - share()));
     const detail::KelvinUnits fed =
         base_ + detail::part_up(winding_.above() - base_, weight_) + count * to_air_now_;
     detail::KelvinUnits mean = mean_.above() > settled ? mean_.above() : settled;
@@ -277,18 +265,19 @@ class CertifiedTwoNode {
     return mean + gap_ + count * soak_now_;
   }
 
-
-  // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a little, so that it need not
-  // be taken anew before a bound has moved by about as much.
+  // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a
+  // little, so that it need not be taken anew before a bound has moved by about as much.
   void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
     const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
-    if (supply_squared == taken_supply_ && winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
-        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
+    if (supply_squared == taken_supply_ && winding - taken_winding_ >= -slack_units() &&
+        winding - taken_winding_ < slack_units() && mean - taken_mean_ >= -slack_units() &&
+        mean - taken_mean_ < slack_units())
       return;
     taken_supply_ = supply_squared;
     taken_winding_ = winding;
     taken_mean_ = mean;
-    // How far each may fall within a hold, also when it has first moved by the slack, and the air by anything.
+    // How far each may fall within a hold, also when it has first moved by the slack, and the air by
+    // anything.
     const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
     const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
     const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
@@ -296,8 +285,11 @@ class CertifiedTwoNode {
          supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
   }
   static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
-  static detail::UnitFraction supply(detail::UnitFraction relief, detail::UnitFraction supply_squared) noexcept {
-    return supply_squared == detail::whole_fraction() ? relief : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared));
+  static detail::UnitFraction supply(detail::UnitFraction relief,
+                                     detail::UnitFraction supply_squared) noexcept {
+    return supply_squared == detail::whole_fraction()
+               ? relief
+               : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared));
   }
   void take(detail::UnitFraction winding, detail::UnitFraction body) noexcept {
     across_now_ = detail::part_up(across_, winding);
@@ -319,15 +311,18 @@ class CertifiedTwoNode {
     const float gap_K = detail::celsius_from(gap_ + 2);
     const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
     // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
-    const float winding_C = detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
+    const float winding_C =
+        detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
     const float rounding_K = 0.0005f;
     mean_limit_ = detail::celsius_units(mean_C - rounding_K);
     winding_limit_ = detail::celsius_units(winding_C - rounding_K);
     feasible_ = ConfigError::none;
-    if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) || !(winding_C > mean_C + gap_K - 0.001f))
+    if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) ||
+        !(winding_C > mean_C + gap_K - 0.001f))
       feasible_ = ConfigError::highest_air_C;
-    const float rise_K = 255.0f * count_W * (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
-                                               use.hold_s / config.body_heat_capacity_J_per_K.lowest);
+    const float rise_K = 255.0f * count_W *
+                         (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
+                          use.hold_s / config.body_heat_capacity_J_per_K.lowest);
     if (!(rise_K < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
   }
 

@@ -6,14 +6,16 @@
 #include "safety_limiter.hpp"
 
 /// @file node_limits.hpp
-/// A limit for every part of an actuator that has one: a printed bracket softens at 60 degC, magnets weaken at 80, enamel ends at 120.
+/// A limit for every part of an actuator that has one: a printed bracket softens at 60 degC, magnets weaken
+/// at 80, enamel ends at 120.
 
 namespace thermopower {
 
 /// A part that lies between two temperatures that are known: T = from + fraction (to - from).
 struct NodeLimit {
   float maximum_C;  ///< Limit, 0 .. 250 degC.
-  float fraction;   ///< Place between the two, 0 .. 1; above 1 beyond the second (a hot spot in the winding), at most 2.
+  float fraction;   ///< Place between the two, 0 .. 1; above 1 beyond the second (a hot spot in the winding),
+                    ///< at most 2.
 
   /// `maximum_C` or `offset_fraction` out of range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -22,7 +24,8 @@ struct NodeLimit {
   }
 };
 
-/// Selects `SafetyLimiter<PerNode>`: a limit for each of four parts, and an authority that falls continuously.
+/// Selects `SafetyLimiter<PerNode>`: a limit for each of four parts, and an authority that falls
+/// continuously.
 struct PerNode {
   /// Which part.
   enum Node : uint8_t {
@@ -37,10 +40,11 @@ struct PerNode {
 
 /// Limits each part of an actuator to its own temperature.
 ///
-/// The ceiling is 255 while every part is `derating_K` or more below its limit, and falls in a straight line to the least power at
-/// the limit: without a threshold, without a jump, without memory. At constant demand the actuator settles inside the band, on one
-/// power. Take it when parts have limits of their own and no bounds can be declared; with bounds, `CertifiedLimiter` needs no band.
-/// A temperature that is NaN or infinite counts as too hot.
+/// The ceiling is 255 while every part is `derating_K` or more below its limit, and falls in a straight line
+/// to the least power at the limit: without a threshold, without a jump, without memory. At constant demand
+/// the actuator settles inside the band, on one power. Take it when parts have limits of their own and no
+/// bounds can be declared; with bounds, `CertifiedLimiter` needs no band. A temperature that is NaN or
+/// infinite counts as too hot.
 template <>
 class SafetyLimiter<PerNode> {
  public:
@@ -49,7 +53,8 @@ class SafetyLimiter<PerNode> {
     NodeLimit node[PerNode::count];  ///< In the order of `PerNode::Node`.
     float derating_K;                ///< Width of the band below each limit. Above 0.
 
-    /// Bracket 60, body 80, magnets 80, winding 120 degC; a band of 8 K. The bracket is taken as warm as the body.
+    /// Bracket 60, body 80, magnets 80, winding 120 degC; a band of 8 K. The bracket is taken as warm as the
+    /// body.
     static Config standard() noexcept {
       const Config config = {{{60.0f, 1.0f}, {80.0f, 1.0f}, {80.0f, 0.1f}, {120.0f, 1.0f}}, 8.0f};
       return config;
@@ -98,12 +103,14 @@ class SafetyLimiter<PerNode> {
   /// The time does not matter: the rule has no memory.
   LimitedPower step(const Inputs& inputs, float = 0.0f) noexcept {
     if (is_error(config_.validate())) return cut(LimitReason::config_invalid, inputs.demand);
-    if (!is_possible(inputs.winding_C) || !is_possible(inputs.body_C)) return cut(LimitReason::temperature_not_finite, inputs.demand);
+    if (!is_possible(inputs.winding_C) || !is_possible(inputs.body_C))
+      return cut(LimitReason::temperature_not_finite, inputs.demand);
     const float air_C = is_possible(inputs.air_C) ? inputs.air_C : inputs.body_C;
     state_.margin_K = 1.0e9f;
     for (uint8_t i = 0; i < PerNode::count; ++i) {
       const bool is_outside = i <= PerNode::body;
-      const float from_C = is_outside ? air_C : inputs.body_C, to_C = is_outside ? inputs.body_C : inputs.winding_C;
+      const float from_C = is_outside ? air_C : inputs.body_C,
+                  to_C = is_outside ? inputs.body_C : inputs.winding_C;
       state_.node_C[i] = from_C + config_.node[i].fraction * (to_C - from_C);
       const float margin_K = config_.node[i].maximum_C - state_.node_C[i];
       if (margin_K < state_.margin_K) {
@@ -113,9 +120,11 @@ class SafetyLimiter<PerNode> {
     }
     if (state_.margin_K >= config_.derating_K) state_.node = PerNode::none;
     const float above_least = state_.margin_K * slope_;
-    state_.ceiling = above_least >= 254.0f
-                         ? 255
-                         : static_cast<uint8_t>(above_least > 0.0f ? least_power() + static_cast<uint8_t>(above_least) : least_power());
+    state_.ceiling =
+        above_least >= 254.0f
+            ? 255
+            : static_cast<uint8_t>(above_least > 0.0f ? least_power() + static_cast<uint8_t>(above_least)
+                                                      : least_power());
     LimitedPower granted = {inputs.demand, LimitReason::none};
     if (inputs.demand > state_.ceiling) {
       granted.power = state_.ceiling;
@@ -136,7 +145,9 @@ class SafetyLimiter<PerNode> {
   const Config& config() const noexcept { return config_; }    ///< The constants.
 
  private:
-  static bool is_possible(float temperature_C) noexcept { return temperature_C > -273.15f && temperature_C < 1.0e4f; }
+  static bool is_possible(float temperature_C) noexcept {
+    return temperature_C > -273.15f && temperature_C < 1.0e4f;
+  }
 
   Config config_;
   State state_;

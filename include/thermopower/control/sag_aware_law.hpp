@@ -10,19 +10,21 @@
 
 namespace thermopower {
 
-/// Any power law, corrected for the measured supply: V_rms^2 = V^2 POWER / 255, so POWER' = POWER (V_nominal / V)^2.
+/// Any power law, corrected for the measured supply: V_rms^2 = V^2 POWER / 255, so POWER' = POWER (V_nominal
+/// / V)^2.
 /// @tparam Law  the law that was tuned at the nominal supply
 ///
-/// The correction is bounded below and above, and the result by 1 .. 255; the limiter comes after it, so more power is never granted
-/// than the actuator bears. A supply that is not finite, or 0, is not corrected for.
-template <class Law = StepPowerLaw<> >
+/// The correction is bounded below and above, and the result by 1 .. 255; the limiter comes after it, so more
+/// power is never granted than the actuator bears. A supply that is not finite, or 0, is not corrected for.
+template <class Law = StepPowerLaw<>>
 class SagAwareLaw {
  public:
   /// What one tunes.
   struct Config {
     typename Law::Config law;  ///< Of the law itself.
     float nominal_supply_V;    ///< The supply at which the law was tuned. Above 0.
-    float minimum_supply_V;    ///< Below this the correction grows no further: an empty battery must not be pulled down. Above 0.
+    float minimum_supply_V;    ///< Below this the correction grows no further: an empty battery must not be
+                               ///< pulled down. Above 0.
 
     /// The law's standard at 13 V, corrected down to 9 V.
     static Config standard() noexcept {
@@ -32,8 +34,10 @@ class SagAwareLaw {
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (is_error(law.validate())) return law.validate();
-      if (is_error(detail::require_positive(nominal_supply_V, ConfigError::nominal_supply_V))) return ConfigError::nominal_supply_V;
-      return detail::is_finite(minimum_supply_V) && minimum_supply_V > 0.0f && minimum_supply_V <= nominal_supply_V
+      if (is_error(detail::require_positive(nominal_supply_V, ConfigError::nominal_supply_V)))
+        return ConfigError::nominal_supply_V;
+      return detail::is_finite(minimum_supply_V) && minimum_supply_V > 0.0f &&
+                     minimum_supply_V <= nominal_supply_V
                  ? ConfigError::none
                  : ConfigError::minimum_supply_V;
     }
@@ -41,11 +45,12 @@ class SagAwareLaw {
 
   /// What one logs.
   struct State {
-    uint8_t asked;      ///< What the law asked for.
-    float correction;   ///< (V_nominal / V)^2, bounded.
+    uint8_t asked;     ///< What the law asked for.
+    float correction;  ///< (V_nominal / V)^2, bounded.
   };
 
-  explicit SagAwareLaw(const Config& config = Config::standard()) noexcept : config_(config), law_(config.law) {
+  explicit SagAwareLaw(const Config& config = Config::standard()) noexcept
+      : config_(config), law_(config.law) {
     state_.asked = least_power();
     state_.correction = 1.0f;
   }

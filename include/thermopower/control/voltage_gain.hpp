@@ -13,25 +13,29 @@ namespace thermopower {
 /// Selects `GainScheduler<VoltageGain>`.
 struct VoltageGain {};
 
-/// Keeps gain times torque authority constant. Authority is torque per count of the inner loop: k(T) V_rms / R(T), with V_rms =
-/// V_supply sqrt(POWER / 255), R rising and k falling with temperature. So, against the point where the gain was tuned:
+/// Keeps gain times torque authority constant. Authority is torque per count of the inner loop: k(T) V_rms /
+/// R(T), with V_rms = V_supply sqrt(POWER / 255), R rising and k falling with temperature. So, against the
+/// point where the gain was tuned:
 ///
 ///     P = P_tuned  sqrt(POWER_tuned / POWER)  V_tuned / V  R(T) / R(T_tuned)  k(T_tuned) / k(T)
 ///
-/// Eq 4.27 draws a straight line between two tuned powers instead, at one supply and temperature. Take this one when the supply sags
-/// or the motor gets warm. Without facts (`step(power)`) the supply and temperature of the tuning are assumed.
+/// Eq 4.27 draws a straight line between two tuned powers instead, at one supply and temperature. Take this
+/// one when the supply sags or the motor gets warm. Without facts (`step(power)`) the supply and temperature
+/// of the tuning are assumed.
 template <>
 class GainScheduler<VoltageGain> {
  public:
   /// What one tunes.
   struct Config {
-    float gain_low_power;        ///< The gain at the tuning point, 0 .. 255: `tuned_power`, `nominal_supply_V`, `reference_C`.
-    uint8_t tuned_power;         ///< POWER at which it was tuned, 1 .. 255.
-    float nominal_supply_V;      ///< Supply at which it was tuned. Above 0.
-    float reference_C;           ///< Motor temperature at which it was tuned. -50 .. 200.
-    float tempco_per_K;          ///< Of the winding's resistance; copper 0.00393. 0 .. 0.02.
-    float magnet_tempco_per_K;   ///< Loss of torque constant per kelvin, positive; neodymium 0.0011, ferrite 0.002. 0 .. 0.01.
-    uint8_t highest_gain;        ///< Not above this, however little power there is.
+    float gain_low_power;    ///< The gain at the tuning point, 0 .. 255: `tuned_power`, `nominal_supply_V`,
+                             ///< `reference_C`.
+    uint8_t tuned_power;     ///< POWER at which it was tuned, 1 .. 255.
+    float nominal_supply_V;  ///< Supply at which it was tuned. Above 0.
+    float reference_C;       ///< Motor temperature at which it was tuned. -50 .. 200.
+    float tempco_per_K;      ///< Of the winding's resistance; copper 0.00393. 0 .. 0.02.
+    float magnet_tempco_per_K;  ///< Loss of torque constant per kelvin, positive; neodymium 0.0011, ferrite
+                                ///< 0.002. 0 .. 0.01.
+    uint8_t highest_gain;       ///< Not above this, however little power there is.
 
     /// Copper and neodymium, tuned at POWER 100, 13 V, 25 degC; the gain itself is NaN until it is set.
     static Config standard() noexcept {
@@ -40,12 +44,16 @@ class GainScheduler<VoltageGain> {
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      if (is_error(detail::require_within(gain_low_power, 0.0f, 255.0f, ConfigError::gain_low_power))) return ConfigError::gain_low_power;
+      if (is_error(detail::require_within(gain_low_power, 0.0f, 255.0f, ConfigError::gain_low_power)))
+        return ConfigError::gain_low_power;
       if (tuned_power < least_power()) return ConfigError::least_power;
-      if (is_error(detail::require_positive(nominal_supply_V, ConfigError::nominal_supply_V))) return ConfigError::nominal_supply_V;
-      if (is_error(detail::require_within(reference_C, -50.0f, 200.0f, ConfigError::reference_C))) return ConfigError::reference_C;
-      return first_error(detail::require_within(tempco_per_K, 0.0f, 0.02f, ConfigError::tempco_per_K),
-                         detail::require_within(magnet_tempco_per_K, 0.0f, 0.01f, ConfigError::magnet_tempco_per_K));
+      if (is_error(detail::require_positive(nominal_supply_V, ConfigError::nominal_supply_V)))
+        return ConfigError::nominal_supply_V;
+      if (is_error(detail::require_within(reference_C, -50.0f, 200.0f, ConfigError::reference_C)))
+        return ConfigError::reference_C;
+      return first_error(
+          detail::require_within(tempco_per_K, 0.0f, 0.02f, ConfigError::tempco_per_K),
+          detail::require_within(magnet_tempco_per_K, 0.0f, 0.01f, ConfigError::magnet_tempco_per_K));
     }
   };
 
@@ -58,7 +66,8 @@ class GainScheduler<VoltageGain> {
   uint8_t step(uint8_t power) const noexcept {
     return gain(power, config_.nominal_supply_V, config_.reference_C, config_.reference_C);
   }
-  /// @param facts  supply, winding and body temperature are read. A supply or temperature that is not finite counts as the tuning's.
+  /// @param facts  supply, winding and body temperature are read. A supply or temperature that is not finite
+  /// counts as the tuning's.
   uint8_t step(uint8_t power, const AxisFacts& facts) noexcept {
     // Most cycles ask the same again; a square root and two divisions are dear on a small chip.
     if (has_asked_ && power == power_ && facts.supply_V == supply_V_ && is_near(facts.motor_C, winding_C_) &&
@@ -84,15 +93,20 @@ class GainScheduler<VoltageGain> {
   }
 
   uint8_t gain(uint8_t power, float measured_V, float winding_C, float body_C) const noexcept {
-    const float supply_V = detail::is_finite(measured_V) && measured_V > 0.0f ? measured_V : config_.nominal_supply_V;
+    const float supply_V =
+        detail::is_finite(measured_V) && measured_V > 0.0f ? measured_V : config_.nominal_supply_V;
     const float resistance = 1.0f + config_.tempco_per_K * over_reference_K(winding_C);
     // A magnet does not lose everything: the straight line ends at a tenth.
-    const float torque = detail::at_least(1.0f - config_.magnet_tempco_per_K * over_reference_K(body_C), 0.1f);
-    const float ratio = static_cast<float>(config_.tuned_power) / static_cast<float>(power < least_power() ? least_power() : power);
+    const float torque =
+        detail::at_least(1.0f - config_.magnet_tempco_per_K * over_reference_K(body_C), 0.1f);
+    const float ratio = static_cast<float>(config_.tuned_power) /
+                        static_cast<float>(power < least_power() ? least_power() : power);
     const float gain =
-        config_.gain_low_power * sqrtf(ratio) * config_.nominal_supply_V * resistance / (supply_V * torque) + 0.5f;
+        config_.gain_low_power * sqrtf(ratio) * config_.nominal_supply_V * resistance / (supply_V * torque) +
+        0.5f;
     if (!(gain > 0.0f)) return 0;
-    return gain >= static_cast<float>(config_.highest_gain) ? config_.highest_gain : static_cast<uint8_t>(gain);
+    return gain >= static_cast<float>(config_.highest_gain) ? config_.highest_gain
+                                                            : static_cast<uint8_t>(gain);
   }
 
   Config config_;

@@ -5,10 +5,10 @@
 #include "../control/limit_reason.hpp"
 
 /// @file limiter_call.hpp
-/// Hands an axis's facts to its policies in the form they ask for. A limiter whose `Inputs` are a demand, a temperature and a rate
-/// gets these; one that needs more has `static Inputs read(const AxisFacts&)`. A limiter that must know how long a fault lasted has
-/// `cut_after(reason, demand, dt_s)` beside `cut(reason, demand)`. A power law may take `step(error_deg, facts, dt_s)` and a gain
-/// `step(power, facts)`.
+/// Hands an axis's facts to its policies in the form they ask for. A limiter whose `Inputs` are a demand, a
+/// temperature and a rate gets these; one that needs more has `static Inputs read(const AxisFacts&)`. A
+/// limiter that must know how long a fault lasted has `cut_after(reason, demand, dt_s)` beside `cut(reason,
+/// demand)`. A power law may take `step(error_deg, facts, dt_s)` and a gain `step(power, facts)`.
 
 namespace thermopower {
 
@@ -55,7 +55,8 @@ uint8_t demanded_power(Law& law, float error_deg, const AxisFacts&, float, long)
 }
 
 template <class Gain>
-auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept -> decltype(gain.step(power, facts)) {
+auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept
+    -> decltype(gain.step(power, facts)) {
   return gain.step(power, facts);
 }
 template <class Gain>
@@ -63,7 +64,8 @@ uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
   return gain.step(power);
 }
 
-/// Starts a model that nobody told a temperature: its own way, or as warm as the air (the thesis's assumption, section 4.2).
+/// Starts a model that nobody told a temperature: its own way, or as warm as the air (the thesis's
+/// assumption, section 4.2).
 template <class Thermal>
 auto start_thermal(Thermal& thermal, float air_C, int) noexcept -> decltype(thermal.start_in(air_C)) {
   return thermal.start_in(air_C);
@@ -73,7 +75,8 @@ void start_thermal(Thermal& thermal, float air_C, long) noexcept {
   thermal.start(air_C);
 }
 
-/// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has only one.
+/// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has
+/// only one.
 template <class Thermal>
 auto body_of(const Thermal& thermal, int) noexcept -> decltype(thermal.state().body_C + 0.0f) {
   return thermal.state().body_C;

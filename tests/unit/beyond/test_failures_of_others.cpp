@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Failures that other projects have had in the field. Each test is named after what went wrong; docs/explain/lessons-from-others.md
-// tells where.
+// Failures that other projects have had in the field. Each test is named after what went wrong;
+// docs/explain/lessons-from-others.md tells where.
 
 #include "../../catch.hpp"
 
@@ -25,9 +25,11 @@ const float nan_C = detail::not_a_number();
 TEST_CASE("full torque when the root of the limit is negative") {
   CHECK(highest_q_current_A(10.0f, 6.0f) == Approx(8.0f));
   CHECK(highest_q_current_A(10.0f, 10.0f) == 0.0f);
-  CHECK(highest_q_current_A(10.0f, 10.01f) == 0.0f);   // not NaN, which a comparison would let through as "no limit"
+  CHECK(highest_q_current_A(10.0f, 10.01f) ==
+        0.0f);  // not NaN, which a comparison would let through as "no limit"
   CHECK(highest_q_current_A(10.0f, -25.0f) == 0.0f);
-  CHECK(highest_q_current_A(-10.0f, 0.0f) == 0.0f);    // a limit derated below zero is no limit squared positive
+  CHECK(highest_q_current_A(-10.0f, 0.0f) ==
+        0.0f);  // a limit derated below zero is no limit squared positive
   CHECK(highest_q_current_A(nan_C, 0.0f) == 0.0f);
   CHECK(highest_q_current_A(10.0f, nan_C) == 0.0f);
   CHECK(highest_current_A(-1.0f, 0.1f) == 0.0f);
@@ -35,7 +37,8 @@ TEST_CASE("full torque when the root of the limit is negative") {
   CHECK(highest_current_A(nan_C, 0.1f) == 0.0f);
   // The same for limiters: far beyond the limit, where a budget is negative, the power is the least.
   SafetyLimiter<PerNode> nodes;
-  for (const float body_C : {60.0f, 61.0f, 100.0f, 1000.0f}) CHECK(nodes.step({255, body_C, body_C, 20.0f}).power == 1);
+  for (const float body_C : {60.0f, 61.0f, 100.0f, 1000.0f})
+    CHECK(nodes.step({255, body_C, body_C, 20.0f}).power == 1);
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
   config.network = {{8.0f, 8.0f}, {80.0f, 80.0f}, 1.0f, 0.2f, 110.0f, 60.0f};
   config.use.heat = HeatBounds::ohmic(13.0f, 1.0f, {8.0f, 8.0f}, {0.0039f, 0.0039f}, 20.0f, 0.0f, 110.0f);
@@ -115,7 +118,9 @@ TEST_CASE("a limit that watches one current component only") {
   CHECK(highest_q_current_A(10.0f, -8.0f) == Approx(6.0f));
   for (float d_A = -12.0f; d_A <= 12.0f; d_A += 0.1f) {
     const float q_A = highest_q_current_A(10.0f, d_A);
-    if (detail::magnitude(d_A) <= 10.0f) CHECK(current_squared_A2(d_A, q_A) <= 100.001f);
-    else CHECK(q_A == 0.0f);
+    if (detail::magnitude(d_A) <= 10.0f)
+      CHECK(current_squared_A2(d_A, q_A) <= 100.001f);
+    else
+      CHECK(q_A == 0.0f);
   }
 }

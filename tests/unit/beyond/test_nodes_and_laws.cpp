@@ -28,12 +28,16 @@ struct Motor {
 
 AxisFacts at_supply(float supply_V) { return {0, 25.0f, 25.0f, 0.0f, 25.0f, supply_V}; }
 
-/// An axis that must hold a weight: a pose-dependent torque against an authority that grows with the square root of power.
+/// An axis that must hold a weight: a pose-dependent torque against an authority that grows with the square
+/// root of power.
 struct Joint {
-  double needed(double pose_deg) const { return 0.5 * std::abs(std::sin(pose_deg * 3.14159265 / 180.0)) + 0.05; }
+  double needed(double pose_deg) const {
+    return 0.5 * std::abs(std::sin(pose_deg * 3.14159265 / 180.0)) + 0.05;
+  }
   double error_deg(double pose_deg, int power) const {
     const double authority = std::sqrt(power / 255.0);
-    return 0.08 * needed(pose_deg) / authority + (authority < needed(pose_deg) ? 2.0 * (needed(pose_deg) - authority) : 0.0);
+    return 0.08 * needed(pose_deg) / authority +
+           (authority < needed(pose_deg) ? 2.0 * (needed(pose_deg) - authority) : 0.0);
   }
 };
 
@@ -90,7 +94,8 @@ TEST_CASE("a certified limiter composes with an axis, faults and all") {
   Axis::Config config = Axis::Config::standard();
   CHECK(is_error(config.validate()));  // no bounds declared
   config.limiter.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
-  config.limiter.use.heat = HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  config.limiter.use.heat =
+      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
   config.limiter.use.highest_air_C = 35.0f;
   REQUIRE(config.validate() == ConfigError::none);
   Axis axis(config);
@@ -163,7 +168,8 @@ TEST_CASE("learning does not depend on the loop rate") {
   const float rates_s[] = {0.002f, 0.02f};
   for (int r = 0; r < 2; ++r) {
     AdaptiveHoldingLaw<1> law;
-    for (int i = 0; i < static_cast<int>(3.0f / rates_s[r] + 0.5f); ++i) law.step(0.15f, at_supply(13.0f), rates_s[r]);
+    for (int i = 0; i < static_cast<int>(3.0f / rates_s[r] + 0.5f); ++i)
+      law.step(0.15f, at_supply(13.0f), rates_s[r]);
     learned[r] = law.learned_power(0);
   }
   CHECK(learned[0] == Approx(learned[1]).margin(0.5));
@@ -202,7 +208,8 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
   REQUIRE(config.validate() == ConfigError::none);
   GainScheduler<VoltageGain> gain(config);
   const auto authority = [](double power, double supply_V, double winding_C, double body_C) {
-    return supply_V * std::sqrt(power / 255.0) / (1.0 + 0.00393 * (winding_C - 25.0)) * (1.0 - 0.0011 * (body_C - 25.0));
+    return supply_V * std::sqrt(power / 255.0) / (1.0 + 0.00393 * (winding_C - 25.0)) *
+           (1.0 - 0.0011 * (body_C - 25.0));
   };
   const double tuned = 60.0 * authority(100.0, 13.0, 25.0, 25.0);
   for (const int power : {25, 50, 100, 250})
@@ -211,7 +218,8 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
         const float body_C = 0.5f * (winding_C + 25.0f);
         const AxisFacts facts = {0, winding_C, body_C, 0.0f, 25.0f, supply_V};
         const int p = gain.step(static_cast<uint8_t>(power), facts);
-        const double exact = tuned / authority(power, static_cast<double>(supply_V), static_cast<double>(winding_C), static_cast<double>(body_C));
+        const double exact = tuned / authority(power, static_cast<double>(supply_V),
+                                               static_cast<double>(winding_C), static_cast<double>(body_C));
         CHECK(std::abs(p - std::min(exact, 255.0)) <= 0.51);
       }
   CHECK(gain.step(100) == 60);

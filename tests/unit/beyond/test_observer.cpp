@@ -23,7 +23,9 @@ WindingResistance::Config copper() {
   return config;
 }
 
-double true_current_A(double v_rms_V, double winding_C) { return v_rms_V / (8.0 * (1.0 + 0.00393 * (winding_C - 20.0))); }
+double true_current_A(double v_rms_V, double winding_C) {
+  return v_rms_V / (8.0 * (1.0 + 0.00393 * (winding_C - 20.0)));
+}
 
 /// As REALTIME_DATA_4 sends it: whole milliampere, after 5 mA of noise.
 float sent_current_A(double current_A, std::mt19937& random) {
@@ -52,7 +54,8 @@ TEST_CASE("resistance: exact without noise, and its own idea of the noise is rig
   const WindingResistance winding(copper());
   REQUIRE(winding.validate() == ConfigError::none);
   const double v_rms_V = 8.0, winding_C = 71.0;
-  const MeasuredTemperature exact = winding.measure(8.0f, static_cast<float>(true_current_A(v_rms_V, winding_C)));
+  const MeasuredTemperature exact =
+      winding.measure(8.0f, static_cast<float>(true_current_A(v_rms_V, winding_C)));
   CHECK(exact.is_valid);
   CHECK(exact.value_C == Approx(71.0f).margin(0.01));
   std::mt19937 random(1);
@@ -60,8 +63,12 @@ TEST_CASE("resistance: exact without noise, and its own idea of the noise is rig
   double sum = 0.0, squares = 0.0;
   const int samples = 20000;
   for (int i = 0; i < samples; ++i) {
-    const double error_K = static_cast<double>(winding.measure(static_cast<float>(v_rms_V * (1.0 + voltage_noise(random))),
-                                                               sent_current_A(true_current_A(v_rms_V, winding_C), random)).value_C) - winding_C;
+    const double error_K =
+        static_cast<double>(winding
+                                .measure(static_cast<float>(v_rms_V * (1.0 + voltage_noise(random))),
+                                         sent_current_A(true_current_A(v_rms_V, winding_C), random))
+                                .value_C) -
+        winding_C;
     sum += error_K;
     squares += error_K * error_K;
   }
@@ -95,9 +102,11 @@ TEST_CASE("a hot start is found out by resistance") {
       if (i % 10 == 0) observer.correct_winding(winding.measure(4.0f, sent_current_A(current_A, random)));
     }
     INFO("really " << start_C << " degC");
-    CHECK(observer.state().winding_C == Approx(truth.state().winding_C).margin(4.0 * static_cast<double>(observer.winding_std_K())));
+    CHECK(observer.state().winding_C ==
+          Approx(truth.state().winding_C).margin(4.0 * static_cast<double>(observer.winding_std_K())));
     CHECK(observer.winding_std_K() < 2.0f);
-    CHECK(observer.state().body_C == Approx(truth.state().body_C).margin(4.0 * static_cast<double>(observer.body_std_K())));
+    CHECK(observer.state().body_C ==
+          Approx(truth.state().body_C).margin(4.0 * static_cast<double>(observer.body_std_K())));
   }
 }
 
@@ -120,8 +129,8 @@ TEST_CASE("the standard deviation is honest: over many wrong models the errors a
     if (error_K <= static_cast<double>(observer.body_std_K())) ++within_1;
     if (error_K <= 3.0 * static_cast<double>(observer.body_std_K())) ++within_3;
   }
-  CHECK(within_1 > 0.5 * runs);   // normal errors: 0.68
-  CHECK(within_1 < 0.9 * runs);   // nor is it inflated
+  CHECK(within_1 > 0.5 * runs);  // normal errors: 0.68
+  CHECK(within_1 < 0.9 * runs);  // nor is it inflated
   CHECK(within_3 > 0.98 * runs);
 }
 
@@ -135,11 +144,15 @@ TEST_CASE("measurements help: the error with resistance is a fraction of the err
   Truth truth(true_motor(0.8), 25.0);
   for (int i = 0; i < 60000; ++i) {
     const double v_rms_V = 7.0, current_A = true_current_A(v_rms_V, truth.state().winding_C);
-    truth.step({1.3 * v_rms_V * current_A, 0.0, {25.0, 0.0}}, 0.01);  // a third more heat than the model thinks
-    for (TemperatureObserver* observer : {&measured, &blind}) observer->step(static_cast<float>(v_rms_V * current_A), 25.0f, 0.01f);
+    truth.step({1.3 * v_rms_V * current_A, 0.0, {25.0, 0.0}},
+               0.01);  // a third more heat than the model thinks
+    for (TemperatureObserver* observer : {&measured, &blind})
+      observer->step(static_cast<float>(v_rms_V * current_A), 25.0f, 0.01f);
     if (i % 25 == 0) measured.correct_winding(winding.measure(7.0f, sent_current_A(current_A, random)));
-    with_K = std::max(with_K, std::abs(static_cast<double>(measured.state().winding_C) - truth.state().winding_C));
-    without_K = std::max(without_K, std::abs(static_cast<double>(blind.state().winding_C) - truth.state().winding_C));
+    with_K =
+        std::max(with_K, std::abs(static_cast<double>(measured.state().winding_C) - truth.state().winding_C));
+    without_K =
+        std::max(without_K, std::abs(static_cast<double>(blind.state().winding_C) - truth.state().winding_C));
   }
   CHECK(without_K > 8.0);
   CHECK(with_K < 0.4 * without_K);
@@ -164,14 +177,16 @@ TEST_CASE("the variances stay positive through anything") {
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   for (int i = 0; i < 200000; ++i) {
     observer.step(20.0f * uniform(random), 25.0f, 0.01f + uniform(random));
-    const MeasuredTemperature measured = {100.0f * uniform(random), 0.001f + 10.0f * uniform(random) * uniform(random), uniform(random) < 0.9f};
+    const MeasuredTemperature measured = {
+        100.0f * uniform(random), 0.001f + 10.0f * uniform(random) * uniform(random), uniform(random) < 0.9f};
     if (i % 2)
       observer.correct_winding(measured);
     else
       observer.correct_body(measured);
     const TemperatureObserver::State& state = observer.state();
     if (!(state.winding_variance_K2 > 0.0f) || !(state.body_variance_K2 > 0.0f) ||
-        state.shared_variance_K2 * state.shared_variance_K2 > 1.001f * state.winding_variance_K2 * state.body_variance_K2)
+        state.shared_variance_K2 * state.shared_variance_K2 >
+            1.001f * state.winding_variance_K2 * state.body_variance_K2)
       FAIL("not a covariance after " << i);
   }
 }

@@ -37,7 +37,8 @@ TEST_CASE("a record's bytes are the same on every machine") {
   StoredState state = {-12.34f, 48.5f, 6.25f, 1.5f, 0x12345678UL, 0xabcd};
   uint8_t bytes[StoredState::size()];
   state.write(bytes);
-  const uint8_t expected[16] = {0x54, 0x01, 0xcd, 0xab, 0x2e, 0xfb, 0xf2, 0x12, 0x71, 0x02, 0x96, 0x00, 0x78, 0x56, 0x34, 0x12};
+  const uint8_t expected[16] = {0x54, 0x01, 0xcd, 0xab, 0x2e, 0xfb, 0xf2, 0x12,
+                                0x71, 0x02, 0x96, 0x00, 0x78, 0x56, 0x34, 0x12};
   // -1234 = 0xfb2e, 4850 = 0x12f2, 625 = 0x0271, 150 = 0x0096
   CHECK(std::memcmp(bytes, expected, 16) == 0);
   const uint8_t digits[9] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
@@ -56,7 +57,8 @@ TEST_CASE("a record never comes back colder, and NaN comes back as the hottest")
     uint8_t bytes[StoredState::size()];
     state.write(bytes);
     REQUIRE(back.read(bytes));
-    if (back.winding_C < value - 1e-5f || back.winding_C > value + 0.011f) FAIL(value << " came back as " << back.winding_C);
+    if (back.winding_C < value - 1e-5f || back.winding_C > value + 0.011f)
+      FAIL(value << " came back as " << back.winding_C);
   }
   StoredState broken = warm(detail::not_a_number()), back = {};
   uint8_t bytes[StoredState::size()];
@@ -94,7 +96,8 @@ TEST_CASE("the journal spreads the wear, counts past its wrap, and survives a wr
     StoredState newest;
     CHECK_FALSE(journal.load(newest));
     int written = 0;
-    for (int i = 0; i < 70000; ++i) written += journal.step(warm(static_cast<float>(20 + 5 * (i % 2))), 120.0f) ? 1 : 0;
+    for (int i = 0; i < 70000; ++i)
+      written += journal.step(warm(static_cast<float>(20 + 5 * (i % 2))), 120.0f) ? 1 : 0;
     CHECK(written == 70000);
     int most = 0;
     for (const int count : memory.writes) most = std::max(most, count);
@@ -114,7 +117,8 @@ TEST_CASE("the journal spreads the wear, counts past its wrap, and survives a wr
     Journal again(torn, config);
     StoredState found = {};
     REQUIRE(again.load(found));  // there is always a whole one
-    CHECK((found.sequence == newest.sequence || (found.sequence == static_cast<uint16_t>(newest.sequence + 1) && found.winding_C == 99.0f)));
+    CHECK((found.sequence == newest.sequence ||
+           (found.sequence == static_cast<uint16_t>(newest.sequence + 1) && found.winding_C == 99.0f)));
   }
 }
 

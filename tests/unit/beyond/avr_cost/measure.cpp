@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// measure <budget> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and prints, as a Markdown table, how
-// many cycles its marked work takes and how much flash and RAM it needs beyond the first program, which is empty. Fails when the
-// last program's mean work exceeds the budget.
+// measure <budget> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and prints,
+// as a Markdown table, how many cycles its marked work takes and how much flash and RAM it needs beyond the
+// first program, which is empty. Fails when the last program's mean work exceeds the budget.
 
 #include <algorithm>
 #include <cstdio>
@@ -74,7 +74,8 @@ int main(int argument_count, char** arguments) {
     return 2;
   }
   const unsigned long long budget = std::strtoull(arguments[1], nullptr, 10);
-  std::printf("| step of | cycles, mean | cycles, longest | flash, bytes | RAM, bytes |\n|---|---|---|---|---|\n");
+  std::printf(
+      "| step of | cycles, mean | cycles, longest | flash, bytes | RAM, bytes |\n|---|---|---|---|---|\n");
   Cost empty = {}, cost = {};
   for (int i = 2; i < argument_count; i += 2) {
     if (!run(arguments[i + 1], cost)) {
@@ -87,9 +88,12 @@ int main(int argument_count, char** arguments) {
     }
     cost.mean -= empty.mean;
     cost.longest -= empty.mean;
-    std::printf("| %s | %llu | %llu | %u | %u |\n", arguments[i], cost.mean, cost.longest, cost.flash - empty.flash, cost.ram - empty.ram);
+    std::printf("| %s | %llu | %llu | %u | %u |\n", arguments[i], cost.mean, cost.longest,
+                cost.flash - empty.flash, cost.ram - empty.ram);
   }
-  std::printf("\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most; allowed on average: %llu cycles.\n",
-              static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0, budget);
+  std::printf(
+      "\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most; allowed on "
+      "average: %llu cycles.\n",
+      static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0, budget);
   return cost.mean <= budget ? 0 : 1;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// One policy per program (THERMOPOWER_POLICY), so that its flash and RAM can be told from the size of the program. The work is
-// marked in GPIOR0: 1 begins, 2 ends; 3 says that all is done. Inputs come from volatile memory and change from call to call.
+// One policy per program (THERMOPOWER_POLICY), so that its flash and RAM can be told from the size of the
+// program. The work is marked in GPIOR0: 1 begins, 2 ends; 3 says that all is done. Inputs come from volatile
+// memory and change from call to call.
 
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -24,7 +25,8 @@ using namespace thermopower;
 
 namespace {
 
-volatile float error_deg = 0.7f, supply_V = 12.6f, air_C = 24.0f, heat_W = 6.0f, winding_C = 58.0f, body_C = 52.0f, current_A = 0.8f;
+volatile float error_deg = 0.7f, supply_V = 12.6f, air_C = 24.0f, heat_W = 6.0f, winding_C = 58.0f,
+               body_C = 52.0f, current_A = 0.8f;
 volatile float cycle_s = 0.01f;
 volatile uint8_t demand = 200, result;
 volatile uint16_t call;
@@ -32,19 +34,25 @@ volatile uint16_t call;
 inline TwoNodeThermalModel<float>::Config constants() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 
 struct Motor {
-  typedef CachedCurrent<OhmicCurrent<float> > Current;
+  typedef CachedCurrent<OhmicCurrent<float>> Current;
   typedef ObservedThermal Thermal;
   static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
-  static Thermal::Config thermal() { return {TemperatureObserverConfig::standard(constants()), 110.0f, 1, 0}; }
+  static Thermal::Config thermal() {
+    return {TemperatureObserverConfig::standard(constants()), 110.0f, 1, 0};
+  }
 };
 
 inline CertifiedUse use() {
   const Bounds ohm = {7.6f, 8.4f}, tempco = {0.0038f, 0.0040f};
   return {HeatBounds::ohmic(13.0f, 0.02f, ohm, tempco, 20.0f, 0.0f, 110.0f), 35.0f, 0.1f, 30.0f, 1, 0};
 }
-inline CertifiedLimiter<>::Config bounds() { return {CertifiedTwoNode::Config::around(constants(), 0.1f, 110.0f, 60.0f), use(), 5.0f}; }
+inline CertifiedLimiter<>::Config bounds() {
+  return {CertifiedTwoNode::Config::around(constants(), 0.1f, 110.0f, 60.0f), use(), 5.0f};
+}
 
-inline TemperatureObserver new_observer() { return TemperatureObserver(TemperatureObserverConfig::standard(constants()), 110.0f, 25.0f); }
+inline TemperatureObserver new_observer() {
+  return TemperatureObserver(TemperatureObserverConfig::standard(constants()), 110.0f, 25.0f);
+}
 
 inline WindingResistance::Config copper() {
   WindingResistance::Config config = WindingResistance::Config::standard();
@@ -131,15 +139,16 @@ static void work() {
   state.write(bytes);
   result = state.read(bytes) ? 1 : 0;
 }
-#else  // the whole: three axes, each with observer and certified limiter
+#else                         // the whole: three axes, each with observer and certified limiter
 struct GainTable {
   static const uint8_t entries[2] thermopower_flash;
   static constexpr uint8_t size() { return 2; }
   static const uint8_t* gains() { return entries; }
 };
 const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
-typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable> > > Axis;
-// Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and measures in a third.
+typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable>>> Axis;
+// Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
+// measures in a third.
 static const uint8_t every = THERMOPOWER_POLICY == 15 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
   Axis::Config config = Axis::Config::standard();
@@ -156,7 +165,9 @@ static void step(Axis& axis, float dt_s) {
   const Axis::Inputs inputs = {error_deg, supply_V, air_C, LimitReason::none};
   result = axis.step(inputs, dt_s).power;
 }
-static void measure(Axis& axis) { axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A)); }
+static void measure(Axis& axis) {
+  axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
+}
 #if THERMOPOWER_POLICY == 15  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
