@@ -6,6 +6,7 @@
 /// Everything that runs in firmware, and nothing else. No heap, no exception, no clock, no global, no standard library beyond
 /// `<stdint.h> <stddef.h> <math.h> <string.h>`.
 
+#include "actuator/cached_current.hpp"
 #include "actuator/cooling.hpp"
 #include "actuator/current_model.hpp"
 #include "actuator/duty.hpp"
