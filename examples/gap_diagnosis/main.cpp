@@ -171,7 +171,7 @@ int diagnose(const Arguments& arguments) {
     if (!arguments.html.empty()) outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
-                  files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s, catalogue));
+                  files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
     }
     if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
     if (!arguments.header.empty()) outputs.put(arguments.header, files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
@@ -191,7 +191,7 @@ int predict(const Arguments& arguments) {
   const std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
   gap::Model bare = augmented;
   bare.effects.clear();
-  outputs.put(arguments.predictions, files::predictions_csv(bare, augmented, recordings, arguments.horizon_s, catalogue));
+  outputs.put(arguments.predictions, files::predictions_csv(bare, augmented, recordings, arguments.horizon_s));
   outputs.commit();
   return made;
 }

@@ -112,7 +112,9 @@ private:
       if (colon != std::string::npos) what = what.substr(colon + 2);
       throw InputError(file_ + ":" + line_and_column(text, error.byte) + ": not JSON: " + what);
     } catch (const Json::exception& error) {  // a number too large, a depth too great
-      throw InputError(file_ + ": not usable JSON: " + error.what());
+      std::string what = error.what();
+      if (const auto bracket = what.find("] "); bracket != std::string::npos) what = what.substr(bracket + 2);
+      throw InputError(file_ + ": not usable JSON: " + what + "; expected finite numbers");
     }
   }
 

@@ -3,7 +3,7 @@
 
 #include "predictions_file.hpp"
 
-#include <thermopower/gap/simulate.hpp>
+#include "engine.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -29,7 +29,7 @@ void append_quoted(std::string& out, const std::string& text) {
   out += '"';
 }
 
-const Eigen::VectorXd* find(const std::vector<SimulatedSignal>& signals, const std::string& name) {
+const Eigen::VectorXd* find(const std::vector<SimulatedColumn>& signals, const std::string& name) {
   for (const auto& one : signals) {
     if (one.signal == name) return &one.values;
   }
@@ -38,16 +38,13 @@ const Eigen::VectorXd* find(const std::vector<SimulatedSignal>& signals, const s
 
 }  // namespace
 
-std::string predictions_csv(const Model& baseline, const Model& augmented, const std::vector<Recording>& recordings, double horizon_s,
-                            const Catalogue& catalogue) {
-  SimulationOptions options;
-  options.horizon_s = horizon_s;
-  std::vector<std::vector<SimulatedSignal>> before, after;
+std::string predictions_csv(const Model& baseline, const Model& augmented, const std::vector<Recording>& recordings, double horizon_s) {
+  std::vector<std::vector<SimulatedColumn>> before, after;
   std::vector<std::string> signals;  // of all recordings, in order of appearance: one header fits all rows
   std::size_t runs = 0;
   for (const auto& recording : recordings) {
-    before.push_back(simulate(baseline, recording, options, catalogue));
-    after.push_back(simulate(augmented, recording, options, catalogue));
+    before.push_back(run_simulation(baseline, recording, horizon_s));
+    after.push_back(run_simulation(augmented, recording, horizon_s));
     runs += recording.spans().size();
     for (const auto* simulated : {&before.back(), &after.back()}) {
       for (const auto& one : *simulated) {

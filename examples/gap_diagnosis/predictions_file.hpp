@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/catalogue.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 
@@ -16,7 +15,6 @@ namespace thermopower::gap::files {
 /// simulated (before the first measured start, for instance). Numbers read back bit by bit.
 ///
 /// @param horizon_s length of the windows in which the axis runs freely, in s
-std::string predictions_csv(const Model& baseline, const Model& augmented, const std::vector<Recording>& recordings, double horizon_s,
-                            const Catalogue& catalogue);
+std::string predictions_csv(const Model& baseline, const Model& augmented, const std::vector<Recording>& recordings, double horizon_s);
 
 }  // namespace thermopower::gap::files

@@ -219,7 +219,7 @@ inline void check_spikes(FindingList& list, const Column& column) {
       }
     }
   }
-  if (spikes > 0) {
+  if (spikes > 0 && 200 * spikes < column.values.size()) {
     list.add("outliers", Severity::warning, column.name, std::to_string(spikes) + " isolated spikes, first at " + short_number(r.t_s[first]) + " s (" + short_number(column.values[first]) + ")");
   }
 }

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# Files, program, data gate and localisation of the gap diagnosis. The program's library comes with the examples.
+if(NOT TARGET thermopower_gap_files)
+  return()
+endif()
+
+find_package(nlohmann_json 3.9 REQUIRED)
+thermopower_add_test(gap_io_csv LINK thermopower_gap_files LABELS gap SOURCES io_csv.cpp)
+thermopower_add_test(gap_io_model LINK thermopower_gap_files LABELS gap SOURCES io_model.cpp)
+thermopower_add_test(gap_io_report LINK thermopower_gap_files nlohmann_json::nlohmann_json LABELS gap SOURCES io_report.cpp)
+thermopower_add_test(gap_io_gate LINK thermopower::desktop LABELS gap SOURCES io_gate.cpp)
+thermopower_add_test(gap_io_localise LINK thermopower::desktop LABELS gap SOURCES io_localise.cpp)
+thermopower_add_test(gap_io_program LINK thermopower_gap_files nlohmann_json::nlohmann_json LABELS gap TIMEOUT 600 SOURCES io_program.cpp)
+target_compile_definitions(gap_io_program PRIVATE THERMOPOWER_GAP_PROGRAM="$<TARGET_FILE:thermopower-gap>"
+                                                  THERMOPOWER_INCLUDE="${PROJECT_SOURCE_DIR}/include")
+add_dependencies(gap_io_program thermopower-gap)

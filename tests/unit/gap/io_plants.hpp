@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/model.hpp>
+#include <thermopower/gap/recording.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace test {
+
+/// Reproducible noise that needs no library: a linear congruential generator, twelve uniforms to a normal number.
+class Noise {
+public:
+  explicit Noise(std::uint64_t seed) : state_(seed * 2862933555777941757ull + 3037000493ull) {}
+  double operator()() {
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) {
+      state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+      sum += static_cast<double>(state_ >> 11) * 0x1.0p-53;
+    }
+    return sum;
+  }
+
+private:
+  std::uint64_t state_;
+};
+
+inline thermopower::gap::Model bench_model() {
+  thermopower::gap::Model model;
+  model.name = "bench motor";
+  model.supply = thermopower::gap::SupplyModel{12.0};
+  model.current = thermopower::gap::OhmicCurrentModel{8.0, 0.00393, 25.0};
+  model.thermal = thermopower::gap::LumpedThermalModel{60.0, 0.15};
+  return model;
+}
+
+inline thermopower::gap::Model axis_model() {
+  thermopower::gap::Model model;
+  model.name = "bench axis";
+  model.axis = thermopower::gap::RigidAxisModel{1e-3, 1e-3, 0.2};
+  return model;
+}
+
+/// What is wrong with a motor on a bench; everything off by default.
+struct BenchFault {
+  double extra_loss_W_per_K2 = 0.0;  ///< loss that grows with the square of the rise
+  double sensor_offset_A = 0.0;
+  double sensor_gain = 1.0;
+  double series_ohm = 0.0;
+  double lag_s = 0.0;
+  double motor_scale = 1.0;          ///< of C and G: a small error of the baseline
+};
+
+/// A motor under power steps, integrated at a fiftieth of the log's interval.
+inline thermopower::gap::Recording bench_recording(const BenchFault& fault, int rows, std::uint64_t seed) {
+  Noise noise(seed);
+  thermopower::gap::Recording r;
+  r.name = "bench";
+  r.t_s.resize(rows);
+  Eigen::VectorXd power(rows), current(rows), motor(rows), ambient(rows), supply(rows);
+  const double capacity = 60.0 * fault.motor_scale, conductance = 0.15 * fault.motor_scale;
+  double winding = 24.0, sensor = 24.0, level = 200.0;
+  for (int i = 0; i < rows; ++i) {
+    if (i % 75 == 0) level = 25.0 * std::floor(5.2 + 5.0 * std::sin(1.7 * i + static_cast<double>(seed)));
+    if ((i / 75) % 4 == 3) level = 0.0;
+    r.t_s[i] = 2.0 * i;
+    power[i] = level;
+    supply[i] = 12.0;
+    const double v = 12.0 * std::sqrt(level / 255.0);
+    const auto amps = [&] { return v / (8.0 * (1.0 + 0.00393 * (winding - 25.0)) + fault.series_ohm); };
+    current[i] = fault.sensor_gain * amps() + fault.sensor_offset_A + 0.003 * noise();
+    motor[i] = std::round(10.0 * ((fault.lag_s > 0.0 ? sensor : winding) + 0.1 * noise())) / 10.0;
+    ambient[i] = 23.0;
+    for (int k = 0; k < 50; ++k) {
+      const double heat = amps() * amps() * 8.0 * (1.0 + 0.00393 * (winding - 25.0)), rise = winding - 23.0;
+      const double h = 0.04;
+      winding += h * (heat - conductance * rise - fault.extra_loss_W_per_K2 * rise * std::fabs(rise)) / capacity;
+      if (fault.lag_s > 0.0) sensor += h * (winding - sensor) / fault.lag_s;
+    }
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  r.set("motor_C", motor);
+  r.set("ambient_C", ambient);
+  r.set("supply_V", supply);
+  return r;
+}
+
+/// What is wrong with an axis.
+struct AxisFault {
+  double coulomb_Nm = 0.0;
+  double spring_Nm_per_rad = 0.0;
+  double angle_gain = 1.0;
+  int delay_rows = 0;
+};
+
+/// An axis driven by a sum of sines.
+inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int rows, std::uint64_t seed) {
+  Noise noise(seed);
+  thermopower::gap::Recording r;
+  r.name = "axis";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  for (int i = 0; i < rows; ++i) {
+    const double t = 0.01 * i + static_cast<double>(seed);
+    r.t_s[i] = 0.01 * i;
+    drive[i] = 0.1 * std::sin(2.1 * t) + 0.08 * std::sin(5.3 * t + 1.0) + 0.05 * std::sin(11.0 * t) + 0.03 * std::sin(0.7 * t);
+  }
+  double theta = 0.0, omega = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    angle[i] = fault.angle_gain * theta * 57.29577951308232 + 0.02 * noise();
+    rate[i] = omega * 57.29577951308232 + 0.15 * noise();
+    const double torque = 0.2 * drive[std::max(0, i - fault.delay_rows)];
+    for (int k = 0; k < 200; ++k) {
+      const double h = 5e-5;
+      const double push = torque - 1e-3 * omega - fault.spring_Nm_per_rad * theta;
+      const double next = omega + h * push / 1e-3;
+      const double brake = h * fault.coulomb_Nm / 1e-3;
+      omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
+      theta += h * omega;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
+}
+
+}  // namespace test
