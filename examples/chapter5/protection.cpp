@@ -69,12 +69,12 @@ void chapter5::protection(const std::string& directory) {
     }
     std::printf("  %-26s %14.1f %14.1f %14.1f %16.1f\n", experiment.title, hottest_C, body_C.back(), believed_C.back(),
                 experiment.measured_C.back());
-    figures::Panel temperatures = {experiment.title, "time / min", "motor / degC", {}, 30.0, 63.0, 60.0};
+    figures::Panel temperatures = {experiment.title, "time / min", "motor / degC", {}, 30.0, 63.0, 60.0, 0.0, 0.0};
     temperatures.series = {{"rig", Palette::truth, Mark::line, minutes, body_C},
                            {"believed by the program", Palette::thesis, Mark::dashed, minutes, believed_C},
                            {"measured in the thesis", "#c92a2a", Mark::dots, {0, 1, 2, 3, 4, 5}, experiment.measured_C}};
     panels.push_back(temperatures);
-    figures::Panel powers = {"POWER granted", "time / min", "POWER", {}, 0.0, 260.0, 0.0};
+    figures::Panel powers = {"POWER granted", "time / min", "POWER", {}, 0.0, 260.0, 0.0, 0.0, 0.0};
     powers.series = {{"POWER", Palette::ours, Mark::line, minutes, power}};
     panels.push_back(powers);
   }

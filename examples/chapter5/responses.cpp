@@ -42,7 +42,7 @@ figures::Panel panel(const char* title, const Trace& trace, std::size_t axis, do
     scaled.push_back(std::fmin(std::fabs(trace.error_deg[axis][i]) * 250.0, 255.0));
     power.push_back(trace.power[axis][i]);
   }
-  figures::Panel panel = {title, "time / s", "POWER; error x 250 per deg", {}, 0.0, 260.0, 0.0};
+  figures::Panel panel = {title, "time / s", "POWER; error x 250 per deg", {}, 0.0, 260.0, 0.0, 0.0, 0.0};
   panel.series = {{"position error, scaled and cropped", Palette::constant, Mark::line, t_s, scaled},
                   {"POWER", Palette::power, Mark::line, t_s, power}};
   return panel;

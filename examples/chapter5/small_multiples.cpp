@@ -63,6 +63,7 @@ class Drawing {
       for (const double value : series.y) y_.take(value);
     }
     x_.settle(0.0);
+    if (panel.x_from != panel.x_to) x_.from = panel.x_from, x_.to = panel.x_to;
     if (panel.limit != 0.0) y_.take(panel.limit);
     y_.settle(0.06);
     if (panel.y_from != panel.y_to) y_.from = panel.y_from, y_.to = panel.y_to;

@@ -32,6 +32,7 @@ struct Panel {
   std::vector<Series> series;         ///< Drawn in this order.
   double y_from = 0.0, y_to = 0.0;    ///< Range; equal: from the data. What lies outside is cut off.
   double limit = 0.0;                 ///< A horizontal line here, when it is not 0.
+  double x_from = 0.0, x_to = 0.0;    ///< Range; equal: from the data.
 };
 
 /// Colours that tell apart and print well.

@@ -38,7 +38,7 @@ const std::vector<Candidate> candidates = {
     {"camera pitched 88 deg, Euler yaw", [](RigConfig& c, Scenario&) { c.faults[2].sent_gain = near_nadir(88.0); }},
     {"frame IMU missing: field astray", [](RigConfig& c, Scenario&) { c.faults[2].field_slip = 7.0; }},
     {"board's own loop sees x 18", [](RigConfig& c, Scenario&) { c.faults[2].seen_gain = 18.0; }},
-    {"P 20 times too large: oscillation",
+    {"P 20 times too large",
      [](RigConfig& c, Scenario&) { c.axes[2].pid.share_per_deg *= 20.0; }},
     {"P falls from 36 to 2, little integral",
      [](RigConfig& c, Scenario&) { c.axes[2].pid.share_per_deg_s *= 0.05; }},
@@ -77,7 +77,7 @@ void chapter5::yaw_riddle(const std::string& directory) {
     if (panels.empty()) healthy = read;
     std::printf("  %-40s %9.3f %9.3f %9.3f %7.1f %11.0f\n", candidate.name, read, std::sqrt(true_square / n),
                 std::sqrt(rest_square / static_cast<double>(rest_count)), read / healthy, power / n);
-    figures::Panel panel = {candidate.name, "time / s", "POWER; error x 250 per deg", {}, 0.0, 260.0, 0.0};
+    figures::Panel panel = {candidate.name, "time / s", "POWER; error x 250 per deg", {}, 0.0, 260.0, 0.0, 0.0, 0.0};
     panel.series = {{"yaw error as read, scaled and cropped", figures::Palette::constant, figures::Mark::dashed, t_s, scaled},
                     {"POWER", figures::Palette::power, figures::Mark::line, t_s, powers}};
     panels.push_back(panel);

@@ -136,8 +136,8 @@ int main(int argc, char** argv) {
       const std::string& name = drawn.front()[index].name;
       std::printf("\n%s\n  %-16s %9s %9s %9s %9s %9s %8s %9s %8s %9s\n", name.c_str(), "policy", "energy/J", "rms/deg", "peak/deg",
                   "blur/px", ">0.5 px", "body/C", "winding/C", "over/s", "limited/s");
-      figures::Panel panel = {name, "energy / J", "error rms / deg", {}, 0.0, 0.0, 0.0};
-      figures::Panel curves = {name, "time / min", "warmest body / degC", {}, 0.0, 0.0, 60.0};
+      figures::Panel panel = {name, "energy / J", "error rms / deg", {}, 0.0, 0.0, 0.0, 0.0, 0.0};
+      figures::Panel curves = {name, "time / min", "warmest body / degC", {}, 0.0, 0.0, 60.0, 0.0, 0.0};
       std::vector<Row> outcome;
       for (const Policy& one : all) {
         std::vector<Row> rows;
@@ -150,6 +150,10 @@ int main(int argc, char** argv) {
         curves.series.push_back({one.name, one.colour, figures::Mark::line, row.minutes, row.body_curve_C});
       }
       for (std::size_t i = 0; i + 1 < all.size(); ++i) judge(outcome.back(), outcome[i], all[i].name);
+      for (const Row& row : outcome) {
+        panel.x_to = std::fmax(panel.x_to, 1.08 * row.energy_J);
+        panel.y_to = std::fmax(std::fmax(panel.y_to, 0.05), 1.1 * row.rms_deg);
+      }
       trade.push_back(panel);
       warmth.push_back(curves);
     }

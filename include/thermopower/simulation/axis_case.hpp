@@ -39,7 +39,7 @@ struct AxisOutcome {
 /// Clocks of a run.
 struct AxisClock {
   double board_cycle_s = 0.0008;   ///< Torque and mechanics.
-  int cycles_per_slow = 10;        ///< Temperatures, POWER: every 8 ms.
+  int cycles_per_slow = 100;       ///< Temperatures and what follows from them: every 80 ms, against 10 s of the fastest winding.
 };
 
 /// Simulates a case.
