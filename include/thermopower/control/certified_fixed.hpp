@@ -46,6 +46,12 @@ inline int32_t rounded_down(float value) noexcept {
 }
 /// A difference of temperature, towards hot. @param difference_K  >= 0
 inline KelvinUnits kelvin_up(float difference_K) noexcept { return rounded_up(difference_K * units_per_K()); }
+/// A difference of temperature per count, towards hot. Ends at 15 K: more is refused by validate(), and its
+/// sums must stay in range until then. @param difference_K  >= 0
+inline KelvinUnits kelvin_per_count_up(float difference_K) noexcept {
+  const KelvinUnits units = kelvin_up(difference_K);
+  return units < 4000000L ? units : 4000000L;
+}
 /// A fraction, towards one. @param fraction  >= 0
 inline UnitFraction fraction_up(float fraction) noexcept {
   const int32_t whole = rounded_up(fraction * 65536.0f);

@@ -201,6 +201,12 @@ class CertifiedLimiter {
 
   /// What one logs, computed when asked for.
   State state() const noexcept {
+    if (is_error(config_error_)) {
+      const float unknown = detail::not_a_number();
+      const State refused = {unknown, unknown, least_power(), least_power(), CertifiedNode::none, 0.0f, 0.0f,
+                             false,   0};
+      return refused;
+    }
     const State state = {network_.winding_C(),
                          network_.body_C(),
                          ceiling(),

@@ -49,7 +49,7 @@ class CertifiedOneNode {
     const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
     fastest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.lowest;
     slowest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.highest;
-    to_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
+    to_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
     hold_s_ = use.hold_s;
     hold_ = detail::fraction_up(CertifiedTravel::above(fastest_per_s_ * use.hold_s));
     horizon_ =

@@ -49,13 +49,14 @@ class CertifiedTwoNode {
     slowest_body_per_s_ = body_rate / (winding.highest + body.highest);
 
     const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
-    across_ = detail::kelvin_up(count_W / winding_rate);
-    soak_ = detail::kelvin_up(count_W * use.hold_s / least_capacity);
-    to_air_ = detail::kelvin_up(count_W / body_rate);
+    across_ = detail::kelvin_per_count_up(count_W / winding_rate);
+    soak_ = detail::kelvin_per_count_up(count_W * use.hold_s / least_capacity);
+    to_air_ = detail::kelvin_per_count_up(count_W / body_rate);
     gap_ = across_ + soak_;  // (12): what the least power keeps between the two
-    base_over_air_ = detail::kelvin_up(count_W / config.least_conductance_W_per_K);
+    base_over_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
     weight_ = detail::fraction_up(1.0f - body_share);
-    least_mean_ = detail::kelvin_up(detail::celsius_from(gap_) * (1.0f - body_share) / body_share);
+    least_mean_ = detail::kelvin_up(
+        detail::at_most(detail::celsius_from(gap_) * (1.0f - body_share) / body_share, 1000.0f));
 
     hold_s_ = use.hold_s;
     hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
