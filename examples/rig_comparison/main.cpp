@@ -82,6 +82,7 @@ std::vector<Policy> policies() {
           policy("constant, stiff", "#343a40", stiff_constant),
           policy("thesis", Palette::thesis, [](const Scenario&) { return thesis_gimbal(); }),
           policy("corrected", Palette::corrected, [](const Scenario&) { return corrected_gimbal(); }),
+          policy("ours, not told", "#66d9e8", [](const Scenario&) { return AdaptiveGimbal(); }),
           policy("ours", Palette::ours, ours)};
 }
 
