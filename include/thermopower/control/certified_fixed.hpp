@@ -105,7 +105,7 @@ inline uint8_t count_within(int32_t room, int32_t size, uint8_t most) noexcept {
   // Below 255 the quotient has eight bits: eight steps of a long division cost a quarter of a general one.
   uint32_t left = static_cast<uint32_t>(room), part = static_cast<uint32_t>(size) << 7;
   uint8_t count = 0;
-  for (uint8_t bit = 0; bit < 8; ++bit) {
+  for (uint8_t step = 0; step < 8; ++step) {
     count = static_cast<uint8_t>(count << 1);
     if (left >= part) {
       left -= part;
