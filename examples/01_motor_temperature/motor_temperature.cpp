@@ -3,7 +3,8 @@
 
 // Problem:  a motor has no thermometer. How warm is it, after five minutes of work and five of rest?
 // Model:    C dT/dt = V_rms I(V_rms, T) - G (T - T_air), with I = V_rms / R(T); one node, stepped exactly.
-// Notation: P power parameter 0 .. 255 of a motor driver, V_rms = V_supply sqrt(P / 255), T in degC, times in s.
+// Notation: P power parameter 0 .. 255 of a motor driver, V_rms = V_supply sqrt(P / 255), T in degC, times in
+//           s.
 #include <thermopower/thermopower.hpp>
 
 #include <math.h>
@@ -15,7 +16,8 @@ int main() {
   //! [models]
   // A winding of 12 ohm at 20 degC, copper; 18 J/K; 50 mW/K to the air.
   const tp::CurrentModel<tp::OhmicCurrent<> > current({12.0f, 0.00393f, 20.0f});
-  tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>, tp::ExactStep> motor({{18.0f}, {0.05f}}, 25.0f);
+  tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>, tp::ExactStep> motor({{18.0f}, {0.05f}},
+                                                                                        25.0f);
 
   const auto advance = [&](float power_param, float dt_s) {
     const auto drawn = current.at_power(power_param, 13.0f, motor.hottest_C());

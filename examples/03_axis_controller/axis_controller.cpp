@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  keep a motor of one's own below 60 degC without a thermometer, and give it all the power it can bear.
+// Problem:  keep a motor of one's own below 60 degC without a thermometer, and give it all the power it can
+//           bear.
 // Model:    temperature estimate -> power law -> limiter (eq 4.23) -> gain (eq 4.27), once a cycle.
 // Notation: error in degrees, temperatures in degC, power parameter 0 .. 255.
 #include <thermopower/thermopower.hpp>
@@ -38,8 +39,8 @@ int main() {
     const Axis::State& state = axis.state();
     if (state.motor_C > hottest_C) hottest_C = state.motor_C;
     if (i % (60 * 33) == 0)
-      printf("  %6d   %10.1f   %6d   %5d   %6d   %d\n", i / (60 * 33), static_cast<double>(state.motor_C), state.demand, state.power,
-             state.p_gain, static_cast<int>(state.reason));
+      printf("  %6d   %10.1f   %6d   %5d   %6d   %d\n", i / (60 * 33), static_cast<double>(state.motor_C),
+             state.demand, state.power, state.p_gain, static_cast<int>(state.reason));
   }
   printf("  hottest: %.2f degC\n", static_cast<double>(hottest_C));
   return hottest_C < 60.1f ? 0 : 1;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  a proportional solenoid valve holds a pressure; its coil must stay below 80 degC, its winding is hotter than its body.
-// Model:    coil 40 ohm, two nodes (winding 25 J/K, body 160 J/K); duty proportional to the pressure that is missing.
+// Problem:  a proportional solenoid valve holds a pressure; its coil must stay below 80 degC, its winding is
+//           hotter than its body.
+// Model:    coil 40 ohm, two nodes (winding 25 J/K, body 160 J/K); duty proportional to the pressure that is
+//           missing.
 // Notation: "error" is here the missing pressure in bar; duty 0 .. 255.
 #include <thermopower/thermopower.hpp>
 
@@ -60,9 +62,10 @@ int main() {
     if (state.motor_C > hottest_C) hottest_C = state.motor_C;
     was_limited = was_limited || state.power < state.demand;
     if (i % 1200 == 0)
-      printf("  %6d   %11.1f   %6d   %4d   %9.1f   %d\n", i / 600, static_cast<double>(missing_bar), state.demand, state.power,
-             static_cast<double>(state.motor_C), static_cast<int>(state.reason));
+      printf("  %6d   %11.1f   %6d   %4d   %9.1f   %d\n", i / 600, static_cast<double>(missing_bar),
+             state.demand, state.power, static_cast<double>(state.motor_C), static_cast<int>(state.reason));
   }
-  printf("  hottest: %.1f degC, the coil was limited: %s\n", static_cast<double>(hottest_C), was_limited ? "yes" : "no");
+  printf("  hottest: %.1f degC, the coil was limited: %s\n", static_cast<double>(hottest_C),
+         was_limited ? "yes" : "no");
   return hottest_C < 80.2f && was_limited && valve.state().power == 0 ? 0 : 1;
 }

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Problem:  how much energy does dynamic power save? The answer depends on which power is meant.
-// Model:    E = sum P dt (eq 4.24), P at the winding (V_rms I) or at the supply (V_supply I); saving by eq 4.26.
-// Notation: a fixed V_rms of 7.7 V against power that alternates between 25 and 250, a tenth of the time at 250.
+// Model:    E = sum P dt (eq 4.24), P at the winding (V_rms I) or at the supply (V_supply I); saving by eq
+//           4.26.
+// Notation: a fixed V_rms of 7.7 V against power that alternates between 25 and 250, a tenth of the time at
+//           250.
 #include <thermopower/thermopower.hpp>
 
 #include <math.h>
@@ -31,11 +33,13 @@ int main() {
   //! [meters]
 
   printf("              fixed/W   dynamic/W   fixed/J   dynamic/J   saving/%%\n");
-  printf("  winding     %7.3f   %9.3f   %7.0f   %9.0f   %8.1f\n", static_cast<double>(fixed_winding.average_W()),
-         static_cast<double>(dynamic_winding.average_W()), static_cast<double>(fixed_winding.state().energy_J),
+  printf("  winding     %7.3f   %9.3f   %7.0f   %9.0f   %8.1f\n",
+         static_cast<double>(fixed_winding.average_W()), static_cast<double>(dynamic_winding.average_W()),
+         static_cast<double>(fixed_winding.state().energy_J),
          static_cast<double>(dynamic_winding.state().energy_J), static_cast<double>(at_winding));
-  printf("  supply      %7.3f   %9.3f   %7.0f   %9.0f   %8.1f\n", static_cast<double>(fixed_supply.average_W()),
-         static_cast<double>(dynamic_supply.average_W()), static_cast<double>(fixed_supply.state().energy_J),
+  printf("  supply      %7.3f   %9.3f   %7.0f   %9.0f   %8.1f\n",
+         static_cast<double>(fixed_supply.average_W()), static_cast<double>(dynamic_supply.average_W()),
+         static_cast<double>(fixed_supply.state().energy_J),
          static_cast<double>(dynamic_supply.state().energy_J), static_cast<double>(at_supply));
   const bool is_hour = fabsf(fixed_winding.state().time_s - 3600.0f) < 0.01f;
   return is_hour && at_supply > at_winding ? 0 : 1;

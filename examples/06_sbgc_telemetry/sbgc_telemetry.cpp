@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  talk to a SimpleBGC board: ask for telemetry, decide, send POWER and P of three axes back; survive a damaged line.
+// Problem:  talk to a SimpleBGC board: ask for telemetry, decide, send POWER and P of three axes back;
+//           survive a damaged line.
 // Model:    bytes -> SbgcCodec -> GimbalController -> SbgcCodec -> bytes, a byte at a time, without a heap.
 // Notation: the board is another codec in the same process; angles on the wire are 360/16384 degree.
 #include <thermopower/thermopower.hpp>
@@ -27,8 +28,8 @@ int main() {
   typedef tp::AxisController<tp::motors::Bgm2606_90t> Small;
   typedef tp::AxisController<tp::motors::Bgm5208_200_12> Large;
   typedef tp::GimbalController<Small, Small, Large> Gimbal;
-  Gimbal gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}), Small::Config::with_gain({180.0f, 105.0f}),
-                Large::Config::with_gain({40.0f, 2.0f}));
+  Gimbal gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
+                Small::Config::with_gain({180.0f, 105.0f}), Large::Config::with_gain({40.0f, 2.0f}));
   tp::SbgcCodec<> codec;
   //! [gimbal]
   if (tp::is_error(gimbal.validate().field)) return 1;
@@ -49,7 +50,8 @@ int main() {
     fields.imu_C = 26;
     fields.frame_imu_C = 24;
     for (size_t i = 0; i < to_board.used; ++i)
-      for (bool got = board.receive(to_board.bytes[i], now_us); got; got = board.next()) board.send(fields, to_host);
+      for (bool got = board.receive(to_board.bytes[i], now_us); got; got = board.next())
+        board.send(fields, to_host);
     if (cycle == 3) to_host.bytes[20] ^= 4;
 
     //! [cycle]
@@ -68,9 +70,9 @@ int main() {
 
     answered += has_telemetry;
     const Gimbal::Command& command = gimbal.state().command;
-    printf("  %5d   %9.2f   %4d / %5d   %5d / %5d   %4d / %4d   %d%s\n", cycle, 10 * cycle * 360.0 / 16384, command.p_gain[0],
-           command.power[0], command.p_gain[1], command.power[1], command.p_gain[2], command.power[2],
-           static_cast<int>(command.reason[0]), has_telemetry ? "" : "   (frame lost)");
+    printf("  %5d   %9.2f   %4d / %5d   %5d / %5d   %4d / %4d   %d%s\n", cycle, 10 * cycle * 360.0 / 16384,
+           command.p_gain[0], command.power[0], command.p_gain[1], command.power[1], command.p_gain[2],
+           command.power[2], static_cast<int>(command.reason[0]), has_telemetry ? "" : "   (frame lost)");
   }
   return answered == 5 ? 0 : 1;
 }

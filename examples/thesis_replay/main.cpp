@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Replays every measured experiment of the thesis through the models, and says how far they are from what was measured.
+// Replays every measured experiment of the thesis through the models, and says how far they are from what was
+// measured.
 
 #include <CLI/CLI.hpp>
 
@@ -30,7 +31,8 @@ std::string default_data() {
   return THERMOPOWER_SOURCE_DATA;
 }
 
-/// Writes beside the target and renames, so that a target is whole or as it was. What is no file (a pipe, a terminal) is written to.
+/// Writes beside the target and renames, so that a target is whole or as it was. What is no file (a pipe, a
+/// terminal) is written to.
 void write_whole(const std::string& path, const std::string& contents) {
   std::error_code status;
   const bool is_special = fs::exists(path, status) && !fs::is_regular_file(path, status);
@@ -57,19 +59,23 @@ void write_whole(const std::string& path, const std::string& contents) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Replays the thesis's measured experiments through the motor models: predicted against measured.");
+  CLI::App app(
+      "Replays the thesis's measured experiments through the motor models: predicted against measured.");
   std::string data = default_data(), csv, svg;
   double air_C = 26.0;
   app.add_option("--data", data, "Folder with table4_1.csv ... table5_4.csv")->capture_default_str();
   app.add_option("--csv", csv, "Write every curve to this file");
   app.add_option("--svg", svg, "Write a picture of every experiment to this file");
-  app.add_option("--air", air_C, "Air temperature of chapter 5 in degC, which the text does not give (25.5 .. 26.3 fits)")
-      ->check([](const std::string& text) {
-        // Not CLI::Range, which lets NaN pass.
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        return *end == 0 && value >= 0.0 && value <= 50.0 ? std::string() : "expected 0 .. 50, in degC";
-      }, "0 .. 50")
+  app.add_option("--air", air_C,
+                 "Air temperature of chapter 5 in degC, which the text does not give (25.5 .. 26.3 fits)")
+      ->check(
+          [](const std::string& text) {
+            // Not CLI::Range, which lets NaN pass.
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            return *end == 0 && value >= 0.0 && value <= 50.0 ? std::string() : "expected 0 .. 50, in degC";
+          },
+          "0 .. 50")
       ->capture_default_str();
   try {
     app.parse(argc, argv);

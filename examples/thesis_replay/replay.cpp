@@ -17,7 +17,7 @@ namespace {
 
 namespace tp = thermopower;
 
-constexpr double cycle_s = 0.03;  // the program's cycle
+constexpr double cycle_s = 0.03;      // the program's cycle
 constexpr int cycles_per_tick = 200;  // a tick is a tenth of a minute
 constexpr double tick_min = cycles_per_tick * cycle_s / 60.0;
 constexpr double supply_V = 13.0;
@@ -60,8 +60,8 @@ struct Measured {
   std::vector<double> minutes, motor_C;
 };
 
-Experiment run(Experiment::Kind kind, const std::string& motor, const std::string& table, int power_param, const Measured& measured,
-               Tick program, Tick corrected) {
+Experiment run(Experiment::Kind kind, const std::string& motor, const std::string& table, int power_param,
+               const Measured& measured, Tick program, Tick corrected) {
   Experiment experiment = {kind, motor, table, power_param, {}};
   const double start_C = measured.motor_C.front();
   experiment.curve.push_back({0.0, start_C, start_C, start_C});
@@ -75,8 +75,8 @@ Experiment run(Experiment::Kind kind, const std::string& motor, const std::strin
 }
 
 template <class Motor>
-Experiment open(Experiment::Kind kind, const std::string& motor, const std::string& table, int power_param, const Measured& measured,
-                double air_C) {
+Experiment open(Experiment::Kind kind, const std::string& motor, const std::string& table, int power_param,
+                const Measured& measured, double air_C) {
   const double start_C = measured.motor_C.front();
   return run(kind, motor, table, power_param, measured,
              open_loop<typename Motor::AsProgrammed, tp::EulerStep>(power_param, start_C, air_C),
@@ -99,8 +99,9 @@ Experiment current(const std::string& motor, const std::string& table, int power
 /// Rows of one experiment: from `row` on while the columns that name it do not change.
 size_t end_of_experiment(const Table& table, size_t row, const std::vector<std::string>& columns) {
   size_t end = row + 1;
-  while (end < table.rows() &&
-         std::all_of(columns.begin(), columns.end(), [&](const auto& c) { return table.text(end, c) == table.text(row, c); }))
+  while (end < table.rows() && std::all_of(columns.begin(), columns.end(), [&](const auto& c) {
+           return table.text(end, c) == table.text(row, c);
+         }))
     ++end;
   return end;
 }
@@ -127,15 +128,18 @@ int power_of(const Table& table, size_t row) {
 
 /// Table 4.1 or 4.2: current against temperature, and the heating that came with it.
 template <class Motor>
-void add_bench(std::vector<Experiment>& all, const std::string& folder, const std::string& file, const std::string& name) {
-  const Table table = Table::read(folder + "/" + file, {"motor", "experiment", "power_param", "v_rms_V", "T_air_C", "t_min",
-                                                        "T_motor_C", "I_mA"});
+void add_bench(std::vector<Experiment>& all, const std::string& folder, const std::string& file,
+               const std::string& name) {
+  const Table table = Table::read(folder + "/" + file, {"motor", "experiment", "power_param", "v_rms_V",
+                                                        "T_air_C", "t_min", "T_motor_C", "I_mA"});
   for (size_t row = 0; row < table.rows();) {
     const size_t end = end_of_experiment(table, row, {"experiment"});
     const int power_param = power_of(table, row);
     std::vector<std::pair<double, double>> currents;
-    for (size_t i = row; i < end; ++i) currents.emplace_back(table.number(i, "T_motor_C"), table.number(i, "I_mA"));
-    all.push_back(current<Motor>(table.text(row, "motor"), name, power_param, table.number(row, "v_rms_V"), currents));
+    for (size_t i = row; i < end; ++i)
+      currents.emplace_back(table.number(i, "T_motor_C"), table.number(i, "I_mA"));
+    all.push_back(
+        current<Motor>(table.text(row, "motor"), name, power_param, table.number(row, "v_rms_V"), currents));
     all.push_back(open<Motor>(Experiment::Kind::heating, table.text(row, "motor"), name, power_param,
                               read_measured(table, row, end, "T_motor_C"), table.number(row, "T_air_C")));
     row = end;
@@ -143,7 +147,8 @@ void add_bench(std::vector<Experiment>& all, const std::string& folder, const st
 }
 
 template <class Motor>
-void add_cooling(std::vector<Experiment>& all, const std::string& folder, const std::string& file, const std::string& name) {
+void add_cooling(std::vector<Experiment>& all, const std::string& folder, const std::string& file,
+                 const std::string& name) {
   const Table table = Table::read(folder + "/" + file, {"motor", "t_min", "T_motor_C", "T_air_C"});
   all.push_back(open<Motor>(Experiment::Kind::cooling, table.text(0, "motor"), name, 0,
                             read_measured(table, 0, table.rows(), "T_motor_C"), table.number(0, "T_air_C")));
@@ -178,8 +183,9 @@ std::vector<Experiment> replay(const std::string& folder, double air_C) {
     const size_t end = end_of_experiment(cooling, row, {"motor"});
     const Measured measured = read_measured(cooling, row, end, "T_measured_C");
     const std::string& motor = cooling.text(row, "motor");
-    all.push_back(motor == "BGM2606-90T" ? open<Small>(Experiment::Kind::cooling, motor, "5.1", 0, measured, air_C)
-                                         : open<Large>(Experiment::Kind::cooling, motor, "5.1", 0, measured, air_C));
+    all.push_back(motor == "BGM2606-90T"
+                      ? open<Small>(Experiment::Kind::cooling, motor, "5.1", 0, measured, air_C)
+                      : open<Large>(Experiment::Kind::cooling, motor, "5.1", 0, measured, air_C));
     row = end;
   }
 
@@ -196,9 +202,10 @@ std::vector<Experiment> replay(const std::string& folder, double air_C) {
       else if (name == "5.3")
         all.push_back(open<Small>(Experiment::Kind::heating, motor, name, power_param, measured, air_C));
       else
-        all.push_back(run(Experiment::Kind::protection, motor, name, power_param, measured,
-                          closed_loop<Small::AsProgrammed, tp::PerCycle>(power_param, measured.motor_C.front(), air_C),
-                          closed_loop<Small, tp::PerSecond>(power_param, measured.motor_C.front(), air_C)));
+        all.push_back(
+            run(Experiment::Kind::protection, motor, name, power_param, measured,
+                closed_loop<Small::AsProgrammed, tp::PerCycle>(power_param, measured.motor_C.front(), air_C),
+                closed_loop<Small, tp::PerSecond>(power_param, measured.motor_C.front(), air_C)));
       row = end;
     }
   }

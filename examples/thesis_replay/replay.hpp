@@ -26,9 +26,9 @@ struct Experiment {
 
   /// How far a model is from what was measured.
   struct Distance {
-    int points;   ///< Compared: the starting point of a simulation is given, not predicted, and left out.
-    double rmse;  ///< Root mean square.
-    double worst; ///< Signed difference model less measurement where it is largest.
+    int points;    ///< Compared: the starting point of a simulation is given, not predicted, and left out.
+    double rmse;   ///< Root mean square.
+    double worst;  ///< Signed difference model less measurement where it is largest.
   };
   Distance distance(double Point::*model) const;
 

@@ -12,10 +12,14 @@ namespace {
 
 const char* name_of(Experiment::Kind kind) {
   switch (kind) {
-    case Experiment::Kind::current: return "current / mA";
-    case Experiment::Kind::heating: return "heating / K";
-    case Experiment::Kind::cooling: return "cooling / K";
-    case Experiment::Kind::protection: return "protected / K";
+    case Experiment::Kind::current:
+      return "current / mA";
+    case Experiment::Kind::heating:
+      return "heating / K";
+    case Experiment::Kind::cooling:
+      return "cooling / K";
+    case Experiment::Kind::protection:
+      return "protected / K";
   }
   return "";
 }
@@ -48,11 +52,14 @@ std::string report(const std::vector<Experiment>& experiments) {
                             Experiment::Kind::protection}) {
       for (const Experiment& experiment : experiments) {
         if (experiment.motor != motor || experiment.kind != kind) continue;
-        const auto program = experiment.distance(&Point::program), corrected = experiment.distance(&Point::corrected);
+        const auto program = experiment.distance(&Point::program),
+                   corrected = experiment.distance(&Point::corrected);
         const std::string power = experiment.power_param > 0 ? std::to_string(experiment.power_param) : "off";
-        text += line("  %-13s  %5s  %5s  %6d  %7.2f  %+6.1f   %7.2f  %+6.1f\n", name_of(kind), experiment.table.c_str(), power.c_str(),
-                     program.points, program.rmse, program.worst, corrected.rmse, corrected.worst);
-        for (auto [total, one] : {std::pair(&program_total[kind], &program), std::pair(&corrected_total[kind], &corrected)}) {
+        text += line("  %-13s  %5s  %5s  %6d  %7.2f  %+6.1f   %7.2f  %+6.1f\n", name_of(kind),
+                     experiment.table.c_str(), power.c_str(), program.points, program.rmse, program.worst,
+                     corrected.rmse, corrected.worst);
+        for (auto [total, one] :
+             {std::pair(&program_total[kind], &program), std::pair(&corrected_total[kind], &corrected)}) {
           total->points += one->points;
           total->rmse += one->rmse * one->rmse * one->points;
           if (std::abs(one->worst) > std::abs(total->worst)) total->worst = one->worst;
@@ -63,14 +70,16 @@ std::string report(const std::vector<Experiment>& experiments) {
     for (const auto& [kind, program] : program_total) {
       const auto& corrected = corrected_total[kind];
       if (program.points == 0) continue;
-      text += line("  %-13s    all    all  %6d  %7.2f  %+6.1f   %7.2f  %+6.1f\n", name_of(kind), program.points,
-                   std::sqrt(program.rmse / program.points), program.worst, std::sqrt(corrected.rmse / corrected.points),
-                   corrected.worst);
+      text += line("  %-13s    all    all  %6d  %7.2f  %+6.1f   %7.2f  %+6.1f\n", name_of(kind),
+                   program.points, std::sqrt(program.rmse / program.points), program.worst,
+                   std::sqrt(corrected.rmse / corrected.points), corrected.worst);
     }
     text += "\n";
   }
-  text += "program: the thesis's program, with its rounded constants, its form of eq 4.18 and Euler steps of 30 ms\n"
-          "corrected: the same laws with the constants that the tables give (the default of motors/)\n";
+  text +=
+      "program: the thesis's program, with its rounded constants, its form of eq 4.18 and Euler steps of 30 "
+      "ms\n"
+      "corrected: the same laws with the constants that the tables give (the default of motors/)\n";
   return text;
 }
 
@@ -81,8 +90,8 @@ std::string traces(const std::vector<Experiment>& experiments) {
       const bool is_current = experiment.is_current();
       text += experiment.motor + "," + experiment.table + "," + std::to_string(experiment.power_param) + "," +
               (is_current ? "I_mA" : "T_motor_C") + "," + (is_current ? "" : number(point.x)) + "," +
-              (is_current ? number(point.x) : "") + "," + number(point.measured) + "," + number(point.program) + "," +
-              number(point.corrected) + "\n";
+              (is_current ? number(point.x) : "") + "," + number(point.measured) + "," +
+              number(point.program) + "," + number(point.corrected) + "\n";
     }
   }
   return text;

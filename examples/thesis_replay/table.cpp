@@ -42,7 +42,8 @@ Table Table::read(const std::string& path, const std::vector<std::string>& colum
   Table table;
   table.path_ = path;
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw TableError(path + ": is a directory; expected a CSV file");
+  if (std::filesystem::is_directory(path, ignored))
+    throw TableError(path + ": is a directory; expected a CSV file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw TableError(path + ": cannot be opened; expected a CSV file");
 
@@ -53,26 +54,30 @@ Table Table::read(const std::string& path, const std::vector<std::string>& colum
     if (line.empty()) continue;
     std::string error;
     std::vector<std::string> fields = fields_of(line, error);
-    if (!error.empty()) table.fail(number, "not a CSV row (" + error + "); expected fields separated by commas");
+    if (!error.empty())
+      table.fail(number, "not a CSV row (" + error + "); expected fields separated by commas");
     if (table.header_.empty()) {
       table.header_ = std::move(fields);
       continue;
     }
     if (fields.size() != table.header_.size())
-      table.fail(number, std::to_string(fields.size()) + " fields; expected " + std::to_string(table.header_.size()) +
-                             " as in the header");
+      table.fail(number, std::to_string(fields.size()) + " fields; expected " +
+                             std::to_string(table.header_.size()) + " as in the header");
     table.rows_.push_back({number, std::move(fields)});
   }
   if (table.header_.empty()) throw TableError(path + ":1: empty; expected a header row");
   for (const std::string& column : columns)
     if (std::find(table.header_.begin(), table.header_.end(), column) == table.header_.end())
-      table.fail(1, "column '" + column + "' is missing; the header has " + std::to_string(table.header_.size()) +
-                        " columns, the first is " + shown(table.header_.front()));
+      table.fail(1, "column '" + column + "' is missing; the header has " +
+                        std::to_string(table.header_.size()) + " columns, the first is " +
+                        shown(table.header_.front()));
   if (table.rows_.empty()) throw TableError(path + ":2: no rows; expected at least one below the header");
   return table;
 }
 
-const std::string& Table::text(size_t row, const std::string& column) const { return rows_.at(row).fields[index_of(column)]; }
+const std::string& Table::text(size_t row, const std::string& column) const {
+  return rows_.at(row).fields[index_of(column)];
+}
 
 double Table::number(size_t row, const std::string& column) const {
   if (const std::optional<double> value = number_if_any(row, column)) return *value;
@@ -85,7 +90,8 @@ std::optional<double> Table::number_if_any(size_t row, const std::string& column
   double value = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
-    fail(rows_.at(row).line, "column '" + column + "': " + shown(field) + "; expected a finite number with a decimal point");
+    fail(rows_.at(row).line,
+         "column '" + column + "': " + shown(field) + "; expected a finite number with a decimal point");
   return value;
 }
 

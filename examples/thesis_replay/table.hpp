@@ -18,7 +18,8 @@ class TableError : public std::runtime_error {
 /// One table of the thesis as a CSV file: a header row, comma separated, no line breaks inside fields.
 class Table {
  public:
-  /// Reads a file and checks that every row has as many fields as the header, and that `columns` are among them.
+  /// Reads a file and checks that every row has as many fields as the header, and that `columns` are among
+  /// them.
   /// @throws TableError
   static Table read(const std::string& path, const std::vector<std::string>& columns);
 
@@ -29,7 +30,8 @@ class Table {
   double number(size_t row, const std::string& column) const;
   /// The field as a number, or nothing when it is empty.
   std::optional<double> number_if_any(size_t row, const std::string& column) const;
-  /// Refuses a field for a reason of the caller's: what is wrong, and what was expected. @throws TableError always
+  /// Refuses a field for a reason of the caller's: what is wrong, and what was expected. @throws TableError
+  /// always
   [[noreturn]] void refuse(size_t row, const std::string& column, const std::string& why) const;
 
  private:

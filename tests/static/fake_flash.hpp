@@ -5,9 +5,9 @@
 #include <stdint.h>
 #include <string.h>
 
-// Program memory as a PC does not have it: the address of a table in "flash" is no address that a program may read. Whoever reads
-// through `read_flash` gets the value; whoever reads it as if it were RAM gets a segmentation fault, on the desk instead of nonsense
-// on the chip. Put in place by THERMOPOWER_FLASH_HEADER.
+// Program memory as a PC does not have it: the address of a table in "flash" is no address that a program may
+// read. Whoever reads through `read_flash` gets the value; whoever reads it as if it were RAM gets a
+// segmentation fault, on the desk instead of nonsense on the chip. Put in place by THERMOPOWER_FLASH_HEADER.
 #define thermopower_flash
 
 namespace thermopower {
@@ -24,7 +24,8 @@ inline const Value* flash_pointer(const Value* table) noexcept {
 template <class Value>
 inline Value read_flash(const Value* address) noexcept {
   Value value;
-  memcpy(&value, reinterpret_cast<const void*>(reinterpret_cast<uintptr_t>(address) - flash_shift), sizeof value);
+  memcpy(&value, reinterpret_cast<const void*>(reinterpret_cast<uintptr_t>(address) - flash_shift),
+         sizeof value);
   return value;
 }
 

@@ -60,5 +60,6 @@ TEST_CASE("a current table is read out of flash") {
   const tp::TabulatedCurrent<tp::ThesisCurrentSource<tp::motors::Bgm2606_90t> > table;
   const auto law = tp::motors::Bgm2606_90t::current_law<double>();
   for (double volt = 1.1; volt < 16.0; volt += 0.3)
-    CHECK(std::abs(static_cast<double>(table.current_A(static_cast<float>(volt), 40.0f)) - law.current_A(volt, 40.0)) < 6e-4);
+    CHECK(std::abs(static_cast<double>(table.current_A(static_cast<float>(volt), 40.0f)) -
+                   law.current_A(volt, 40.0)) < 6e-4);
 }

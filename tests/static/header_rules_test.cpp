@@ -112,7 +112,8 @@ TEST_CASE("there are firmware headers to check") { CHECK(headers().size() > 40);
 TEST_CASE("every header begins with its licence and is included once") {
   for (const auto& [name, header] : headers()) {
     CAPTURE(name);
-    CHECK(header.text.rfind("// SPDX-License-Identifier: MIT\n// Copyright (c) 2026 the thermopower authors\n", 0) == 0);
+    CHECK(header.text.rfind(
+              "// SPDX-License-Identifier: MIT\n// Copyright (c) 2026 the thermopower authors\n", 0) == 0);
     CHECK(header.text.find("#pragma once") != std::string::npos);
   }
 }
@@ -140,9 +141,10 @@ TEST_CASE("firmware headers reach nothing upstairs, however indirectly") {
 }
 
 TEST_CASE("dependencies point one way: the actuator knows no control, the wire knows neither") {
-  const std::map<std::string, std::string> forbidden = {
-      {"actuator", "^(control|sbgc|motors)/"}, {"motors", "^(control|sbgc)/"}, {"control", "^(actuator|sbgc|motors)/"},
-      {"sbgc", "^(actuator|control|motors)/"}};
+  const std::map<std::string, std::string> forbidden = {{"actuator", "^(control|sbgc|motors)/"},
+                                                        {"motors", "^(control|sbgc)/"},
+                                                        {"control", "^(actuator|sbgc|motors)/"},
+                                                        {"sbgc", "^(actuator|control|motors)/"}};
   for (const auto& [name, header] : headers()) {
     const auto rule = forbidden.find(name.substr(0, name.find('/')));
     if (rule == forbidden.end()) continue;
@@ -166,8 +168,8 @@ TEST_CASE("the umbrella holds every firmware header") {
 
 TEST_CASE("firmware headers use no heap, no exception, no run-time type, no clock and no standard library") {
   for (const auto& [name, header] : headers()) {
-    for (const char* word : {"new", "delete", "malloc", "calloc", "realloc", "free", "throw", "try", "catch", "dynamic_cast", "typeid",
-                             "std", "millis", "micros", "clock", "thread_local"}) {
+    for (const char* word : {"new", "delete", "malloc", "calloc", "realloc", "free", "throw", "try", "catch",
+                             "dynamic_cast", "typeid", "std", "millis", "micros", "clock", "thread_local"}) {
       CAPTURE(name, word);
       CHECK(header.identifiers.count(word) == 0);
     }
@@ -193,8 +195,10 @@ TEST_CASE("firmware headers declare no name that Arduino.h takes as a macro") {
   }
 }
 
-TEST_CASE("firmware headers have no names in capitals, none of one capital letter, and none that is reserved") {
-  const std::set<std::string> meant = {"NAN", "INFINITY", "PROGMEM", "THERMOPOWER_FLASH_HEADER", "__AVR__", "__SIZEOF_DOUBLE__"};
+TEST_CASE(
+    "firmware headers have no names in capitals, none of one capital letter, and none that is reserved") {
+  const std::set<std::string> meant = {"NAN",     "INFINITY",         "PROGMEM", "THERMOPOWER_FLASH_HEADER",
+                                       "__AVR__", "__SIZEOF_DOUBLE__"};
   const std::regex capitals("[A-Z][A-Z0-9_]*"), reserved("_[A-Z].*|.*__.*");
   for (const auto& [name, header] : headers()) {
     for (const std::string& identifier : header.identifiers) {

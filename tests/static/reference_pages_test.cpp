@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The tables of docs/reference are what the headers say. Run with THERMOPOWER_UPDATE_DOCS=1 to write them anew.
+// The tables of docs/reference are what the headers say. Run with THERMOPOWER_UPDATE_DOCS=1 to write them
+// anew.
 
 #include "../catch.hpp"
 
@@ -85,7 +86,9 @@ TEST_CASE("docs/reference/limit-reasons.md lists every reason a limiter can give
   check_page("limit-reasons.md", enumerators("control/limit_reason.hpp"));
 }
 
-TEST_CASE("docs/reference/policies.md holds every menu of the headers") { check_page("policies.md", menus()); }
+TEST_CASE("docs/reference/policies.md holds every menu of the headers") {
+  check_page("policies.md", menus());
+}
 
 TEST_CASE("stable numbers: no enumerator is given twice") {
   for (const char* header : {"config_error.hpp", "control/limit_reason.hpp"}) {

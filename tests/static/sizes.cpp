@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// What a component costs in RAM: its constants and its state, nothing else. A growth here is a decision, not an accident.
+// What a component costs in RAM: its constants and its state, nothing else. A growth here is a decision, not
+// an accident.
 
 #include <thermopower/thermopower.hpp>
 
@@ -21,23 +22,31 @@ static_assert(sizeof(tp::NewtonCooling<float>) == number, "G");
 static_assert(sizeof(tp::NaturalConvection<float>) == 3 * number, "G, exponent, reference");
 static_assert(sizeof(tp::RadiationCooling<float>) == 2 * number, "area, emissivity");
 static_assert(sizeof(tp::ForcedAirflow<float>) == 3 * number, "G, gain, exponent");
-static_assert(sizeof(tp::SumOfCooling<tp::NewtonCooling<float>, tp::RadiationCooling<float> >) == 3 * number, "both");
+static_assert(sizeof(tp::SumOfCooling<tp::NewtonCooling<float>, tp::RadiationCooling<float> >) == 3 * number,
+              "both");
 
-// Models add their state: one temperature and three rates; two temperatures, a rate and four precomputed factors.
+// Models add their state: one temperature and three rates; two temperatures, a rate and four precomputed
+// factors.
 static_assert(sizeof(tp::CurrentModel<tp::OhmicCurrent<float> >) == 3 * number, "no state");
 static_assert(sizeof(tp::ThermalModel<>) == (2 + 4) * number, "two constants, four of state");
 static_assert(sizeof(tp::TwoNodeThermalModel<float>) == (4 + 3 + 4) * number, "constants, state, factors");
-static_assert(sizeof(tp::EnergyMeter<tp::AtWinding, float>) == (2 * 2 + 1) * number + sizeof(uint32_t), "two sums, power, count");
+static_assert(sizeof(tp::EnergyMeter<tp::AtWinding, float>) == (2 * 2 + 1) * number + sizeof(uint32_t),
+              "two sums, power, count");
 
 // The control: on AVR without padding, elsewhere rounded up to the alignment of a float.
-constexpr unsigned padded(unsigned size) { return (size + alignof(float) - 1) / alignof(float) * alignof(float); }
-static_assert(sizeof(tp::SafetyLimiter<tp::PerCycle>) == padded(3 * number + 1), "three constants and a byte");
+constexpr unsigned padded(unsigned size) {
+  return (size + alignof(float) - 1) / alignof(float) * alignof(float);
+}
+static_assert(sizeof(tp::SafetyLimiter<tp::PerCycle>) == padded(3 * number + 1),
+              "three constants and a byte");
 static_assert(sizeof(tp::SafetyLimiter<tp::PerSecond>) == 4 * number, "three constants and the ceiling");
 static_assert(sizeof(tp::GainScheduler<>) == 2 * number, "two gains");
 static_assert(sizeof(tp::NoGain) == 1, "nothing");
-static_assert(sizeof(tp::AirTemperature) == padded(4 * number + 1), "three constants, the air and its source");
+static_assert(sizeof(tp::AirTemperature) == padded(4 * number + 1),
+              "three constants, the air and its source");
 static_assert(sizeof(tp::LimitedPower) == 2, "power and reason");
-static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && sizeof(tp::AirSource) == 1, "bytes in a log");
+static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && sizeof(tp::AirSource) == 1,
+              "bytes in a log");
 
 // A whole axis and a whole gimbal of three; an ATmega328P has 2048 bytes for everything.
 typedef tp::AxisController<tp::motors::Bgm2606_90t> Axis;

@@ -30,7 +30,8 @@ TEST_CASE("a winding's resistance never falls to zero, however cold the reading"
 TEST_CASE("the thesis's current law is eq 4.1 to 4.5, in ampere") {
   const auto law = tp::motors::Bgm2606_90t::AsProgrammed::current_law<double>();
   const double volt = 9.97, motor_C = 46.3;
-  const double slope = -0.0134 * volt * volt + 0.0156 * volt + 0.0167, intercept = 0.1551 * std::pow(volt, 3.4591);
+  const double slope = -0.0134 * volt * volt + 0.0156 * volt + 0.0167,
+               intercept = 0.1551 * std::pow(volt, 3.4591);
   CHECK(law.slope_A_per_K(volt) == Near(slope / 1000.0));
   CHECK(law.intercept_A(volt) == Near(intercept / 1000.0));
   CHECK(law.current_A(volt, motor_C) == Near((slope * motor_C + intercept) / 1000.0));
@@ -48,7 +49,8 @@ TEST_CASE("a thesis motor draws nothing at or below one volt, and never a negati
 
 TEST_CASE("a broken voltage or temperature stays visible in the current") {
   const auto law = tp::motors::Bgm2606_90t::current_law<float>();
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   CHECK(std::isnan(law.current_A(nan, 40.0f)));
   CHECK(std::isnan(law.current_A(8.0f, nan)));
   CHECK_FALSE(std::isfinite(law.current_A(infinity, 40.0f)));

@@ -52,7 +52,8 @@ TEST_CASE("an hour of 10 ms steps keeps its digits in single precision") {
 }
 
 TEST_CASE("a bad sample is counted and costs nothing of the sum") {
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   tp::EnergyMeter<tp::AtWinding, float> meter;
   meter.step(8.0f, 13.0f, 0.1f, 1.0f);
   uint32_t rejected = 0;

@@ -11,12 +11,14 @@
 
 namespace tp = thermopower;
 
-TEMPLATE_TEST_CASE("the mean of a decay is right to rounding from a billionth to a thousand time constants", "", float, double) {
+TEMPLATE_TEST_CASE("the mean of a decay is right to rounding from a billionth to a thousand time constants",
+                   "", float, double) {
   const double rounding = static_cast<double>(std::numeric_limits<TestType>::epsilon());
   for (double exponent = -12.0; exponent <= 3.0; exponent += 0.001) {
     const TestType x = static_cast<TestType>(std::pow(10.0, exponent));
     const long double exact = -std::expm1(-static_cast<long double>(x)) / static_cast<long double>(x);
-    const double relative = static_cast<double>(static_cast<long double>(tp::detail::mean_decay(x)) / exact - 1.0L);
+    const double relative =
+        static_cast<double>(static_cast<long double>(tp::detail::mean_decay(x)) / exact - 1.0L);
     CAPTURE(x);
     REQUIRE(std::abs(relative) < 4.0 * rounding);
   }
@@ -27,9 +29,11 @@ TEMPLATE_TEST_CASE("the mean of a decay is right to rounding from a billionth to
 
 TEMPLATE_TEST_CASE("finite numbers are told from the others by their bits", "", float, double) {
   using Limits = std::numeric_limits<TestType>;
-  for (const TestType x : {TestType(0), TestType(-1), Limits::min(), Limits::denorm_min(), Limits::max(), Limits::lowest()})
+  for (const TestType x :
+       {TestType(0), TestType(-1), Limits::min(), Limits::denorm_min(), Limits::max(), Limits::lowest()})
     CHECK(tp::detail::is_finite(x));
-  for (const TestType x : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN(), -Limits::quiet_NaN()})
+  for (const TestType x :
+       {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN(), -Limits::quiet_NaN()})
     CHECK_FALSE(tp::detail::is_finite(x));
 }
 
@@ -45,7 +49,8 @@ TEMPLATE_TEST_CASE("bounds let a NaN through", "", float, double) {
 
 TEST_CASE("a range check refuses NaN, infinity and what lies outside, and nothing else") {
   const auto field = tp::ConfigError::supply_V;
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {nan, infinity, -infinity}) {
     CHECK(tp::detail::require_positive(bad, field) == field);
     CHECK(tp::detail::require_not_negative(bad, field) == field);

@@ -22,8 +22,8 @@ struct Sample<tp::HeatCapacityHeating<Number>> {
 template <class Number>
 struct Sample<tp::ThesisHeating<Number>> {
   static tp::ThesisHeating<Number> law() {
-    return tp::ThesisHeating<Number>::per_minute(Number(-0.00024249), Number(0.00620096), Number(0.02545869), Number(-0.10495822),
-                                                 Number(1));
+    return tp::ThesisHeating<Number>::per_minute(Number(-0.00024249), Number(0.00620096), Number(0.02545869),
+                                                 Number(-0.10495822), Number(1));
   }
 };
 template <class Number>
@@ -74,11 +74,12 @@ struct Composition {
     return rise * inputs.power_W - laws.cooling.rate_K_per_s(motor_C, inputs.around, rise);
   }
   /// Temperature after `time_s` by fourth-order Runge-Kutta with steps so small that its error is nothing.
-  static Number reference(Number motor_C, const typename Model::Inputs& inputs, Number time_s, int steps = 4000) {
+  static Number reference(Number motor_C, const typename Model::Inputs& inputs, Number time_s,
+                          int steps = 4000) {
     const Number dt = time_s / Number(steps);
     for (int i = 0; i < steps; ++i) {
-      const Number a = rate(motor_C, inputs), b = rate(motor_C + dt / 2 * a, inputs), c = rate(motor_C + dt / 2 * b, inputs),
-                   d = rate(motor_C + dt * c, inputs);
+      const Number a = rate(motor_C, inputs), b = rate(motor_C + dt / 2 * a, inputs),
+                   c = rate(motor_C + dt / 2 * b, inputs), d = rate(motor_C + dt * c, inputs);
       motor_C += dt / 6 * (a + 2 * b + 2 * c + d);
     }
     return motor_C;
@@ -98,10 +99,14 @@ using SumOfThree = tp::SumOfCooling<Newton, tp::SumOfCooling<Airflow, Newton>>;
 using Linear =
     std::tuple<Composition<Watts, Newton, tp::ExactStep>, Composition<Watts, Airflow, tp::ExactStep>,
                Composition<Watts, Rate, tp::ExactStep>, Composition<Watts, SumOfThree, tp::ExactStep>>;
-using Bent = std::tuple<Composition<Watts, Convection, tp::LinearizedStep>, Composition<Watts, Radiation, tp::LinearizedStep>,
-                        Composition<Watts, Sum, tp::LinearizedStep>, Composition<Thesis, Rate, tp::LinearizedStep>>;
-using Straight = std::tuple<Composition<Watts, Newton, tp::LinearizedStep>, Composition<Watts, Airflow, tp::LinearizedStep>,
-                            Composition<Watts, Rate, tp::LinearizedStep>, Composition<Watts, SumOfThree, tp::LinearizedStep>>;
+using Bent =
+    std::tuple<Composition<Watts, Convection, tp::LinearizedStep>,
+               Composition<Watts, Radiation, tp::LinearizedStep>, Composition<Watts, Sum, tp::LinearizedStep>,
+               Composition<Thesis, Rate, tp::LinearizedStep>>;
+using Straight =
+    std::tuple<Composition<Watts, Newton, tp::LinearizedStep>,
+               Composition<Watts, Airflow, tp::LinearizedStep>, Composition<Watts, Rate, tp::LinearizedStep>,
+               Composition<Watts, SumOfThree, tp::LinearizedStep>>;
 using Eulers =
     std::tuple<Composition<Watts, Newton, tp::EulerStep>, Composition<Watts, Airflow, tp::EulerStep>,
                Composition<Watts, Rate, tp::EulerStep>, Composition<Watts, Convection, tp::EulerStep>,

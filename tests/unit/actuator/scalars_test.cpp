@@ -17,22 +17,25 @@
 
 namespace tp = thermopower;
 
-// One model, four scalars: what a firmware steps in float, a simulation steps in lanes and an identification differentiates.
+// One model, four scalars: what a firmware steps in float, a simulation steps in lanes and an identification
+// differentiates.
 
 namespace {
 
 template <class Number>
-using Laws = std::tuple<
-    tp::ThermalModel<tp::HeatCapacityHeating<Number>, tp::NewtonCooling<Number>, tp::ExactStep>,
-    tp::ThermalModel<tp::HeatCapacityHeating<Number>, tp::ForcedAirflow<Number>, tp::ExactStep>,
-    tp::ThermalModel<tp::HeatCapacityHeating<Number>, tp::SumOfCooling<tp::NaturalConvection<Number>, tp::RadiationCooling<Number>>,
-                     tp::LinearizedStep>,
-    tp::ThermalModel<tp::ThesisHeating<Number>, tp::RateCooling<Number>, tp::LinearizedStep>,
-    tp::ThermalModel<tp::ThesisHeating<Number>, tp::RateCooling<Number>, tp::EulerStep>>;
+using Laws =
+    std::tuple<tp::ThermalModel<tp::HeatCapacityHeating<Number>, tp::NewtonCooling<Number>, tp::ExactStep>,
+               tp::ThermalModel<tp::HeatCapacityHeating<Number>, tp::ForcedAirflow<Number>, tp::ExactStep>,
+               tp::ThermalModel<tp::HeatCapacityHeating<Number>,
+                                tp::SumOfCooling<tp::NaturalConvection<Number>, tp::RadiationCooling<Number>>,
+                                tp::LinearizedStep>,
+               tp::ThermalModel<tp::ThesisHeating<Number>, tp::RateCooling<Number>, tp::LinearizedStep>,
+               tp::ThermalModel<tp::ThesisHeating<Number>, tp::RateCooling<Number>, tp::EulerStep>>;
 
 template <class Number>
 Number number(double value) {
-  return tp::detail::Numeric<Number>::constant(static_cast<typename tp::detail::Numeric<Number>::Real>(value));
+  return tp::detail::Numeric<Number>::constant(
+      static_cast<typename tp::detail::Numeric<Number>::Real>(value));
 }
 
 /// Sets the constants of each composition from plain numbers.
@@ -42,8 +45,9 @@ tp::HeatCapacityHeating<Number> heating(const tp::HeatCapacityHeating<Number>*, 
 }
 template <class Number>
 tp::ThesisHeating<Number> heating(const tp::ThesisHeating<Number>*, double scale) {
-  return tp::ThesisHeating<Number>::per_minute(number<Number>(-0.00024249), number<Number>(0.00620096 * scale),
-                                               number<Number>(0.02545869), number<Number>(-0.10495822), number<Number>(1.0));
+  return tp::ThesisHeating<Number>::per_minute(number<Number>(-0.00024249),
+                                               number<Number>(0.00620096 * scale), number<Number>(0.02545869),
+                                               number<Number>(-0.10495822), number<Number>(1.0));
 }
 template <class Number>
 tp::NewtonCooling<Number> cooling(const tp::NewtonCooling<Number>*) {
@@ -60,22 +64,26 @@ tp::ForcedAirflow<Number> cooling(const tp::ForcedAirflow<Number>*) {
 template <class Number>
 tp::SumOfCooling<tp::NaturalConvection<Number>, tp::RadiationCooling<Number>> cooling(
     const tp::SumOfCooling<tp::NaturalConvection<Number>, tp::RadiationCooling<Number>>*) {
-  return {{number<Number>(0.04), number<Number>(0.25), number<Number>(20.0)}, {number<Number>(0.006), number<Number>(0.9)}};
+  return {{number<Number>(0.04), number<Number>(0.25), number<Number>(20.0)},
+          {number<Number>(0.006), number<Number>(0.9)}};
 }
 
 /// Five minutes of a motor with the thesis's current, on any scalar; start and supply differ per call.
 template <class Model>
-typename Model::Scalar temperature_after(double capacity_scale, double start_C, const typename Model::Scalar& supply_V) {
+typename Model::Scalar temperature_after(double capacity_scale, double start_C,
+                                         const typename Model::Scalar& supply_V) {
   using Number = typename Model::Scalar;
-  const typename Model::Config config = {heating(static_cast<decltype(Model::Config::heating)*>(nullptr), capacity_scale),
-                                         cooling(static_cast<decltype(Model::Config::cooling)*>(nullptr))};
-  const tp::CurrentModel<tp::ThesisCurrent<Number>> current(
-      tp::ThesisCurrent<Number>::from_milliampere(number<Number>(-0.013445), number<Number>(0.015576), number<Number>(0.016839),
-                                                  number<Number>(0.155098), number<Number>(3.459071), number<Number>(1.0)));
+  const typename Model::Config config = {
+      heating(static_cast<decltype(Model::Config::heating)*>(nullptr), capacity_scale),
+      cooling(static_cast<decltype(Model::Config::cooling)*>(nullptr))};
+  const tp::CurrentModel<tp::ThesisCurrent<Number>> current(tp::ThesisCurrent<Number>::from_milliampere(
+      number<Number>(-0.013445), number<Number>(0.015576), number<Number>(0.016839), number<Number>(0.155098),
+      number<Number>(3.459071), number<Number>(1.0)));
   Model model(config, number<Number>(start_C));
   for (int i = 0; i < 300; ++i) {
     const auto drawn = current.at_power(number<Number>(i < 200 ? 120.0 : 25.0), supply_V, model.hottest_C());
-    model.step({drawn.winding_power_W, drawn.v_rms_V, {number<Number>(22.0), number<Number>(1.5)}}, number<Number>(1.0));
+    model.step({drawn.winding_power_W, drawn.v_rms_V, {number<Number>(22.0), number<Number>(1.5)}},
+               number<Number>(1.0));
   }
   return model.hottest_C();
 }
@@ -114,7 +122,9 @@ void compare_scalars() {
   // d temperature / d supply, by differentiation and by a difference quotient.
   const Dual slope = temperature_after<Differential>(1.0, 30.0, Dual(13.0, 2, 0));
   const double h = 1e-5;
-  const double quotient = (temperature_after<Double>(1.0, 30.0, 13.0 + h) - temperature_after<Double>(1.0, 30.0, 13.0 - h)) / (2 * h);
+  const double quotient =
+      (temperature_after<Double>(1.0, 30.0, 13.0 + h) - temperature_after<Double>(1.0, 30.0, 13.0 - h)) /
+      (2 * h);
   CHECK(slope.value() == Near(plain).epsilon(1e-13));
   CHECK(slope.derivatives()[0] == Near(quotient).epsilon(1e-6));
   CHECK(slope.derivatives()[1] == 0.0);
@@ -124,7 +134,9 @@ void compare_scalars() {
 
 TEST_CASE("heat capacity with Newton's cooling gives the same on every scalar") { compare_scalars<0>(); }
 TEST_CASE("heat capacity with airflow gives the same on every scalar") { compare_scalars<1>(); }
-TEST_CASE("heat capacity with convection and radiation gives the same on every scalar") { compare_scalars<2>(); }
+TEST_CASE("heat capacity with convection and radiation gives the same on every scalar") {
+  compare_scalars<2>();
+}
 TEST_CASE("the thesis's laws, linearized, give the same on every scalar") { compare_scalars<3>(); }
 TEST_CASE("the thesis's laws, by Euler, give the same on every scalar") { compare_scalars<4>(); }
 
@@ -132,9 +144,12 @@ namespace {
 /// Winding after a minute, as a function of the five constants, on any scalar.
 template <class Number>
 Number two_nodes(const Number (&constant)[4]) {
-  tp::TwoNodeThermalModel<Number> model({constant[0], constant[1], constant[2], {constant[3]}}, number<Number>(25.0));
+  tp::TwoNodeThermalModel<Number> model({constant[0], constant[1], constant[2], {constant[3]}},
+                                        number<Number>(25.0));
   for (int i = 0; i < 60; ++i)
-    model.step({number<Number>(i < 40 ? 4.0 : 0.5), number<Number>(0.0), {number<Number>(22.0), number<Number>(0.0)}},
+    model.step({number<Number>(i < 40 ? 4.0 : 0.5),
+                number<Number>(0.0),
+                {number<Number>(22.0), number<Number>(0.0)}},
                number<Number>(1.0));
   return model.state().winding_C;
 }
@@ -154,7 +169,8 @@ TEST_CASE("two nodes are differentiable in every constant") {
     CHECK(result.derivatives()[i] == Near((two_nodes(up) - two_nodes(down)) / (2.0 * h)).epsilon(1e-6));
   }
   using Eight = tp::Lanes<double, 8>;
-  const Eight lanes[4] = {Eight::Constant(2.0), Eight::Constant(16.0), Eight::Constant(0.4), Eight::Constant(0.06)};
+  const Eight lanes[4] = {Eight::Constant(2.0), Eight::Constant(16.0), Eight::Constant(0.4),
+                          Eight::Constant(0.06)};
   CHECK(two_nodes(lanes)[5] == Near(result.value()).epsilon(1e-13));
 }
 
@@ -167,7 +183,7 @@ TEST_CASE("a motor at rest has finite derivatives: no infinity from the roots an
   const tp::ForcedAirflow<Dual> airflow = {Dual(0.03), Dual(0.8), Dual(0.6)};
   CHECK(finite(convection.rate_K_per_s(motor_C, still, rise)));
   CHECK(finite(airflow.rate_K_per_s(motor_C, still, rise)));
-  const tp::ThesisCurrent<Dual> law = tp::ThesisCurrent<Dual>::from_milliampere(Dual(-0.0134), Dual(0.0156), Dual(0.0167),
-                                                                               Dual(0.1551), Dual(3.4591), Dual(1.0));
+  const tp::ThesisCurrent<Dual> law = tp::ThesisCurrent<Dual>::from_milliampere(
+      Dual(-0.0134), Dual(0.0156), Dual(0.0167), Dual(0.1551), Dual(3.4591), Dual(1.0));
   CHECK(finite(law.current_A(Dual(0.0, 2, 0), motor_C)));
 }

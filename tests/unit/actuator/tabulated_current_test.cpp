@@ -37,13 +37,17 @@ TEST_CASE("the compiler's logarithm, exponential and power are right to a double
     CHECK(tp::detail::constexpr_pow(x, 3.4591) == Near(std::pow(x, 3.4591)).epsilon(1e-12));
     CHECK(tp::detail::constexpr_pow(x, 0.25) == Near(std::pow(x, 0.25)).epsilon(1e-13));
   }
-  for (double x = -20.0; x < 20.0; x += 0.013) CHECK(tp::detail::constexpr_exp(x) == Near(std::exp(x)).epsilon(1e-13));
-  static_assert(tp::detail::constexpr_pow(2.0, 10.0) > 1023.9999 && tp::detail::constexpr_pow(2.0, 10.0) < 1024.0001, "at compile time");
+  for (double x = -20.0; x < 20.0; x += 0.013)
+    CHECK(tp::detail::constexpr_exp(x) == Near(std::exp(x)).epsilon(1e-13));
+  static_assert(
+      tp::detail::constexpr_pow(2.0, 10.0) > 1023.9999 && tp::detail::constexpr_pow(2.0, 10.0) < 1024.0001,
+      "at compile time");
   CHECK(tp::detail::constexpr_pow(0.0, 3.0) == 0.0);
 }
 
 TEMPLATE_TEST_CASE("a tabulated current is within 0.6 mA of the law, everywhere", "", tp::motors::Bgm2606_90t,
-                   tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12, tp::motors::Bgm5208_200_12::AsProgrammed) {
+                   tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12,
+                   tp::motors::Bgm5208_200_12::AsProgrammed) {
   CHECK(worst_A<TestType, 65>() < 0.6e-3);
 }
 
@@ -61,9 +65,12 @@ TEST_CASE("a tabulated current begins and ends where the law does") {
   CHECK(table.validate() == tp::ConfigError::none);
 }
 
-TEST_CASE("no voltage reads beside the table: NaN stays NaN, and above the table the current is NaN, which counts as hot") {
+TEST_CASE(
+    "no voltage reads beside the table: NaN stays NaN, and above the table the current is NaN, which counts "
+    "as hot") {
   const tp::TabulatedCurrent<tp::ThesisCurrentSource<tp::motors::Bgm2606_90t> > table;
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   for (const float volt : {nan, infinity, 16.001f, 1e30f}) CHECK(std::isnan(table.current_A(volt, 40.0f)));
   CHECK(std::isnan(table.current_A(8.0f, nan)));
   CHECK(std::isnan(table.current_A(-infinity, 40.0f)));

@@ -10,7 +10,8 @@
 namespace tp = thermopower;
 
 TEMPLATE_LIST_TEST_CASE("heat in less heat lost is what warms the actuator", "[law]", samples::Every) {
-  // With a heat capacity this is the energy balance in joule; with the thesis's r it is the same balance in kelvin, eq 3.9.
+  // With a heat capacity this is the energy balance in joule; with the thesis's r it is the same balance in
+  // kelvin, eq 3.9.
   for (const double start_C : {25.0, 60.0, 90.0}) {
     for (const double power_W : {0.0, 2.0, 4.0}) {
       auto model = TestType::model(start_C);
@@ -25,15 +26,18 @@ TEMPLATE_LIST_TEST_CASE("heat in less heat lost is what warms the actuator", "[l
         if (i == 0) first_rate = before;
         last_rate = after;
       }
-      // The trapezoid rule is exact to second order; Euler's own error is first order: half a step's change of rate.
-      const double tolerance_K = 1e-5 + (TestType::is_euler ? 0.51 * dt_s * std::abs(last_rate - first_rate) : 0.0);
+      // The trapezoid rule is exact to second order; Euler's own error is first order: half a step's change
+      // of rate.
+      const double tolerance_K =
+          1e-5 + (TestType::is_euler ? 0.51 * dt_s * std::abs(last_rate - first_rate) : 0.0);
       CAPTURE(start_C, power_W);
       CHECK(std::abs(model.state().motor_C - start_C - gained_K) < tolerance_K);
     }
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the state shows heating, cooling and their difference at the start of the step", "[law]", samples::Every) {
+TEMPLATE_LIST_TEST_CASE("the state shows heating, cooling and their difference at the start of the step",
+                        "[law]", samples::Every) {
   auto model = TestType::model(50.0);
   const auto inputs = TestType::inputs(3.0);
   const double rate = TestType::rate(50.0, inputs);
@@ -81,7 +85,8 @@ TEMPLATE_LIST_TEST_CASE("without power an actuator cools, never to below the air
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("Euler cools towards the air while the step is below the time constant", "[law]", samples::Eulers) {
+TEMPLATE_LIST_TEST_CASE("Euler cools towards the air while the step is below the time constant", "[law]",
+                        samples::Eulers) {
   auto model = TestType::model(95.0);
   double last_C = 95.0;
   for (int i = 0; i < 20000; ++i) {
@@ -92,7 +97,8 @@ TEMPLATE_LIST_TEST_CASE("Euler cools towards the air while the step is below the
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("what is hotter stays hotter, and more power never makes colder", "[law]", samples::Every) {
+TEMPLATE_LIST_TEST_CASE("what is hotter stays hotter, and more power never makes colder", "[law]",
+                        samples::Every) {
   for (const double dt_s : {0.03, 5.0}) {
     auto cold = TestType::model(40.0), hot = TestType::model(41.0), driven = TestType::model(40.0);
     for (int i = 0; i < 300; ++i) {
@@ -133,13 +139,15 @@ TEST_CASE("the exact step holds in single precision, to a float's rounding per s
     Model model(config, 25.0f);
     const double power_W = 2.5, steps = 200;
     for (int i = 0; i < static_cast<int>(steps); ++i) model.step({2.5f, 0.0f, {25.0f, 0.0f}}, dt_s);
-    const double expected = 25.0 + power_W / 0.05 * (1.0 - std::exp(-0.05 / 18.0 * static_cast<double>(dt_s) * steps));
+    const double expected =
+        25.0 + power_W / 0.05 * (1.0 - std::exp(-0.05 / 18.0 * static_cast<double>(dt_s) * steps));
     CAPTURE(dt_s);
     CHECK(std::abs(static_cast<double>(model.state().motor_C) - expected) < steps * 75.0 * 6e-8);
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the exact step is the solution of the differential equation", "[law]", samples::Linear) {
+TEMPLATE_LIST_TEST_CASE("the exact step is the solution of the differential equation", "[law]",
+                        samples::Linear) {
   for (const double time_s : {1.0, 60.0, 600.0}) {
     auto model = TestType::model(80.0);
     const auto inputs = TestType::inputs(1.5);
@@ -158,7 +166,8 @@ double error_with(int steps, double time_s) {
 }
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("the linearized step is second order: half the step, a quarter of the error", "[law]", samples::Bent) {
+TEMPLATE_LIST_TEST_CASE("the linearized step is second order: half the step, a quarter of the error", "[law]",
+                        samples::Bent) {
   const double ratio = error_with<TestType>(40, 300.0) / error_with<TestType>(80, 300.0);
   CHECK(ratio > 3.6);
   CHECK(ratio < 4.4);
@@ -170,24 +179,29 @@ TEMPLATE_LIST_TEST_CASE("Euler is first order: half the step, half the error", "
   CHECK(ratio < 2.15);
 }
 
-TEMPLATE_LIST_TEST_CASE("the stated slopes are the derivatives of the stated rates", "[law]", samples::Every) {
+TEMPLATE_LIST_TEST_CASE("the stated slopes are the derivatives of the stated rates", "[law]",
+                        samples::Every) {
   const auto laws = TestType::config();
   const double h = 1e-4;
   for (const double motor_C : {-20.0, 24.0, 26.0, 40.0, 75.0}) {
     for (const double volt : {4.0, 8.0, 12.0}) {
       const double rise = laws.heating.rise_K_per_J(volt, motor_C);
       const double cooling = (laws.cooling.rate_K_per_s(motor_C + h, {25.0, 2.0}, rise) -
-                              laws.cooling.rate_K_per_s(motor_C - h, {25.0, 2.0}, rise)) / (2.0 * h);
+                              laws.cooling.rate_K_per_s(motor_C - h, {25.0, 2.0}, rise)) /
+                             (2.0 * h);
       CAPTURE(motor_C, volt);
-      CHECK(laws.cooling.slope_per_s(motor_C, {25.0, 2.0}, rise) == Near(cooling).epsilon(1e-6).margin(1e-12));
+      CHECK(laws.cooling.slope_per_s(motor_C, {25.0, 2.0}, rise) ==
+            Near(cooling).epsilon(1e-6).margin(1e-12));
       const double heating =
-          (laws.heating.rise_K_per_J(volt, motor_C + h) - laws.heating.rise_K_per_J(volt, motor_C - h)) / (2.0 * h);
+          (laws.heating.rise_K_per_J(volt, motor_C + h) - laws.heating.rise_K_per_J(volt, motor_C - h)) /
+          (2.0 * h);
       CHECK(laws.heating.rise_slope_per_J(volt, motor_C) == Near(heating).epsilon(1e-5).margin(1e-12));
     }
   }
 }
 
-TEST_CASE("natural convection equals Newton at its reference difference and grows as its exponent says", "[cooling]") {
+TEST_CASE("natural convection equals Newton at its reference difference and grows as its exponent says",
+          "[cooling]") {
   const tp::NaturalConvection<double> convection = {0.04, 0.25, 20.0};
   CHECK(convection.loss_W(45.0, {25.0, 0.0}) == Near(0.04 * 20.0));
   CHECK(convection.loss_W(65.0, {25.0, 0.0}) == Near(0.04 * 40.0 * std::pow(2.0, 0.25)));
@@ -199,7 +213,8 @@ TEST_CASE("radiation follows Stefan and Boltzmann", "[cooling]") {
   const tp::RadiationCooling<double> black = {1.0, 1.0};
   CHECK(black.loss_W(0.0, {-273.15, 0.0}) == Near(5.670374419e-8 * std::pow(273.15, 4)));
   CHECK(black.loss_W(26.85, {26.85, 0.0}) == 0.0);
-  CHECK(black.loss_W(126.85, {26.85, 0.0}) == Near(5.670374419e-8 * (std::pow(400.0, 4) - std::pow(300.0, 4))));
+  CHECK(black.loss_W(126.85, {26.85, 0.0}) ==
+        Near(5.670374419e-8 * (std::pow(400.0, 4) - std::pow(300.0, 4))));
 }
 
 TEMPLATE_TEST_CASE("airflow adds nothing in still air, whatever its exponent", "[cooling]", float, double) {
@@ -219,7 +234,8 @@ TEST_CASE("parallel paths add up", "[cooling]") {
   CHECK(samples::SumOfThree::is_linear());
 }
 
-TEST_CASE("a thesis motor is not heated at or below one volt, nor where the coefficient is not positive", "[heating]") {
+TEST_CASE("a thesis motor is not heated at or below one volt, nor where the coefficient is not positive",
+          "[heating]") {
   const auto law = samples::Sample<tp::ThesisHeating<double>>::law();
   CHECK(law.rise_K_per_J(1.0, 40.0) == 0.0);
   CHECK(law.rise_K_per_J(0.0, 40.0) == 0.0);
@@ -236,9 +252,10 @@ TEST_CASE("minutes become seconds once", "[heating]") {
   CHECK(tp::RateCooling<double>::per_minute(0.11).cooling_per_s == Near(0.11 / 60.0));
 }
 
-TEMPLATE_LIST_TEST_CASE("NaN or infinity in an input cannot hide: the temperature is no longer finite", "[bad input]",
-                         samples::Every) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+TEMPLATE_LIST_TEST_CASE("NaN or infinity in an input cannot hide: the temperature is no longer finite",
+                        "[bad input]", samples::Every) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity}) {
     CAPTURE(bad);
     auto power = TestType::model(50.0), air = TestType::model(50.0), start = TestType::model(bad);

@@ -33,17 +33,21 @@ inline std::map<int, std::vector<Row>> experiments(const std::string& number) {
   const Table source = table(number);
   std::map<int, std::vector<Row>> found;
   for (size_t i = 0; i < source.rows(); ++i) {
-    const auto printed = [&](const char* column) { return source.number_if_any(i, column).value_or(std::nan("")); };
+    const auto printed = [&](const char* column) {
+      return source.number_if_any(i, column).value_or(std::nan(""));
+    };
     found[static_cast<int>(source.number(i, "experiment"))].push_back(
-        {source.number(i, "v_rms_V"), source.number(i, "T_air_C"), source.number(i, "t_min"), source.number(i, "T_motor_C"),
-         source.number(i, "I_mA"), printed("dTdt_printed_C_per_min"), printed("cooling_printed_C_per_min"),
-         printed("r_printed_C_per_min_per_W"), printed("r_inv_printed_W_min_per_C")});
+        {source.number(i, "v_rms_V"), source.number(i, "T_air_C"), source.number(i, "t_min"),
+         source.number(i, "T_motor_C"), source.number(i, "I_mA"), printed("dTdt_printed_C_per_min"),
+         printed("cooling_printed_C_per_min"), printed("r_printed_C_per_min_per_W"),
+         printed("r_inv_printed_W_min_per_C")});
   }
   return found;
 }
 
 /// Least squares: coefficients of 1, x, x^2 ...
-inline Eigen::VectorXd polynomial_fit(const std::vector<double>& x, const std::vector<double>& y, int degree) {
+inline Eigen::VectorXd polynomial_fit(const std::vector<double>& x, const std::vector<double>& y,
+                                      int degree) {
   Eigen::MatrixXd powers(static_cast<Eigen::Index>(x.size()), degree + 1);
   Eigen::VectorXd values(static_cast<Eigen::Index>(x.size()));
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -55,8 +59,8 @@ inline Eigen::VectorXd polynomial_fit(const std::vector<double>& x, const std::v
 
 /// Temperatures each minute of a motor that is heated at a constant power parameter, as eq 4.21 steps it.
 template <class Heating, class Cooling, class Current>
-std::vector<double> heat(const Heating& heating, const Cooling& cooling, const Current& law, double power_param, double start_C,
-                         double air_C, int minutes, double dt_s = 0.03) {
+std::vector<double> heat(const Heating& heating, const Cooling& cooling, const Current& law,
+                         double power_param, double start_C, double air_C, int minutes, double dt_s = 0.03) {
   const tp::CurrentModel<Current> current(law);
   tp::ThermalModel<Heating, Cooling, tp::EulerStep> model({heating, cooling}, start_C);
   std::vector<double> temperatures = {start_C};
@@ -74,8 +78,8 @@ std::vector<double> heat(const Heating& heating, const Cooling& cooling, const C
 /// The same with every law of a motor.
 template <class Motor>
 std::vector<double> heat(double power_param, double start_C, double air_C, int minutes) {
-  return heat(Motor::template heating_law<double>(), Motor::template cooling_law<double>(), Motor::template current_law<double>(),
-              power_param, start_C, air_C, minutes);
+  return heat(Motor::template heating_law<double>(), Motor::template cooling_law<double>(),
+              Motor::template current_law<double>(), power_param, start_C, air_C, minutes);
 }
 
 }  // namespace thesis

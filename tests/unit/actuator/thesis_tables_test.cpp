@@ -18,7 +18,8 @@ void check_derived_columns(const std::string& number, const std::string& motor) 
     for (size_t i = 1; i < rows.size(); ++i) {
       const Row& now = rows[i];
       CAPTURE(number, experiment, now.time_min);
-      const double rate = (now.motor_C - rows[i - 1].motor_C) / (now.time_min - rows[i - 1].time_min);  // eq 4.12
+      const double rate =
+          (now.motor_C - rows[i - 1].motor_C) / (now.time_min - rows[i - 1].time_min);  // eq 4.12
       const tp::RateCooling<double> law = tp::RateCooling<double>::per_minute(cooling_per_min(motor));
       const double cooling = 60.0 * law.rate_K_per_s(now.motor_C, {now.air_C, 0.0}, 0.0);
       const double r = (rate + cooling) / (now.volt * now.current_mA / 1000.0);  // eq 4.14 with 4.13
@@ -51,16 +52,19 @@ std::vector<double> cooling_coefficients(const std::string& number) {
   std::vector<double> k;
   const double start_K = source.number(0, "T_motor_C") - source.number(0, "T_air_C");
   for (size_t i = 1; i < source.rows(); ++i)
-    k.push_back(-std::log((source.number(i, "T_motor_C") - source.number(i, "T_air_C")) / start_K) / source.number(i, "t_min"));
+    k.push_back(-std::log((source.number(i, "T_motor_C") - source.number(i, "T_air_C")) / start_K) /
+                source.number(i, "t_min"));
   return k;
 }
 
-/// Mean of r over an experiment, from the measured columns: eq 4.12 to 4.14 without the rounding of the printed r.
+/// Mean of r over an experiment, from the measured columns: eq 4.12 to 4.14 without the rounding of the
+/// printed r.
 double mean_coefficient(const std::vector<Row>& rows, double k_per_min) {
   double sum = 0.0;
   for (size_t i = 1; i < rows.size(); ++i) {
     const double rate = (rows[i].motor_C - rows[i - 1].motor_C) / (rows[i].time_min - rows[i - 1].time_min);
-    sum += (rate + k_per_min * (rows[i].motor_C - rows[i].air_C)) / (rows[i].volt * rows[i].current_mA / 1000.0);
+    sum +=
+        (rate + k_per_min * (rows[i].motor_C - rows[i].air_C)) / (rows[i].volt * rows[i].current_mA / 1000.0);
   }
   return sum / static_cast<double>(rows.size() - 1);
 }
@@ -86,7 +90,7 @@ Lines current_lines(const std::string& number) {
 }
 
 struct CurrentFit {
-  Eigen::VectorXd slope;   // 1, V, V^2
+  Eigen::VectorXd slope;  // 1, V, V^2
   double base, exponent;
 };
 CurrentFit current_fit(const std::string& number) {
@@ -101,37 +105,48 @@ CurrentFit current_fit(const std::string& number) {
 }
 }  // namespace
 
-TEST_CASE("Table 4.1: rate, cooling and heating coefficient follow from the measured columns") { check_derived_columns("4_1", small); }
+TEST_CASE("Table 4.1: rate, cooling and heating coefficient follow from the measured columns") {
+  check_derived_columns("4_1", small);
+}
 
-TEST_CASE("Table 4.2: rate, cooling and heating coefficient follow from the measured columns") { check_derived_columns("4_2", large); }
+TEST_CASE("Table 4.2: rate, cooling and heating coefficient follow from the measured columns") {
+  check_derived_columns("4_2", large);
+}
 
 TEST_CASE("Tables 4.1 and 4.2: V_rms is 13 V times the root of the duty, to the printed digits") {
   for (const char* number : {"4_1", "4_2"}) {
     const Table source = table(number);
     for (size_t i = 0; i < source.rows(); ++i) {
       const double printed = source.number(i, "v_rms_V");
-      const double ours = tp::v_rms_from_power(source.number(i, "v_supply_V"), source.number(i, "power_param"));
+      const double ours =
+          tp::v_rms_from_power(source.number(i, "v_supply_V"), source.number(i, "power_param"));
       CHECK(std::abs(ours - printed) < (printed < 10.0 ? 0.0051 : 0.051));
     }
   }
 }
 
-TEST_CASE("Table 4.5: the cooling curves of the BGM2606 are the exact step") { check_cooling_curves("4_5", 36.8, 33); }
+TEST_CASE("Table 4.5: the cooling curves of the BGM2606 are the exact step") {
+  check_cooling_curves("4_5", 36.8, 33);
+}
 
-TEST_CASE("Table 4.8: the cooling curves of the BGM5208 are the exact step") { check_cooling_curves("4_8", 39.0, 33); }
+TEST_CASE("Table 4.8: the cooling curves of the BGM5208 are the exact step") {
+  check_cooling_curves("4_8", 39.0, 33);
+}
 
 TEST_CASE("Table 4.7: the cooling coefficients of the BGM5208 follow from Table 4.6") {
   const Table printed = table("4_7");
   const std::vector<double> k = cooling_coefficients("4_6");
   REQUIRE(k.size() == 10);
-  for (size_t i = 0; i < k.size(); ++i) CHECK(std::abs(k[i] - printed.number(i + 1, "k_printed_per_min")) < 5.1e-5);
+  for (size_t i = 0; i < k.size(); ++i)
+    CHECK(std::abs(k[i] - printed.number(i + 1, "k_printed_per_min")) < 5.1e-5);
 }
 
 TEST_CASE("Table 4.9: the lines through 1/r of each experiment of Table 4.1") {
   const Table printed = table("4_9");
   for (const auto& [experiment, rows] : experiments("4_1")) {
     std::vector<double> motor_C, r_inv;
-    for (size_t i = experiment == 5 ? 2 : 1; i < rows.size(); ++i) {  // disagreement 7: the first point of 12.9 V is left out
+    for (size_t i = experiment == 5 ? 2 : 1; i < rows.size();
+         ++i) {  // disagreement 7: the first point of 12.9 V is left out
       motor_C.push_back(rows[i].motor_C);
       r_inv.push_back(rows[i].r_inv);
     }
@@ -154,7 +169,9 @@ TEST_CASE("Table 4.10: the mean heating coefficient of each experiment of Table 
   }
 }
 
-TEST_CASE("eq 4.2 and 4.3: the current of the BGM2606, refitted from Table 4.1, is the corrected motor's and rounds to the printed") {
+TEST_CASE(
+    "eq 4.2 and 4.3: the current of the BGM2606, refitted from Table 4.1, is the corrected motor's and "
+    "rounds to the printed") {
   const CurrentFit fit = current_fit("4_1");
   CHECK(std::abs(fit.slope[2] - -0.0134) < 5.1e-5);
   CHECK(std::abs(fit.slope[1] - 0.0156) < 5.1e-5);
@@ -169,7 +186,9 @@ TEST_CASE("eq 4.2 and 4.3: the current of the BGM2606, refitted from Table 4.1, 
   CHECK(law.exponent == Near(fit.exponent).margin(5.1e-7));
 }
 
-TEST_CASE("eq 4.4 and 4.5: the current of the BGM5208, refitted from Table 4.2, is the corrected motor's and rounds to the printed") {
+TEST_CASE(
+    "eq 4.4 and 4.5: the current of the BGM5208, refitted from Table 4.2, is the corrected motor's and "
+    "rounds to the printed") {
   const CurrentFit fit = current_fit("4_2");
   CHECK(std::abs(fit.slope[2] - -0.055) < 5.1e-5);
   CHECK(std::abs(fit.slope[1] - 0.6311) < 5.1e-5);
@@ -184,7 +203,9 @@ TEST_CASE("eq 4.4 and 4.5: the current of the BGM5208, refitted from Table 4.2, 
   CHECK(law.exponent == Near(fit.exponent).margin(5.1e-7));
 }
 
-TEST_CASE("eq 4.16 and 4.17: the heating coefficient of the BGM2606, refitted from Table 4.9, is the corrected motor's") {
+TEST_CASE(
+    "eq 4.16 and 4.17: the heating coefficient of the BGM2606, refitted from Table 4.9, is the corrected "
+    "motor's") {
   const Table source = table("4_9");
   std::vector<double> volt, slope, intercept;
   for (size_t i = 0; i < source.rows(); ++i) {
@@ -204,7 +225,8 @@ TEST_CASE("eq 4.16 and 4.17: the heating coefficient of the BGM2606, refitted fr
   CHECK(law.offset_V0_J_per_K / 60.0 == Near(intercepts[0]).margin(5.1e-9));
 }
 
-TEST_CASE("eq 4.18: the heating coefficient of the BGM5208, refitted from Table 4.10, is the corrected motor's") {
+TEST_CASE(
+    "eq 4.18: the heating coefficient of the BGM5208, refitted from Table 4.10, is the corrected motor's") {
   std::vector<double> volt, r_inv;
   for (const auto& [experiment, rows] : experiments("4_2")) {
     volt.push_back(rows[0].volt);
@@ -229,7 +251,8 @@ TEST_CASE("Table 5.1: both motors cool as calculated, in air of 26 degC") {
       if (minutes == 0.0) start_C = source.number(i, "T_calculated_C");
       tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::RateCooling<double>, tp::EulerStep> model(
           {{1.0}, tp::RateCooling<double>::per_minute(cooling_per_min(motor))}, start_C);
-      for (int step = 0; step < static_cast<int>(2000.0 * minutes); ++step) model.step({0.0, 0.0, {26.0, 0.0}}, 0.03);
+      for (int step = 0; step < static_cast<int>(2000.0 * minutes); ++step)
+        model.step({0.0, 0.0, {26.0, 0.0}}, 0.03);
       CAPTURE(motor, minutes);
       CHECK(std::abs(model.hottest_C() - source.number(i, "T_calculated_C")) <= 0.2);
       ++checked;
@@ -269,7 +292,8 @@ TEST_CASE("Table 5.2 does not follow from eq 4.18 as printed, which is far neare
   for (const int power_param : {150, 200, 250}) {
     CAPTURE(power_param);
     CHECK(worst_K<Motor>("5_2", power_param, "T_calculated_C") > 4.0);
-    CHECK(worst_K<Motor>("5_2", power_param, "T_measured_C") < 0.55 * worst_K<Motor::AsProgrammed>("5_2", power_param, "T_measured_C"));
+    CHECK(worst_K<Motor>("5_2", power_param, "T_measured_C") <
+          0.55 * worst_K<Motor::AsProgrammed>("5_2", power_param, "T_measured_C"));
   }
 }
 

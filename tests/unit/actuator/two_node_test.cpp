@@ -18,10 +18,12 @@ using Model = tp::TwoNodeThermalModel<double>;
 
 const Model::Config motor = {2.0, 16.0, 0.4, {0.06}};
 
-Eigen::Vector2d rates(const Model::Config& config, const Eigen::Vector2d& nodes_C, double power_W, double air_C) {
+Eigen::Vector2d rates(const Model::Config& config, const Eigen::Vector2d& nodes_C, double power_W,
+                      double air_C) {
   const double between_W = config.coupling_W_per_K * (nodes_C[0] - nodes_C[1]);
   const double lost_W = config.cooling.conductance_W_per_K * (nodes_C[1] - air_C);
-  return {(power_W - between_W) / config.winding_heat_capacity_J_per_K, (between_W - lost_W) / config.body_heat_capacity_J_per_K};
+  return {(power_W - between_W) / config.winding_heat_capacity_J_per_K,
+          (between_W - lost_W) / config.body_heat_capacity_J_per_K};
 }
 
 // Constants drawn over four decades each, so that stiff, slack and nearly degenerate networks all occur.
@@ -30,7 +32,9 @@ struct Networks {
   double decades(double from, double to) {
     return std::pow(10.0, std::uniform_real_distribution<double>(std::log10(from), std::log10(to))(random));
   }
-  Model::Config next() { return {decades(0.1, 1e3), decades(0.1, 1e3), decades(1e-3, 10.0), {decades(1e-3, 10.0)}}; }
+  Model::Config next() {
+    return {decades(0.1, 1e3), decades(0.1, 1e3), decades(1e-3, 10.0), {decades(1e-3, 10.0)}};
+  }
 };
 }  // namespace
 
@@ -39,10 +43,12 @@ TEST_CASE("two nodes follow their differential equation, by Runge-Kutta in fine 
   Eigen::Vector2d nodes_C(25.0, 25.0);
   const double dt_s = 0.01;
   for (int second = 0; second < 300; ++second) {
-    const double power_W = second < 120 ? 6.0 : (second < 180 ? 0.0 : 2.0), air_C = second < 150 ? 25.0 : 10.0;
+    const double power_W = second < 120 ? 6.0 : (second < 180 ? 0.0 : 2.0),
+                 air_C = second < 150 ? 25.0 : 10.0;
     model.step({power_W, 0.0, {air_C, 0.0}}, 1.0);
     for (int i = 0; i < 100; ++i) {
-      const Eigen::Vector2d a = rates(motor, nodes_C, power_W, air_C), b = rates(motor, nodes_C + dt_s / 2 * a, power_W, air_C),
+      const Eigen::Vector2d a = rates(motor, nodes_C, power_W, air_C),
+                            b = rates(motor, nodes_C + dt_s / 2 * a, power_W, air_C),
                             c = rates(motor, nodes_C + dt_s / 2 * b, power_W, air_C),
                             d = rates(motor, nodes_C + dt_s * c, power_W, air_C);
       nodes_C += dt_s / 6 * (a + 2 * b + 2 * c + d);
@@ -59,7 +65,8 @@ TEST_CASE("two nodes equal the matrix exponential for any network and any step")
     const double dt_s = networks.decades(1e-3, 1e4), power_W = networks.decades(0.1, 10.0), air_C = 20.0;
     Model model(config, 0.0);
     model.start(80.0, 40.0);
-    // Air, power and nodes as one homogeneous system, so that the reference needs no settled state of its own.
+    // Air, power and nodes as one homogeneous system, so that the reference needs no settled state of its
+    // own.
     Eigen::Matrix3d system = Eigen::Matrix3d::Zero();
     const Eigen::Vector2d drift = rates(config, Eigen::Vector2d::Zero(), power_W, air_C);
     system.topLeftCorner<2, 1>() = rates(config, {1.0, 0.0}, power_W, air_C) - drift;
@@ -68,8 +75,10 @@ TEST_CASE("two nodes equal the matrix exponential for any network and any step")
     const Eigen::Vector3d expected = (system * dt_s).exp() * Eigen::Vector3d(80.0, 40.0, 1.0);
     model.step({power_W, 0.0, {air_C, 0.0}}, dt_s);
     // Of the largest temperature in play: the reference squares its way up and loses a few digits itself.
-    const double scale = 80.0 + power_W / config.cooling.conductance_W_per_K + power_W / config.coupling_W_per_K;
-    CAPTURE(trial, dt_s, config.winding_heat_capacity_J_per_K, config.body_heat_capacity_J_per_K, config.coupling_W_per_K);
+    const double scale =
+        80.0 + power_W / config.cooling.conductance_W_per_K + power_W / config.coupling_W_per_K;
+    CAPTURE(trial, dt_s, config.winding_heat_capacity_J_per_K, config.body_heat_capacity_J_per_K,
+            config.coupling_W_per_K);
     REQUIRE(std::abs(model.state().winding_C - expected[0]) < 1e-9 * scale);
     REQUIRE(std::abs(model.state().body_C - expected[1]) < 1e-9 * scale);
   }
@@ -150,7 +159,8 @@ TEST_CASE("in single precision no network gives NaN, also where the eigenvalues 
   for (int trial = 0; trial < 20000; ++trial) {
     // Winding and body with the same own rate, all but uncoupled: the discriminant is lost in rounding.
     const float coupling = std::pow(10.0f, small(random));
-    const tp::TwoNodeThermalModel<float>::Config config = {coupling, near_one(random), coupling, {near_one(random)}};
+    const tp::TwoNodeThermalModel<float>::Config config = {
+        coupling, near_one(random), coupling, {near_one(random)}};
     tp::TwoNodeThermalModel<float> model(config, 25.0f);
     model.step({1.0f * coupling, 0.0f, {25.0f, 0.0f}}, 0.5f);
     REQUIRE(std::isfinite(model.state().winding_C));

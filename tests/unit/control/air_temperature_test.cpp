@@ -72,5 +72,6 @@ TEST_CASE("a wrong constant of the air temperature is refused by name") {
   }
   CHECK(error(-40.0f, -40.0f, 15.0f) == ConfigError::maximum_plausible_C);
   CHECK(error(-40.0f, 85.0f, 0.0f) == ConfigError::maximum_difference_K);
-  CHECK(tp::AirTemperature(tp::AirTemperature::Config{none, none, none}).validate() == ConfigError::minimum_plausible_C);
+  CHECK(tp::AirTemperature(tp::AirTemperature::Config{none, none, none}).validate() ==
+        ConfigError::minimum_plausible_C);
 }

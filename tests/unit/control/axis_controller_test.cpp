@@ -31,9 +31,10 @@ typename Axis<Motor>::Inputs inputs(float error_deg, float supply_V = 13.0f, flo
 }
 }  // namespace
 
-#define EVERY_MOTOR                                                                                                                \
-  tp::motors::Bgm2606_90t, tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12,                                      \
-      tp::motors::Bgm5208_200_12::AsProgrammed, motors_under_test::Servo, motors_under_test::ServoWithWinding
+#define EVERY_MOTOR                                                                           \
+  tp::motors::Bgm2606_90t, tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12, \
+      tp::motors::Bgm5208_200_12::AsProgrammed, motors_under_test::Servo,                     \
+      motors_under_test::ServoWithWinding
 
 TEMPLATE_TEST_CASE("until the first step the power is the least there is", "", EVERY_MOTOR) {
   const Axis<TestType> axis(config<TestType>());
@@ -72,9 +73,9 @@ TEMPLATE_TEST_CASE("the estimate is the motor's models at the power of the step 
   }
 }
 
-TEMPLATE_TEST_CASE("a motor that is driven without end stays below its limit", "[law]", tp::motors::Bgm2606_90t,
-                   tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12, motors_under_test::Servo,
-                   motors_under_test::ServoWithWinding) {
+TEMPLATE_TEST_CASE("a motor that is driven without end stays below its limit", "[law]",
+                   tp::motors::Bgm2606_90t, tp::motors::Bgm2606_90t::AsProgrammed, tp::motors::Bgm5208_200_12,
+                   motors_under_test::Servo, motors_under_test::ServoWithWinding) {
   Axis<TestType> axis(config<TestType>());
   float hottest_C = 0.0f;
   bool was_limited = false;
@@ -89,11 +90,13 @@ TEMPLATE_TEST_CASE("a motor that is driven without end stays below its limit", "
 }
 
 TEST_CASE("as programmed, the 5208's estimate never comes near the limit it is to keep", "[law]") {
-  Axis<tp::motors::Bgm5208_200_12::AsProgrammed> programmed(config<tp::motors::Bgm5208_200_12::AsProgrammed>());
+  Axis<tp::motors::Bgm5208_200_12::AsProgrammed> programmed(
+      config<tp::motors::Bgm5208_200_12::AsProgrammed>());
   const tp::CurrentModel<tp::ThesisCurrent<float> > current(tp::motors::Bgm5208_200_12::current());
   tp::motors::Bgm5208_200_12::Thermal motor(tp::motors::Bgm5208_200_12::thermal(), 25.0f);
   for (int i = 0; i < 60 * 60 * 33; ++i) {
-    const float power = static_cast<float>(programmed.step(inputs<tp::motors::Bgm5208_200_12::AsProgrammed>(30.0f), 0.03f).power);
+    const float power = static_cast<float>(
+        programmed.step(inputs<tp::motors::Bgm5208_200_12::AsProgrammed>(30.0f), 0.03f).power);
     const auto drawn = current.at_power(power, 13.0f, motor.hottest_C());
     motor.step({drawn.winding_power_W, drawn.v_rms_V, {25.0f, 0.0f}}, 0.03f);
   }
@@ -113,12 +116,14 @@ TEMPLATE_TEST_CASE("what cannot be true gives the least power and its reason", "
     cases.push_back({inputs<TestType>(bad), 0.03f, LimitReason::error_not_finite});
   for (const float bad : {nan_, infinite, -infinite})
     cases.push_back({inputs<TestType>(3.0f, bad), 0.03f, LimitReason::supply_not_finite});
-  for (const float bad : {-0.001f, -13.0f}) cases.push_back({inputs<TestType>(3.0f, bad), 0.03f, LimitReason::supply_low});
+  for (const float bad : {-0.001f, -13.0f})
+    cases.push_back({inputs<TestType>(3.0f, bad), 0.03f, LimitReason::supply_low});
   for (const float bad : {nan_, infinite, -infinite, -101.0f, 201.0f, -1e30f, 1e30f})
     cases.push_back({inputs<TestType>(3.0f, 13.0f, bad), 0.03f, LimitReason::air_implausible});
   for (const float bad : {nan_, infinite, -infinite, -0.03f})
     cases.push_back({inputs<TestType>(3.0f), bad, LimitReason::time_invalid});
-  for (const LimitReason fault : {LimitReason::link_silent, LimitReason::supply_low, LimitReason::no_telemetry_yet})
+  for (const LimitReason fault :
+       {LimitReason::link_silent, LimitReason::supply_low, LimitReason::no_telemetry_yet})
     cases.push_back({inputs<TestType>(3.0f, 13.0f, 25.0f, fault), 0.03f, fault});
 
   for (const Case& bad : cases) {
@@ -127,7 +132,8 @@ TEMPLATE_TEST_CASE("what cannot be true gives the least power and its reason", "
     REQUIRE(axis.state().power > 200);
     const float before_C = axis.state().motor_C;
     const auto& state = axis.step(bad.inputs, bad.dt_s);
-    CAPTURE(static_cast<int>(bad.reason), bad.inputs.error_deg, bad.inputs.supply_V, bad.inputs.air_C, bad.dt_s);
+    CAPTURE(static_cast<int>(bad.reason), bad.inputs.error_deg, bad.inputs.supply_V, bad.inputs.air_C,
+            bad.dt_s);
     CHECK(state.power == tp::least_power());
     CHECK(state.reason == bad.reason);
     CHECK(tp::is_fault(state.reason));
@@ -141,8 +147,9 @@ TEMPLATE_TEST_CASE("what cannot be true gives the least power and its reason", "
   }
 }
 
-TEMPLATE_TEST_CASE("a fault in the first step keeps the least power, and the motor unstarted only without air", "[bad input]",
-                   EVERY_MOTOR) {
+TEMPLATE_TEST_CASE(
+    "a fault in the first step keeps the least power, and the motor unstarted only without air",
+    "[bad input]", EVERY_MOTOR) {
   Axis<TestType> no_air(config<TestType>()), no_error(config<TestType>());
   CHECK(no_air.step(inputs<TestType>(3.0f, 13.0f, nan_), 0.03f).reason == LimitReason::air_implausible);
   CHECK(std::isnan(no_air.state().motor_C));
@@ -152,7 +159,8 @@ TEMPLATE_TEST_CASE("a fault in the first step keeps the least power, and the mot
   CHECK(no_error.state().motor_C == Near(25.0).margin(0.01));
 }
 
-TEMPLATE_TEST_CASE("through a fault the motor's temperature goes on with the last air that was known", "", EVERY_MOTOR) {
+TEMPLATE_TEST_CASE("through a fault the motor's temperature goes on with the last air that was known", "",
+                   EVERY_MOTOR) {
   Axis<TestType> healthy(config<TestType>()), deaf(config<TestType>());
   for (int i = 0; i < 6000; ++i) {
     healthy.step(inputs<TestType>(3.0f), 0.03f);
@@ -215,8 +223,8 @@ TEST_CASE("a start temperature that is known replaces the air's") {
   CHECK(axis.state().motor_C == 25.0f);
 }
 
-TEMPLATE_TEST_CASE("no bit pattern in any input gives more than the demand, and every fault gives the least", "[bad input]",
-                   EVERY_MOTOR) {
+TEMPLATE_TEST_CASE("no bit pattern in any input gives more than the demand, and every fault gives the least",
+                   "[bad input]", EVERY_MOTOR) {
   std::mt19937 random(9);
   const auto any_float = [&random](float usual) {
     if (random() % 3 != 0) return usual;
@@ -230,8 +238,9 @@ TEMPLATE_TEST_CASE("no bit pattern in any input gives more than the demand, and 
     const auto given = inputs<TestType>(any_float(3.0f), any_float(13.0f), any_float(25.0f));
     const float dt_s = any_float(0.03f);
     const auto& state = axis.step(given, dt_s);
-    const bool is_good = std::abs(given.error_deg) < 1e6f && given.supply_V >= 0.0f && std::isfinite(given.supply_V) &&
-                         given.air_C >= -100.0f && given.air_C <= 200.0f && dt_s >= 0.0f && std::isfinite(dt_s);
+    const bool is_good = std::abs(given.error_deg) < 1e6f && given.supply_V >= 0.0f &&
+                         std::isfinite(given.supply_V) && given.air_C >= -100.0f && given.air_C <= 200.0f &&
+                         dt_s >= 0.0f && std::isfinite(dt_s);
     REQUIRE(state.power <= std::max(state.demand, tp::least_power()));
     if (!is_good) REQUIRE(state.power <= tp::least_power());
     if (!is_good) REQUIRE(tp::is_fault(state.reason));

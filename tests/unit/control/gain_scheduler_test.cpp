@@ -24,11 +24,13 @@ TEST_CASE("truncated as programmed, the gains are 22, 172 and 36 at power 25 and
 }
 
 TEST_CASE("eq 4.27 holds at every power: to the nearest count, or cut") {
-  for (const tp::GainConfig& config : {roll, pitch, yaw, tp::GainConfig{0.0f, 255.0f}, tp::GainConfig{255.0f, 0.0f}}) {
+  for (const tp::GainConfig& config :
+       {roll, pitch, yaw, tp::GainConfig{0.0f, 255.0f}, tp::GainConfig{255.0f, 0.0f}}) {
     const tp::GainScheduler<> rounded(config);
     const tp::GainScheduler<tp::TruncatedGain> cut(config);
     for (int power = 0; power <= 255; ++power) {
-      const double low = static_cast<double>(config.gain_low_power), high = static_cast<double>(config.gain_high_power);
+      const double low = static_cast<double>(config.gain_low_power),
+                   high = static_cast<double>(config.gain_high_power);
       const double exact = low - power / 255.0 * (low - high);
       CAPTURE(power, exact);
       REQUIRE(std::abs(rounded.step(static_cast<uint8_t>(power)) - exact) <= 0.5001);
@@ -69,7 +71,8 @@ TEMPLATE_TEST_CASE("a gain table is interpolated to the nearest count", "", Seve
   for (int power = 0; power <= 255; ++power) {
     const double position = power / 255.0 * (TestType::size() - 1);
     const int index = std::min(static_cast<int>(position), TestType::size() - 2);
-    const double exact = TestType::gains()[index] + (position - index) * (TestType::gains()[index + 1] - TestType::gains()[index]);
+    const double exact = TestType::gains()[index] +
+                         (position - index) * (TestType::gains()[index + 1] - TestType::gains()[index]);
     CAPTURE(power, exact);
     REQUIRE(std::abs(gain.step(static_cast<uint8_t>(power)) - exact) <= 0.5001);
   }
@@ -81,7 +84,8 @@ TEST_CASE("an actuator without a gain gets none") {
 }
 
 TEST_CASE("a gain that was not set, or is no gain, is refused by name, and is 0 until it is mended") {
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   CHECK(tp::GainScheduler<>().validate() == tp::ConfigError::gain_low_power);
   CHECK(tp::GainScheduler<>().step(100) == 0);
   for (const float bad : {nan, infinity, -infinity, -1.0f, 256.0f}) {

@@ -19,12 +19,16 @@ typedef tp::AxisController<tp::motors::Bgm2606_90t> Small;
 typedef tp::AxisController<tp::motors::Bgm5208_200_12> Large;
 typedef tp::GimbalController<Small, Small, Large> Gimbal;
 
-const Small::Config roll = Small::Config::with_gain({24.0f, 4.0f}), pitch = Small::Config::with_gain({180.0f, 105.0f});
+const Small::Config roll = Small::Config::with_gain({24.0f, 4.0f}),
+                    pitch = Small::Config::with_gain({180.0f, 105.0f});
 const Large::Config yaw = Large::Config::with_gain({40.0f, 2.0f});
 
-Gimbal gimbal(const tp::GimbalConfig& config = tp::GimbalConfig::standard()) { return Gimbal(config, roll, pitch, yaw); }
+Gimbal gimbal(const tp::GimbalConfig& config = tp::GimbalConfig::standard()) {
+  return Gimbal(config, roll, pitch, yaw);
+}
 
-Gimbal::Inputs inputs(float error_deg, float supply_V = 12.6f, float camera_C = 26.0f, float frame_C = 24.0f) {
+Gimbal::Inputs inputs(float error_deg, float supply_V = 12.6f, float camera_C = 26.0f,
+                      float frame_C = 24.0f) {
   return {{error_deg, error_deg, error_deg}, camera_C, frame_C, supply_V};
 }
 
@@ -59,7 +63,8 @@ TEST_CASE("a gimbal is its axes, each with its own motor, error and gain") {
 TEST_CASE("before the first telemetry the power is the least, however long that takes") {
   Gimbal three = gimbal();
   check_all(three.state().command, tp::least_power(), LimitReason::no_telemetry_yet);
-  for (int i = 0; i < 100; ++i) check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::no_telemetry_yet);
+  for (int i = 0; i < 100; ++i)
+    check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::no_telemetry_yet);
   check_all(three.step(inputs(0.5f), 0.03f), 2, LimitReason::recovering);
   for (int i = 0; i < 200; ++i) three.step(inputs(0.5f), 0.03f);
   check_all(three.state().command, 125, LimitReason::none);
@@ -105,7 +110,8 @@ TEST_CASE("an empty battery gives the least power, and a silent cycle after it d
   Gimbal three = gimbal();
   for (int i = 0; i < 10; ++i) three.step(inputs(0.5f), 0.03f);
   check_all(three.step(inputs(0.5f, 2.9f), 0.03f), tp::least_power(), LimitReason::supply_low);
-  for (int i = 0; i < 10; ++i) check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::supply_low);
+  for (int i = 0; i < 10; ++i)
+    check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::supply_low);
   check_all(three.step(inputs(0.5f, nan_), 0.03f), tp::least_power(), LimitReason::supply_not_finite);
   check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::supply_not_finite);
   CHECK(three.step(inputs(0.5f), 0.03f).reason[0] == LimitReason::recovering);
@@ -118,7 +124,8 @@ TEST_CASE("without a frame IMU the camera's thermometer counts; without both, th
   three.step(inputs(0.5f, 12.6f, 26.0f, 0.0f), 0.03f);
   CHECK(three.state().air_C == 26.0f);
   check_all(three.state().command, 125, LimitReason::none);
-  check_all(three.step(inputs(0.5f, 12.6f, nan_, nan_), 0.03f), tp::least_power(), LimitReason::air_implausible);
+  check_all(three.step(inputs(0.5f, 12.6f, nan_, nan_), 0.03f), tp::least_power(),
+            LimitReason::air_implausible);
   CHECK(three.state().air_source == tp::AirSource::neither);
   check_all(three.step_silent(0.03f), tp::least_power(), LimitReason::air_implausible);
 }
@@ -159,10 +166,12 @@ TEST_CASE("a wrong constant of the gimbal is refused by name") {
     return config.validate();
   };
   CHECK(tp::GimbalConfig::standard().validate() == ConfigError::none);
-  for (const float bad : {nan_, infinite, -infinite, 0.0f, -13.0f}) CHECK(error(bad, 3.0f, 0.5f) == ConfigError::supply_V);
+  for (const float bad : {nan_, infinite, -infinite, 0.0f, -13.0f})
+    CHECK(error(bad, 3.0f, 0.5f) == ConfigError::supply_V);
   for (const float bad : {nan_, infinite, -infinite, -1.0f, 13.0f, 14.0f})
     CHECK(error(13.0f, bad, 0.5f) == ConfigError::minimum_supply_V);
-  for (const float bad : {nan_, infinite, -infinite, 0.0f, -1.0f}) CHECK(error(13.0f, 3.0f, bad) == ConfigError::timeout_s);
+  for (const float bad : {nan_, infinite, -infinite, 0.0f, -1.0f})
+    CHECK(error(13.0f, 3.0f, bad) == ConfigError::timeout_s);
   tp::GimbalConfig air = tp::GimbalConfig::standard();
   air.air.maximum_difference_K = 0.0f;
   CHECK(air.validate() == ConfigError::maximum_difference_K);

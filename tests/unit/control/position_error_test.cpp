@@ -21,13 +21,15 @@ TEST_CASE("an angle is folded by whole turns to -180 .. 180 degrees") {
   CHECK(std::abs(tp::wrap_deg(540.0f)) == 180.0f);
 }
 
-TEST_CASE("every angle up to a million degrees folds into the range, and is whole turns away from where it was") {
+TEST_CASE(
+    "every angle up to a million degrees folds into the range, and is whole turns away from where it was") {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> exponent(-3.0f, 6.0f);
   for (int i = 0; i < 2000000; ++i) {
     float angle = std::pow(10.0f, exponent(random));
     if (i % 2 == 1) angle = -angle;
-    if (i % 3 == 0) angle = std::round(angle / 180.0f) * 180.0f;  // the edges, where rounding could choose the wrong turn
+    if (i % 3 == 0)
+      angle = std::round(angle / 180.0f) * 180.0f;  // the edges, where rounding could choose the wrong turn
     const float folded = tp::wrap_deg(angle);
     if (std::abs(angle) >= 1.0e6f) continue;
     const double turns = (static_cast<double>(angle) - static_cast<double>(folded)) / 360.0;
@@ -66,15 +68,16 @@ TEST_CASE("in the board's units every pair of angles gives the short way round")
   for (int target = -32768; target <= 32767; target += 37)
     for (int measured = -32768; measured <= 32767; measured += 41) check(target, measured);
   for (int target = -32768; target <= 32767; ++target)
-    for (const int measured : {-32768, -16384, -8192, -1, 0, 1, 8191, 8192, 16383, 32767}) check(target, measured);
+    for (const int measured : {-32768, -16384, -8192, -1, 0, 1, 8191, 8192, 16383, 32767})
+      check(target, measured);
   SUCCEED();
 }
 
 TEST_CASE("units and degrees agree about the size of every error") {
   for (int target = -16384; target <= 16384; target += 13) {
     for (int measured = -8192; measured <= 8191; measured += 101) {
-      const float from_units =
-          tp::deg_from_units(tp::position_error_units(static_cast<int16_t>(target), static_cast<int16_t>(measured)));
+      const float from_units = tp::deg_from_units(
+          tp::position_error_units(static_cast<int16_t>(target), static_cast<int16_t>(measured)));
       const float from_deg = tp::position_error_deg(tp::deg_from_units(static_cast<int16_t>(target)),
                                                     tp::deg_from_units(static_cast<int16_t>(measured)));
       // At exactly half a turn both signs are right.
@@ -89,7 +92,8 @@ TEST_CASE("the size of the error is the original's, program lines 188 and 189") 
   std::mt19937 random(6);
   std::uniform_int_distribution<int> angle(-32768, 32767);
   for (int i = 0; i < 200000; ++i) {
-    const int16_t target = static_cast<int16_t>(angle(random)), measured = static_cast<int16_t>(angle(random));
+    const int16_t target = static_cast<int16_t>(angle(random)),
+                  measured = static_cast<int16_t>(angle(random));
     float e = std::abs((static_cast<float>(target) - static_cast<float>(measured)) / 45.5111f);
     while (e > 180.0f) e = std::abs(e - 360.0f);
     const float ours = std::abs(tp::deg_from_units(tp::position_error_units(target, measured)));

@@ -92,8 +92,8 @@ TEST_CASE("the continuous rule is proportional between one level and ten") {
   }
 }
 
-TEMPLATE_TEST_CASE("a larger error never asks for less power, and both signs ask for the same", "[law]", tp::ProgrammedLevels,
-                   tp::PrintedLevels, tp::HysteresisLevels, tp::ContinuousPower) {
+TEMPLATE_TEST_CASE("a larger error never asks for less power, and both signs ask for the same", "[law]",
+                   tp::ProgrammedLevels, tp::PrintedLevels, tp::HysteresisLevels, tp::ContinuousPower) {
   tp::StepPowerLaw<TestType> law, mirrored;
   int last = 0;
   for (float error_deg = 0.0f; error_deg < 200.0f; error_deg += error_deg < 2.0f ? 0.001f : 0.5f) {
@@ -106,8 +106,8 @@ TEMPLATE_TEST_CASE("a larger error never asks for less power, and both signs ask
   }
 }
 
-TEMPLATE_TEST_CASE("an error that is no number asks for the least power", "[bad input]", tp::ProgrammedLevels, tp::PrintedLevels,
-                   tp::HysteresisLevels, tp::ContinuousPower) {
+TEMPLATE_TEST_CASE("an error that is no number asks for the least power", "[bad input]", tp::ProgrammedLevels,
+                   tp::PrintedLevels, tp::HysteresisLevels, tp::ContinuousPower) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity()}) {
     tp::StepPowerLaw<TestType> law;
@@ -116,8 +116,8 @@ TEMPLATE_TEST_CASE("an error that is no number asks for the least power", "[bad 
   }
 }
 
-TEMPLATE_TEST_CASE("a refused configuration asks for no more than the first level", "[bad input]", tp::ProgrammedLevels,
-                   tp::PrintedLevels, tp::HysteresisLevels, tp::ContinuousPower) {
+TEMPLATE_TEST_CASE("a refused configuration asks for no more than the first level", "[bad input]",
+                   tp::ProgrammedLevels, tp::PrintedLevels, tp::HysteresisLevels, tp::ContinuousPower) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const float bad : {nan, -1.0f, -std::numeric_limits<float>::infinity()}) {
     tp::StepPowerLaw<TestType> law(tp::StepPowerConfig{bad, 25, 0.025f});
@@ -127,7 +127,8 @@ TEMPLATE_TEST_CASE("a refused configuration asks for no more than the first leve
 }
 
 TEST_CASE("a wrong constant of the power law is refused by name") {
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   const auto error = [](float full, int step, float hysteresis) {
     return tp::StepPowerConfig{full, static_cast<uint8_t>(step), hysteresis}.validate();
   };
@@ -135,7 +136,8 @@ TEST_CASE("a wrong constant of the power law is refused by name") {
   for (const float bad : {nan, infinity, -infinity, 0.0f, -1.0f})
     CHECK(error(bad, 25, 0.0f) == tp::ConfigError::full_power_error_deg);
   for (const int bad : {0, 26, 255}) CHECK(error(1.0f, bad, 0.0f) == tp::ConfigError::power_step);
-  for (const float bad : {nan, infinity, -1.0f}) CHECK(error(1.0f, 25, bad) == tp::ConfigError::hysteresis_deg);
+  for (const float bad : {nan, infinity, -1.0f})
+    CHECK(error(1.0f, 25, bad) == tp::ConfigError::hysteresis_deg);
   CHECK(error(nan, 0, nan) == tp::ConfigError::full_power_error_deg);
   CHECK(error(1.0f, 0, nan) == tp::ConfigError::power_step);
 }

@@ -65,7 +65,8 @@ TEST_CASE("at the limit and at the safety temperature itself the actuator is sti
 
 TEMPLATE_TEST_CASE("a hotter history never gets more power", "[law]", tp::PerCycle, tp::PerSecond) {
   std::mt19937 random(2);
-  std::uniform_real_distribution<float> temperature(30.0f, 62.0f), warmer(0.0f, 4.0f), rate(-0.3f, 0.6f), step_s(0.0f, 0.2f);
+  std::uniform_real_distribution<float> temperature(30.0f, 62.0f), warmer(0.0f, 4.0f), rate(-0.3f, 0.6f),
+      step_s(0.0f, 0.2f);
   std::uniform_int_distribution<int> demand(1, 255);
   for (int history = 0; history < 300; ++history) {
     tp::SafetyLimiter<TestType> cool, hot;
@@ -132,7 +133,8 @@ TEST_CASE("at the thesis's 30 ms both rules decide the same, to one count") {
   }
 }
 
-TEMPLATE_TEST_CASE("what is no temperature, rate or time cuts the power and says so", "[bad input]", tp::PerCycle, tp::PerSecond) {
+TEMPLATE_TEST_CASE("what is no temperature, rate or time cuts the power and says so", "[bad input]",
+                   tp::PerCycle, tp::PerSecond) {
   for (const float bad : {nan_, infinite, -infinite, -300.0f}) {
     tp::SafetyLimiter<TestType> limiter;
     const auto granted = limiter.step({200, bad, 0.0f}, 0.03f);
@@ -167,7 +169,8 @@ TEMPLATE_TEST_CASE("after a cut the power returns gradually", "", tp::PerCycle, 
   CHECK(cycles < 260);
 }
 
-TEMPLATE_TEST_CASE("nobody gets more than was asked for, not even the least power", "", tp::PerCycle, tp::PerSecond) {
+TEMPLATE_TEST_CASE("nobody gets more than was asked for, not even the least power", "", tp::PerCycle,
+                   tp::PerSecond) {
   tp::SafetyLimiter<TestType> limiter;
   CHECK(limiter.step({0, 30.0f, 0.0f}, 0.03f).power == 0);
   CHECK(limiter.step({0, 30.0f, 0.0f}, 0.03f).reason == LimitReason::none);
@@ -192,7 +195,8 @@ TEST_CASE("a wrong constant of the limiter is refused by name") {
     return tp::SafetyLimiter<>(tp::SafetyLimiterConfig{maximum_C, safety_time_s, rate_per_s}).validate();
   };
   CHECK(error(60.0f, 30.0f, 33.0f) == ConfigError::none);
-  for (const float bad : {nan_, infinite, -infinite, -1.0f, 201.0f}) CHECK(error(bad, 30.0f, 33.0f) == ConfigError::maximum_C);
+  for (const float bad : {nan_, infinite, -infinite, -1.0f, 201.0f})
+    CHECK(error(bad, 30.0f, 33.0f) == ConfigError::maximum_C);
   for (const float bad : {nan_, infinite, -1.0f, 0.0f}) {
     CHECK(error(60.0f, bad, 33.0f) == ConfigError::safety_time_s);
     CHECK(error(60.0f, 30.0f, bad) == ConfigError::rate_per_s);

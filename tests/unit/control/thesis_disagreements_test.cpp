@@ -6,8 +6,8 @@
 
 #include "../actuator/thesis.hpp"
 
-// Where the thesis's text, its tables and its program disagree, one test each. docs/explain/differences-from-the-thesis.md has the
-// same numbers.
+// Where the thesis's text, its tables and its program disagree, one test each.
+// docs/explain/differences-from-the-thesis.md has the same numbers.
 
 namespace tp = thermopower;
 using namespace thesis;
@@ -15,7 +15,8 @@ using Small = tp::motors::Bgm2606_90t;
 using Large = tp::motors::Bgm5208_200_12;
 
 namespace {
-/// Root mean square of model less measurement over every point of Table 4.1 or 4.2, relative to the largest current in it.
+/// Root mean square of model less measurement over every point of Table 4.1 or 4.2, relative to the largest
+/// current in it.
 template <class Law>
 double relative_current_error(const Law& law, const std::string& number) {
   double sum = 0.0, largest_mA = 0.0;
@@ -46,11 +47,13 @@ TEST_CASE("disagreement 2: eq 4.4 prints a plus where program and measurement ha
 }
 
 TEST_CASE("disagreement 3: eq 4.18 multiplies the voltage, the program multiplies the temperature") {
-  const auto printed = Large::AsPrinted::heating_law<double>(), programmed = Large::AsProgrammed::heating_law<double>();
+  const auto printed = Large::AsPrinted::heating_law<double>(),
+             programmed = Large::AsProgrammed::heating_law<double>();
   CHECK(printed.apparent_capacity_J_per_K(10.0, 40.0) == Near(60.0 * (0.2435 * 10.0 - 0.4952)));
   CHECK(programmed.apparent_capacity_J_per_K(10.0, 40.0) == Near(60.0 * (0.2435 * 40.0 - 0.4952)));
   // So the program believes the motor three to five times as heavy as it is.
-  const double ratio = programmed.apparent_capacity_J_per_K(9.97, 30.0) / printed.apparent_capacity_J_per_K(9.97, 30.0);
+  const double ratio =
+      programmed.apparent_capacity_J_per_K(9.97, 30.0) / printed.apparent_capacity_J_per_K(9.97, 30.0);
   CHECK(ratio > 3.0);
   CHECK(ratio < 5.0);
 }
@@ -59,7 +62,8 @@ TEST_CASE("disagreement 4: k is per minute, not per second") {
   CHECK(Small::cooling_law<double>().cooling_per_s == Near(0.11 / 60.0));
   CHECK(Large::cooling_law<double>().cooling_per_s == Near(0.05 / 60.0));
   // Table 4.3: after a minute 31.3 of 36.8 K are left. At 0.11 per second it would be 0.05 K.
-  tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::RateCooling<double>> as_printed({{1.0}, {0.11}}, 61.8);
+  tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::RateCooling<double>> as_printed({{1.0}, {0.11}},
+                                                                                        61.8);
   as_printed.step({0.0, 0.0, {25.0, 0.0}}, 60.0);
   const Table source = table("4_3");
   CHECK(source.number(1, "T_motor_C") - as_printed.hottest_C() > 30.0);
@@ -99,12 +103,14 @@ TEST_CASE("disagreement 7: the 12.9 V row of Table 4.9 holds only with the first
   CHECK(std::abs(without_first[0] - 0.2296) < 1e-4);
 }
 
-TEST_CASE("disagreement 8: rounding the slope of eq 4.16 to one digit costs 1.4, 2.6 and 4.1 K in three minutes") {
+TEST_CASE(
+    "disagreement 8: rounding the slope of eq 4.16 to one digit costs 1.4, 2.6 and 4.1 K in three minutes") {
   auto unrounded = Small::AsProgrammed::heating_law<double>();
   unrounded.slope_V1_J_per_K2 = Small::heating_law<double>().slope_V1_J_per_K2;
   const auto cooling = Small::AsProgrammed::cooling_law<double>();
   const auto current = Small::AsProgrammed::current_law<double>();
-  for (const auto& [power_param, cost_K] : {std::pair(150.0, 1.4), std::pair(200.0, 2.6), std::pair(250.0, 4.1)}) {
+  for (const auto& [power_param, cost_K] :
+       {std::pair(150.0, 1.4), std::pair(200.0, 2.6), std::pair(250.0, 4.1)}) {
     const double rounded_C = heat<Small::AsProgrammed>(power_param, 30.0, 26.0, 3)[3];
     const double unrounded_C = heat(unrounded, cooling, current, power_param, 30.0, 26.0, 3)[3];
     CAPTURE(power_param);
@@ -122,7 +128,8 @@ TEST_CASE("disagreement 9: V_rms I and the power at the supply are different pow
   CHECK(supply.average_W() == Near(1.837).margin(0.001));
 }
 
-TEST_CASE("disagreement 10: eq 4.22 allows 0 and is capped at 255, the program has ten levels from 25 to 250") {
+TEST_CASE(
+    "disagreement 10: eq 4.22 allows 0 and is capped at 255, the program has ten levels from 25 to 250") {
   tp::StepPowerLaw<tp::PrintedLevels> printed;
   tp::StepPowerLaw<tp::ProgrammedLevels> programmed;
   CHECK(printed.step(0.05f) == tp::least_power());  // 0 is not valid on the board
@@ -143,14 +150,18 @@ TEST_CASE("disagreement 11: eq 4.27 is linear, the program cuts it to a whole co
   CHECK(tp::RoundedGain::gain(250, yaw) == 3);
 }
 
-TEST_CASE("disagreement 12: sixteen bits of microseconds lose what a slow cycle took; here time is an argument") {
-  // What program line 141 keeps of a cycle of 70 ms, and of one that crosses the wrap on a machine with 32-bit integers.
+TEST_CASE(
+    "disagreement 12: sixteen bits of microseconds lose what a slow cycle took; here time is an argument") {
+  // What program line 141 keeps of a cycle of 70 ms, and of one that crosses the wrap on a machine with
+  // 32-bit integers.
   const uint32_t before_us = 1000, after_us = 71000;
-  const uint16_t kept = static_cast<uint16_t>(static_cast<uint16_t>(after_us) - static_cast<uint16_t>(before_us));
+  const uint16_t kept =
+      static_cast<uint16_t>(static_cast<uint16_t>(after_us) - static_cast<uint16_t>(before_us));
   CHECK(kept == 4464);
   CHECK(static_cast<int32_t>(static_cast<uint16_t>(after_us)) - static_cast<int32_t>(uint16_t(60000)) < 0);
   // Ours heats for as long as the cycle took: one of 70 ms equals seven of 10 ms.
-  tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::NewtonCooling<double>> whole({{18.0}, {0.05}}, 25.0), parts = whole;
+  tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::NewtonCooling<double>> whole({{18.0}, {0.05}}, 25.0),
+      parts = whole;
   whole.step({5.0, 10.0, {25.0, 0.0}}, 0.07);
   for (int i = 0; i < 7; ++i) parts.step({5.0, 10.0, {25.0, 0.0}}, 0.01);
   CHECK(whole.hottest_C() == Near(parts.hottest_C()).epsilon(1e-14));
@@ -164,14 +175,18 @@ TEST_CASE("disagreement 13: at or below one volt the program has neither current
   CHECK(Small::AsProgrammed::heating_law<double>().rise_K_per_J(5.76, 40.0) > 0.0);
 }
 
-TEST_CASE("disagreement 14: the first cycle starts at air temperature, and its length is whatever the caller says") {
+TEST_CASE(
+    "disagreement 14: the first cycle starts at air temperature, and its length is whatever the caller "
+    "says") {
   using Axis = tp::AxisController<Small::AsProgrammed>;
   Axis axis(Axis::Config::with_gain({24.0f, 4.0f}));
   CHECK(axis.step({0.1f, 13.0f, 27.0f, tp::LimitReason::none}, 0.0f).motor_C == 27.0f);
   CHECK(axis.state().rate_K_per_s == 0.0f);
 }
 
-TEST_CASE("disagreement 15: a limiter that moves by one per cycle depends on the loop rate; per second it does not") {
+TEST_CASE(
+    "disagreement 15: a limiter that moves by one per cycle depends on the loop rate; per second it does "
+    "not") {
   const auto seconds_to_half = [](auto limiter, float dt_s) {
     float time_s = 0.0f;
     for (; limiter.ceiling() > 128; time_s += dt_s) limiter.step({255, 55.0f, 0.5f}, dt_s);

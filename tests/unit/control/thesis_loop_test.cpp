@@ -12,7 +12,8 @@ using tp::LimitReason;
 
 namespace {
 template <class Motor, class Rule>
-using ThesisAxis = tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<Rule>, tp::GainScheduler<tp::TruncatedGain>>;
+using ThesisAxis = tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<Rule>,
+                                      tp::GainScheduler<tp::TruncatedGain>>;
 
 /// Temperatures each minute of an axis that asks for one power level all the time, limited as in section 4.2.
 template <class Motor, class Rule>
@@ -35,7 +36,8 @@ std::vector<double> protect(int power_param, double start_C, double dt_s, double
 
 TEST_CASE("Table 5.4: the protected BGM2606 warms as calculated, in a closed loop of 30 ms cycles") {
   const Table source = table("5_4");
-  for (const auto& [power_param, tolerance_K] : {std::pair(150, 0.3), std::pair(200, 0.1), std::pair(250, 0.1)}) {
+  for (const auto& [power_param, tolerance_K] :
+       {std::pair(150, 0.3), std::pair(200, 0.1), std::pair(250, 0.1)}) {
     std::vector<double> calculated, measured;
     for (size_t i = 0; i < source.rows(); ++i) {
       if (static_cast<int>(source.number(i, "power_param")) != power_param) continue;
@@ -43,7 +45,8 @@ TEST_CASE("Table 5.4: the protected BGM2606 warms as calculated, in a closed loo
       measured.push_back(source.number(i, "T_measured_C"));
     }
     REQUIRE(calculated.size() == 6);
-    const auto model = protect<tp::motors::Bgm2606_90t::AsProgrammed, tp::PerCycle>(power_param, calculated[0], 0.03);
+    const auto model =
+        protect<tp::motors::Bgm2606_90t::AsProgrammed, tp::PerCycle>(power_param, calculated[0], 0.03);
     for (size_t minute = 3; minute <= 5; ++minute) {
       CAPTURE(power_param, minute, model[minute]);
       // The printed figure is rounded to 0.1, so that much again cannot be told apart.
@@ -79,8 +82,10 @@ TEST_CASE("like for like, the published savings of 22.2 and 61.1 % are other fig
   CHECK(tp::saving_percent(fixed, roll) == Near(-29.0).margin(0.5));
   CHECK(tp::saving_percent(fixed, pitch) == Near(36.0).margin(0.5));
 
-  // At the supply both times, if the dynamic runs alternated between power 25 and 250 (the logs are not in the text).
-  const double low_V = tp::v_rms_from_power(13.0, 25.0), high_V = tp::v_rms_from_power(13.0, 250.0), motor_C = 26.0;
+  // At the supply both times, if the dynamic runs alternated between power 25 and 250 (the logs are not in
+  // the text).
+  const double low_V = tp::v_rms_from_power(13.0, 25.0), high_V = tp::v_rms_from_power(13.0, 250.0),
+               motor_C = 26.0;
   const double low_A = law.current_A(low_V, motor_C), high_A = law.current_A(high_V, motor_C);
   for (const auto& [winding_W, saving] : {std::pair(1.4, 16.0), std::pair(0.7, 54.0)}) {
     const double share = (winding_W - low_V * low_A) / (high_V * high_A - low_V * low_A);
