@@ -21,7 +21,9 @@ struct SignalSums {
   std::array<double, signal_count> samples{};
 
   /// Mean square of a signal; 0 without samples.
-  double mean(std::size_t signal) const { return samples[signal] > 0.0 ? squares[signal] / samples[signal] : 0.0; }
+  double mean(std::size_t signal) const {
+    return samples[signal] > 0.0 ? squares[signal] / samples[signal] : 0.0;
+  }
 };
 
 /// An explanation with its fit and what speaks for it.
@@ -30,13 +32,13 @@ struct Candidate {
   std::vector<Coordinate> list;
   FitResult fit;
   SignalSums train, held_out;
-  double deviance = 0.0;     ///< twice the negative log evidence, without the shared constant
+  double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
   double probability = 0.0;
   bool fitted = false;
 };
 
-/// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the result
-/// does not depend on how many there are.
+/// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
+/// result does not depend on how many there are.
 template <class Work>
 void in_parallel(std::size_t count, unsigned threads, Work&& work) {
   if (threads <= 1 || count <= 1) {
@@ -59,7 +61,8 @@ public:
       : problem_(problem), slack_(slack), threads_(threads) {}
 
   /// Fits one explanation from all its starts; `near` is a fit of part of it to begin from.
-  Candidate fit(const Explanation& explanation, const FitOptions& options, const Candidate* near = nullptr) const {
+  Candidate fit(const Explanation& explanation, const FitOptions& options,
+                const Candidate* near = nullptr) const {
     Candidate candidate;
     candidate.explanation = explanation;
     candidate.list = coordinates(*problem_.model, explanation, slack_);
@@ -98,7 +101,8 @@ public:
   const FitProblem& problem() const { return problem_; }
 
   /// Fits many explanations.
-  std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations, const FitOptions& options) const {
+  std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
+                                 const FitOptions& options) const {
     std::vector<Candidate> candidates(explanations.size());
     in_parallel(explanations.size(), threads_,
                 [&](std::size_t i) { candidates[i] = fit(explanations[i], options); });
@@ -112,12 +116,14 @@ public:
     candidate.list = coordinates(*problem_.model, together, slack_);
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     double best = 1e300;
-    for (const Eigen::VectorXd& start : start_points(candidate, &near)) best = std::min(best, fitter.scan(start));
+    for (const Eigen::VectorXd& start : start_points(candidate, &near))
+      best = std::min(best, fitter.scan(start));
     return best;
   }
 
   /// Squared residuals of a candidate on a problem; with `starts` as given, else each segment's best.
-  static SignalSums sums(const Candidate& candidate, const FitProblem& problem, const std::vector<Start>* starts) {
+  static SignalSums sums(const Candidate& candidate, const FitProblem& problem,
+                         const std::vector<Start>* starts) {
     std::vector<Start> own;
     if (starts == nullptr) {
       own = best_starts(candidate, problem);
@@ -127,7 +133,8 @@ public:
     problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, *starts, false,
                      [&](std::size_t, const FitProblem::Residuals& residuals) {
                        for (Eigen::Index i = 0; i < residuals.value.size(); ++i) {
-                         const auto at = static_cast<std::size_t>(residuals.signal[static_cast<std::size_t>(i)]);
+                         const auto at =
+                             static_cast<std::size_t>(residuals.signal[static_cast<std::size_t>(i)]);
                          result.squares[at] += residuals.value[i] * residuals.value[i];
                          result.samples[at] += 1.0;
                        }
@@ -136,9 +143,9 @@ public:
   }
 
   /// Residuals of a candidate by signal, in units of the noise; starts as fitted.
-  static std::array<std::vector<double>, signal_count> residuals(const Candidate& candidate, const FitProblem& problem,
-                                                                 const std::vector<Start>& starts,
-                                                                 std::array<std::vector<bool>, signal_count>* gaps) {
+  static std::array<std::vector<double>, signal_count> residuals(
+      const Candidate& candidate, const FitProblem& problem, const std::vector<Start>& starts,
+      std::array<std::vector<bool>, signal_count>* gaps) {
     std::array<std::vector<double>, signal_count> result;
     problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, starts, false,
                      [&](std::size_t, const FitProblem::Residuals& one) {
@@ -179,10 +186,12 @@ private:
     std::vector<Eigen::VectorXd> points{base};
     Eigen::Index index = static_cast<Eigen::Index>(problem_.model->calibrated().size());
     for (const CatalogueEntry* entry : candidate.explanation.effects) {
-      const bool known = near != nullptr && std::find(near->explanation.effects.begin(), near->explanation.effects.end(),
-                                                      entry) != near->explanation.effects.end();
+      const bool known =
+          near != nullptr && std::find(near->explanation.effects.begin(), near->explanation.effects.end(),
+                                       entry) != near->explanation.effects.end();
       for (const Parameter& parameter : entry->info.parameters) {
-        if (!known) points = spread(points, index, parameter, candidate.list[static_cast<std::size_t>(index)]);
+        if (!known)
+          points = spread(points, index, parameter, candidate.list[static_cast<std::size_t>(index)]);
         ++index;
       }
     }
@@ -196,7 +205,8 @@ private:
       for (double start : parameter.starts) {
         Eigen::VectorXd one = point;
         if (!parameter.starts_relative_to.empty()) start *= scale_of(parameter.starts_relative_to);
-        one[index] = std::clamp(parameter.logarithmic ? std::log(start) : start, coordinate.lower, coordinate.upper);
+        one[index] =
+            std::clamp(parameter.logarithmic ? std::log(start) : start, coordinate.lower, coordinate.upper);
         wider.push_back(one);
       }
     return wider;
@@ -212,7 +222,8 @@ private:
                                       : column == "supply_V"    ? &inputs.supply_V
                                                                 : nullptr;
       if (values != nullptr && values->size() > 0)
-        largest = std::max(largest, values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
+        largest = std::max(largest,
+                           values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
     }
     return largest > 0.0 ? largest : 1.0;
   }
@@ -222,8 +233,10 @@ private:
   unsigned threads_;
 };
 
-/// Whether a recording has what an effect needs; the ids of `needs` that are no columns speak of model and inputs.
-inline bool can_be_judged(const CatalogueEntry& entry, const Model& model, const std::vector<Inputs>& recordings) {
+/// Whether a recording has what an effect needs; the ids of `needs` that are no columns speak of model and
+/// inputs.
+inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
+                          const std::vector<Inputs>& recordings) {
   bool bench = false, axis = false;
   for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
   if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;
@@ -234,11 +247,13 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model, const
       const auto judged = [&](Signal signal) { return inputs.judged(signal); };
       bool here = true;
       if (need == "current_A") here = judged(Signal::current_A);
-      else if (need == "motor_C") here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
+      else if (need == "motor_C")
+        here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
       else if (need == "power_param") here = inputs.power_param.size() > 0;
       else if (need == "airspeed_mps") here = inputs.airspeed_mps.size() > 0;
       else if (need == "neighbour_C") here = inputs.neighbour_C.size() > 0;
-      else if (need == "rate_dps") here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
+      else if (need == "rate_dps")
+        here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
       else if (need == "angle_deg") here = judged(Signal::angle_deg);
       else if (need == "no supply_V") here = inputs.supply_V.size() == 0;
       else if (need == "thermal") here = model.has_thermal() && judged(Signal::motor_C);

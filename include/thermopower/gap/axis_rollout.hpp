@@ -36,9 +36,11 @@ public:
   /// Simulates the rows [begin, end) of `run` from `state` at `begin` and hands the readings of each row to
   /// `sink(row, readings)`. Leaves the state at row `end` where the run goes on, else at its last row.
   template <class Sink>
-  void window(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state, Sink&& sink) const {
+  void window(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state,
+              Sink&& sink) const {
     const double start_s = inputs_.t_s[run.begin];
-    const double delay_s = instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
+    const double delay_s =
+        instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
     // Row whose command reaches the drive now; before its first row a run is idle.
     Eigen::Index commanded = begin;
     while (commanded >= run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
@@ -46,7 +48,8 @@ public:
       const double t_s = inputs_.t_s[row] - start_s;
       sink(row, read(t_s, Scalar(state.angle_rad * (1.0 / rad_per_deg)),
                      Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))));
-      if (row + 1 < run.end) interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run, state);
+      if (row + 1 < run.end)
+        interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run, state);
     }
   }
 
@@ -79,7 +82,8 @@ private:
     while (commanded + 1 < run.end) {
       const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
       if (!(value_of(switch_s) < to_s)) break;
-      step_.advance(state, value_of(now_s), Scalar(switch_s - now_s), torque(commanded, run, row, value_of(now_s)));
+      step_.advance(state, value_of(now_s), Scalar(switch_s - now_s),
+                    torque(commanded, run, row, value_of(now_s)));
       if (value_of(switch_s) > value_of(now_s)) now_s = switch_s;
       ++commanded;
     }

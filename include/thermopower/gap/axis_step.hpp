@@ -71,7 +71,8 @@ private:
   }
 
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
-  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction, Slope& rate) const {
+  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction,
+             Slope& rate) const {
     const bool compliant = instance_.axis_structure.compliant;
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
@@ -95,7 +96,8 @@ private:
   }
 
   /// Writes only what moves: a rigid axis has no twist.
-  void move(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s, AxisState<Scalar>& to) const {
+  void move(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s,
+            AxisState<Scalar>& to) const {
     to.angle_rad = from.angle_rad + rate.angle * h_s;
     to.rate_rad_per_s = from.rate_rad_per_s + rate.rate * h_s;
     if (instance_.axis_structure.compliant) {
@@ -105,8 +107,8 @@ private:
   }
 
   /// One Runge-Kutta step; `bend` is how far the acceleration strays from a straight line, as a rate.
-  AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s, const Scalar& drive_Nm,
-                                int direction, double& bend) const {
+  AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
+                                const Scalar& drive_Nm, int direction, double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
     Slope k1, k2, k3, k4;

@@ -38,7 +38,8 @@ public:
   /// Simulates the rows [begin, end) of a run that starts at `run_start_s`, from `state`, and hands the
   /// readings of each row to `sink(row, readings)`. Leaves the state at the last row.
   template <class Sink>
-  void run(Eigen::Index begin, Eigen::Index end, double run_start_s, BenchState<Scalar>& state, Sink&& sink) const {
+  void run(Eigen::Index begin, Eigen::Index end, double run_start_s, BenchState<Scalar>& state,
+           Sink&& sink) const {
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - run_start_s;
       const bool driven = inputs_.heat == HeatSource::law || feed_.measured_motor;
@@ -94,7 +95,8 @@ private:
     terms.rate_dps = at(inputs_.covariate_rate_dps, row);
     terms.winding_C = winding_C;
     terms.charge_Ah = charge_Ah;
-    terms.supply_V = constant<Scalar>(inputs_.supply_V.size() > 0 ? inputs_.supply_V[row] : inputs_.nominal_V);
+    terms.supply_V =
+        constant<Scalar>(inputs_.supply_V.size() > 0 ? inputs_.supply_V[row] : inputs_.nominal_V);
     const double power = std::clamp(inputs_.power_param[row], 0.0, 255.0);
     terms.duty = constant<Scalar>(duty_from_power(power));
     terms.source_ohm = terms.series_ohm = terms.counter_V = zero;
@@ -118,7 +120,8 @@ private:
       Scalar current = instance_.current_law.current_A(open_V, winding_C);
       if (value_of(outside_ohm) != 0.0 || !instance_.electrical.empty())
         for (int i = 0; i < 4; ++i)
-          current = instance_.current_law.current_A(at_least(Scalar(open_V - outside_ohm * current), 0.0), winding_C);
+          current = instance_.current_law.current_A(at_least(Scalar(open_V - outside_ohm * current), 0.0),
+                                                    winding_C);
       result.current_A = current;
       result.winding_W = (open_V - outside_ohm * current) * current;
     }
@@ -130,15 +133,15 @@ private:
   Circuit powered(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
     if (inputs_.heat == HeatSource::law && !feed_.measured_current)
       return circuit(row, t_s, state.winding_C, state.charge_Ah);
-    const double recorded = inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
+    const double recorded =
+        inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
     Circuit result;
-    if (inputs_.power_param.size() > 0)
-      result = circuit(row, t_s, state.winding_C, state.charge_Ah);
-    else
-      result.supply_V = result.v_rms_V = constant<Scalar>(inputs_.nominal_V);
+    if (inputs_.power_param.size() > 0) result = circuit(row, t_s, state.winding_C, state.charge_Ah);
+    else result.supply_V = result.v_rms_V = constant<Scalar>(inputs_.nominal_V);
     result.current_A = constant<Scalar>(recorded);
-    result.winding_W = instance_.ohmic ? Scalar(instance_.winding.resistance_at(state.winding_C) * (recorded * recorded))
-                                       : Scalar(result.v_rms_V * recorded);
+    result.winding_W = instance_.ohmic
+                           ? Scalar(instance_.winding.resistance_at(state.winding_C) * (recorded * recorded))
+                           : Scalar(result.v_rms_V * recorded);
     return result;
   }
 
@@ -172,7 +175,8 @@ private:
       rise_K_per_J = instance_.heat_capacity.rise_K_per_J(electrical.v_rms_V, state.winding_C);
       loss_W = instance_.conductance_W_per_K * terms.conductance_factor * rise_K + terms.extra_loss_W;
     } else {
-      // The law has no heat capacity below its least voltage; extra watts then use the capacity just above it.
+      // The law has no heat capacity below its least voltage; extra watts then use the capacity just above
+      // it.
       const Scalar floor_V = instance_.heating_law.minimum_V_rms + 1e-9;
       const Scalar v_V = value_of(electrical.v_rms_V) > value_of(floor_V) ? electrical.v_rms_V : floor_V;
       rise_K_per_J = instance_.heating_law.rise_K_per_J(v_V, state.winding_C);

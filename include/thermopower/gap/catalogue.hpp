@@ -48,8 +48,9 @@ public:
 template <class Effect, class Terms, class = void>
 struct HasHook : std::false_type {};
 template <class Effect, template <class> class Terms, class Scalar>
-struct HasHook<Effect, Terms<Scalar>,
-               std::void_t<decltype(Effect::act(std::declval<const Scalar*>(), std::declval<Terms<Scalar>&>()))>>
+struct HasHook<
+    Effect, Terms<Scalar>,
+    std::void_t<decltype(Effect::act(std::declval<const Scalar*>(), std::declval<Terms<Scalar>&>()))>>
     : std::true_type {};
 
 /// Forwards each type-erased hook to `Effect::act` where the effect has that overload.
@@ -84,10 +85,8 @@ struct CatalogueEntry {
   /// The hooks for a scalar.
   template <class Scalar>
   const detail::Hooks<Scalar>& of() const {
-    if constexpr (std::is_same_v<Scalar, double>)
-      return *plain;
-    else
-      return *dual;
+    if constexpr (std::is_same_v<Scalar, double>) return *plain;
+    else return *dual;
   }
 };
 

@@ -24,11 +24,16 @@ enum class Verdict {
 /// The verdict as the report spells it.
 inline const char* to_string(Verdict verdict) {
   switch (verdict) {
-    case Verdict::no_gap: return "no_gap";
-    case Verdict::explained: return "explained";
-    case Verdict::ambiguous: return "ambiguous";
-    case Verdict::unexplained: return "unexplained";
-    case Verdict::insufficient: return "insufficient";
+    case Verdict::no_gap:
+      return "no_gap";
+    case Verdict::explained:
+      return "explained";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    case Verdict::unexplained:
+      return "unexplained";
+    case Verdict::insufficient:
+      return "insufficient";
   }
   return "insufficient";
 }
@@ -48,9 +53,9 @@ struct Regime {
 
 /// Where simulation and recording part, found from residuals alone.
 struct Location {
-  std::string signal;            ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
-  std::string submodel;          ///< `electrical`, `thermal.loss`, `mechanical.friction`, `sensing.angle`, ...
-  double share = 0.0;            ///< part of that signal's excess residual, 0..1
+  std::string signal;    ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
+  std::string submodel;  ///< `electrical`, `thermal.loss`, `mechanical.friction`, `sensing.angle`, ...
+  double share = 0.0;    ///< part of that signal's excess residual, 0..1
   std::optional<Regime> regime;  ///< where in which variable it is largest
   std::string evidence;          ///< one sentence
 };
@@ -110,15 +115,15 @@ struct SignalSeries {
 
 /// The missing physical quantity itself (watts, newton metres, volts) against the variable that orders it.
 struct MissingQuantity {
-  std::string signal;         ///< the signal it was inferred from
-  std::string quantity;       ///< `missing heat`, `missing torque`, `missing voltage`, ...
-  std::string unit;           ///< W, N m, V, ...
-  std::string variable;       ///< abscissa, such as `rise_K` or `rate_rad_per_s`
+  std::string signal;    ///< the signal it was inferred from
+  std::string quantity;  ///< `missing heat`, `missing torque`, `missing voltage`, ...
+  std::string unit;      ///< W, N m, V, ...
+  std::string variable;  ///< abscissa, such as `rise_K` or `rate_rad_per_s`
   std::string variable_unit;
-  Eigen::VectorXd x;          ///< abscissa of the binned samples
-  Eigen::VectorXd value;      ///< missing quantity there
-  Eigen::VectorXd spread;     ///< its standard error
-  Eigen::VectorXd effect;     ///< what the chosen causes supply there; empty where there are none
+  Eigen::VectorXd x;       ///< abscissa of the binned samples
+  Eigen::VectorXd value;   ///< missing quantity there
+  Eigen::VectorXd spread;  ///< its standard error
+  Eigen::VectorXd effect;  ///< what the chosen causes supply there; empty where there are none
 };
 
 /// How alike two explanations look to this recording.

@@ -12,8 +12,8 @@ inline constexpr int dual_width = 8;
 /// A value with its derivative in `dual_width` directions (forward-mode automatic differentiation).
 ///
 /// The models are templated on their scalar: stepped in this one they yield the exact derivative of what they
-/// simulate. It does what Eigen's AutoDiffScalar does with plain loops of fixed length, which compilers turn into
-/// vector instructions; measured here that is three times as fast.
+/// simulate. It does what Eigen's AutoDiffScalar does with plain loops of fixed length, which compilers turn
+/// into vector instructions; measured here that is three times as fast.
 class Dual {
 public:
   using Scalar = double;  ///< the type of literals, as the actuator's laws ask for it
@@ -28,6 +28,10 @@ public:
   double slope(int direction) const { return slope_[direction]; }
   /// Makes it vary with a direction at unit speed.
   void seed(int direction) { slope_[direction] = 1.0; }
+  /// Forgets the directions from `first` on.
+  void forget(int first) {
+    for (int i = first < 0 ? 0 : first; i < dual_width; ++i) slope_[i] = 0.0;
+  }
 
   Dual operator-() const { return chain(*this, -value_, -1.0); }
   [[gnu::always_inline]] Dual& operator+=(const Dual& b) {
@@ -60,18 +64,22 @@ public:
   }
   [[gnu::always_inline]] Dual& operator/=(double b) { return *this *= 1.0 / b; }
 
-  [[gnu::always_inline]] friend Dual operator+(Dual a, const Dual& b) { return a += b; }
-  [[gnu::always_inline]] friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  [[gnu::always_inline]] friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
-  [[gnu::always_inline]] friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
-  [[gnu::always_inline]] friend Dual operator+(Dual a, double b) { return a += b; }
-  [[gnu::always_inline]] friend Dual operator-(Dual a, double b) { return a -= b; }
-  [[gnu::always_inline]] friend Dual operator*(Dual a, double b) { return a *= b; }
-  [[gnu::always_inline]] friend Dual operator/(Dual a, double b) { return a /= b; }
-  [[gnu::always_inline]] friend Dual operator+(double a, Dual b) { return b += a; }
-  [[gnu::always_inline]] friend Dual operator-(double a, const Dual& b) { return chain(b, a - b.value_, -1.0); }
-  [[gnu::always_inline]] friend Dual operator*(double a, Dual b) { return b *= a; }
-  [[gnu::always_inline]] friend Dual operator/(double a, const Dual& b) { return chain(b, a / b.value_, -a / (b.value_ * b.value_)); }
+  friend Dual operator+(Dual a, const Dual& b) { return a += b; }
+  friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  friend Dual operator*(Dual a, const Dual& b) { return a *= b; }
+  friend Dual operator/(Dual a, const Dual& b) { return a /= b; }
+  friend Dual operator+(Dual a, double b) { return a += b; }
+  friend Dual operator-(Dual a, double b) { return a -= b; }
+  friend Dual operator*(Dual a, double b) { return a *= b; }
+  friend Dual operator/(Dual a, double b) { return a /= b; }
+  friend Dual operator+(double a, Dual b) { return b += a; }
+  friend Dual operator-(double a, const Dual& b) {
+    return chain(b, a - b.value_, -1.0);
+  }
+  friend Dual operator*(double a, Dual b) { return b *= a; }
+  friend Dual operator/(double a, const Dual& b) {
+    return chain(b, a / b.value_, -a / (b.value_ * b.value_));
+  }
 
   friend bool operator<(const Dual& a, const Dual& b) { return a.value_ < b.value_; }
   friend bool operator>(const Dual& a, const Dual& b) { return a.value_ > b.value_; }
@@ -123,6 +131,11 @@ Scalar constant(double value) {
 inline void seed(double&, int) {}
 /// Makes `x` vary with direction `direction` at unit speed.
 inline void seed(Dual& x, int direction) { x.seed(direction); }
+
+/// Forgets the derivatives in the directions from `first` on.
+inline void forget(double&, int) {}
+/// Forgets the derivatives in the directions from `first` on.
+inline void forget(Dual& x, int first) { x.forget(first); }
 
 /// Derivative of a scalar in a direction; 0 for a plain number.
 inline double derivative_of(double, int) { return 0.0; }

@@ -9,12 +9,12 @@ namespace thermopower::gap {
 
 /// One parameter of an effect.
 struct Parameter {
-  std::string name;                  ///< as in model files and reports
-  std::string unit;                  ///< "1" for a pure number
-  double lower = 0.0;                ///< physical bound
-  double upper = 1.0;                ///< physical bound
-  std::vector<double> starts = {};   ///< where fits begin, inside the bounds, at least one
-  bool logarithmic = false;          ///< positive and known by order of magnitude only: fitted as its logarithm
+  std::string name;                 ///< as in model files and reports
+  std::string unit;                 ///< "1" for a pure number
+  double lower = 0.0;               ///< physical bound
+  double upper = 1.0;               ///< physical bound
+  std::vector<double> starts = {};  ///< where fits begin, inside the bounds, at least one
+  bool logarithmic = false;  ///< positive and known by order of magnitude only: fitted as its logarithm
   std::string starts_relative_to = {};  ///< a column: the starts are fractions of its largest magnitude
 };
 

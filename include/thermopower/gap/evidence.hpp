@@ -28,10 +28,10 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
 
 /// Deviance of every candidate and its probability among them.
 ///
-/// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length of
-/// the best candidate's residuals, so that a model error that all share does not decide by sheer number of rows;
-/// training and held-out data together, the parameters from training alone; a Bayesian information penalty for
-/// every parameter, and a further one for every effect beyond the first (effects are rare).
+/// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
+/// of the best candidate's residuals, so that a model error that all share does not decide by sheer number of
+/// rows; training and held-out data together, the parameters from training alone; a Bayesian information
+/// penalty for every parameter, and a further one for every effect beyond the first (effects are rare).
 inline void weigh(std::vector<Candidate>& candidates, const Weight& weight) {
   constexpr double rarity = 6.0;
   double samples = 0.0;
@@ -58,7 +58,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight) {
 }
 
 /// Change that a candidate makes to the empty explanation's residuals, all signals in one vector.
-inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& empty, const FitProblem& problem) {
+inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& empty,
+                                 const FitProblem& problem) {
   const auto with = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
   const auto without = Attribution::residuals(empty, problem, empty.fit.starts, nullptr);
   std::size_t count = 0;

@@ -13,13 +13,13 @@ namespace thermopower::gap {
 
 /// One coordinate of a fit.
 struct Coordinate {
-  std::string name;         ///< `calibration.<id>` or `<effect>.<parameter>`
+  std::string name;  ///< `calibration.<id>` or `<effect>.<parameter>`
   std::string unit;
-  double lower = 0.0;       ///< in the fit's coordinate
+  double lower = 0.0;  ///< in the fit's coordinate
   double upper = 0.0;
   double start = 0.0;
-  double prior_sd = 0.0;    ///< of a Gaussian around 0; 0: none
-  bool logarithmic = false; ///< value = exp(coordinate)
+  double prior_sd = 0.0;     ///< of a Gaussian around 0; 0: none
+  bool logarithmic = false;  ///< value = exp(coordinate)
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than their slack.
@@ -71,13 +71,14 @@ struct Explanation {
 
 /// How far constants may move.
 struct Slack {
-  double fraction = 0.04;      ///< of a constant that is not a cause
-  double released_factor = 10; ///< of a constant that is one
+  double fraction = 0.04;       ///< of a constant that is not a cause
+  double released_factor = 10;  ///< of a constant that is one
 };
 
 /// The coordinates of an explanation: first one per constant (logarithm of its factor), then its effects'
 /// parameters.
-inline std::vector<Coordinate> coordinates(const Model& model, const Explanation& explanation, const Slack& slack) {
+inline std::vector<Coordinate> coordinates(const Model& model, const Explanation& explanation,
+                                           const Slack& slack) {
   std::vector<Coordinate> list;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
@@ -85,14 +86,15 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
                       explanation.released.end();
     const double reach = std::log(free ? slack.released_factor : 1.0 + slack.fraction);
     // The prior only keeps combinations that no recording can tell (a common factor of all torques) in place.
-    list.push_back({"calibration." + constant.id, "1", -reach, reach, 0.0, free ? 0.0 : std::max(reach, 1e-9), true});
+    list.push_back(
+        {"calibration." + constant.id, "1", -reach, reach, 0.0, free ? 0.0 : std::max(reach, 1e-9), true});
     ++index;
   }
   for (const CatalogueEntry* entry : explanation.effects)
     for (const Parameter& parameter : entry->info.parameters) {
       const auto to = [&](double value) { return parameter.logarithmic ? std::log(value) : value; };
-      list.push_back({entry->info.id + "." + parameter.name, parameter.unit, to(parameter.lower), to(parameter.upper),
-                      to(parameter.starts.front()), 0.0, parameter.logarithmic});
+      list.push_back({entry->info.id + "." + parameter.name, parameter.unit, to(parameter.lower),
+                      to(parameter.upper), to(parameter.starts.front()), 0.0, parameter.logarithmic});
     }
   return list;
 }
@@ -130,8 +132,8 @@ struct Point {
 };
 
 /// The model with an explanation's causes in it and its constants moved.
-inline Model augmented(const Model& model, const Explanation& explanation, const std::vector<Coordinate>& coordinates,
-                       const Eigen::VectorXd& at) {
+inline Model augmented(const Model& model, const Explanation& explanation,
+                       const std::vector<Coordinate>& coordinates, const Eigen::VectorXd& at) {
   Model result = model;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {

@@ -18,14 +18,14 @@ struct FitOptions {
 
 /// Where a fit ended.
 struct FitResult {
-  Eigen::VectorXd at;               ///< coordinates
-  std::vector<Start> starts;        ///< of every segment
-  double chi2 = 1e300;              ///< data only
-  double cost = 1e300;              ///< data and priors
-  Eigen::MatrixXd information;      ///< inverse covariance of the coordinates, starts projected out
+  Eigen::VectorXd at;           ///< coordinates
+  std::vector<Start> starts;    ///< of every segment
+  double chi2 = 1e300;          ///< data only
+  double cost = 1e300;          ///< data and priors
+  Eigen::MatrixXd information;  ///< inverse covariance of the coordinates, starts projected out
   Eigen::Index samples = 0;
   int iterations = 0;
-  std::vector<bool> at_bound;       ///< by coordinate
+  std::vector<bool> at_bound;  ///< by coordinate
 };
 
 /// Gauss-Newton with Levenberg damping inside bounds.
@@ -91,8 +91,8 @@ public:
 
 private:
   struct Eliminated {
-    Eigen::Matrix2d inverse;     ///< of the starts' own block
-    Eigen::MatrixXd coupling;    ///< starts by coordinates
+    Eigen::Matrix2d inverse;   ///< of the starts' own block
+    Eigen::MatrixXd coupling;  ///< starts by coordinates
     Eigen::Vector2d gradient;
   };
 
@@ -155,7 +155,8 @@ private:
       if (!pushed_down && !pushed_up && information_(i, i) > 0.0) free.push_back(i);
     }
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    // Coordinates that the step would carry over a bound stop there; the others are solved again without them.
+    // Coordinates that the step would carry over a bound stop there; the others are solved again without
+    // them.
     for (int round = 0; round < 4 && !free.empty(); ++round) {
       const Eigen::Index m = static_cast<Eigen::Index>(free.size());
       Eigen::MatrixXd matrix(m, m);
@@ -164,7 +165,8 @@ private:
       for (Eigen::Index a = 0; a < m; ++a) scale[a] = std::sqrt(information_(free[a], free[a]));
       for (Eigen::Index a = 0; a < m; ++a) {
         right[a] = -shifted[free[a]] / scale[a];
-        for (Eigen::Index b = 0; b < m; ++b) matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
+        for (Eigen::Index b = 0; b < m; ++b)
+          matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
         matrix(a, a) += damping;
       }
       const Eigen::VectorXd solved = matrix.ldlt().solve(right);
@@ -209,8 +211,7 @@ private:
                         total += (weight.array() * starts[i].array().square()).sum();
                       });
     for (std::size_t i = 0; i < list_.size(); ++i)
-      if (list_[i].prior_sd > 0.0)
-        total += std::pow(at[static_cast<Eigen::Index>(i)] / list_[i].prior_sd, 2);
+      if (list_[i].prior_sd > 0.0) total += std::pow(at[static_cast<Eigen::Index>(i)] / list_[i].prior_sd, 2);
     return total + chi2;
   }
 

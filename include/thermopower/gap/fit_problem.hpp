@@ -17,14 +17,15 @@ namespace thermopower::gap {
 /// Rows of one recording that are simulated in one go from a start of their own.
 struct Segment {
   const Inputs* inputs = nullptr;
-  RunSpan run;                ///< the run they belong to
+  RunSpan run;  ///< the run they belong to
   Eigen::Index begin = 0, end = 0;
-  bool axis = false;          ///< moving axis, else motor on the bench
-  bool carries_on = false;    ///< states that nobody measures come from the segment before
+  bool axis = false;        ///< moving axis, else motor on the bench
+  bool carries_on = false;  ///< states that nobody measures come from the segment before
+  bool warm_up = false;     ///< only brings such states about: its samples do not count
 };
 
-/// Unknown start of a segment; a fit estimates it along with the parameters. Of an axis: angle in deg, rate in
-/// deg/s; on the bench: the measured node in K, then what a hidden one differs from it.
+/// Unknown start of a segment; a fit estimates it along with the parameters. Of an axis: angle in deg, rate
+/// in deg/s; on the bench: the measured node in K, then what a hidden one differs from it.
 using Start = Eigen::Vector2d;
 
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
@@ -38,16 +39,17 @@ struct FitProblem {
   /// Residuals of one segment in units of the noise, with their derivatives.
   struct Residuals {
     Eigen::VectorXd value;
-    Eigen::MatrixXd jacobian;        ///< by coordinate, then by start; empty where not asked for
-    std::vector<Signal> signal;      ///< of each row
-    std::vector<Eigen::Index> row;   ///< in the recording
+    Eigen::MatrixXd jacobian;       ///< by coordinate, then by start; empty where not asked for
+    std::vector<Signal> signal;     ///< of each row
+    std::vector<Eigen::Index> row;  ///< in the recording
   };
 
   /// Inverse standard deviations of a start around the measured one.
   Start start_weight(const Segment& segment) const {
     if (segment.axis) {
       // The row itself is among the data: the prior only has to keep an unmeasured start bounded.
-      const bool angle = segment.inputs->judged(Signal::angle_deg), rate = segment.inputs->judged(Signal::rate_dps);
+      const bool angle = segment.inputs->judged(Signal::angle_deg),
+                 rate = segment.inputs->judged(Signal::rate_dps);
       return {angle ? 0.01 / sigma[2] : 1e3, rate ? 0.01 / sigma[3] : 1e-4};
     }
     return {0.01 / sigma[1], 0.3};  // a hidden node lies within a few kelvin of the measured one
@@ -55,11 +57,13 @@ struct FitProblem {
 
   /// Simulates all segments and hands each one's residuals to `use(segment index, residuals)`.
   template <class Use>
-  void evaluate(const Explanation& explanation, const std::vector<Coordinate>& list, const Eigen::VectorXd& at,
-                const std::vector<Start>& starts, bool with_jacobian, Use&& use) const {
+  void evaluate(const Explanation& explanation, const std::vector<Coordinate>& list,
+                const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
+                Use&& use) const {
     const int parameters = static_cast<int>(list.size());
     std::vector<Residuals> all(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) reserve(segments[i], with_jacobian ? parameters + 2 : 0, all[i]);
+    for (std::size_t i = 0; i < segments.size(); ++i)
+      reserve(segments[i], with_jacobian ? parameters + 2 : 0, all[i]);
     if (!with_jacobian) {
       pass<double>(explanation, list, at, starts, 0, 0, all);
     } else {
@@ -73,7 +77,7 @@ struct FitProblem {
 private:
   static void reserve(const Segment& segment, int columns, Residuals& residuals) {
     const Inputs& inputs = *segment.inputs;
-    for (Eigen::Index row = segment.begin; row < segment.end; ++row)
+    for (Eigen::Index row = segment.begin; row < segment.end && !segment.warm_up; ++row)
       for (Signal signal : signals(segment))
         if (inputs.judged(signal) && std::isfinite(inputs.of(signal)[row])) {
           residuals.signal.push_back(signal);
@@ -108,7 +112,7 @@ private:
       Eigen::Index filled = 0;
       const auto put = [&](Signal signal, Eigen::Index row, const Scalar& simulated) {
         const Inputs& inputs = *segment.inputs;
-        if (!inputs.judged(signal)) return;
+        if (!inputs.judged(signal) || segment.warm_up) return;
         const double measured = inputs.of(signal)[row];
         if (!std::isfinite(measured)) return;
         const double repeats = inputs.repeats.size() > 0 ? std::sqrt(inputs.repeats[row]) : 1.0;
@@ -119,10 +123,11 @@ private:
             all[i].jacobian(filled, first + k) = bounded(derivative_of(simulated, k) * weight);
         ++filled;
       };
-      if (segment.axis)
-        simulate_axis<Scalar>(instance, segment, start, carried, put);
-      else
-        simulate_bench<Scalar>(instance, segment, start, put);
+      if (segment.axis) simulate_axis<Scalar>(instance, segment, start, carried, put);
+      // What is carried on depends on the parameters, and on the starts of other segments, which stay out.
+      forget(carried.twist_rad, parameters - first);
+      forget(carried.twist_rate_rad_per_s, parameters - first);
+      if (!segment.axis) simulate_bench<Scalar>(instance, segment, start, put);
     }
   }
 
@@ -140,7 +145,8 @@ private:
     feed.measured_motor = !inputs.judged(Signal::motor_C);
     const BenchRollout<Scalar> rollout(instance, inputs, feed);
     const Eigen::VectorXd& temperature = inputs.held_motor_C;
-    BenchState<Scalar> state = rollout.start(segment.begin, temperature.size() > 0 ? temperature[segment.begin] : 25.0);
+    BenchState<Scalar> state =
+        rollout.start(segment.begin, temperature.size() > 0 ? temperature[segment.begin] : 25.0);
     state.winding_C += start[0];
     state.surface_C = state.winding_C + start[1];
     state.thermometer_C = state.winding_C;
@@ -165,8 +171,8 @@ private:
     state.angle_rad += start[0] * rad_per_deg;
     state.rate_rad_per_s += start[1] * rad_per_deg;
     if (segment.carries_on) {
-      state.twist_rad = constant<Scalar>(value_of(carried.twist_rad));
-      state.twist_rate_rad_per_s = constant<Scalar>(value_of(carried.twist_rate_rad_per_s));
+      state.twist_rad = carried.twist_rad;
+      state.twist_rate_rad_per_s = carried.twist_rate_rad_per_s;
     }
     rollout.window(segment.run, segment.begin, segment.end, state,
                    [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
@@ -180,8 +186,8 @@ public:
   /// The measured state of the axis at a row; an unrecorded rate is the angle's difference, an unrecorded
   /// angle 0.
   template <class Scalar>
-  static AxisState<Scalar> measured_start(const AxisRollout<Scalar>& rollout, const Inputs& inputs, const RunSpan& run,
-                                          Eigen::Index row) {
+  static AxisState<Scalar> measured_start(const AxisRollout<Scalar>& rollout, const Inputs& inputs,
+                                          const RunSpan& run, Eigen::Index row) {
     double angle_deg = 0.0, rate_dps = 0.0;
     if (inputs.judged(Signal::angle_deg)) angle_deg = inputs.of(Signal::angle_deg)[row];
     if (inputs.judged(Signal::rate_dps)) {
@@ -196,7 +202,8 @@ public:
   }
 };
 
-/// Cuts recordings into segments: the bench by run (from its first measured temperature), the axis by windows.
+/// Cuts recordings into segments: the bench by run (from its first measured temperature), the axis by
+/// windows.
 inline std::vector<Segment> cut(const std::vector<Inputs>& recordings, double horizon_s) {
   std::vector<Segment> segments;
   for (const Inputs& inputs : recordings) {

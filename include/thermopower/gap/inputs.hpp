@@ -46,11 +46,11 @@ struct Inputs {
   std::vector<RunSpan> runs;
   // Held inputs and covariates; empty where not recorded. Holes hold the value before them.
   Eigen::VectorXd power_param, drive_A, supply_V, ambient_C, airspeed_mps, neighbour_C, covariate_rate_dps;
-  Eigen::VectorXd covariate_motor_C;   ///< motor temperature as an input of the axis
-  Eigen::VectorXd held_current_A;      ///< current as an input of the thermal model
-  Eigen::VectorXd held_motor_C;        ///< temperature as an input of the electrical model
+  Eigen::VectorXd covariate_motor_C;  ///< motor temperature as an input of the axis
+  Eigen::VectorXd held_current_A;     ///< current as an input of the thermal model
+  Eigen::VectorXd held_motor_C;       ///< temperature as an input of the electrical model
   double nominal_V = 12.0;
-  Eigen::VectorXd repeats;             ///< samples averaged in each row; empty: one
+  Eigen::VectorXd repeats;  ///< samples averaged in each row; empty: one
   HeatSource heat = HeatSource::none;
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   std::vector<std::string> not_judged;                 ///< one sentence each
@@ -85,10 +85,8 @@ inline Eigen::VectorXd held(const Eigen::VectorXd& values, const std::vector<Run
   // A run without a single sample: the nearest earlier run's last value, else 0.
   double last = 0.0;
   for (Eigen::Index row = 0; row < filled.size(); ++row) {
-    if (std::isfinite(filled[row]))
-      last = filled[row];
-    else
-      filled[row] = last;
+    if (std::isfinite(filled[row])) last = filled[row];
+    else filled[row] = last;
   }
   return filled;
 }
@@ -141,29 +139,34 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
 
   const bool powered = inputs.power_param.size() > 0 && (model.supply || inputs.supply_V.size() > 0);
   const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
-  if (model.has_current() && powered)
-    inputs.heat = HeatSource::law;
+  if (model.has_current() && powered) inputs.heat = HeatSource::law;
   else if (recording.has("current_A") && (ohmic || (powered && model.has_current())))
     inputs.heat = HeatSource::measured;
-  else if (inputs.drive_A.size() > 0 && ohmic)
-    inputs.heat = HeatSource::drive;
+  else if (inputs.drive_A.size() > 0 && ohmic) inputs.heat = HeatSource::drive;
   if (recording.has("current_A")) inputs.held_current_A = take("current_A");
   if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
 
   auto& notes = inputs.not_judged;
   if (model.has_thermal()) {
-    if (!recording.has("motor_C")) notes.push_back("motor_C is not judged: the recording has no column motor_C");
-    else if (!recording.has("ambient_C")) notes.push_back("motor_C is not judged: the recording has no column ambient_C");
+    if (!recording.has("motor_C"))
+      notes.push_back("motor_C is not judged: the recording has no column motor_C");
+    else if (!recording.has("ambient_C"))
+      notes.push_back("motor_C is not judged: the recording has no column ambient_C");
     else if (inputs.heat == HeatSource::none)
-      notes.push_back("motor_C is not judged: neither power_param (with a current law and a supply) nor current_A nor drive_A tells the heat");
+      notes.push_back(
+          "motor_C is not judged: neither power_param (with a current law and a supply) nor current_A nor "
+          "drive_A tells the heat");
     else measure(Signal::motor_C);
   } else if (recording.has("motor_C") && !model.has_axis()) {
     notes.push_back("motor_C is not judged: the model has no thermal block");
   }
   if (model.has_current()) {
-    if (!recording.has("current_A")) notes.push_back("current_A is not judged: the recording has no column current_A");
-    else if (!powered) notes.push_back("current_A is not judged: power_param or the supply voltage is unknown");
-    else if (!recording.has("motor_C")) notes.push_back("current_A is not judged: the recording has no column motor_C");
+    if (!recording.has("current_A"))
+      notes.push_back("current_A is not judged: the recording has no column current_A");
+    else if (!powered)
+      notes.push_back("current_A is not judged: power_param or the supply voltage is unknown");
+    else if (!recording.has("motor_C"))
+      notes.push_back("current_A is not judged: the recording has no column motor_C");
     else measure(Signal::current_A);
   }
   if (model.has_axis()) {

@@ -51,12 +51,16 @@ struct Instance {
   /// @param factors  one per entry of `model.calibrated()`: multiplies that constant
   /// @param added    act besides the model's own effects
   /// @throws InvalidInput for an effect or parameter of the model that the catalogue does not know
-  Instance(const Model& model, const std::vector<Scalar>& factors, const std::vector<AddedEffect<Scalar>>& added,
-           const Catalogue& catalogue) {
+  Instance(const Model& model, const std::vector<Scalar>& factors,
+           const std::vector<AddedEffect<Scalar>>& added, const Catalogue& catalogue) {
     set_constants(model, factors);
     thermal_structure = {constant<Scalar>(1.0), constant<Scalar>(0.0), constant<Scalar>(0.0), false, false};
-    axis_structure = {constant<Scalar>(0.0), constant<Scalar>(0.0), constant<Scalar>(0.0), constant<Scalar>(0.0),
-                      false, false};
+    axis_structure = {constant<Scalar>(0.0),
+                      constant<Scalar>(0.0),
+                      constant<Scalar>(0.0),
+                      constant<Scalar>(0.0),
+                      false,
+                      false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {
       const AddedEffect<Scalar>* own = nullptr;
@@ -112,7 +116,8 @@ private:
       rigid = true;
       inertia_kgm2 = scaled("axis", "inertia_kgm2", model.axis->inertia_kgm2);
       viscous_Nms_per_rad = scaled("axis", "viscous_Nms_per_rad", model.axis->viscous_Nms_per_rad);
-      torque_constant_Nm_per_A = scaled("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
+      torque_constant_Nm_per_A =
+          scaled("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
     }
   }
 
@@ -145,8 +150,8 @@ private:
       bool known = false;
       for (const Parameter& parameter : entry.info.parameters) known = known || parameter.name == value.first;
       if (!known)
-        throw InvalidInput("model '" + model.name + "', effect '" + entry.info.id + "': there is no parameter '" +
-                           value.first + "'");
+        throw InvalidInput("model '" + model.name + "', effect '" + entry.info.id +
+                           "': there is no parameter '" + value.first + "'");
     }
     return values;
   }

@@ -57,8 +57,8 @@ struct ThesisThermalModel {
 
 /// `"law": "rigid"`: J dw/dt = Kt drive - b w.
 struct RigidAxisModel {
-  double inertia_kgm2 = 1e-3;              ///< kg m^2, > 0
-  double viscous_Nms_per_rad = 1e-3;       ///< N m s/rad, >= 0
+  double inertia_kgm2 = 1e-3;             ///< kg m^2, > 0
+  double viscous_Nms_per_rad = 1e-3;      ///< N m s/rad, >= 0
   double torque_constant_Nm_per_A = 0.1;  ///< N m/A, not 0
 };
 
@@ -89,9 +89,11 @@ struct Model {
   std::optional<RigidAxisModel> axis;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
 
-  bool has_current() const { return !std::holds_alternative<std::monostate>(current); }  ///< electrical block?
+  bool has_current() const {
+    return !std::holds_alternative<std::monostate>(current);
+  }  ///< electrical block?
   bool has_thermal() const { return !std::holds_alternative<std::monostate>(thermal); }  ///< thermal block?
-  bool has_axis() const { return axis.has_value(); }                                      ///< mechanical block?
+  bool has_axis() const { return axis.has_value(); }  ///< mechanical block?
 
   /// Every constant of every block present, in a fixed order.
   std::vector<NamedConstant> constants() const;
@@ -216,8 +218,7 @@ inline std::optional<std::string> Model::validate() const {
   detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
     if (problem) return;
     const std::string where = std::string(block) + "." + field;
-    if (!std::isfinite(value))
-      problem = where + " must be a finite number";
+    if (!std::isfinite(value)) problem = where + " must be a finite number";
     else if (positive(field) && !(value > 0.0))
       problem = where + " is " + std::to_string(value) + ", expected a number above 0";
   });

@@ -44,7 +44,8 @@ inline double white_sd(const std::vector<double>& sequence, const std::vector<bo
       if (since_gap[i] >= order) magnitudes.push_back(std::abs(differences[i]));
     if (magnitudes.size() < 12) continue;
     const std::size_t kept = static_cast<std::size_t>(0.97 * static_cast<double>(magnitudes.size()));
-    std::nth_element(magnitudes.begin(), magnitudes.begin() + static_cast<std::ptrdiff_t>(kept), magnitudes.end());
+    std::nth_element(magnitudes.begin(), magnitudes.begin() + static_cast<std::ptrdiff_t>(kept),
+                     magnitudes.end());
     double sum = 0.0;
     for (std::size_t i = 0; i < kept; ++i) sum += magnitudes[i] * magnitudes[i];
     // 0.911: what the smaller 97 % of a normal distribution have for a standard deviation.
@@ -54,8 +55,8 @@ inline double white_sd(const std::vector<double>& sequence, const std::vector<bo
   return std::isfinite(least) ? least : 0.0;
 }
 
-/// How many samples in a row count as one: 1 + 2 sum of the autocorrelations, up to their first fall below 0.05.
-/// At least 1, at most a quarter of the sequence.
+/// How many samples in a row count as one: 1 + 2 sum of the autocorrelations, up to their first fall below
+/// 0.05. At least 1, at most a quarter of the sequence.
 inline double correlation_samples(const std::vector<double>& sequence) {
   const std::size_t count = sequence.size();
   if (count < 8) return 1.0;

@@ -12,11 +12,11 @@ namespace thermopower::gap {
 
 /// What a diagnosis may be told.
 struct Options {
-  double horizon_s = 0.5;            ///< length of the axis' windows in s, > 0
-  double slack = 0.04;               ///< how far constants may move for free, as a fraction, 0..0.5
-  double tolerance = 0.05;           ///< shrinkage of the score below which nobody cares, as a fraction, 0..0.5
-  double held_out_fraction = 0.3;    ///< held out where no recording is given for it, 0.05..0.9
-  int effects_at_once = 2;           ///< the largest set of effects weighed together, 1..3
+  double horizon_s = 0.5;          ///< length of the axis' windows in s, > 0
+  double slack = 0.04;             ///< how far constants may move for free, as a fraction, 0..0.5
+  double tolerance = 0.05;         ///< shrinkage of the score below which nobody cares, as a fraction, 0..0.5
+  double held_out_fraction = 0.3;  ///< held out where no recording is given for it, 0.05..0.9
+  int effects_at_once = 2;         ///< the largest set of effects weighed together, 1..3
   std::vector<std::string> without;  ///< ids removed from the catalogue
   unsigned threads = 1;              ///< 1..64; the result does not depend on it
   unsigned seed = 1;                 ///< of the bootstrap; equal seeds give equal reports

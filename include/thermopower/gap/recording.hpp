@@ -100,7 +100,8 @@ struct Recording {
       const Eigen::Index last = run.end < end ? run.end : end;
       if (first < last) part.runs.push_back({first - begin, last - begin, run.label});
     }
-    for (const Column& one : columns) part.columns.push_back({one.name, one.values.segment(begin, end - begin)});
+    for (const Column& one : columns)
+      part.columns.push_back({one.name, one.values.segment(begin, end - begin)});
     return part;
   }
 
@@ -118,7 +119,8 @@ struct Recording {
       for (Eigen::Index row = run.begin; row < run.end; ++row) {
         if (!(t_s[row] - t_s[row] == 0.0)) return "t_s is not finite in row " + std::to_string(row);
         if (row > run.begin && !(t_s[row] > t_s[row - 1]))
-          return "t_s does not increase from row " + std::to_string(row - 1) + " to row " + std::to_string(row);
+          return "t_s does not increase from row " + std::to_string(row - 1) + " to row " +
+                 std::to_string(row);
       }
     }
     return std::nullopt;

@@ -15,7 +15,8 @@ namespace thermopower::gap {
 
 /// Values and intervals of an explanation's own parameters. The intervals widen with the residuals' level and
 /// correlation, and are those of the fit's coordinate carried over.
-inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model, const Weight& weight) {
+inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,
+                                                const Weight& weight) {
   double inflation = 1.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     if (candidate.train.samples[i] > 0.0)
@@ -26,8 +27,9 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
   std::vector<ParameterEstimate> list;
   for (std::size_t i = 0; i < candidate.list.size(); ++i) {
     const Coordinate& one = candidate.list[i];
-    const bool released = std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
-                                    static_cast<int>(i)) != candidate.explanation.released.end();
+    const bool released =
+        std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
+                  static_cast<int>(i)) != candidate.explanation.released.end();
     if (i < constants && !released) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double value = candidate.fit.at[at], reach = 1.96 * std::sqrt(std::max(covariance(at, at), 0.0));
@@ -48,15 +50,17 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
                  const FitProblem& problem, const Weight& weight) {
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return candidates[a].deviance < candidates[b].deviance; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return candidates[a].deviance < candidates[b].deviance;
+  });
   const double least = candidates[order.front()].deviance;
   std::vector<Eigen::VectorXd> signatures(order.size());
   const Candidate& empty = candidates.front();
   const std::size_t compared = std::min<std::size_t>(order.size(), 12);
   for (std::size_t i = 0; i < compared; ++i) signatures[i] = signature(candidates[order[i]], empty, problem);
   double whole = 0.0, held = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) whole += empty.train.squares[i], held += empty.held_out.squares[i];
+  for (std::size_t i = 0; i < signal_count; ++i)
+    whole += empty.train.squares[i], held += empty.held_out.squares[i];
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Candidate& one = candidates[order[i]];
     RankedExplanation entry;
@@ -79,15 +83,17 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;
       const double cosine = likeness(signatures[i], signatures[k]);
-      if (cosine >= 0.9) entry.confusable.push_back({candidates[order[k]].explanation.ids(*problem.model), cosine});
+      if (cosine >= 0.9)
+        entry.confusable.push_back({candidates[order[k]].explanation.ids(*problem.model), cosine});
     }
     result.ranking.push_back(std::move(entry));
   }
 }
 
 /// The chosen causes with their parameters, and the alternatives.
-inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
-                        const Model& model, const FitProblem&, const Weight& weight) {
+inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates,
+                        const Conclusion& conclusion, const Model& model, const FitProblem&,
+                        const Weight& weight) {
   const Candidate& chosen = candidates[conclusion.chosen];
   const std::vector<ParameterEstimate> all = estimates(chosen, model, weight);
   for (const std::string& id : chosen.explanation.ids(model)) {
@@ -105,18 +111,20 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
       }
     result.cause.push_back(std::move(cause));
   }
-  for (std::size_t index : conclusion.alternatives) result.alternatives.push_back(candidates[index].explanation.ids(model));
+  for (std::size_t index : conclusion.alternatives)
+    result.alternatives.push_back(candidates[index].explanation.ids(model));
   const std::vector<CalibratedConstant> constants = model.calibrated();
   for (std::size_t i = 0; i < constants.size(); ++i) {
     const double configured = model.get(constants[i].block + "." + constants[i].fields.front());
-    result.constants.push_back({constants[i].id, configured,
-                                configured * std::exp(chosen.fit.at[static_cast<Eigen::Index>(i)])});
+    result.constants.push_back(
+        {constants[i].id, configured, configured * std::exp(chosen.fit.at[static_cast<Eigen::Index>(i)])});
   }
 }
 
 /// Scores and curves on held-out data.
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
-                  const std::vector<Inputs>& inputs, const Model& fitted, const Options& options, const Catalogue& catalogue) {
+                  const std::vector<Inputs>& inputs, const Model& fitted, const Options& options,
+                  const Catalogue& catalogue) {
   const Errors before = errors_of(model, segments, catalogue);
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
   const Errors after = errors_of(result.augmented, segments, catalogue);
@@ -127,7 +135,8 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
     for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = best.segment[i][k] != best.segment[i][k - 1];
     double quantum = 0.0;
     for (const Inputs& one : inputs)
-      if (one.judged(static_cast<Signal>(i))) quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
+      if (one.judged(static_cast<Signal>(i)))
+        quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
     sigma[i] = std::max(white_sd(best.of[i], gaps), quantum / std::sqrt(12.0));
   }
   const std::array<double, signal_count> floor = noise_floor(fitted, segments, sigma, catalogue);
@@ -154,7 +163,8 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
       series.recording = one.name;
       series.t_s = one.t_s;
       series.measured = one.of(signal);
-      series.baseline = series.recalibrated = series.augmented = Eigen::VectorXd::Constant(one.rows(), missing);
+      series.baseline = series.recalibrated = series.augmented =
+          Eigen::VectorXd::Constant(one.rows(), missing);
       for (; at < before.of[i].size(); ++at) {
         const Segment& segment = segments[static_cast<std::size_t>(before.segment[i][at])];
         if (segment.inputs != &one) break;
@@ -170,10 +180,12 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
 
 /// What to record next: the excitation that shows the rival explanations apart.
 inline std::string next_experiment(const Diagnosis& result, const std::vector<Candidate>& candidates,
-                                   const Conclusion& conclusion, const Model& model, const Catalogue& catalogue) {
+                                   const Conclusion& conclusion, const Model& model,
+                                   const Catalogue& catalogue) {
   const auto advice = [&](const std::string& id) {
     const CatalogueEntry* entry = catalogue.find(id);
-    return entry != nullptr ? entry->info.experiment : std::string("steady operation at several levels, and steps");
+    return entry != nullptr ? entry->info.experiment
+                            : std::string("steady operation at several levels, and steps");
   };
   if (result.verdict == Verdict::ambiguous) {
     std::string text = "To tell the explanations apart, record: ";
@@ -192,7 +204,8 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
     return "Log more around " + result.where.front().submodel + " (" + result.where.front().signal +
            "): whatever is switched, touched or moved while it runs, and repeat the same excitation twice.";
   if (result.verdict == Verdict::unexplained)
-    return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a disturbance.";
+    return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "
+           "disturbance.";
   if (result.verdict == Verdict::explained && !result.cause.empty())
     return "To confirm, record: " + advice(result.cause.front().effect) + ".";
   return "None needed: the simulation holds over the range that was recorded.";

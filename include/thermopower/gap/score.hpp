@@ -15,8 +15,8 @@ namespace thermopower::gap {
 
 /// Errors of a free-running simulation against recordings, signal by signal, in the order of the rows.
 struct Errors {
-  std::array<std::vector<double>, signal_count> of;       ///< simulated minus measured
-  std::array<std::vector<int>, signal_count> segment;     ///< which segment each belongs to
+  std::array<std::vector<double>, signal_count> of;    ///< simulated minus measured
+  std::array<std::vector<int>, signal_count> segment;  ///< which segment each belongs to
   std::array<std::vector<double>, signal_count> simulated;
   std::array<std::vector<Eigen::Index>, signal_count> row;
 
@@ -29,15 +29,17 @@ struct Errors {
   }
 };
 
-/// Simulates a model as a gap is judged and subtracts what was measured. The rows where the axis restarts from
-/// the measured state say nothing and are left out.
-inline Errors errors_of(const Model& model, const std::vector<Segment>& segments, const Catalogue& catalogue) {
+/// Simulates a model as a gap is judged and subtracts what was measured. The rows where the axis restarts
+/// from the measured state say nothing and are left out.
+inline Errors errors_of(const Model& model, const std::vector<Segment>& segments,
+                        const Catalogue& catalogue) {
   Errors errors;
   const Instance<double> instance(model, {}, {}, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     std::size_t rows = 0;
     for (const Segment& segment : segments) rows += static_cast<std::size_t>(segment.end - segment.begin);
-    if (!segments.empty() && segments.front().inputs->judged(static_cast<Signal>(i))) errors.of[i].reserve(rows);
+    if (!segments.empty() && segments.front().inputs->judged(static_cast<Signal>(i)))
+      errors.of[i].reserve(rows);
   }
   detail::simulate_segments<double>(
       instance, segments, SimulationMode::free_running,
@@ -57,8 +59,8 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
   return errors;
 }
 
-/// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts from,
-/// carried through the model.
+/// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
+/// from, carried through the model.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
                                                     const Catalogue& catalogue) {
@@ -69,8 +71,10 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
     const auto put = [&](Signal signal, Eigen::Index row, const Dual& value, int first, int second) {
       const std::size_t at = static_cast<std::size_t>(signal);
       if (!inputs.judged(signal) || !std::isfinite(inputs.of(signal)[row])) return;
-      const double by_first = derivative_of(value, 0) * (first >= 0 ? sigma[static_cast<std::size_t>(first)] : 0.0);
-      const double by_second = derivative_of(value, 1) * (second >= 0 ? sigma[static_cast<std::size_t>(second)] : 0.0);
+      const double by_first =
+          derivative_of(value, 0) * (first >= 0 ? sigma[static_cast<std::size_t>(first)] : 0.0);
+      const double by_second =
+          derivative_of(value, 1) * (second >= 0 ? sigma[static_cast<std::size_t>(second)] : 0.0);
       sum[at] += sigma[at] * sigma[at] + by_first * by_first + by_second * by_second;
       count[at] += 1.0;
     };
@@ -96,8 +100,8 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
       typename BenchRollout<Dual>::Feed feed;
       feed.measured_motor = !inputs.judged(Signal::motor_C);
       const BenchRollout<Dual> rollout(instance, inputs, feed);
-      BenchState<Dual> state =
-          rollout.start(segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
+      BenchState<Dual> state = rollout.start(
+          segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
       Dual warm = constant<Dual>(0.0);
       seed(warm, 0);
       state.winding_C += warm;
@@ -112,7 +116,8 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
     }
   }
   std::array<double, signal_count> floor{};
-  for (std::size_t i = 0; i < signal_count; ++i) floor[i] = count[i] > 0.0 ? std::sqrt(sum[i] / count[i]) : 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    floor[i] = count[i] > 0.0 ? std::sqrt(sum[i] / count[i]) : 0.0;
   return floor;
 }
 
@@ -134,9 +139,10 @@ private:
   std::uint64_t state_;
 };
 
-/// 95 % interval of 1 - rms(after) / rms(before) by a paired block bootstrap: blocks of at least five correlation
-/// lengths of the squared errors, drawn for both simulations alike.
-inline Interval shrinkage_interval(const std::vector<double>& before, const std::vector<double>& after, unsigned seed) {
+/// 95 % interval of 1 - rms(after) / rms(before) by a paired block bootstrap: blocks of at least five
+/// correlation lengths of the squared errors, drawn for both simulations alike.
+inline Interval shrinkage_interval(const std::vector<double>& before, const std::vector<double>& after,
+                                   unsigned seed) {
   const std::size_t count = before.size();
   if (count == 0 || after.size() != count) return {0.0, 0.0};
   std::vector<double> squared(count);
@@ -168,7 +174,9 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
   }
   if (shrunk.empty()) return {0.0, 0.0};
   std::sort(shrunk.begin(), shrunk.end());
-  const auto quantile = [&](double q) { return shrunk[static_cast<std::size_t>(q * static_cast<double>(shrunk.size() - 1))]; };
+  const auto quantile = [&](double q) {
+    return shrunk[static_cast<std::size_t>(q * static_cast<double>(shrunk.size() - 1))];
+  };
   return {quantile(0.025), quantile(0.975)};
 }
 

@@ -15,7 +15,8 @@ namespace thermopower::gap {
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
-/// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more of it
+/// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more
+/// of it
 /// (`fine`). Every candidate it returns has its residuals on the fine data.
 class Search {
 public:
@@ -62,8 +63,8 @@ public:
     return *least;
   }
 
-  /// Sum over the signals of samples times the logarithm of the mean square: twice the negative log likelihood
-  /// where the noise of every signal is unknown. No credit is given below the noise.
+  /// Sum over the signals of samples times the logarithm of the mean square: twice the negative log
+  /// likelihood where the noise of every signal is unknown. No credit is given below the noise.
   static double fitness(const Candidate& candidate) {
     double sum = 0.0;
     for (std::size_t i = 0; i < signal_count; ++i)
@@ -97,8 +98,8 @@ private:
     in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], finish); });
   }
 
-  /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear promise,
-  /// the most promising fitted.
+  /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear
+  /// promise, the most promising fitted.
   void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
     std::vector<const Candidate*> seeds;
     for (std::size_t index : by_fitness(candidates, 0))
@@ -112,7 +113,8 @@ private:
     std::vector<Promise> promises;
     for (const Candidate* near : seeds)
       for (const Explanation& single : singles)
-        if (!near->explanation.includes(single)) promises.push_back({0.0, near, near->explanation.with(single)});
+        if (!near->explanation.includes(single))
+          promises.push_back({0.0, near, near->explanation.with(single)});
     in_parallel(promises.size(), threads_, [&](std::size_t i) {
       promises[i].cost = coarse_.promise(*promises[i].near, promises[i].together);
     });
@@ -129,9 +131,8 @@ private:
     FitOptions options;
     options.iterations = 12;
     options.relative_decrease = 1e-3;
-    in_parallel(kept.size(), threads_, [&](std::size_t i) {
-      joined[i] = coarse_.fit(kept[i].together, options, kept[i].near);
-    });
+    in_parallel(kept.size(), threads_,
+                [&](std::size_t i) { joined[i] = coarse_.fit(kept[i].together, options, kept[i].near); });
     const std::size_t first = candidates.size();
     for (Candidate& one : joined) candidates.push_back(std::move(one));
     refine(candidates, first, 5);

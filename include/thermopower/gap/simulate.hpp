@@ -30,7 +30,7 @@ struct SimulationOptions {
 
 /// One simulated signal, a value per row of the recording; NaN where it could not be simulated.
 struct SimulatedSignal {
-  std::string signal;      ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
+  std::string signal;  ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
   Eigen::VectorXd values;
 };
 
@@ -44,35 +44,40 @@ void shift_hidden(BenchState<Scalar>& state, const Instance<Scalar>& instance, d
 }
 
 /// Where a hidden node starts relative to the measured one. Nobody measures it, so it is what fits the run's
-/// measured temperatures best (linear least squares, a few kelvin expected); 0 for a model without hidden node.
+/// measured temperatures best (linear least squares, a few kelvin expected); 0 for a model without hidden
+/// node.
 template <class Scalar>
-double hidden_start_K(const BenchRollout<Scalar>& rollout, const Segment& segment, const Instance<Scalar>& instance,
-                      const BenchState<Scalar>& start) {
+double hidden_start_K(const BenchRollout<Scalar>& rollout, const Segment& segment,
+                      const Instance<Scalar>& instance, const BenchState<Scalar>& start) {
   if (!instance.thermal_structure.lagged && !instance.thermal_structure.two_nodes) return 0.0;
   const Eigen::VectorXd& measured = segment.inputs->of(Signal::motor_C);
   const double run_start_s = segment.inputs->t_s[segment.run.begin];
   std::vector<double> at_0;
   BenchState<Scalar> state = start;
-  rollout.run(segment.begin, segment.end, run_start_s, state,
-              [&](Eigen::Index, const BenchReadings<Scalar>& read) { at_0.push_back(value_of(read.motor_C)); });
+  rollout.run(
+      segment.begin, segment.end, run_start_s, state,
+      [&](Eigen::Index, const BenchReadings<Scalar>& read) { at_0.push_back(value_of(read.motor_C)); });
   state = start;
   shift_hidden(state, instance, 1.0);
   double product = 0.0, square = 4e-4;  // a prior of 5 K at a noise of 0.1 K
   std::size_t index = 0;
-  rollout.run(segment.begin, segment.end, run_start_s, state, [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
-    const double effect = value_of(read.motor_C) - at_0[index], left = measured[row] - at_0[index];
-    ++index;
-    if (!std::isfinite(left) || !std::isfinite(effect)) return;
-    product += effect * left;
-    square += effect * effect;
-  });
+  rollout.run(segment.begin, segment.end, run_start_s, state,
+              [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
+                const double effect = value_of(read.motor_C) - at_0[index],
+                             left = measured[row] - at_0[index];
+                ++index;
+                if (!std::isfinite(left) || !std::isfinite(effect)) return;
+                product += effect * left;
+                square += effect * effect;
+              });
   return std::clamp(product / square, -100.0, 100.0);
 }
 
-/// Simulates segments from their measured starts and hands every reading to `put(segment index, signal, row, value)`.
+/// Simulates segments from their measured starts and hands every reading to `put(segment index, signal, row,
+/// value)`.
 template <class Scalar, class Put>
-void simulate_segments(const Instance<Scalar>& instance, const std::vector<Segment>& segments, SimulationMode mode,
-                       Put&& put) {
+void simulate_segments(const Instance<Scalar>& instance, const std::vector<Segment>& segments,
+                       SimulationMode mode, Put&& put) {
   const Scalar still = constant<Scalar>(0.0);
   AxisState<Scalar> carried{still, still, still, still};
   for (std::size_t index = 0; index < segments.size(); ++index) {
@@ -97,9 +102,10 @@ void simulate_segments(const Instance<Scalar>& instance, const std::vector<Segme
       feed.measured_motor = !inputs.judged(Signal::motor_C) || (isolated && inputs.held_motor_C.size() > 0);
       feed.measured_current = isolated && inputs.held_current_A.size() > 0;
       const BenchRollout<Scalar> rollout(instance, inputs, feed);
-      BenchState<Scalar> state =
-          rollout.start(segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
-      if (inputs.judged(Signal::motor_C)) shift_hidden(state, instance, hidden_start_K(rollout, segment, instance, state));
+      BenchState<Scalar> state = rollout.start(
+          segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
+      if (inputs.judged(Signal::motor_C))
+        shift_hidden(state, instance, hidden_start_K(rollout, segment, instance, state));
       rollout.run(segment.begin, segment.end, inputs.t_s[segment.run.begin], state,
                   [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
                     put(index, Signal::current_A, row, read.current_A);
@@ -112,8 +118,8 @@ void simulate_segments(const Instance<Scalar>& instance, const std::vector<Segme
 }  // namespace detail
 
 /// Simulates every signal that the model has a law for and the recording has the inputs for.
-/// Effects named in the model act, with the catalogue's equations. At a row where a window restarts the values are
-/// the measured ones.
+/// Effects named in the model act, with the catalogue's equations. At a row where a window restarts the
+/// values are the measured ones.
 /// @throws InvalidInput for an invalid recording, or an effect or parameter that the catalogue does not know
 inline std::vector<SimulatedSignal> simulate(const Model& model, const Recording& recording,
                                              const SimulationOptions& options = {},
@@ -125,7 +131,8 @@ inline std::vector<SimulatedSignal> simulate(const Model& model, const Recording
   for (int i = 0; i < signal_count; ++i)
     if (inputs[0].judged(static_cast<Signal>(i))) {
       place[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
-      results.push_back({name_of(static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
+      results.push_back(
+          {name_of(static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
   detail::simulate_segments<double>(instance, cut(inputs, options.horizon_s), options.mode,
                                     [&](std::size_t, Signal signal, Eigen::Index row, double value) {

@@ -13,17 +13,19 @@ namespace thermopower::gap {
 
 /// Takes the last part of a recording away as held-out data.
 ///
-/// Whole excitation segments are held out: the last runs where there are several, else the rows from the change of
-/// excitation (a step of `power_param`) that is nearest to the wanted fraction, looked for within a tenth of the
-/// rows; never interleaved samples.
+/// Whole excitation segments are held out: the last runs where there are several, else the rows from the
+/// change of excitation (a step of `power_param`) that is nearest to the wanted fraction, looked for within a
+/// tenth of the rows; never interleaved samples.
 inline std::pair<Recording, Recording> split(const Recording& recording, double held_out_fraction) {
   const Eigen::Index rows = recording.rows();
-  const Eigen::Index wanted = static_cast<Eigen::Index>((1.0 - held_out_fraction) * static_cast<double>(rows));
+  const Eigen::Index wanted =
+      static_cast<Eigen::Index>((1.0 - held_out_fraction) * static_cast<double>(rows));
   Eigen::Index at = wanted;
   const std::vector<RunSpan> runs = recording.spans();
   Eigen::Index reach = rows / 10;
   for (const RunSpan& run : runs)
-    if (run.begin > 0 && std::abs(run.begin - wanted) <= 2 * reach && std::abs(run.begin - wanted) < std::abs(at - wanted) + (at == wanted ? 2 * reach : 0))
+    if (run.begin > 0 && std::abs(run.begin - wanted) <= 2 * reach &&
+        std::abs(run.begin - wanted) < std::abs(at - wanted) + (at == wanted ? 2 * reach : 0))
       at = run.begin;
   if (at == wanted && recording.find("power_param") != nullptr) {
     const Eigen::VectorXd& power = recording.column("power_param");

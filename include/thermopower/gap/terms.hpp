@@ -14,45 +14,45 @@ namespace thermopower::gap {
 /// Before the current law is evaluated: I = (supply_V sqrt(duty) - counter_V) / (R(T) factor + series + sag).
 template <class Scalar>
 struct ElectricalTerms {
-  double t_s = 0.0;         ///< time since the start of the run
-  double rate_dps = 0.0;    ///< recorded rotation of the motor, deg/s
-  Scalar winding_C;         ///< temperature of the winding
-  Scalar charge_Ah;         ///< charge drawn since the start of the run
+  double t_s = 0.0;       ///< time since the start of the run
+  double rate_dps = 0.0;  ///< recorded rotation of the motor, deg/s
+  Scalar winding_C;       ///< temperature of the winding
+  Scalar charge_Ah;       ///< charge drawn since the start of the run
   // to change
-  Scalar supply_V;          ///< open-circuit supply
-  Scalar source_ohm;        ///< resistance between the supply and the bridge: sags with the motor's current
-  Scalar duty;              ///< 0..1
-  Scalar tempco_per_K;      ///< of the winding (ohmic law only)
-  Scalar series_ohm;        ///< in the motor's circuit, outside of the thermometered body
-  Scalar counter_V;         ///< voltage against the drive
+  Scalar supply_V;      ///< open-circuit supply
+  Scalar source_ohm;    ///< resistance between the supply and the bridge: sags with the motor's current
+  Scalar duty;          ///< 0..1
+  Scalar tempco_per_K;  ///< of the winding (ohmic law only)
+  Scalar series_ohm;    ///< in the motor's circuit, outside of the thermometered body
+  Scalar counter_V;     ///< voltage against the drive
 };
 
 /// Heat balance of the body: what comes in, what goes out, W.
 template <class Scalar>
 struct ThermalTerms {
-  double t_s = 0.0;            ///< time since the start of the run
-  double airspeed_mps = 0.0;   ///< covariate
-  double neighbour_C = 0.0;    ///< covariate
-  double rate_dps = 0.0;       ///< covariate
+  double t_s = 0.0;           ///< time since the start of the run
+  double airspeed_mps = 0.0;  ///< covariate
+  double neighbour_C = 0.0;   ///< covariate
+  double rate_dps = 0.0;      ///< covariate
   double measured_ambient_C = 0.0;
-  Scalar winding_C;            ///< node that the heat enters
-  Scalar surface_C;            ///< node that loses it; the same where there is one node
-  Scalar current_A;            ///< motor current
-  Scalar supply_V;             ///< supply at the bridge
-  Scalar v_rms_V;              ///< voltage at the motor
+  Scalar winding_C;  ///< node that the heat enters
+  Scalar surface_C;  ///< node that loses it; the same where there is one node
+  Scalar current_A;  ///< motor current
+  Scalar supply_V;   ///< supply at the bridge
+  Scalar v_rms_V;    ///< voltage at the motor
   // to change
-  Scalar ambient_C;            ///< air temperature that the body feels
-  Scalar heat_W;               ///< into the winding node
-  Scalar conductance_factor;   ///< multiplies the baseline's loss
-  Scalar extra_loss_W;         ///< out of the surface node
+  Scalar ambient_C;           ///< air temperature that the body feels
+  Scalar heat_W;              ///< into the winding node
+  Scalar conductance_factor;  ///< multiplies the baseline's loss
+  Scalar extra_loss_W;        ///< out of the surface node
 };
 
 /// The shape of the thermal model, set once per simulation.
 template <class Scalar>
 struct ThermalStructure {
-  Scalar winding_share;       ///< of the heat capacity; 1: a single node
-  Scalar coupling_W_per_K;    ///< between winding and surface node
-  Scalar thermometer_lag_s;   ///< time constant of the thermometer; 0: none
+  Scalar winding_share;      ///< of the heat capacity; 1: a single node
+  Scalar coupling_W_per_K;   ///< between winding and surface node
+  Scalar thermometer_lag_s;  ///< time constant of the thermometer; 0: none
   bool two_nodes = false;
   bool lagged = false;
 };
@@ -60,22 +60,22 @@ struct ThermalStructure {
 /// Drive path, evaluated once per interval.
 template <class Scalar>
 struct DriveTerms {
-  double t_s = 0.0;                 ///< time since the start of the run
-  double motor_C = 0.0;             ///< recorded; NaN where it is not
+  double t_s = 0.0;      ///< time since the start of the run
+  double motor_C = 0.0;  ///< recorded; NaN where it is not
   // to change
-  Scalar drive_A;                   ///< command, delayed where there is a delay
+  Scalar drive_A;  ///< command, delayed where there is a delay
   Scalar torque_constant_Nm_per_A;
 };
 
 /// Torques on the driven inertia.
 template <class Scalar>
 struct AxisTerms {
-  double t_s;                     ///< time since the start of the run
+  double t_s;  ///< time since the start of the run
   const Scalar& angle_rad;
   const Scalar& rate_rad_per_s;
-  const Scalar& drive_Nm;         ///< torque of the drive, after its own effects
+  const Scalar& drive_Nm;  ///< torque of the drive, after its own effects
   // to change
-  Scalar load_Nm;           ///< added to the drive
+  Scalar load_Nm;               ///< added to the drive
   Scalar friction_forward_Nm;   ///< magnitude of dry friction while the rate is positive, >= 0
   Scalar friction_backward_Nm;  ///< magnitude of dry friction while the rate is negative, >= 0
 };
@@ -83,10 +83,10 @@ struct AxisTerms {
 /// The shape of the mechanical model, set once per simulation.
 template <class Scalar>
 struct AxisStructure {
-  Scalar delay_s;             ///< from command to torque
-  Scalar far_share;           ///< of the inertia, behind a spring; 0: rigid
-  Scalar spring_rad_per_s;    ///< natural frequency of the two inertias against each other
-  Scalar spring_damping;      ///< damping ratio of that motion
+  Scalar delay_s;           ///< from command to torque
+  Scalar far_share;         ///< of the inertia, behind a spring; 0: rigid
+  Scalar spring_rad_per_s;  ///< natural frequency of the two inertias against each other
+  Scalar spring_damping;    ///< damping ratio of that motion
   bool delayed = false;
   bool compliant = false;
 };
@@ -94,7 +94,7 @@ struct AxisStructure {
 /// What the instruments say of the bench.
 template <class Scalar>
 struct BenchReadings {
-  double t_s = 0.0;                 ///< time since the start of the run
+  double t_s = 0.0;  ///< time since the start of the run
   double measured_ambient_C = 0.0;
   // to change
   Scalar current_A;
@@ -104,7 +104,7 @@ struct BenchReadings {
 /// What the instruments say of the axis.
 template <class Scalar>
 struct AxisReadings {
-  double t_s = 0.0;   ///< time since the start of the run
+  double t_s = 0.0;  ///< time since the start of the run
   // to change
   Scalar angle_deg;
   Scalar rate_dps;

@@ -15,12 +15,14 @@ namespace thermopower::gap {
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its
-/// samples. Where the power switches within a block, the block is short against every time constant the baseline
-/// knows (`longest_s`), and the order of the powers is forgotten while their durations are kept: up to three levels,
-/// once before the block's centre and once after it. Outputs are means with their number in `repeats`.
+/// samples. Where the power switches within a block, the block is short against every time constant the
+/// baseline knows (`longest_s`), and the order of the powers is forgotten while their durations are kept: up
+/// to three levels, once before the block's centre and once after it. Outputs are means with their number in
+/// `repeats`.
 class BenchThinning {
 public:
-  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s) : full_(full), longest_s_(longest_s) {
+  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s)
+      : full_(full), longest_s_(longest_s) {
     block_ = (2 * full.rows() + rows - 1) / rows;
   }
 
@@ -57,9 +59,9 @@ private:
   /// One row of the result: the rows of the full recording that its inputs and outputs are the means of.
   struct Row {
     double t_s = 0.0;
-    std::vector<Eigen::Index> of;               ///< inputs
+    std::vector<Eigen::Index> of;                 ///< inputs
     Eigen::Index motor_begin = 0, motor_end = 0;  ///< motor_C; empty: none
-    bool current = false;                       ///< whether current_A is the mean over `of`
+    bool current = false;                         ///< whether current_A is the mean over `of`
   };
 
   Eigen::Index add_block(const RunSpan& span, Eigen::Index row) {
@@ -91,7 +93,8 @@ private:
     Eigen::Index end = row + 1;
     // A measured current is never constant: what is within a twentieth counts as such.
     const double slack = full_.power_param.size() > 0 ? 0.0 : 0.05 * std::abs(level(row));
-    while (end < limit && std::abs(level(end) - level(row)) <= slack && full_.t_s[end] - full_.t_s[row] < 4.0 * longest_s_)
+    while (end < limit && std::abs(level(end) - level(row)) <= slack &&
+           full_.t_s[end] - full_.t_s[row] < 4.0 * longest_s_)
       ++end;
     return end;
   }
@@ -113,7 +116,8 @@ private:
   void add_mixed(Eigen::Index begin, Eigen::Index end, double until_s) {
     std::vector<Eigen::Index> order;
     for (Eigen::Index one = begin; one < end; ++one) order.push_back(one);
-    std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return level(a) < level(b); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Eigen::Index a, Eigen::Index b) { return level(a) < level(b); });
     // Cut at the two widest steps of the level.
     std::array<std::size_t, 2> cuts{0, 0};
     std::array<double, 2> widest{0.0, 0.0};
@@ -128,7 +132,8 @@ private:
     }
     std::sort(cuts.begin(), cuts.end());
     std::vector<std::size_t> edges{0, cuts[0], cuts[1], order.size()};
-    const double whole_s = until_s - full_.t_s[begin], share_s = 0.5 * whole_s / static_cast<double>(order.size());
+    const double whole_s = until_s - full_.t_s[begin],
+                 share_s = 0.5 * whole_s / static_cast<double>(order.size());
     double now_s = full_.t_s[begin];
     for (int half = 0; half < 2; ++half) {
       bool first = true;
@@ -139,7 +144,8 @@ private:
                       order.begin() + static_cast<std::ptrdiff_t>(edges[k + 1]));
         row.t_s = now_s;
         if (half == 1 && first) row.motor_begin = begin, row.motor_end = end;
-        row.current = half == 1 && level(row.of.back()) - level(row.of.front()) <= 0.02 * std::abs(level(row.of.back()));
+        row.current = half == 1 &&
+                      level(row.of.back()) - level(row.of.front()) <= 0.02 * std::abs(level(row.of.back()));
         now_s += share_s * static_cast<double>(row.of.size());
         first = false;
         rows_.push_back(std::move(row));
@@ -178,8 +184,8 @@ private:
         for (Eigen::Index one : row.of) add(one);
       if (count <= 0.0 || 3.0 * count < 2.0 * asked) continue;
       to[static_cast<Eigen::Index>(i)] = sum / count;
-      // Rows carry one weight for both signals: they have the same number of samples wherever both are observed,
-      // but for mixed blocks, where the temperature's is the larger and the current's counts.
+      // Rows carry one weight for both signals: they have the same number of samples wherever both are
+      // observed, but for mixed blocks, where the temperature's is the larger and the current's counts.
       thin.repeats[static_cast<Eigen::Index>(i)] = count;
     }
   }
@@ -222,6 +228,7 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
     if (index - first < (wanted + stretches - 1) / stretches) {
       kept.push_back(segment);
       kept.back().carries_on = segment.carries_on && previous == index - 1;
+      kept.back().warm_up = segment.carries_on && previous != index - 1;
       previous = index;
     }
     ++index;

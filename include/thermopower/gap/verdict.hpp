@@ -16,8 +16,8 @@ namespace thermopower::gap {
 /// What the weighing of the candidates amounts to.
 struct Conclusion {
   Verdict verdict = Verdict::insufficient;
-  std::size_t chosen = 0;                  ///< index of the candidate
-  std::vector<std::size_t> alternatives;   ///< indices, likeliest first
+  std::size_t chosen = 0;                 ///< index of the candidate
+  std::vector<std::size_t> alternatives;  ///< indices, likeliest first
   double none_of_these = 0.0;
   std::string reason;
 };
@@ -29,8 +29,8 @@ inline double level(const Candidate& candidate, std::size_t signal) {
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
-/// Whether a candidate shrinks some signal's score by more than the tolerance and none of its signals grows by more,
-/// on held-out data.
+/// Whether a candidate shrinks some signal's score by more than the tolerance and none of its signals grows
+/// by more, on held-out data.
 inline bool matters(const Candidate& candidate, const Candidate& than, double tolerance) {
   bool better = false;
   for (std::size_t i = 0; i < signal_count; ++i) {
@@ -69,9 +69,9 @@ inline double excess(const Candidate& candidate) {
   return sum;
 }
 
-/// The smallest part of a set of causes that does its work: a further cause is only named where the set without it
-/// stays clearly above the noise and the further one takes away at least half of what is left. Otherwise it mends
-/// small errors of the others' equations.
+/// The smallest part of a set of causes that does its work: a further cause is only named where the set
+/// without it stays clearly above the noise and the further one takes away at least half of what is left.
+/// Otherwise it mends small errors of the others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen) {
   for (bool smaller = true; smaller;) {
     smaller = false;
@@ -81,7 +81,8 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
                           candidates[chosen].explanation.includes(candidates[i].explanation);
       if (within && (part == 0 || candidates[i].deviance < candidates[part].deviance)) part = i;
     }
-    if (part != 0 && (worst_level(candidates[part]) < 1.4 || excess(candidates[chosen]) > 0.5 * excess(candidates[part]))) {
+    if (part != 0 && (worst_level(candidates[part]) < 1.4 ||
+                      excess(candidates[chosen]) > 0.5 * excess(candidates[part]))) {
       chosen = part;
       smaller = true;
     }
@@ -89,7 +90,8 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
   return chosen;
 }
 
-/// The largest probability among explanations that are no larger than one: what its rivals are measured against.
+/// The largest probability among explanations that are no larger than one: what its rivals are measured
+/// against.
 inline double likeliest_of(const std::vector<Candidate>& candidates, const Candidate& chosen) {
   double largest = 0.0;
   for (const Candidate& one : candidates)
@@ -111,8 +113,9 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
     result.chosen = 0;
     result.verdict = at_noise ? Verdict::no_gap : Verdict::unexplained;
     result.none_of_these = at_noise ? 0.0 : 0.98;
-    result.reason = at_noise ? "with its constants within their slack the simulation scores what the noise allows"
-                             : "there is a gap, and no effect of the catalogue lowers it on held-out data";
+    result.reason = at_noise
+                        ? "with its constants within their slack the simulation scores what the noise allows"
+                        : "there is a gap, and no effect of the catalogue lowers it on held-out data";
     return result;
   }
   const double level_left = worst_level(best), share_left = left_over(best, empty);
@@ -129,8 +132,9 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
     if (i != result.chosen && candidates[i].probability > 0.02 * likeliest_of(candidates, best) &&
         candidates[i].explanation.size() <= best.explanation.size())
       order.push_back(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return candidates[a].probability > candidates[b].probability; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return candidates[a].probability > candidates[b].probability;
+  });
   result.alternatives = order;
   result.verdict = order.empty() ? Verdict::explained : Verdict::ambiguous;
   result.reason = order.empty() ? "the named cause brings held-out data near the noise, and nothing else does"

@@ -12,13 +12,14 @@ namespace thermopower::gap {
 struct AmbientBias {
   /// What it is.
   static EffectInfo info() {
-    return {"ambient_bias",
-            "thermal.loss",
-            "loss = G (T - (Ta + bias))",
-            "The air around the motor is not what its sensor says: the motor cools towards another temperature.",
-            {{"bias_K", "K", -40.0, 40.0, {0.0}, false}},
-            {"thermal", "motor_C"},
-            "a long rest with the power off, until the motor is at air temperature"};
+    return {
+        "ambient_bias",
+        "thermal.loss",
+        "loss = G (T - (Ta + bias))",
+        "The air around the motor is not what its sensor says: the motor cools towards another temperature.",
+        {{"bias_K", "K", -40.0, 40.0, {0.0}, false}},
+        {"thermal", "motor_C"},
+        "a long rest with the power off, until the motor is at air temperature"};
   }
 
   /// Shifts the air temperature.

@@ -16,8 +16,7 @@ struct AsymmetricFriction {
             "mechanical.friction",
             "torque -= forward (w > 0), torque += backward (w < 0)",
             "Dry friction that differs between the two directions.",
-            {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false}},
+            {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false}, {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false}},
             {"axis"},
             "slow motion at constant rate in both directions, and standstill"};
   }

@@ -12,15 +12,16 @@ namespace thermopower::gap {
 struct Compliance {
   /// What it is.
   static EffectInfo info() {
-    return {"compliance",
-            "mechanical.structure",
-            "J1 dw/dt = drive - spring, J2 dw2/dt = spring",
-            "Part of the inertia hangs on a spring: the axis rings.",
-            {{"far_share", "1", 0.01, 0.97, {0.2, 0.6}, false},
-             {"frequency_Hz", "Hz", 0.2, 300.0, {2.0, 5.0, 10.0, 20.0, 40.0}, true},
-             {"damping", "1", 1e-4, 2.0, {0.03}, true}},
-            {"axis"},
-            "fast reversals and a frequency sweep"};
+    return {
+        "compliance",
+        "mechanical.structure",
+        "J1 dw/dt = drive - spring, J2 dw2/dt = spring",
+        "Part of the inertia hangs on a spring: the axis rings.",
+        {{"far_share", "1", 0.01, 0.97, {0.2, 0.6}, false},
+         {"frequency_Hz", "Hz", 0.2, 300.0, {1.5, 2.2, 3.3, 5.0, 7.5, 11.0, 16.0, 25.0, 40.0, 60.0}, true},
+         {"damping", "1", 1e-4, 2.0, {0.03}, true}},
+        {"axis"},
+        "fast reversals and a frequency sweep"};
   }
 
   /// Puts part of the inertia behind a spring.

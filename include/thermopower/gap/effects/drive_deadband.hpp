@@ -25,12 +25,9 @@ struct DriveDeadband {
   template <class Scalar>
   static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
     const double command = value_of(terms.drive_A);
-    if (command > value_of(p[0]))
-      terms.drive_A -= p[0];
-    else if (command < -value_of(p[0]))
-      terms.drive_A += p[0];
-    else
-      terms.drive_A = constant<Scalar>(0.0);
+    if (command > value_of(p[0])) terms.drive_A -= p[0];
+    else if (command < -value_of(p[0])) terms.drive_A += p[0];
+    else terms.drive_A = constant<Scalar>(0.0);
   }
 };
 

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/actuator/cooling.hpp>
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
 #include <thermopower/gap/terms.hpp>
-#include <thermopower/actuator/cooling.hpp>
 
 namespace thermopower::gap {
 
@@ -17,8 +17,7 @@ struct ForcedAirflowEffect {
             "thermal.loss",
             "loss = G (1 + gain v^n) (T - Ta)",
             "Moving air takes more heat away than still air.",
-            {{"gain", "1", 0.0, 50.0, {0.1}, false},
-             {"exponent", "1", 0.2, 1.2, {0.7}, false}},
+            {{"gain", "1", 0.0, 50.0, {0.1}, false}, {"exponent", "1", 0.2, 1.2, {0.7}, false}},
             {"thermal", "motor_C", "airspeed_mps"},
             "the same power with the air still and moving"};
   }

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/actuator/cooling.hpp>
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
 #include <thermopower/gap/terms.hpp>
-#include <thermopower/actuator/cooling.hpp>
 
 namespace thermopower::gap {
 
@@ -17,8 +17,7 @@ struct NaturalConvectionEffect {
             "thermal.loss",
             "loss = G (T - Ta) (|T - Ta| / reference)^n",
             "Warm air rises faster the warmer it is: the loss grows faster than the temperature rise.",
-            {{"exponent", "1", 0.0, 1.0, {0.2}, false},
-             {"reference_K", "K", 1.0, 300.0, {15.0, 40.0}, true}},
+            {{"exponent", "1", 0.0, 1.0, {0.2}, false}, {"reference_K", "K", 1.0, 300.0, {15.0, 40.0}, true}},
             {"thermal", "motor_C"},
             "holds at several powers and a long cooling curve in still air"};
   }

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/actuator/cooling.hpp>
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
 #include <thermopower/gap/terms.hpp>
-#include <thermopower/actuator/cooling.hpp>
 
 namespace thermopower::gap {
 

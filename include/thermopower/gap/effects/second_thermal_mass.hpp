@@ -15,7 +15,8 @@ struct SecondThermalMass {
     return {"second_thermal_mass",
             "thermal.storage",
             "s C dT/dt = P - k (T - H), (1 - s) C dH/dt = k (T - H) - G (H - Ta)",
-            "The heated winding is coupled to a housing that loses the heat: steps begin and end faster than one mass allows.",
+            "The heated winding is coupled to a housing that loses the heat: steps begin and end faster than "
+            "one mass allows.",
             {{"winding_share", "1", 0.01, 0.97, {0.12, 0.4}, false},
              {"coupling", "W/K", 1e-3, 1e3, {0.1, 1.0, 8.0}, true}},
             {"thermal", "motor_C"},

@@ -16,8 +16,7 @@ struct SupplySag {
             "electrical",
             "V = V0 - internal I_supply - slope Q, I_supply = I sqrt(duty)",
             "The supply is not logged and gives way under load and as it discharges.",
-            {{"internal_ohm", "ohm", 0.0, 1e3, {0.0}, false},
-             {"V_per_Ah", "V/Ah", 0.0, 1e3, {0.0}, false}},
+            {{"internal_ohm", "ohm", 0.0, 1e3, {0.0}, false}, {"V_per_Ah", "V/Ah", 0.0, 1e3, {0.0}, false}},
             {"current", "current_A", "power_param", "no supply_V"},
             "log the supply voltage; or high and low power in turn, early and late in a discharge"};
   }

@@ -24,10 +24,8 @@ struct TorqueSaturation {
   /// Limits the command.
   template <class Scalar>
   static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
-    if (value_of(terms.drive_A) > value_of(p[0]))
-      terms.drive_A = p[0];
-    else if (value_of(terms.drive_A) < -value_of(p[0]))
-      terms.drive_A = -p[0];
+    if (value_of(terms.drive_A) > value_of(p[0])) terms.drive_A = p[0];
+    else if (value_of(terms.drive_A) < -value_of(p[0])) terms.drive_A = -p[0];
   }
 };
 

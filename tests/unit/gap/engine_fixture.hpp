@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit_problem.hpp>
+#include <thermopower/gap/standard_catalogue.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+/// Recordings made with the library's own equations: what an engine must recover before it may judge others'.
+namespace engine_fixture {
+
+using namespace thermopower::gap;
+
+/// The same numbers with every standard library.
+class Noise {
+public:
+  explicit Noise(std::uint64_t seed) : state_(seed) {}
+  double uniform() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return (static_cast<double>(state_ >> 11) + 0.5) / 9007199254740992.0;
+  }
+  double normal() { return std::sqrt(-2.0 * std::log(uniform())) * std::cos(6.283185307179586 * uniform()); }
+
+private:
+  std::uint64_t state_;
+};
+
+inline Model bench_model() {
+  Model model;
+  model.name = "bench";
+  model.supply = SupplyModel{12.0};
+  model.current = OhmicCurrentModel{6.0, 0.00393, 25.0};
+  model.thermal = LumpedThermalModel{60.0, 0.2};
+  return model;
+}
+
+inline Model axis_model() {
+  Model model;
+  model.name = "axis";
+  model.axis = RigidAxisModel{1e-3, 1e-3, 0.1};
+  return model;
+}
+
+/// Power steps with rests, moving air, a neighbour and bursts of rotation; no outputs yet.
+inline Recording bench_inputs(Eigen::Index rows, double dt_s, std::uint64_t seed, bool with_supply) {
+  Noise noise(seed);
+  Recording recording;
+  recording.name = "bench";
+  recording.t_s.resize(rows);
+  Eigen::VectorXd power(rows), ambient(rows), air(rows), neighbour(rows), rate(rows), supply(rows);
+  double level = 150.0, wind = 0.0, near = 40.0, speed = 0.0;
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    if (row % 25 == 0) level = std::floor(noise.uniform() * 6.0) * 50.0;
+    if (row % 60 == 0) wind = std::floor(noise.uniform() * 3.0) * 3.0;
+    if (row % 90 == 0) near = 30.0 + 50.0 * noise.uniform();
+    if (row % 40 == 0) speed = std::floor(noise.uniform() * 3.0) * 200.0;
+    recording.t_s[row] = static_cast<double>(row) * dt_s;
+    power[row] = level;
+    ambient[row] = 24.0 + std::sin(recording.t_s[row] / 900.0);
+    air[row] = wind;
+    neighbour[row] = near;
+    rate[row] = speed;
+    supply[row] = 12.0;
+  }
+  recording.set("power_param", power);
+  recording.set("ambient_C", ambient);
+  recording.set("airspeed_mps", air);
+  recording.set("neighbour_C", neighbour);
+  recording.set("rate_dps", rate);
+  if (with_supply) recording.set("supply_V", supply);
+  return recording;
+}
+
+/// A smooth command of several frequencies, and a motor that warms up.
+inline Recording axis_inputs(Eigen::Index rows, double dt_s, std::uint64_t seed) {
+  Noise noise(seed);
+  Recording recording;
+  recording.name = "axis";
+  recording.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), motor(rows);
+  double phase[4];
+  for (double& one : phase) one = 6.28 * noise.uniform();
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const double t_s = static_cast<double>(row) * dt_s;
+    recording.t_s[row] = t_s;
+    drive[row] = 0.12 * std::sin(1.1 * t_s + phase[0]) + 0.15 * std::sin(2.9 * t_s + phase[1]) +
+                 0.12 * std::sin(7.3 * t_s + phase[2]) + 0.08 * std::sin(17.0 * t_s + phase[3]);
+    motor[row] = 28.0 + 25.0 * t_s / (static_cast<double>(rows) * dt_s);
+  }
+  recording.set("drive_A", drive);
+  recording.set("motor_C", motor);
+  return recording;
+}
+
+/// Simulates the truth on the recording's inputs, from equilibrium, and writes its noisy readings as outputs.
+inline void measure(Recording& recording, const Model& truth, std::uint64_t seed) {
+  Noise noise(seed);
+  const Catalogue& catalogue = standard_catalogue();
+  const Eigen::Index rows = recording.rows();
+  Recording blank = recording;
+  if (truth.has_axis()) {
+    blank.set("angle_deg", Eigen::VectorXd::Zero(rows));
+    blank.set("rate_dps", Eigen::VectorXd::Zero(rows));
+  } else {
+    blank.set("motor_C", Eigen::VectorXd::Constant(rows, 25.0));
+    blank.set("current_A", Eigen::VectorXd::Zero(rows));
+  }
+  const Inputs inputs = prepare(truth, blank);
+  const Instance<double> instance(truth, {}, {}, catalogue);
+  Eigen::VectorXd first(rows), second(rows);
+  if (truth.has_axis()) {
+    const AxisRollout<double> rollout(instance, inputs);
+    AxisState<double> state{0.0, 0.0, 0.0, 0.0};
+    rollout.window({0, rows, ""}, 0, rows, state, [&](Eigen::Index row, const AxisReadings<double>& read) {
+      first[row] = read.angle_deg + 0.02 * noise.normal();
+      second[row] = read.rate_dps + 0.15 * noise.normal();
+    });
+    recording.set("angle_deg", first);
+    recording.set("rate_dps", second);
+  } else {
+    const BenchRollout<double> rollout(instance, inputs);
+    BenchState<double> state = rollout.start(0, 25.0);
+    rollout.run(0, rows, 0.0, state, [&](Eigen::Index row, const BenchReadings<double>& read) {
+      first[row] = read.motor_C + 0.05 * noise.normal();
+      second[row] = read.current_A + 0.002 * noise.normal();
+    });
+    recording.set("motor_C", first);
+    recording.set("current_A", second);
+  }
+}
+
+/// One effect and the parameters it is tried with.
+struct Trial {
+  std::string id;
+  EffectParameters parameters;
+  bool axis = false;
+};
+
+/// Every effect of the standard catalogue, at a size that shows.
+inline std::vector<Trial> trials() {
+  return {
+      {"second_thermal_mass", {{"winding_share", 0.25}, {"coupling", 0.6}}, false},
+      {"radiation", {{"emissive_area_m2", 0.02}}, false},
+      {"natural_convection", {{"exponent", 0.3}, {"reference_K", 20.0}}, false},
+      {"forced_airflow", {{"gain", 0.2}, {"exponent", 0.7}}, false},
+      {"ambient_bias", {{"bias_K", 4.0}}, false},
+      {"neighbour_heating", {{"coupling", 0.03}}, false},
+      {"motion_heating", {{"W_s2_per_rad2", 0.02}}, false},
+      {"thermometer_lag", {{"lag_s", 25.0}}, false},
+      {"thermometer_gain", {{"gain", 0.85}}, false},
+      {"supply_power_heating", {{"share", 1.0}}, false},
+      {"supply_sag", {{"internal_ohm", 0.4}, {"V_per_Ah", 0.8}}, false},
+      {"series_resistance", {{"ohm", 1.2}}, false},
+      {"dead_time", {{"duty_lost", 0.03}}, false},
+      {"back_emf", {{"V_s_per_rad", 0.15}}, false},
+      {"current_sensor_offset", {{"A", 0.05}}, false},
+      {"current_sensor_gain", {{"gain", 1.2}}, false},
+      {"winding_tempco", {{"tempco_per_K", 0.0039}}, false},
+      {"coulomb_friction", {{"Nm", 0.008}}, true},
+      {"asymmetric_friction", {{"forward_Nm", 0.009}, {"backward_Nm", 0.004}}, true},
+      {"stribeck_friction", {{"Nm", 0.004}, {"rise_Nm", 0.006}, {"knee_rad_per_s", 0.6}}, true},
+      {"load_friction", {{"share", 0.3}}, true},
+      {"drive_deadband", {{"A", 0.05}}, true},
+      {"imbalance", {{"Nm", 0.006}, {"phase_rad", 0.5}}, true},
+      {"cogging", {{"sin_Nm", 0.003}, {"cos_Nm", -0.002}, {"cycles_per_turn", 7.0}}, true},
+      {"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.4}}, true},
+      {"compliance", {{"far_share", 0.4}, {"frequency_Hz", 8.0}, {"damping", 0.05}}, true},
+      {"actuation_delay", {{"s", 0.0173}}, true},
+      {"torque_saturation", {{"A", 0.2}}, true},
+      {"torque_fade", {{"per_K", 0.006}}, true},
+      {"angle_scale", {{"gain", 57.29578}}, true},
+      {"angle_bias_drift", {{"deg_per_s", 0.4}}, true},
+      {"rate_bias", {{"dps", 1.5}}, true},
+  };
+}
+
+/// The baseline for a trial: without the effect, and without what the effect needs to be absent.
+inline Model baseline_of(const Trial& trial) {
+  Model model = trial.axis ? axis_model() : bench_model();
+  if (trial.id == "winding_tempco") model.set("tempco_per_K", 0.0);
+  return model;
+}
+
+/// What was recorded while the effect of the trial acted.
+inline Recording recorded(const Trial& trial, std::uint64_t seed) {
+  Model truth = baseline_of(trial);
+  truth.effects[trial.id] = trial.parameters;
+  Recording recording =
+      trial.axis ? axis_inputs(1500, 0.01, seed) : bench_inputs(600, 2.0, seed, trial.id != "supply_sag");
+  measure(recording, truth, seed + 1);
+  return recording;
+}
+
+}  // namespace engine_fixture
