@@ -40,11 +40,12 @@ inline std::string short_number(double value) {
   return text;
 }
 
-inline double median_of(std::vector<double> values) {
+/// The median; reorders the values.
+inline double median_of(std::vector<double>& values) {
   if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const std::size_t middle = values.size() / 2;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle), values.end());
+  return values[middle];
 }
 
 /// The smallest step between consecutive samples, 0 where there is none.
