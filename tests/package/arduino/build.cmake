@@ -17,7 +17,7 @@ foreach(sketch nano_gimbal gimbal_controller)
   file(MAKE_DIRECTORY ${build})
   # The define mends a name that Debian's avr-libc lacks and the core's Print wants; an IDE with its own tools needs none.
   execute_process(
-    COMMAND arduino-builder -compile -hardware /usr/share/arduino/hardware -tools /usr/share/arduino-builder
+    COMMAND arduino-builder -compile -hardware /usr/share/arduino-builder -hardware /usr/share/arduino/hardware -tools /usr/share/arduino-builder
             -libraries ${libraries} -fqbn arduino:avr:nano:cpu=atmega328 -prefs runtime.tools.avr-gcc.path=/usr
             -prefs "compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__" -build-path ${build}
             ${libraries}/thermopower/examples/${sketch}/${sketch}.ino
