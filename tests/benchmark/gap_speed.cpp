@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each length is generated in place,
+// written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one least-squares fit of the same residuals,
+// with the same derivatives, by this library and by Ceres.
+
+#include "engine.hpp"
+#include "recording_file.hpp"
+
+#include <thermopower/gap/fit.hpp>
+#include <thermopower/gap/inputs.hpp>
+#include <thermopower/gap/splitting.hpp>
+#include <thermopower/gap/standard_catalogue.hpp>
+
+#ifdef THERMOPOWER_HAS_CERES
+#include <ceres/ceres.h>
+#endif
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+using namespace thermopower::gap;
+
+namespace {
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+long peak_MB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+Model motor() {
+  Model model;
+  model.name = "generated motor";
+  model.supply = SupplyModel{12.0};
+  model.current = OhmicCurrentModel{8.0, 0.00393, 25.0};
+  model.thermal = LumpedThermalModel{60.0, 0.15};
+  return model;
+}
+
+/// A motor that radiates, under power steps, logged at 10 Hz with noise, a 0.1 degC quantum and columns that mean nothing.
+Recording motor_recording(Eigen::Index rows) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise;
+  Recording r;
+  r.name = "generated";
+  r.t_s.resize(rows);
+  Eigen::VectorXd power(rows), current(rows), motor_C(rows), ambient(rows), supply(rows), airspeed(rows), neighbour(rows);
+  double temperature = 24.0, level = 200.0;
+  const double interval = 0.1;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    if (i % 2500 == 0) level = random() % 4 == 0 ? 0.0 : 25.0 * static_cast<double>(1 + random() % 10);
+    const double air = 23.0 + std::sin(1e-4 * static_cast<double>(i));
+    const double v = 12.0 * std::sqrt(level / 255.0), ohm = 8.0 * (1.0 + 0.00393 * (temperature - 25.0)), amps = v / ohm;
+    r.t_s[i] = interval * static_cast<double>(i);
+    power[i] = level;
+    current[i] = std::round(1e3 * (amps + 0.003 * noise(random))) / 1e3;
+    motor_C[i] = std::round(10.0 * (temperature + 0.1 * noise(random))) / 10.0;
+    ambient[i] = std::round(100.0 * (air + 0.05 * noise(random))) / 100.0;
+    supply[i] = 12.0;
+    airspeed[i] = std::fabs(std::sin(3e-4 * static_cast<double>(i)));
+    neighbour[i] = 30.0 + 5.0 * std::sin(2e-4 * static_cast<double>(i));
+    const double hot = temperature + 273.15, cold = air + 273.15;
+    const double loss = 0.15 * (temperature - air) + 8e-10 * (std::pow(hot, 4.0) - std::pow(cold, 4.0));
+    temperature += interval * (amps * amps * ohm - loss) / 60.0;
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  r.set("motor_C", motor_C);
+  r.set("ambient_C", ambient);
+  r.set("supply_V", supply);
+  r.set("airspeed_mps", airspeed);
+  r.set("neighbour_C", neighbour);
+  return r;
+}
+
+void write_csv(const Recording& r, const std::string& path) {
+  std::FILE* const file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) std::exit(1);
+  std::fputs("t_s", file);
+  for (const auto& column : r.columns) std::fprintf(file, ",%s", column.name.c_str());
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    std::fprintf(file, "\n%.10g", r.t_s[i]);
+    for (const auto& column : r.columns) std::fprintf(file, ",%.6g", column.values[i]);
+  }
+  std::fputs("\n", file);
+  std::fclose(file);
+}
+
+/// One length, in a process of its own so that its peak memory is its own.
+void measure(const std::string& path, Eigen::Index rows, unsigned threads) {
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child != 0) {
+    waitpid(child, nullptr, 0);
+    return;
+  }
+  const double begin = now_s();
+  Recording recording = files::read_recording(path).recording;
+  const double read = now_s();
+  auto [train, held_out] = split(recording, 0.3);
+  recording = Recording();
+  Options options;
+  options.threads = threads;
+  const Diagnosis diagnosis = files::run_diagnosis(motor(), {train}, {held_out}, options);
+  const double end = now_s();
+  std::printf("%9td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(), read - begin);
+  for (const auto& stage : diagnosis.timings) std::printf(", %s %.2f", stage.stage.c_str(), stage.seconds);
+  std::printf(" (%s", to_string(diagnosis.verdict));
+  for (const auto& cause : diagnosis.cause) std::printf(" %s", cause.effect.c_str());
+  std::printf(")\n");
+  std::fflush(stdout);
+  _exit(0);
+}
+
+#ifdef THERMOPOWER_HAS_CERES
+/// The residuals of a fit problem and their derivatives, as Ceres asks for them: explanation's coordinates, then the start.
+class SameResiduals : public ceres::CostFunction {
+public:
+  SameResiduals(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list, int count)
+      : problem_(problem), explanation_(explanation), list_(list) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(list.size()));
+    mutable_parameter_block_sizes()->push_back(2);
+    set_num_residuals(count);
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
+    const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(parameters[0], n);
+    const std::vector<Start> starts{Start(parameters[1][0], parameters[1][1])};
+    problem_.evaluate(explanation_, list_, at, starts, jacobians != nullptr, [&](std::size_t, const FitProblem::Residuals& r) {
+      Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = r.value;
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      if (jacobians != nullptr && jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], num_residuals(), n) = r.jacobian.leftCols(n);
+      if (jacobians != nullptr && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], num_residuals(), 2) = r.jacobian.rightCols(2);
+    });
+    return true;
+  }
+
+private:
+  const FitProblem& problem_;
+  const Explanation& explanation_;
+  const std::vector<Coordinate>& list_;
+};
+#endif
+
+void compare_solvers() {
+  const Model model = motor();
+  const Inputs inputs = prepare(model, motor_recording(20000));
+  FitProblem problem;
+  problem.model = &model;
+  problem.catalogue = &standard_catalogue();
+  problem.sigma = {0.003, 0.11, 1.0, 1.0};
+  Segment segment;
+  segment.inputs = &inputs;
+  segment.run = RunSpan{0, inputs.rows(), ""};
+  segment.begin = 0;
+  segment.end = inputs.rows();
+  problem.segments = {segment};
+  Explanation explanation;
+  explanation.effects = {standard_catalogue().find("radiation")};
+  const std::vector<Coordinate> list = coordinates(model, explanation, Slack{});
+  Eigen::VectorXd from(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) from[static_cast<Eigen::Index>(i)] = list[i].start;
+
+  double begin = now_s();
+  Fitter fitter(problem, explanation, list);
+  const FitResult ours = fitter.minimise(from);
+  const double ours_s = now_s() - begin;
+  std::printf("\none fit, %td residuals, %zu coordinates and a start:\n  ours   %.3f s, %d iterations, chi^2 %.3f, radiation %.4g m^2\n",
+              static_cast<std::ptrdiff_t>(ours.samples), list.size(), ours_s, ours.iterations, ours.chi2, ours.at[ours.at.size() - 1]);
+#ifdef THERMOPOWER_HAS_CERES
+  begin = now_s();
+  std::vector<double> at(from.data(), from.data() + from.size());
+  double start[2] = {0.0, 0.0};
+  ceres::Problem same;
+  same.AddResidualBlock(new SameResiduals(problem, explanation, list, static_cast<int>(ours.samples)), nullptr, at.data(), start);
+  const Start weight = problem.start_weight(segment);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(from.size(), from.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    if (list[i].prior_sd > 0.0) prior(k, k) = 1.0 / list[i].prior_sd;
+    same.SetParameterLowerBound(at.data(), static_cast<int>(i), list[i].lower);
+    same.SetParameterUpperBound(at.data(), static_cast<int>(i), list[i].upper);
+  }
+  same.AddResidualBlock(new ceres::NormalPrior(prior, Eigen::VectorXd::Zero(from.size())), nullptr, at.data());
+  Eigen::MatrixXd start_prior = weight.asDiagonal();
+  same.AddResidualBlock(new ceres::NormalPrior(start_prior, Eigen::VectorXd::Zero(2)), nullptr, start);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.function_tolerance = 1e-5;
+  options.max_num_iterations = 25;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &same, &summary);
+  const double theirs_s = now_s() - begin;
+  const std::vector<Start> starts{Start(start[0], start[1])};
+  double chi2 = 0.0;
+  problem.evaluate(explanation, list, Eigen::Map<const Eigen::VectorXd>(at.data(), from.size()), starts, false,
+                   [&](std::size_t, const FitProblem::Residuals& r) { chi2 += r.value.squaredNorm(); });
+  std::printf("  Ceres  %.3f s, %zu iterations, chi^2 %.3f, radiation %.4g m^2\n  Ceres takes %.2f times as long\n", theirs_s, summary.iterations.size(), chi2,
+              at.back(), theirs_s / ours_s);
+#else
+  std::printf("  Ceres  not found, not compared\n");
+#endif
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  std::vector<Eigen::Index> lengths;
+  for (int i = 1; i < count; ++i) lengths.push_back(std::atol(values[i]));
+  if (lengths.empty()) lengths = {100000, 1000000};
+  const std::string path = (std::filesystem::temp_directory_path() / "thermopower_gap_speed.csv").string();
+  for (const Eigen::Index rows : lengths) {
+    write_csv(motor_recording(rows), path);
+    for (const unsigned threads : {1u, 2u}) measure(path, rows, threads);
+  }
+  std::filesystem::remove(path);
+  compare_solvers();
+  return 0;
+}
