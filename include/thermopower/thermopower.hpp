@@ -41,4 +41,5 @@
 #include "motors/bgm2606_90t.hpp"
 #include "motors/bgm5208_200_12.hpp"
 #include "sbgc/codec.hpp"
+#include "sbgc/power_and_gain.hpp"
 #include "version.hpp"

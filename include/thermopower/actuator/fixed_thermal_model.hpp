@@ -9,6 +9,32 @@
 
 namespace thermopower {
 
+/// What a fixed-point thermal model remembers.
+/// @ingroup actuator
+struct FixedThermalState {
+  FixedTemperature motor;  ///< Temperature after the last step.
+  FixedRate heating;       ///< r P of the power given to `prepare()`, at the temperature then.
+};
+
+namespace detail {
+
+// Not templates: one copy serves every motor.
+[[gnu::noinline]] inline FixedTemperature within_range(FixedTemperature value) noexcept {
+  constexpr FixedTemperature coldest = fixed_temperature(fixed_coldest_C());
+  constexpr FixedTemperature hottest = fixed_temperature(fixed_hottest_C());
+  return value > hottest ? hottest : (value < coldest ? coldest : value);
+}
+
+[[gnu::noinline]] inline FixedRate thermal_step(FixedThermalState& state, FixedCelsius air, FixedTicks ticks,
+                                                int16_t cooling_factor) noexcept {
+  const int16_t above_air = static_cast<int16_t>(rounded_celsius(state.motor) - air);
+  const FixedRate rate = state.heating - static_cast<int32_t>(above_air) * cooling_factor;
+  state.motor = within_range(state.motor + scaled(rate, ticks));
+  return rate;
+}
+
+}  // namespace detail
+
 /// One-node thermal model that takes 16-bit multiplications where ThermalModel takes a floating-point library: CurrentModel,
 /// heating law, cooling law and step in one. Take it on a chip without a floating-point unit, when the supply is known and the motor's
 /// constants need not change at run time; otherwise take ThermalModel.
@@ -24,15 +50,11 @@ namespace thermopower {
 template <class Source>
 class FixedThermalModel {
  public:
-  /// What one logs.
-  struct State {
-    FixedTemperature motor;  ///< Temperature after the last step.
-    FixedRate heating;       ///< r P of the power given to `prepare()`, at the temperature then.
-  };
+  typedef FixedThermalState State;  ///< What one logs.
 
   /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates
   void start(FixedTemperature motor) noexcept {
-    state_.motor = within_range(motor);
+    state_.motor = detail::within_range(motor);
     state_.heating = 0;
   }
 
@@ -47,22 +69,13 @@ class FixedThermalModel {
     static_assert(cooling_factor >= 300 && cooling_factor < 32767,
                   "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within 2.7e-4 .. 0.0298 per second); "
                   "take ThermalModel");
-    const int16_t above_air = static_cast<int16_t>(detail::rounded_celsius(state_.motor) - air);
-    const FixedRate rate = state_.heating - static_cast<int32_t>(above_air) * cooling_factor;
-    state_.motor = within_range(state_.motor + detail::scaled(rate, ticks));
-    return rate;
+    return detail::thermal_step(state_, air, ticks, cooling_factor);
   }
 
   const State& state() const noexcept { return state_; }                      ///< After the last step.
   float motor_C() const noexcept { return celsius_of(state_.motor); }         ///< The temperature, for a log.
 
  private:
-  static FixedTemperature within_range(FixedTemperature value) noexcept {
-    constexpr FixedTemperature coldest = detail::fixed_temperature(detail::fixed_coldest_C());
-    constexpr FixedTemperature hottest = detail::fixed_temperature(detail::fixed_hottest_C());
-    return value > hottest ? hottest : (value < coldest ? coldest : value);
-  }
-
   State state_ = {0, 0};
 };
 

@@ -11,8 +11,36 @@
 
 namespace thermopower {
 
+/// What an axis decides on.
+/// @ingroup control
+struct FixedAxisInputs {
+  uint16_t error_units;  ///< Magnitude of the folded error in units of 360/16384 degree, 0 .. 8192.
+  FixedCelsius air;      ///< Air temperature, -60 .. 125 degC.
+  LimitReason fault;     ///< A fault found by the caller, or `LimitReason::none`.
+};
+
+namespace detail {
+
+/// An axis but for its gain: axes that differ in nothing else share its code.
+template <class Thermal, class PowerLaw, class Limiter>
+class FixedAxis {
+ public:
+  [[gnu::noinline]] void step(const FixedAxisInputs& inputs, FixedTicks ticks) noexcept {
+    const FixedRate rate = thermal.step(inputs.air, ticks);
+    const uint8_t demand = power_law.step(inputs.error_units);
+    granted = is_fault(inputs.fault) ? limiter.cut(inputs.fault, demand) : limiter.step(demand, thermal.state().motor, rate, ticks);
+  }
+
+  Thermal thermal;
+  PowerLaw power_law;
+  Limiter limiter;
+  LimitedPower granted = {least_power(), LimitReason::no_telemetry_yet};
+};
+
+}  // namespace detail
+
 /// Temperature estimate, power law, limiter and gain of one axis, in the order of AxisController, which says what each does. Constants are
-/// types, so the object is its state: ten to fourteen bytes.
+/// types, so the object is its state: twelve bytes with the thesis's policies.
 ///
 /// @tparam Thermal   FixedThermalModel of a motor, or a model with `start`, `prepare`, `step`, `state`
 /// @tparam PowerLaw  how much power an error is worth: fixed_power_law.hpp
@@ -22,59 +50,33 @@ namespace thermopower {
 template <class Thermal, class PowerLaw = FixedLevels<>, class Limiter = FixedSafetyLimiter<>, class Gain = FixedNoGain>
 class FixedAxisController {
  public:
-  /// What the axis decides on.
-  struct Inputs {
-    uint16_t error_units;  ///< Magnitude of the folded error in units of 360/16384 degree, 0 .. 8192.
-    FixedCelsius air;      ///< Air temperature, -60 .. 125 degC.
-    LimitReason fault;     ///< A fault found by the caller, or `LimitReason::none`.
-  };
+  typedef FixedAxisInputs Inputs;  ///< What the axis decides on.
+  typedef LimitedPower State;      ///< The power granted, to be sent as POWER, and why it is below the demand.
 
-  /// What one logs.
-  struct State {
-    FixedRate rate;      ///< dT/dt at the start of the last step.
-    uint8_t power;       ///< Power granted: send this as POWER.
-    LimitReason reason;  ///< Why `power` is below the demand.
-  };
-
-  /// Sets the temperature, at the beginning or when something better than the estimate is known. @param motor  saturates at -50 and 180
-  /// degC
-  void start(FixedTemperature motor) noexcept { thermal_.start(motor); }
+  /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then the motor is at 0 degC and
+  /// every step needs a fault. @param motor  saturates at -50 and 180 degC
+  void start(FixedTemperature motor) noexcept { axis_.thermal.start(motor); }
 
   /// One control cycle; `prepare()` must have been called since the last one. @param ticks  time since then
   const State& step(const Inputs& inputs, FixedTicks ticks) noexcept {
-    state_.rate = thermal_.step(inputs.air, ticks);
-    const uint8_t demand = power_law_.step(inputs.error_units);
-    const LimitedPower granted = is_fault(inputs.fault)
-                                     ? limiter_.cut(inputs.fault, demand)
-                                     : limiter_.step(demand, thermal_.state().motor, state_.rate, ticks);
-    state_.power = granted.power;
-    state_.reason = granted.reason;
-    return state_;
-  }
-
-  /// A cycle before anything is known about the temperature: the power is the least. @param fault  why
-  const State& hold(LimitReason fault) noexcept {
-    const LimitedPower least = limiter_.cut(fault);
-    state_.power = least.power;
-    state_.reason = least.reason;
-    return state_;
+    axis_.step(inputs, ticks);
+    return axis_.granted;
   }
 
   /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for it there.
-  void prepare() noexcept { thermal_.prepare(state_.power); }
+  void prepare() noexcept { axis_.thermal.prepare(axis_.granted.power); }
 
   /// Send this as P.
-  uint8_t p_gain() const noexcept { return Gain::gain(state_.power); }
+  uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
+  /// P at the least power.
+  static constexpr uint8_t first_gain() { return Gain::gain(least_power()); }
 
-  const State& state() const noexcept { return state_; }        ///< After the last step.
-  const Thermal& thermal() const noexcept { return thermal_; }  ///< The temperature.
-  uint8_t ceiling() const noexcept { return limiter_.ceiling(); }  ///< Highest power granted now.
+  const State& state() const noexcept { return axis_.granted; }         ///< After the last step.
+  const Thermal& thermal() const noexcept { return axis_.thermal; }     ///< The temperature.
+  uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
 
  private:
-  Thermal thermal_;
-  PowerLaw power_law_;
-  Limiter limiter_;
-  State state_ = {0, least_power(), LimitReason::no_telemetry_yet};
+  detail::FixedAxis<Thermal, PowerLaw, Limiter> axis_;
 };
 
 }  // namespace thermopower

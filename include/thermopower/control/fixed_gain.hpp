@@ -13,19 +13,19 @@
 /// | `FixedTruncatedGain<low, high>` | eq 4.27 cut to a whole count | `GainScheduler<TruncatedGain>`, the original program |
 /// | `FixedNoGain` | none: always 0, which the caller ignores | `NoGain` |
 ///
-/// A rule of your own has `static uint8_t gain(uint8_t power)`.
+/// A rule of your own has `static constexpr uint8_t gain(uint8_t power)`.
 
 namespace thermopower {
 namespace detail {
 
 /// floor(value / 255) for value <= 65279, without a division.
-inline uint8_t divided_by_255(uint16_t value) noexcept {
+constexpr uint8_t divided_by_255(uint16_t value) noexcept {
   return static_cast<uint8_t>(static_cast<uint16_t>(value + 1u + (value >> 8)) >> 8);
 }
 
 /// 255 times eq 4.27: a whole number.
 template <uint8_t low_power, uint8_t high_power>
-uint16_t gain_times_255(uint8_t power) noexcept {
+constexpr uint16_t gain_times_255(uint8_t power) noexcept {
   return low_power >= high_power
              ? static_cast<uint16_t>(255u * low_power - static_cast<uint16_t>(power * static_cast<uint8_t>(low_power - high_power)))
              : static_cast<uint16_t>(255u * low_power + static_cast<uint16_t>(power * static_cast<uint8_t>(high_power - low_power)));
@@ -39,7 +39,7 @@ uint16_t gain_times_255(uint8_t power) noexcept {
 template <uint8_t low_power, uint8_t high_power>
 struct FixedGain {
   /// @param power  granted power parameter  @return P
-  static uint8_t gain(uint8_t power) noexcept {
+  static constexpr uint8_t gain(uint8_t power) noexcept {
     return detail::divided_by_255(static_cast<uint16_t>(detail::gain_times_255<low_power, high_power>(power) + 127u));
   }
 };
@@ -50,14 +50,14 @@ struct FixedGain {
 template <uint8_t low_power, uint8_t high_power>
 struct FixedTruncatedGain {
   /// @copydoc FixedGain::gain
-  static uint8_t gain(uint8_t power) noexcept { return detail::divided_by_255(detail::gain_times_255<low_power, high_power>(power)); }
+  static constexpr uint8_t gain(uint8_t power) noexcept { return detail::divided_by_255(detail::gain_times_255<low_power, high_power>(power)); }
 };
 
 /// For actuators without a gain.
 /// @ingroup control
 struct FixedNoGain {
   /// @return 0
-  static uint8_t gain(uint8_t) noexcept { return 0; }
+  static constexpr uint8_t gain(uint8_t) noexcept { return 0; }
 };
 
 }  // namespace thermopower

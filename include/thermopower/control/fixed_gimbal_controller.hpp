@@ -70,10 +70,9 @@ class BasicFixedGimbalController {
   static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }  ///< Number of axes.
   typedef GimbalCommand<sizeof...(Axes)> Command;                                          ///< What goes back to the board.
 
-  BasicFixedGimbalController() noexcept {
-    for (uint8_t index = 0; index < axis_count(); ++index) error_units_[index] = 0;
-    decide(LimitReason::no_telemetry_yet, 0);
-  }
+  /// Every axis at the least power. A constant: the object is ready before any constructor runs.
+  constexpr BasicFixedGimbalController() noexcept
+      : command_{{first_power<Axes>()...}, {Axes::first_gain()...}, {first_reason<Axes>()...}}, error_units_{} {}
 
   /// One control cycle from a telemetry message.
   /// @param telemetry  offers `target_angle(axis)`, `imu_angle(axis)` in units of 360/16384 degree, `imu_C()`, `frame_imu_C()` and
@@ -126,9 +125,8 @@ class BasicFixedGimbalController {
     FixedTicks ticks;
     template <class Axis>
     void operator()(uint8_t index, Axis& controller) noexcept {
-      const typename Axis::Inputs inputs = {gimbal.error_units_[index], gimbal.air_.state().air, fault};
-      // Before the first plausible air there is no temperature to limit by.
-      const typename Axis::State& decided = gimbal.has_air_ ? controller.step(inputs, ticks) : controller.hold(fault);
+      const FixedAxisInputs inputs = {gimbal.error_units_[index], gimbal.air_.state().air, fault};
+      const typename Axis::State& decided = controller.step(inputs, ticks);
       gimbal.command_.power[index] = decided.power;
       gimbal.command_.reason[index] = decided.reason;
       gimbal.command_.p_gain[index] = controller.p_gain();
@@ -148,7 +146,17 @@ class BasicFixedGimbalController {
     }
   };
 
+  template <class Axis>
+  static constexpr uint8_t first_power() {
+    return least_power();
+  }
+  template <class Axis>
+  static constexpr LimitReason first_reason() {
+    return LimitReason::no_telemetry_yet;
+  }
+
   const Command& decide(LimitReason fault, FixedTicks ticks) noexcept {
+    // Before the first plausible air there is no temperature to limit by; the fault says so.
     if (!has_air_ && air_.state().source != AirSource::neither) {
       // The thesis's assumption, section 4.2: a motor that was just switched on is as warm as the air.
       StartVisitor start = {static_cast<FixedTemperature>(air_.state().air) * 65536};

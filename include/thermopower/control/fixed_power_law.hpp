@@ -36,10 +36,13 @@ uint8_t fixed_level(uint16_t error_units) noexcept {
   static_assert(Constants::power_step() >= 1 && Constants::power_step() <= 25, "thermopower: power_step must be within 1 .. 25");
   // Level 10 begins at the first whole unit that is not below the full error.
   constexpr uint16_t full_units = static_cast<uint16_t>(Constants::full_power_error_deg() * (16384.0 / 360.0) + 0.999);
-  constexpr uint16_t levels_per_unit =
-      static_cast<uint16_t>(nearest(10.0 * 360.0 / 16384.0 / Constants::full_power_error_deg() * 65536.0));
+  constexpr double levels_per_unit = 10.0 * 360.0 / 16384.0 / Constants::full_power_error_deg();
   if (error_units >= full_units) return 10;
-  return static_cast<uint8_t>((static_cast<uint32_t>(error_units) * levels_per_unit) >> 16);
+  // A small error fits a byte, and its product 16 bits.
+  return full_units <= 255 ? static_cast<uint8_t>(static_cast<uint16_t>(static_cast<uint8_t>(error_units) *
+                                                                        static_cast<uint16_t>(nearest(levels_per_unit * 1024.0))) >> 10)
+                           : static_cast<uint8_t>((static_cast<uint32_t>(error_units) *
+                                                   static_cast<uint16_t>(nearest(levels_per_unit * 65536.0))) >> 16);
 }
 
 }  // namespace detail

@@ -16,6 +16,17 @@
 /// A rule of your own has `start()`, `lower(ticks)`, `raise(ticks)`, `cut()` and `ceiling()`.
 
 namespace thermopower {
+namespace detail {
+
+/// t_safety as a 16-bit factor: what `scaled` makes of a rate with it is t_safety dT/dt in units of 2^shift temperature units.
+template <class Constants>
+struct SafetyHorizon {
+  static constexpr double ticks = Constants::safety_time_s() * fixed_ticks_per_s();
+  static constexpr uint8_t shift = ticks < 65535.0 ? 0 : (ticks < 131070.0 ? 1 : 4);
+  static constexpr uint16_t factor = static_cast<uint16_t>(nearest(ticks / static_cast<double>(1 << shift)));
+};
+
+}  // namespace detail
 
 /// The thesis's constants: 60 degC, 30 s, one count per 30 ms. A set of your own has the same functions.
 /// @ingroup control
@@ -92,11 +103,8 @@ class FixedSafetyLimiter {
   LimitedPower step(uint8_t demand, FixedTemperature motor, FixedRate rate, FixedTicks ticks) noexcept {
     constexpr FixedTemperature maximum = detail::fixed_temperature(Constants::maximum_C());
     if (motor > maximum) return cut(LimitReason::over_temperature, demand);
-    // t_safety dT/dt in units of a sixteenth of a temperature's: the greatest rate times the longest time then fits.
-    constexpr uint16_t safety_factor =
-        static_cast<uint16_t>(detail::nearest(Constants::safety_time_s() * detail::fixed_ticks_per_s() / 16.0));
-    const int32_t soon = detail::scaled(rate, safety_factor);
-    const bool is_safe = soon <= ((maximum - motor) >> 4);
+    const int32_t soon = detail::scaled(rate, Horizon::factor);
+    const bool is_safe = soon <= ((maximum - motor) >> Horizon::shift);
     if (is_safe)
       rule_.raise(ticks);
     else
@@ -120,6 +128,7 @@ class FixedSafetyLimiter {
   uint8_t ceiling() const noexcept { return rule_.ceiling(); }  ///< Highest power granted now.
 
  private:
+  typedef detail::SafetyHorizon<Constants> Horizon;
   Rule<Constants> rule_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "fixed_product.hpp"
+
 /// @file fixed_point.hpp
 /// Units and products of the fixed-point controllers. Each unit is chosen so that the shifts between them are whole bytes, which an
 /// 8-bit chip gets for nothing.
@@ -43,28 +45,6 @@ constexpr double lesser(double left, double right) { return left < right ? left 
 constexpr double greater(double left, double right) { return left > right ? left : right; }
 /// Absolute value, at compile time.
 constexpr double absolute(double value) { return value < 0.0 ? -value : value; }
-
-/// value * factor / 65536 to the nearest whole number (halves up).
-[[gnu::noinline]] inline int32_t scaled(int32_t value, uint16_t factor) noexcept {
-  const int16_t high = static_cast<int16_t>(value >> 16);
-  const uint16_t low = static_cast<uint16_t>(value);
-  const uint32_t rest = static_cast<uint32_t>(low) * factor + 0x8000u;
-  return static_cast<int32_t>(high) * factor + static_cast<int32_t>(rest >> 16);
-}
-
-/// left * right / 32768, rounded down; the product must fit.
-inline int16_t product_q15(int16_t left, int16_t right) noexcept {
-  const uint32_t product = static_cast<uint32_t>(static_cast<int32_t>(left) * right);
-  return static_cast<int16_t>((product << 1) >> 16);
-}
-
-/// change * share / 256, rounded down.
-inline int16_t part_of(int16_t change, uint8_t share) noexcept {
-  const int8_t high = static_cast<int8_t>(static_cast<uint16_t>(change) >> 8);
-  const uint8_t low = static_cast<uint8_t>(change);
-  const int16_t whole = static_cast<int16_t>(static_cast<int16_t>(high) * static_cast<int16_t>(share));
-  return static_cast<int16_t>(whole + static_cast<int16_t>((static_cast<uint16_t>(low) * share) >> 8));
-}
 
 /// A temperature to 2^-7 K, to the nearest.
 inline FixedCelsius rounded_celsius(FixedTemperature temperature) noexcept {

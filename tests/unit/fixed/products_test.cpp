@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The products and the quotient that fixed-point controllers are made of, against 64-bit and floating-point arithmetic.
+#include <thermopower/detail/fixed_reciprocal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+
+#include "../../catch.hpp"
+
+using namespace thermopower::detail;
+
+TEST_CASE("scaled() is the rounded product over 65536, for every kind of value") {
+  std::uint32_t random = 1;
+  long wrong = 0;
+  const auto check = [&](std::int32_t value, std::uint16_t factor) {
+    const std::int64_t exact = (static_cast<std::int64_t>(value) * factor + 0x8000) >> 16;
+    wrong += exact != scaled(value, factor);
+  };
+  for (const std::int32_t value : {0, 1, -1, 32767, -32768, 65535, 65536, -65536, 0x7fffffff, -0x7fffffff - 1})
+    for (const int factor : {0, 1, 2, 255, 256, 32767, 32768, 65535}) check(value, static_cast<std::uint16_t>(factor));
+  for (long count = 0; count < 1000000; ++count) {
+    random = random * 1664525u + 1013904223u;
+    const auto value = static_cast<std::int32_t>(random);
+    random = random * 1664525u + 1013904223u;
+    check(value, static_cast<std::uint16_t>(random >> 16));
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("the 16-bit products round down") {
+  long wrong = 0;
+  for (long left = -32767; left <= 32767; left += 37)
+    for (long right = -32767; right <= 32767; right += 41)
+      wrong += product_q15(static_cast<std::int16_t>(left), static_cast<std::int16_t>(right)) != std::floor(double(left) * double(right) / 32768.0);
+  for (long change = -32768; change <= 32767; ++change)
+    for (int share = 0; share < 256; share += 15)
+      wrong += part_of(static_cast<std::int16_t>(change), static_cast<std::uint8_t>(share)) != std::floor(double(change) * share / 256.0);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("the reciprocal is within 0.018 % and a unit, for every divisor") {
+  double worst = 0;
+  for (long divisor = 32768; divisor < 65536; ++divisor) {
+    const double exact = 2147483648.0 / static_cast<double>(divisor);
+    const double error = std::fabs(reciprocal(static_cast<std::uint16_t>(divisor)) - exact) - 1.0;
+    worst = std::max(worst, error / exact);
+  }
+  CHECK(worst < 0.00018);
+}
+
+TEST_CASE("the quotient is within 0.025 %, saturates near a pole and is zero beyond it") {
+  double worst = 0;
+  for (std::uint32_t dividend = 1; dividend < 0x7fffffffu; dividend += dividend / 8 + 1)
+    for (int divisor = 1; divisor < 32768; divisor += divisor / 64 + 1) {
+      const double exact = std::min(32768.0 * dividend / divisor, double(fixed_most_heating()));
+      const double got = quotient_q15(dividend, static_cast<std::int16_t>(divisor));
+      worst = std::max(worst, (std::fabs(got - exact) - 2.0) / exact);
+    }
+  CHECK(worst < 0.00025);
+  for (const int divisor : {0, -1, -32767}) CHECK(quotient_q15(1000, static_cast<std::int16_t>(divisor)) == 0);
+}
