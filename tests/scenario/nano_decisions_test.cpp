@@ -31,15 +31,15 @@ Rig::Truth script(double time_s, Rig::Board&) {
     error[0] = small, error[1] = gusts, error[2] = gusts - small;
   } else if (time_s < 75) {  // across 180 degrees, and further than a turn
     error[0] = swing, error[1] = -swing + small, error[2] = 3 * swing;
-  } else if (time_s < 165) {  // full demand: heats until the limiter acts, and on
+  } else if (time_s < 145) {  // full demand: heats until the limiter acts, and on
     error[0] = 5, error[1] = -3 + small, error[2] = 90;
     air_C = 26 + (time_s - 75) / 10;
-  } else if (time_s < 195) {  // recovers
+  } else if (time_s < 190) {  // recovers
     error[0] = 0.3 * small, error[1] = gusts, error[2] = small;
     air_C = 30;
   } else if (time_s < 230) {  // hotter than the limit: cut
     error[0] = 2 * small, error[1] = 4, error[2] = gusts;
-    air_C = 40 + 24 * std::min(1.0, (time_s - 195) / 15);
+    air_C = 40 + 24 * std::min(1.0, (time_s - 190) / 15);
   } else {  // and cool again
     error[0] = 1.2 * small, error[1] = 1.5 * gusts, error[2] = 2 + swing;
     air_C = 16 + 30 * std::exp(-(time_s - 230) / 20);
