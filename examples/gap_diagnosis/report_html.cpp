@@ -119,7 +119,7 @@ private:
             escaped(model_.empty() ? "model" : model_) + "</title>\n<style>" + report_style + "</style>\n</head>\n<body>\n<main>\n";
     out_ += "<div class=\"eyebrow\">Sim-to-real gap" + std::string(model_.empty() ? "" : " \u00b7 " + escaped(model_)) +
             "</div>\n<h1 class=\"" + to_string(d_.verdict) + "\">" + headline(d_.verdict) + "</h1>\n";
-    if (!d_.reason.empty()) out_ += "<p class=\"lead\">" + escaped(d_.reason) + "</p>\n";
+    if (!d_.reason.empty()) out_ += "<p class=\"lead\">" + escaped(capital(d_.reason)) + (d_.reason.back() == '.' ? "" : ".") + "</p>\n";
   }
 
   void fact(const std::string& name, const std::string& value, const std::string& more) {
@@ -147,7 +147,8 @@ private:
     }
     const GapScore* most = nullptr;
     for (const auto& gap : d_.gap) {
-      if (most == nullptr || gap.before / std::max(gap.noise_floor, 1e-12) > most->before / std::max(most->noise_floor, 1e-12)) most = &gap;
+      const bool named = !d_.where.empty() && d_.where.front().signal == gap.signal;
+      if (most == nullptr || named) most = &gap;
     }
     if (most != nullptr && has_cause()) {
       fact("How far it shrinks", percent(most->shrunk_by) + " [" + percent(most->ci95.low) + ", " + percent(most->ci95.high) + "]",

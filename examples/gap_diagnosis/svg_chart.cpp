@@ -176,7 +176,7 @@ private:
     out += "<g class=\"dots " + series.role + "\">";
     for (std::size_t i = 0; i < n; i += stride) {
       if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
-      out += "<circle cx=\"" + at(px(series.x[i])) + "\" cy=\"" + at(py(series.y[i])) + "\" r=\"2.6\"/>";
+      out += "<circle cx=\"" + at(px(series.x[i])) + "\" cy=\"" + at(py(series.y[i])) + "\" r=\"3\"/>";
     }
     out += "</g>\n";
   }

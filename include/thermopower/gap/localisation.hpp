@@ -141,7 +141,7 @@ inline void report(Localisation& out, const std::string& signal, const std::stri
   if (axis != nullptr) location.regime = regime_of(observed, *axis);
   location.evidence = evidence_text(given, words, location.share, observed);
   out.where.push_back(std::move(location));
-  if (axis == nullptr) return;
+  if (axis == nullptr || (share < 0.15 && !out.quantities.empty())) return;  // a picture of a trace shows nothing
   MissingQuantity quantity = binned(observed, *axis, equal_count_edges(axis->values, 28));
   quantity.signal = signal;
   for (const MissingQuantity& one : out.quantities) {
