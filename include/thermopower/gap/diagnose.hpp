@@ -100,7 +100,7 @@ private:
   }
 
   bool enough() {
-    constexpr double least = 30.0;
+    constexpr double least = 12.0;
     for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
       double most = 0.0;
       for (int i = 0; i < signal_count; ++i) {
@@ -114,7 +114,7 @@ private:
         result_.verdict = Verdict::insufficient;
         result_.reason = most == 0.0
                              ? "no signal of the model can be judged with the columns recorded"
-                             : "fewer than 30 samples of every signal: too little data for any statement";
+                             : "fewer than 12 samples of every signal: too little data for any statement";
         return false;
       }
     }
