@@ -98,9 +98,9 @@ inline Recording axis_inputs(Eigen::Index rows, double dt_s, std::uint64_t seed)
 }
 
 /// Simulates the truth on the recording's inputs, from equilibrium, and writes its noisy readings as outputs.
-inline void measure(Recording& recording, const Model& truth, std::uint64_t seed) {
+inline void measure(Recording& recording, const Model& truth, std::uint64_t seed,
+                    const Catalogue& catalogue = standard_catalogue()) {
   Noise noise(seed);
-  const Catalogue& catalogue = standard_catalogue();
   const Eigen::Index rows = recording.rows();
   Recording blank = recording;
   if (truth.has_axis()) {
