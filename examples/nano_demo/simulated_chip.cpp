@@ -154,6 +154,7 @@ void SimulatedChip::receive(std::uint64_t end_cycle, std::uint8_t byte) {
 
 std::uint64_t SimulatedChip::cycle() const { return simulation_->avr->cycle; }
 std::uint8_t SimulatedChip::data(std::uint16_t address) const { return simulation_->avr->data[address]; }
+void SimulatedChip::set_data(std::uint16_t address, std::uint8_t value) { simulation_->avr->data[address] = value; }
 const ElfFacts& SimulatedChip::elf() const { return simulation_->elf; }
 std::uint64_t SimulatedChip::bytes_overrun() const { return simulation_->overruns; }
 

@@ -43,6 +43,7 @@ class SimulatedChip {
 
   std::uint64_t cycle() const;                              ///< Cycles since reset.
   std::uint8_t data(std::uint16_t address) const;           ///< A byte of the data space: registers, I/O, RAM.
+  void set_data(std::uint16_t address, std::uint8_t value);  ///< Overwrites a byte of the data space, to start from a rare state.
   const ElfFacts& elf() const;                              ///< The program's size and symbols.
   /// Deepest stack so far: RAM above the variables is painted at reset, and what is no longer painted was stack.
   std::uint16_t deepest_stack_bytes() const;

@@ -188,3 +188,26 @@ TEST_CASE("time does not wrap after 65 ms") {
   CHECK(agreeing * 100 >= count * 99);
   CHECK(agreeing_wrapped * 100 < count * 90);
 }
+
+TEST_CASE("time goes on when micros() wraps after 71.6 minutes") {
+  const std::string program = GENERATE("nano_gimbal.elf", "gimbal_controller.elf");
+  Rig rig = make_rig(program, [](double, Rig::Board&) { return steady(45); });
+  // The core counts overflows of its timer, 1024 us each; micros() wraps at 2^22 of them. Start three seconds before.
+  rig.run_until(0.002);
+  const auto count = rig.chip().elf().symbols.find("timer0_overflow_count");
+  REQUIRE(count != rig.chip().elf().symbols.end());
+  const std::uint32_t overflows = (1u << 22) - 3000;
+  for (unsigned byte = 0; byte < 4; ++byte)
+    rig.chip().set_data(static_cast<std::uint16_t>((count->second.address & 0xFFFFu) + byte),
+                        static_cast<std::uint8_t>(overflows >> (8 * byte) & 0xFFu));
+  rig.run_until(6);
+  CHECK(rig.unasked().empty());
+  REQUIRE(rig.updates().size() > 230);
+  for (std::size_t index = 1; index < rig.updates().size(); ++index) {
+    const auto cycles = rig.updates()[index].last_in_cycle - rig.updates()[index - 1].last_in_cycle;
+    REQUIRE(cycles < 40 * 16000);
+    // The ceiling moves by a count per update, or by 33 per second: a wrong time would let it jump.
+    REQUIRE(std::abs(int(rig.updates()[index].power[0]) - int(rig.updates()[index - 1].power[0])) <= 2);
+  }
+  CHECK(rig.updates().back().power[0] < 250);
+}
