@@ -101,7 +101,7 @@ void print_link_and_chip(nano::Rig& rig, const nano::Trace& trace) {
   std::printf("  requests %llu, answers %llu, commands obeyed %llu; frames lost: %llu to the chip, %llu to the board\n",
               static_cast<unsigned long long>(rig.requests()), static_cast<unsigned long long>(counters.telemetry_sent),
               static_cast<unsigned long long>(counters.variables_set),
-              static_cast<unsigned long long>(counters.telemetry_sent) - static_cast<unsigned long long>(rig.updates().size()),
+              static_cast<unsigned long long>(counters.telemetry_sent - rig.updates().size() - rig.under_way()),
               static_cast<unsigned long long>(rig.board().received().payload_checksum + rig.board().received().timeouts));
   std::printf("  fullest receive buffer %u of 63 bytes; the controller on this computer gives the chip's commands in %.2f %% of updates\n",
               rig.fullest_receive_buffer(), trace.points.empty() ? 0.0 : 100.0 * double(trace.agreeing) / double(trace.points.size()));

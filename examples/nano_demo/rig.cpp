@@ -81,7 +81,7 @@ void Rig::take_frame(const sbgc::Frame& frame, std::uint64_t start_cycle, std::u
   std::copy(update.power, update.power + 3, current_->power);
   std::copy(update.p_gain, update.p_gain + 3, current_->p_gain);
   current_->first_out_cycle = start_cycle;
-  current_->ceiling_cycle = end_cycle;
+  current_->sent_cycle = end_cycle;
   updates_.push_back(*current_);
   current_.reset();
 }

@@ -20,7 +20,7 @@ struct Update {
   std::uint64_t last_in_cycle = 0;              ///< Its last byte was received.
   std::uint64_t first_out_cycle = 0;            ///< The first byte of the chip's command was handed to the transmitter.
   std::uint64_t queued_cycle = 0;               ///< The whole command was handed over; 0 when that could not be seen.
-  std::uint64_t ceiling_cycle = 0;              ///< The board may begin to obey: end of the command on the wire.
+  std::uint64_t sent_cycle = 0;                 ///< The command's last byte has left: the board may obey.
   std::uint8_t power[3] = {0, 0, 0};            ///< POWER commanded.
   std::uint8_t p_gain[3] = {0, 0, 0};           ///< P commanded.
 
@@ -59,6 +59,7 @@ class Rig {
   const std::vector<UnaskedCommand>& unasked() const { return unasked_; }
   std::uint64_t requests() const { return requests_; }                ///< Telemetry requests the chip has sent.
   std::uint64_t unanswered() const { return unanswered_; }            ///< Whole telemetry frames the chip sent no command for.
+  std::uint64_t under_way() const { return expected_.size() + (current_ ? 1u : 0u); }  ///< Whole telemetry not answered yet.
   std::uint64_t stray_bytes() const;                                  ///< Bytes sent by the chip that belong to no frame.
   unsigned fullest_receive_buffer() const { return fullest_; }        ///< Bytes waiting in the core's 64-byte buffer (63 fit).
   bool sees_core_buffers() const { return serial_address_ != 0; }     ///< Is the core's Serial object where it is expected?
