@@ -117,8 +117,11 @@ std::string summary(const Diagnosis& diagnosis) {
   if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty() || !diagnosis.findings.empty()) out += "\n";
   if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
   for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
+  std::vector<std::string> told;  // the same fault in several recordings is told once
   for (const auto& finding : diagnosis.findings) {
     if (finding.severity == Severity::note) continue;
+    if (std::find(told.begin(), told.end(), finding.column + finding.message) != told.end()) continue;
+    told.push_back(finding.column + finding.message);
     out += line("data", finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) + ": " + finding.message);
   }
   return out;

@@ -15,6 +15,7 @@
 
 #ifdef THERMOPOWER_HAS_CERES
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #endif
 
 #include <sys/resource.h>
