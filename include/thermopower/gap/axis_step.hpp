@@ -11,7 +11,10 @@ namespace thermopower::gap {
 /// What the axis remembers. The far side is stated relative to the near one: 0 while the spring is relaxed.
 template <class Scalar>
 struct AxisState {
-  Scalar angle_rad, rate_rad_per_s, twist_rad, twist_rate_rad_per_s;
+  Scalar angle_rad;             ///< of the driven inertia
+  Scalar rate_rad_per_s;        ///< its derivative
+  Scalar twist_rad;             ///< far side minus near side; unused on a rigid axis
+  Scalar twist_rate_rad_per_s;  ///< its derivative
 };
 
 /// Integrates the axis under a constant drive, with dry friction by events.
@@ -24,6 +27,7 @@ struct AxisState {
 template <class Scalar>
 class AxisStep {
 public:
+  /// Precomputes what stays the same; keeps a reference to `instance`, which must outlive this object.
   explicit AxisStep(const Instance<Scalar>& instance) : instance_(instance) {
     const auto& shape = instance.axis_structure;
     Scalar near_inertia_kgm2 = instance.inertia_kgm2;
@@ -45,8 +49,12 @@ public:
     const double length = value_of(h_s);
     if (!(length > 0.0)) return;
     const int pieces = static_cast<int>(std::fmin(2000.0, std::ceil(length / longest_s_)));
-    for (int i = 0; i < pieces; ++i)
-      smooth(state, t_s + length * i / pieces, Scalar(h_s * (1.0 / pieces)), drive_Nm, 6);
+    for (int i = 0; i < pieces; ++i) {
+      const double from_s = t_s + length * i / pieces;
+      const Scalar piece_s = h_s * (1.0 / pieces);
+      if (instance_.axis_structure.compliant) smooth<true>(state, from_s, piece_s, drive_Nm, 6);
+      else smooth<false>(state, from_s, piece_s, drive_Nm, 6);
+    }
   }
 
 private:
@@ -71,9 +79,9 @@ private:
   }
 
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
+  template <bool compliant>
   void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction,
              Slope& rate) const {
-    const bool compliant = instance_.axis_structure.compliant;
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
     } else {
@@ -86,40 +94,42 @@ private:
         if (direction > 0) rate.rate -= now.forward_Nm;
         else rate.rate += now.backward_Nm;
       }
-      if (compliant) rate.rate += spring(state);
+      if constexpr (compliant) rate.rate += spring(state);
       rate.rate *= per_near_inertia_;
     }
-    if (compliant) {
+    if constexpr (compliant) {
       rate.twist = state.twist_rate_rad_per_s;
       rate.twist_rate = -spring(state) / far_inertia_kgm2_ - rate.rate;
     }
   }
 
   /// Writes only what moves: a rigid axis has no twist.
+  template <bool compliant>
   void move(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s,
             AxisState<Scalar>& to) const {
     to.angle_rad = from.angle_rad + rate.angle * h_s;
     to.rate_rad_per_s = from.rate_rad_per_s + rate.rate * h_s;
-    if (instance_.axis_structure.compliant) {
+    if constexpr (compliant) {
       to.twist_rad = from.twist_rad + rate.twist * h_s;
       to.twist_rate_rad_per_s = from.twist_rate_rad_per_s + rate.twist_rate * h_s;
     }
   }
 
   /// One Runge-Kutta step; `bend` is how far the acceleration strays from a straight line, as a rate.
+  template <bool compliant>
   AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
                                 const Scalar& drive_Nm, int direction, double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
     Slope k1, k2, k3, k4;
     AxisState<Scalar> point = from;
-    slope(from, t_s, drive_Nm, direction, k1);
-    move(from, k1, half_s, point);
-    slope(point, t_s + 0.5 * h, drive_Nm, direction, k2);
-    move(from, k2, half_s, point);
-    slope(point, t_s + 0.5 * h, drive_Nm, direction, k3);
-    move(from, k3, h_s, point);
-    slope(point, t_s + h, drive_Nm, direction, k4);
+    slope<compliant>(from, t_s, drive_Nm, direction, k1);
+    move<compliant>(from, k1, half_s, point);
+    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k2);
+    move<compliant>(from, k2, half_s, point);
+    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k3);
+    move<compliant>(from, k3, h_s, point);
+    slope<compliant>(point, t_s + h, drive_Nm, direction, k4);
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
     const auto mean = [](Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
       a += d;
@@ -128,36 +138,38 @@ private:
     };
     mean(k1.angle, k2.angle, k3.angle, k4.angle);
     mean(k1.rate, k2.rate, k3.rate, k4.rate);
-    if (instance_.axis_structure.compliant) {
+    if constexpr (compliant) {
       mean(k1.twist, k2.twist, k3.twist, k4.twist);
       mean(k1.twist_rate, k2.twist_rate, k3.twist_rate, k4.twist_rate);
     }
-    move(from, k1, h_s, point);
+    move<compliant>(from, k1, h_s, point);
     return point;
   }
 
+  template <bool compliant>
   int direction_of(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
     const double rate = value_of(state.rate_rad_per_s);
     if (rate != 0.0) return rate > 0.0 ? 1 : -1;
     const Balance now = balance(state, t_s, drive_Nm);
     double torque = value_of(now.torque_Nm);
-    if (instance_.axis_structure.compliant) torque += value_of(spring(state));
+    if constexpr (compliant) torque += value_of(spring(state));
     if (torque > value_of(now.forward_Nm)) return 1;
     if (-torque > value_of(now.backward_Nm)) return -1;
     return 0;
   }
 
+  template <bool compliant>
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const Scalar& drive_Nm, int depth) const {
     constexpr double bend_limit_rad_per_s = 5e-4;
     const bool dry = !instance_.axis.empty();
     for (int event = 0; event < 12; ++event) {
-      const int direction = dry ? direction_of(state, t_s, drive_Nm) : 1;
+      const int direction = dry ? direction_of<compliant>(state, t_s, drive_Nm) : 1;
       double bend = 0.0;
-      const AxisState<Scalar> reached = runge_kutta(state, t_s, left_s, drive_Nm, direction, bend);
+      const AxisState<Scalar> reached = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, direction, bend);
       if (bend > bend_limit_rad_per_s && depth > 0) {
         const Scalar half_s = left_s * 0.5;
-        smooth(state, t_s, half_s, drive_Nm, depth - 1);
-        smooth(state, t_s + value_of(half_s), half_s, drive_Nm, depth - 1);
+        smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
+        smooth<compliant>(state, t_s + value_of(half_s), half_s, drive_Nm, depth - 1);
         return;
       }
       if (!dry || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
@@ -168,19 +180,19 @@ private:
       const double before = value_of(state.rate_rad_per_s), after = value_of(reached.rate_rad_per_s);
       if (before == 0.0) {  // would start and turn back at once: it stays
         state.rate_rad_per_s = constant<Scalar>(0.0);
-        state = runge_kutta(state, t_s, left_s, drive_Nm, 0, bend);
+        state = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, 0, bend);
         return;
       }
       Scalar cut_s = left_s * (before / (before - after));
-      AxisState<Scalar> at_cut = runge_kutta(state, t_s, cut_s, drive_Nm, direction, bend);
+      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, bend);
       Slope there;
-      slope(at_cut, t_s, drive_Nm, direction, there);
+      slope<compliant>(at_cut, t_s, drive_Nm, direction, there);
       if (value_of(there.rate) * direction < 0.0) {
         const Scalar correction_s = at_cut.rate_rad_per_s / there.rate;
         const double corrected = value_of(cut_s) - value_of(correction_s);
         if (corrected > 0.0 && corrected < value_of(left_s)) {
           cut_s -= correction_s;
-          at_cut = runge_kutta(state, t_s, cut_s, drive_Nm, direction, bend);
+          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, bend);
         }
       }
       at_cut.rate_rad_per_s = constant<Scalar>(0.0);
