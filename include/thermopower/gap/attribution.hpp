@@ -17,8 +17,8 @@ namespace thermopower::gap {
 
 /// Squared residuals by signal, in units of the noise.
 struct SignalSums {
-  std::array<double, signal_count> squares{};
-  std::array<double, signal_count> samples{};
+  std::array<double, signal_count> squares{};  ///< sum of squares, indexed by Signal
+  std::array<double, signal_count> samples{};  ///< how many were summed, indexed by Signal
 
   /// Mean square of a signal; 0 without samples.
   double mean(std::size_t signal) const {
@@ -28,13 +28,14 @@ struct SignalSums {
 
 /// An explanation with its fit and what speaks for it.
 struct Candidate {
-  Explanation explanation;
-  std::vector<Coordinate> list;
-  FitResult fit;
-  SignalSums train, held_out;
+  Explanation explanation;       ///< the causes it consists of
+  std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
+  FitResult fit;                 ///< on training data, in the coordinates of `list`
+  SignalSums train;              ///< residuals of the fit where it was fitted
+  SignalSums held_out;           ///< and where it was not; empty until somebody looks
   double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
-  double probability = 0.0;
-  bool fitted = false;
+  double probability = 0.0;  ///< among the candidates weighed together, 0..1
+  bool fitted = false;   ///< false: only listed, the fit is not to be read
 };
 
 /// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
@@ -57,6 +58,9 @@ void in_parallel(std::size_t count, unsigned threads, Work&& work) {
 /// Fits explanations to training data.
 class Attribution {
 public:
+  /// @param problem  the training data and the model; must outlive this object
+  /// @param slack    how far constants may move, free or released
+  /// @param threads  for `fit_all`, 1 or more; the result does not depend on it
   Attribution(const FitProblem& problem, const Slack& slack, unsigned threads)
       : problem_(problem), slack_(slack), threads_(threads) {}
 
