@@ -17,6 +17,7 @@ inline constexpr double rad_per_deg = 0.017453292519943295;
 template <class Scalar>
 class AxisRollout {
 public:
+  /// Keeps references to both arguments: they must outlive this object.
   AxisRollout(const Instance<Scalar>& instance, const Inputs& inputs)
       : instance_(instance), inputs_(inputs), step_(instance) {}
 
