@@ -14,7 +14,10 @@ namespace thermopower::gap {
 /// Everything that the motor on the bench remembers.
 template <class Scalar>
 struct BenchState {
-  Scalar winding_C, surface_C, thermometer_C, charge_Ah;
+  Scalar winding_C;      ///< node that the heat enters
+  Scalar surface_C;      ///< node that the air cools; follows the winding where there is one node
+  Scalar thermometer_C;  ///< what a lagging thermometer has come to; follows the winding without lag
+  Scalar charge_Ah;      ///< drawn since the start of the run, discharges the battery
 };
 
 /// Simulates current and temperature of one motor, run by run.
@@ -30,8 +33,10 @@ public:
     bool measured_current = false;  ///< heat from the recorded current
   };
 
+  /// Keeps references to `instance` and `inputs`: they must outlive this object.
   BenchRollout(const Instance<Scalar>& instance, const Inputs& inputs, Feed feed)
       : instance_(instance), inputs_(inputs), feed_(feed) {}
+  /// With no measured signal fed in.
   BenchRollout(const Instance<Scalar>& instance, const Inputs& inputs)
       : BenchRollout(instance, inputs, Feed()) {}
 
