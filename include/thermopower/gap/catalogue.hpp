@@ -19,8 +19,14 @@ namespace thermopower::gap {
 
 /// Which hooks an effect has; the engine calls no others.
 struct HookSet {
-  bool electrical = false, thermal = false, thermal_structure = false, bench_readings = false;
-  bool drive = false, axis = false, axis_structure = false, axis_readings = false;
+  bool electrical = false;         ///< overload of `act` for ElectricalTerms
+  bool thermal = false;            ///< for ThermalTerms
+  bool thermal_structure = false;  ///< for ThermalStructure
+  bool bench_readings = false;     ///< for BenchReadings
+  bool drive = false;              ///< for DriveTerms
+  bool axis = false;               ///< for AxisTerms
+  bool axis_structure = false;     ///< for AxisStructure
+  bool axis_readings = false;      ///< for AxisReadings
 
   /// Whether it can show in a recording of a motor on a bench.
   bool any_bench() const { return electrical || thermal || thermal_structure || bench_readings; }
@@ -77,10 +83,10 @@ private:
 
 /// An effect of the catalogue: what it is, and its hooks for both scalars.
 struct CatalogueEntry {
-  EffectInfo info;
-  HookSet hooks;
-  std::shared_ptr<const detail::Hooks<double>> plain;
-  std::shared_ptr<const detail::Hooks<Dual>> dual;
+  EffectInfo info;                                     ///< id, prose, parameters, needs
+  HookSet hooks;                                       ///< where it acts
+  std::shared_ptr<const detail::Hooks<double>> plain;  ///< its hooks for simulations
+  std::shared_ptr<const detail::Hooks<Dual>> dual;     ///< and for fits, with derivatives
 
   /// The hooks for a scalar.
   template <class Scalar>
