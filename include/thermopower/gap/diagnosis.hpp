@@ -40,15 +40,15 @@ inline const char* to_string(Verdict verdict) {
 
 /// A closed interval.
 struct Interval {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0;   ///< lower end, in the unit of what it bounds
+  double high = 0.0;  ///< upper end, at least `low`
 };
 
 /// Part of a recorded variable's range.
 struct Regime {
   std::string variable;  ///< a column or a derived one (`rise_K`)
-  double from = 0.0;
-  double to = 0.0;
+  double from = 0.0;     ///< where the part begins, in the variable's unit
+  double to = 0.0;       ///< where it ends, at least `from`
 };
 
 /// Where simulation and recording part, found from residuals alone.
@@ -62,8 +62,8 @@ struct Location {
 
 /// A fitted parameter of an effect.
 struct ParameterEstimate {
-  std::string name;
-  double value = 0.0;
+  std::string name;       ///< as the effect declares it, with the unit as its ending
+  double value = 0.0;     ///< maximum-posterior estimate, in `unit`
   Interval ci95;          ///< accounts for autocorrelated residuals
   std::string unit;       ///< "1" for a pure number
   bool at_bound = false;  ///< ended on a bound of its range: then it is no explanation
@@ -71,15 +71,15 @@ struct ParameterEstimate {
 
 /// One effect of the chosen explanation.
 struct Cause {
-  std::string effect;
+  std::string effect;        ///< id in the catalogue, or `calibration.<id>` for a constant that is off
   double probability = 0.0;  ///< that this effect acts, 0..1
-  std::vector<ParameterEstimate> parameters;
+  std::vector<ParameterEstimate> parameters;  ///< what the fit made of its parameters, in their order
 };
 
 /// The gap of one signal on held-out data; RMSE of simulation against recording.
 struct GapScore {
-  std::string signal;
-  std::string unit;
+  std::string signal;               ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
+  std::string unit;                 ///< of the scores: degC, A, deg or deg/s
   std::optional<double> horizon_s;  ///< length of a window; none: whole runs
   double before = 0.0;              ///< the model as configured
   double recalibrated = 0.0;        ///< its own constants refitted without a limit, no effect added
@@ -95,18 +95,18 @@ enum class Severity { note, warning, error };
 /// Something about the data itself, found before any physics.
 struct Finding {
   std::string code;  ///< stable id such as `irregular_stamps`, `frozen_channel`, `clock_shift`
-  Severity severity = Severity::note;
-  std::string recording;
-  std::string column;  ///< may be empty
-  std::string message;
+  Severity severity = Severity::note;  ///< an error: read no further before it is mended
+  std::string recording;               ///< name of the recording it was found in
+  std::string column;                  ///< may be empty
+  std::string message;                 ///< one sentence: what is wrong, where, by how much
 };
 
 /// Measured and simulated curves of one signal over one held-out run, for pictures.
 struct SignalSeries {
-  std::string signal;
-  std::string unit;
-  std::string recording;
-  Eigen::VectorXd t_s;
+  std::string signal;            ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
+  std::string unit;              ///< of the values: degC, A, deg or deg/s
+  std::string recording;         ///< name of the recording, all of its runs
+  Eigen::VectorXd t_s;           ///< stamps of the rows as recorded; the vectors below are as long
   Eigen::VectorXd measured;      ///< NaN where missing
   Eigen::VectorXd baseline;      ///< as configured
   Eigen::VectorXd recalibrated;  ///< own constants refitted
@@ -119,7 +119,7 @@ struct MissingQuantity {
   std::string quantity;  ///< `missing heat`, `missing torque`, `missing voltage`, ...
   std::string unit;      ///< W, N m, V, ...
   std::string variable;  ///< abscissa, such as `rise_K` or `rate_rad_per_s`
-  std::string variable_unit;
+  std::string variable_unit;  ///< unit of the abscissa
   Eigen::VectorXd x;       ///< abscissa of the binned samples
   Eigen::VectorXd value;   ///< missing quantity there
   Eigen::VectorXd spread;  ///< its standard error
@@ -128,7 +128,7 @@ struct MissingQuantity {
 
 /// How alike two explanations look to this recording.
 struct Likeness {
-  std::vector<std::string> effects;
+  std::vector<std::string> effects;  ///< ids of the other explanation
   double cosine = 0.0;  ///< of the signatures, whitened and freed of the baseline's constants
 };
 
@@ -149,36 +149,36 @@ struct RankedExplanation {
 /// A constant of the baseline as configured and as the explanation moved it (within its slack).
 struct MovedConstant {
   std::string name;  ///< id as in `calibration.<id>`
-  double configured = 0.0;
-  double fitted = 0.0;
+  double configured = 0.0;  ///< as the model file has it, first field where several scale together
+  double fitted = 0.0;      ///< as the explanation has it; its ratio to `configured` is that of all fields
 };
 
 /// How long a stage took. Not part of a report: equal input gives equal reports.
 struct StageTiming {
-  std::string stage;
-  double seconds = 0.0;
+  std::string stage;     ///< `data gate`, `where`, `which` or `how far`
+  double seconds = 0.0;  ///< wall-clock time
 };
 
 /// Everything a diagnosis found.
 struct Diagnosis {
-  Verdict verdict = Verdict::insufficient;
-  std::string reason;  ///< one sentence in plain words: why this verdict
-  std::vector<Location> where;
-  std::vector<Cause> cause;
-  std::vector<std::vector<std::string>> alternatives;
-  std::vector<GapScore> gap;
-  std::string next_experiment;
-  double none_of_these = 0.0;  ///< probability that the cause is outside the catalogue
+  Verdict verdict = Verdict::insufficient;             ///< the conclusion in one word
+  std::string reason;                                  ///< one sentence in plain words: why this verdict
+  std::vector<Location> where;                         ///< largest share first; empty without a gap
+  std::vector<Cause> cause;                            ///< the chosen explanation; empty where none is
+  std::vector<std::vector<std::string>> alternatives;  ///< as good on this data, likeliest first; ids of each
+  std::vector<GapScore> gap;                           ///< one per judged signal
+  std::string next_experiment;                         ///< what to record next to tell more; may be empty
+  double none_of_these = 0.0;                          ///< probability of a cause outside the catalogue
 
   std::vector<std::string> not_judged;  ///< one sentence for each signal or block that lacks a column
   std::vector<Finding> findings;        ///< data gate
-  std::vector<RankedExplanation> ranking;
-  std::vector<MovedConstant> constants;
-  std::vector<SignalSeries> series;
-  std::vector<MissingQuantity> missing_quantities;
+  std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
+  std::vector<MovedConstant> constants;    ///< every constant that can be off, moved or not
+  std::vector<SignalSeries> series;        ///< curves of every judged signal over the held-out recordings
+  std::vector<MissingQuantity> missing_quantities;  ///< what the residuals ask for, where that can be said
   Model augmented;     ///< the model with the causes added and its constants moved within their slack
   Model recalibrated;  ///< the model with its own constants refitted without a limit
-  std::vector<StageTiming> timings;
+  std::vector<StageTiming> timings;  ///< in the order in which the stages ran
 };
 
 }  // namespace thermopower::gap
