@@ -33,6 +33,13 @@ public:
     for (int i = first < 0 ? 0 : first; i < dual_width; ++i) slope_[i] = 0.0;
   }
 
+  /// @name As with plain numbers
+  /// Derivatives follow the product, quotient and chain rules in every direction; a plain number is a
+  /// constant. Comparisons look at values alone. As with `double`, a division by zero, a root or a logarithm
+  /// outside its domain yields Inf or NaN, in the derivatives too.
+  /// @{
+
+  /// See above.
   Dual operator-() const { return chain(*this, -value_, -1.0); }
   [[gnu::always_inline]] Dual& operator+=(const Dual& b) {
     value_ += b.value_;
@@ -99,6 +106,7 @@ public:
     return chain(x, root, 0.5 / root);
   }
   friend Dual abs(const Dual& x) { return x.value_ < 0.0 ? -x : x; }
+  /// @}
 
 private:
   /// f(x) with f' = f: the exponential.
