@@ -14,17 +14,17 @@ namespace thermopower::gap {
 /// One coordinate of a fit.
 struct Coordinate {
   std::string name;  ///< `calibration.<id>` or `<effect>.<parameter>`
-  std::string unit;
-  double lower = 0.0;  ///< in the fit's coordinate
-  double upper = 0.0;
-  double start = 0.0;
+  std::string unit;          ///< of the value; "1" for the factor on a constant
+  double lower = 0.0;        ///< bound, in the fit's coordinate
+  double upper = 0.0;        ///< bound, in the fit's coordinate
+  double start = 0.0;        ///< where a fit begins, in the fit's coordinate
   double prior_sd = 0.0;     ///< of a Gaussian around 0; 0: none
   bool logarithmic = false;  ///< value = exp(coordinate)
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than their slack.
 struct Explanation {
-  std::vector<const CatalogueEntry*> effects;
+  std::vector<const CatalogueEntry*> effects;  ///< not owned: the catalogue must outlive it
   std::vector<int> released;  ///< indices into Model::calibrated()
 
   /// How many causes it has.
@@ -102,8 +102,8 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
 /// A point of a fit as the arguments of an Instance, with up to `dual_width` directions seeded.
 template <class Scalar>
 struct Point {
-  std::vector<Scalar> factors;
-  std::vector<AddedEffect<Scalar>> added;
+  std::vector<Scalar> factors;             ///< on each of Model::calibrated(), > 0
+  std::vector<AddedEffect<Scalar>> added;  ///< the explanation's effects with their parameters
 
   /// @param first  coordinate that varies in direction 0; the next ones follow in the further directions
   Point(const Model& model, const Explanation& explanation, const std::vector<Coordinate>& coordinates,
