@@ -12,7 +12,7 @@ namespace thermopower::gap {
 
 /// When a fit stops.
 struct FitOptions {
-  int iterations = 25;
+  int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
 };
 
@@ -23,8 +23,8 @@ struct FitResult {
   double chi2 = 1e300;          ///< data only
   double cost = 1e300;          ///< data and priors
   Eigen::MatrixXd information;  ///< inverse covariance of the coordinates, starts projected out
-  Eigen::Index samples = 0;
-  int iterations = 0;
+  Eigen::Index samples = 0;     ///< residuals that counted
+  int iterations = 0;           ///< steps taken; fewer than allowed: converged
   std::vector<bool> at_bound;  ///< by coordinate
 };
 
@@ -35,6 +35,7 @@ struct FitResult {
 /// gradient pushes against their bound are held there.
 class Fitter {
 public:
+  /// Keeps references to its arguments: they must outlive this object.
   Fitter(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list)
       : problem_(problem), explanation_(explanation), list_(list) {}
 
