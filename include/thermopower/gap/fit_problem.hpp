@@ -16,9 +16,10 @@ namespace thermopower::gap {
 
 /// Rows of one recording that are simulated in one go from a start of their own.
 struct Segment {
-  const Inputs* inputs = nullptr;
-  RunSpan run;  ///< the run they belong to
-  Eigen::Index begin = 0, end = 0;
+  const Inputs* inputs = nullptr;  ///< the recording, not owned
+  RunSpan run;                     ///< the run they belong to
+  Eigen::Index begin = 0;          ///< first row
+  Eigen::Index end = 0;            ///< row after the last
   bool axis = false;        ///< moving axis, else motor on the bench
   bool carries_on = false;  ///< states that nobody measures come from the segment before
   bool warm_up = false;     ///< only brings such states about: its samples do not count
@@ -31,14 +32,14 @@ using Start = Eigen::Vector2d;
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
 struct FitProblem {
-  const Model* model = nullptr;
-  const Catalogue* catalogue = nullptr;
-  std::vector<Segment> segments;
+  const Model* model = nullptr;          ///< the baseline, not owned
+  const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
+  std::vector<Segment> segments;         ///< simulated one after the other
   std::array<double, signal_count> sigma{1, 1, 1, 1};  ///< noise of each signal
 
   /// Residuals of one segment in units of the noise, with their derivatives.
   struct Residuals {
-    Eigen::VectorXd value;
+    Eigen::VectorXd value;          ///< (simulated - measured) / sigma; at most 1e9 in magnitude, never NaN
     Eigen::MatrixXd jacobian;       ///< by coordinate, then by start; empty where not asked for
     std::vector<Signal> signal;     ///< of each row
     std::vector<Eigen::Index> row;  ///< in the recording
