@@ -16,9 +16,10 @@ namespace thermopower::gap {
 /// One effect at work: its hooks and where its parameters lie.
 template <class Scalar>
 struct Bound {
-  const detail::Hooks<Scalar>* hooks = nullptr;
-  const Scalar* parameters = nullptr;
+  const detail::Hooks<Scalar>* hooks = nullptr;  ///< not owned: the catalogue's
+  const Scalar* parameters = nullptr;            ///< not owned: the instance's, in the effect's order
 
+  /// Lets the effect act on the terms of a hook it has.
   template <class Terms>
   void operator()(Terms& terms) const {
     hooks->call(parameters, terms);
@@ -28,25 +29,38 @@ struct Bound {
 /// Effects and parameter values that act besides the model's own.
 template <class Scalar>
 struct AddedEffect {
-  const CatalogueEntry* entry = nullptr;
-  std::vector<Scalar> parameters;
+  const CatalogueEntry* entry = nullptr;  ///< not owned
+  std::vector<Scalar> parameters;         ///< in the order of `entry->info.parameters`, in their units
 };
 
 /// A model with its constants in the scalar of a rollout, and the effects that act, sorted by hook.
 template <class Scalar>
 struct Instance {
-  bool ohmic = false, thesis_current = false, lumped = false, thesis_thermal = false, rigid = false;
-  OhmicCurrent<Scalar> winding;
-  ThesisCurrent<Scalar> current_law;
-  HeatCapacityHeating<Scalar> heat_capacity;
-  Scalar conductance_W_per_K;
-  ThesisHeating<Scalar> heating_law;
-  Scalar cooling_per_s;
-  Scalar inertia_kgm2, viscous_Nms_per_rad, torque_constant_Nm_per_A;
+  bool ohmic = false;           ///< the current law is `winding`
+  bool thesis_current = false;  ///< the current law is `current_law`
+  bool lumped = false;          ///< the thermal law is `heat_capacity` and `conductance_W_per_K`
+  bool thesis_thermal = false;  ///< the thermal law is `heating_law` and `cooling_per_s`
+  bool rigid = false;           ///< there is an axis
 
-  ThermalStructure<Scalar> thermal_structure;
-  AxisStructure<Scalar> axis_structure;
-  std::vector<Bound<Scalar>> electrical, thermal, bench_readings, drive, axis, axis_readings;
+  OhmicCurrent<Scalar> winding;               ///< where `ohmic`
+  ThesisCurrent<Scalar> current_law;          ///< where `thesis_current`
+  HeatCapacityHeating<Scalar> heat_capacity;  ///< where `lumped`
+  Scalar conductance_W_per_K;                 ///< from body to air, where `lumped`
+  ThesisHeating<Scalar> heating_law;          ///< where `thesis_thermal`
+  Scalar cooling_per_s;                       ///< Newton's law, where `thesis_thermal`
+  Scalar inertia_kgm2;                        ///< near and far side together, where `rigid`
+  Scalar viscous_Nms_per_rad;                 ///< where `rigid`
+  Scalar torque_constant_Nm_per_A;            ///< where `rigid`
+
+  ThermalStructure<Scalar> thermal_structure;  ///< after the effects that shape it
+  AxisStructure<Scalar> axis_structure;        ///< after the effects that shape it
+
+  std::vector<Bound<Scalar>> electrical;      ///< effects on ElectricalTerms, in the catalogue's order
+  std::vector<Bound<Scalar>> thermal;         ///< on ThermalTerms
+  std::vector<Bound<Scalar>> bench_readings;  ///< on BenchReadings
+  std::vector<Bound<Scalar>> drive;           ///< on DriveTerms
+  std::vector<Bound<Scalar>> axis;            ///< on AxisTerms
+  std::vector<Bound<Scalar>> axis_readings;   ///< on AxisReadings
 
   /// @param factors  one per entry of `model.calibrated()`: multiplies that constant
   /// @param added    act besides the model's own effects
