@@ -30,12 +30,12 @@ struct OhmicCurrentModel {
 /// `"law": "thesis"`: I[mA] = (slope_V2 V^2 + slope_V1 V + slope_V0) T_C + base V^exponent with V = V_rms;
 /// 0 when V <= minimum_V_rms, never below 0.
 struct ThesisCurrentModel {
-  double slope_V2_mA_per_K = 0.0;
-  double slope_V1_mA_per_K = 0.0;
-  double slope_V0_mA_per_K = 0.0;
-  double base_mA = 0.0;
-  double exponent = 1.0;
-  double minimum_V_rms = 1.0;
+  double slope_V2_mA_per_K = 0.0;  ///< mA/(K V^2), thesis eq 4.1 to 4.5 with the program's signs
+  double slope_V1_mA_per_K = 0.0;  ///< mA/(K V)
+  double slope_V0_mA_per_K = 0.0;  ///< mA/K
+  double base_mA = 0.0;            ///< mA at 1 V and 0 degC
+  double exponent = 1.0;           ///< of the voltage, pure number
+  double minimum_V_rms = 1.0;      ///< V, at or below which no current flows
 };
 
 /// `"law": "lumped"`: C dT/dt = I^2 R(T) - G (T - T_ambient).
@@ -48,11 +48,11 @@ struct LumpedThermalModel {
 /// 1/r = (rinv_slope_V1 V + rinv_slope_V0) T_C + rinv_offset_V1 V + rinv_offset_V0 in W min/K.
 struct ThesisThermalModel {
   double cooling_per_min = 0.1;  ///< 1/min, > 0
-  double rinv_slope_V1 = 0.0;
-  double rinv_slope_V0 = 0.0;
-  double rinv_offset_V1 = 0.0;
-  double rinv_offset_V0 = 1.0;
-  double minimum_V_rms = 1.0;
+  double rinv_slope_V1 = 0.0;    ///< W min/(K^2 V)
+  double rinv_slope_V0 = 0.0;    ///< W min/K^2
+  double rinv_offset_V1 = 0.0;   ///< W min/(K V)
+  double rinv_offset_V0 = 1.0;   ///< W min/K
+  double minimum_V_rms = 1.0;    ///< V, at or below which there is no heat
 };
 
 /// `"law": "rigid"`: J dw/dt = Kt drive - b w.
@@ -69,11 +69,11 @@ using EffectParameters = std::map<std::string, double>;
 struct NamedConstant {
   std::string block;  ///< `supply`, `current`, `thermal` or `axis`
   std::string name;   ///< as in the file, such as `resistance_ohm`
-  double value = 0.0;
+  double value = 0.0;  ///< in the unit the name ends in
 };
 
-/// A constant that may be off, as the diagnosis names it in `calibration.<id>`: one field of the model, or
-/// several that only make sense scaled together (the coefficients of one polynomial).
+/// A constant that may be off: one field of the model, or several that only make sense scaled together (the
+/// coefficients of one polynomial). As a cause the diagnosis calls it by its id after `calibration.`
 struct CalibratedConstant {
   std::string id;                   ///< `resistance`, `heat_capacity`, ...
   std::string block;                ///< `current`, `thermal` or `axis`
@@ -82,10 +82,14 @@ struct CalibratedConstant {
 
 /// The simulation under test, as in a model file. Blocks may be absent: what they would say is not judged.
 struct Model {
-  std::string name;
+  std::string name;  ///< as reports call it
+  /// Needed where the recording has no `supply_V`.
   std::optional<SupplyModel> supply;
+  /// From voltage and temperature to current; `std::monostate`: absent.
   std::variant<std::monostate, OhmicCurrentModel, ThesisCurrentModel> current;
+  /// From heat to temperature; `std::monostate`: absent.
   std::variant<std::monostate, LumpedThermalModel, ThesisThermalModel> thermal;
+  /// From commanded current to motion.
   std::optional<RigidAxisModel> axis;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
 
