@@ -17,8 +17,8 @@ namespace thermopower::gap {
 struct Errors {
   std::array<std::vector<double>, signal_count> of;    ///< simulated minus measured
   std::array<std::vector<int>, signal_count> segment;  ///< which segment each belongs to
-  std::array<std::vector<double>, signal_count> simulated;
-  std::array<std::vector<Eigen::Index>, signal_count> row;
+  std::array<std::vector<double>, signal_count> simulated;  ///< simulated value, in the signal's unit
+  std::array<std::vector<Eigen::Index>, signal_count> row;  ///< row in the recording of that segment
 
   /// Root mean square of a signal's errors; 0 without any.
   double rms(Signal signal) const {
@@ -124,6 +124,7 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
 /// Small, fast and the same everywhere: the generator of the bootstrap (SplitMix64).
 class BlockDice {
 public:
+  /// Equal seeds give equal sequences, on every platform.
   explicit BlockDice(std::uint64_t seed) : state_(seed) {}
 
   /// A whole number in [0, count).
