@@ -20,6 +20,7 @@ namespace thermopower::gap {
 /// (`fine`). Every candidate it returns has its residuals on the fine data.
 class Search {
 public:
+  /// Both attributions must pose the same question to different amounts of data, and outlive this object.
   Search(const Attribution& coarse, const Attribution& fine, unsigned threads)
       : coarse_(coarse), fine_(fine), threads_(threads) {}
 
