@@ -34,7 +34,7 @@ struct ThermalTerms {
   double airspeed_mps = 0.0;  ///< covariate
   double neighbour_C = 0.0;   ///< covariate
   double rate_dps = 0.0;      ///< covariate
-  double measured_ambient_C = 0.0;
+  double measured_ambient_C = 0.0;  ///< as recorded; `ambient_C` starts from it
   Scalar winding_C;  ///< node that the heat enters
   Scalar surface_C;  ///< node that loses it; the same where there is one node
   Scalar current_A;  ///< motor current
@@ -53,8 +53,8 @@ struct ThermalStructure {
   Scalar winding_share;      ///< of the heat capacity; 1: a single node
   Scalar coupling_W_per_K;   ///< between winding and surface node
   Scalar thermometer_lag_s;  ///< time constant of the thermometer; 0: none
-  bool two_nodes = false;
-  bool lagged = false;
+  bool two_nodes = false;    ///< to be set with the share: winding and surface are nodes of their own
+  bool lagged = false;       ///< to be set with the lag: the thermometer follows the winding late
 };
 
 /// Drive path, evaluated once per interval.
@@ -63,16 +63,16 @@ struct DriveTerms {
   double t_s = 0.0;      ///< time since the start of the run
   double motor_C = 0.0;  ///< recorded; NaN where it is not
   // to change
-  Scalar drive_A;  ///< command, delayed where there is a delay
-  Scalar torque_constant_Nm_per_A;
+  Scalar drive_A;                   ///< command, delayed where there is a delay
+  Scalar torque_constant_Nm_per_A;  ///< as in the model file, to be multiplied
 };
 
 /// Torques on the driven inertia.
 template <class Scalar>
 struct AxisTerms {
   double t_s;  ///< time since the start of the run
-  const Scalar& angle_rad;
-  const Scalar& rate_rad_per_s;
+  const Scalar& angle_rad;       ///< of the driven inertia
+  const Scalar& rate_rad_per_s;  ///< its derivative
   const Scalar& drive_Nm;  ///< torque of the drive, after its own effects
   // to change
   Scalar load_Nm;               ///< added to the drive
@@ -87,18 +87,18 @@ struct AxisStructure {
   Scalar far_share;         ///< of the inertia, behind a spring; 0: rigid
   Scalar spring_rad_per_s;  ///< natural frequency of the two inertias against each other
   Scalar spring_damping;    ///< damping ratio of that motion
-  bool delayed = false;
-  bool compliant = false;
+  bool delayed = false;      ///< to be set with the delay
+  bool compliant = false;    ///< to be set with the share: there is a far side
 };
 
 /// What the instruments say of the bench.
 template <class Scalar>
 struct BenchReadings {
   double t_s = 0.0;  ///< time since the start of the run
-  double measured_ambient_C = 0.0;
+  double measured_ambient_C = 0.0;  ///< as recorded
   // to change
-  Scalar current_A;
-  Scalar motor_C;
+  Scalar current_A;  ///< what the ammeter shows; given as the true current
+  Scalar motor_C;    ///< what the thermometer shows; given as its node's temperature
 };
 
 /// What the instruments say of the axis.
@@ -106,8 +106,8 @@ template <class Scalar>
 struct AxisReadings {
   double t_s = 0.0;  ///< time since the start of the run
   // to change
-  Scalar angle_deg;
-  Scalar rate_dps;
+  Scalar angle_deg;  ///< what the encoder or IMU shows; given as the true angle
+  Scalar rate_dps;   ///< what the gyroscope shows; given as the true rate
 };
 
 }  // namespace thermopower::gap
