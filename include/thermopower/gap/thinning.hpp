@@ -21,6 +21,9 @@ namespace thermopower::gap {
 /// `repeats`.
 class BenchThinning {
 public:
+  /// @param full       the recording; must outlive this object
+  /// @param rows       about so many are kept, > 0
+  /// @param longest_s  blocks in which the power switches are no longer than this
   BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s)
       : full_(full), longest_s_(longest_s) {
     block_ = (2 * full.rows() + rows - 1) / rows;
