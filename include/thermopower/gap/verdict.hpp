@@ -15,11 +15,11 @@ namespace thermopower::gap {
 
 /// What the weighing of the candidates amounts to.
 struct Conclusion {
-  Verdict verdict = Verdict::insufficient;
+  Verdict verdict = Verdict::insufficient;  ///< in one word
   std::size_t chosen = 0;                 ///< index of the candidate
   std::vector<std::size_t> alternatives;  ///< indices, likeliest first
-  double none_of_these = 0.0;
-  std::string reason;
+  double none_of_these = 0.0;             ///< probability that the cause is outside the catalogue
+  std::string reason;                     ///< one sentence in plain words
 };
 
 /// Root of the mean square over training and held-out data of a signal, in units of the noise.
