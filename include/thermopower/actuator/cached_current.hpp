@@ -20,6 +20,7 @@ class CachedCurrent {
   typedef float Scalar;                             ///< Firmware only.
   typedef typename CurrentModel<Law>::State State;  ///< Every intermediate of one evaluation.
 
+  /// @param config  the constants of the law; ask `validate()` once
   explicit CachedCurrent(const Config& config) noexcept : model_(config) {
     const State none = {0.0f, 0.0f, 0.0f};
     state_ = none;

@@ -57,6 +57,7 @@ class WindingResistance {
     }
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit WindingResistance(const Config& config) noexcept : config_(config) {
     per_ohm_ = 1.0f / config.resistance_ohm;
     per_tempco_ = 1.0f / config.tempco_per_K;

@@ -33,7 +33,8 @@ struct PowerUpFacts {
   float air_C;                              ///< Air temperature; NaN: not known, which counts as `AsHottest`.
   float heat_now_W;                         ///< Read by `AsNewLoad`.
   float preset_C;                           ///< Read by `AsPreset`.
-  float hottest_winding_C, hottest_body_C;  ///< The limits.
+  float hottest_winding_C;                  ///< Limit of the winding; what `AsHottest` starts from.
+  float hottest_body_C;                     ///< Limit of the body; what `AsHottest` starts from.
 
   /// Time off from a clock that went on without power. @param clock_s  `StoredState::no_clock()` when there
   /// is none
@@ -48,7 +49,8 @@ struct PowerUpFacts {
 
 /// Temperatures to start from.
 struct PowerUpTemperatures {
-  float winding_C, body_C;
+  float winding_C;  ///< Never below the air where that is known.
+  float body_C;     ///< Never below the air where that is known.
   float std_K;  ///< How sure they are: the record's own uncertainty, or half the distance from air to limit.
   bool rests_on_record;  ///< False: worst case or preset.
 };
@@ -84,6 +86,7 @@ inline PowerUpTemperatures carried(const PowerUpFacts& facts,
 
 /// Drew what it draws now. Take it when the actuator has a supply of its own and its load does not change.
 struct AsNewLoad {
+  /// Carries the record over the time off with `heat_now_W` in the winding.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, facts.heat_now_W);
@@ -91,6 +94,7 @@ struct AsNewLoad {
 };
 /// Went on drawing what it drew. Take it when a controller was reset and the drive went on.
 struct AsOldLoad {
+  /// Carries the record over the time off with the heat that was stored with it.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, facts.stored.heat_W);
@@ -98,6 +102,7 @@ struct AsOldLoad {
 };
 /// Neither warmed nor cooled. Take it when the time off is short or not known.
 struct AsStored {
+  /// The record as it is, however long ago it was written.
   static PowerUpTemperatures start(PowerUpFacts facts,
                                    const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     facts.off_s = detail::not_a_number();
@@ -106,6 +111,7 @@ struct AsStored {
 };
 /// As warm as a setting says, whatever was stored.
 struct AsPreset {
+  /// `preset_C` in winding and body.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config&) noexcept {
     if (!detail::is_finite(facts.preset_C) || !detail::is_finite(facts.air_C)) return detail::hottest(facts);
@@ -115,6 +121,7 @@ struct AsPreset {
 };
 /// Was off, and cooled. Take it when controller and actuator share a switch and a clock goes on.
 struct AsCooled {
+  /// Carries the record over the time off without heat.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config& thermal) noexcept {
     return detail::carried(facts, thermal, 0.0f);
@@ -122,6 +129,7 @@ struct AsCooled {
 };
 /// May have been anything: at its limits. Take it when nothing was stored, until a resistance was measured.
 struct AsHottest {
+  /// Winding and body at their limits.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config&) noexcept {
     return detail::hottest(facts);

@@ -136,6 +136,9 @@ class StateJournal {
     }
   };
 
+  /// Touches nothing yet.
+  /// @param memory  where the records lie; must outlive this object
+  /// @param config  the ring; ask `validate()` once
   StateJournal(Memory& memory, const Config& config) noexcept : memory_(memory), config_(config) {
     const StoredState none = {0.0f, 0.0f, 0.0f, 0.0f, StoredState::no_clock(), 0};
     last_ = none;

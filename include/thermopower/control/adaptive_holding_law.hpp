@@ -75,6 +75,8 @@ class AdaptiveHoldingLaw {
     bool is_held;            ///< Nothing is being learned.
   };
 
+  /// Every range starts from the least power: what holds it has to be learned.
+  /// @param config  constants; ask `validate()` once
   explicit AdaptiveHoldingLaw(const Config& config = Config::standard()) noexcept : config_(config) {
     for (uint8_t i = 0; i < bins; ++i) state_.learned[i] = units(static_cast<float>(config.least_power));
     state_.rest = 0.0f;

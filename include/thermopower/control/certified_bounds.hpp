@@ -155,8 +155,8 @@ enum class CertifiedNode : uint8_t {
 
 /// The largest power that a network can bear, in counts of heat above the least, and which node says so.
 struct CertifiedCount {
-  uint8_t count;
-  CertifiedNode node;
+  uint8_t count;       ///< 0: the least power; each count adds the same heat.
+  CertifiedNode node;  ///< Whose limit the next count would pass.
 
   /// Lowers the count to how often `size` goes into `room`.
   void fit(int32_t room, int32_t size, CertifiedNode which) noexcept {

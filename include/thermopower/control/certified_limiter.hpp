@@ -126,6 +126,8 @@ class CertifiedLimiter {
                           ///< Stops at 65535.
   };
 
+  /// Starts at the limits; say what is known better with `start()`.
+  /// @param config  constants; ask `validate()` once
   explicit CertifiedLimiter(const Config& config = Config::standard()) noexcept
       : network_(config.network, config.use),
         travel_(network_.travel(0.0f)),

@@ -83,6 +83,8 @@ class SafetyLimiter<PerNode> {
     uint8_t ceiling;               ///< Highest power granted.
   };
 
+  /// Grants the least power until the first step.
+  /// @param config  constants; ask `validate()` once
   explicit SafetyLimiter(const Config& config = Config::standard()) noexcept : config_(config) {
     for (uint8_t i = 0; i < PerNode::count; ++i) state_.node_C[i] = detail::not_a_number();
     state_.margin_K = detail::not_a_number();

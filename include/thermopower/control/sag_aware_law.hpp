@@ -49,6 +49,7 @@ class SagAwareLaw {
     float correction;  ///< (V_nominal / V)^2, bounded.
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit SagAwareLaw(const Config& config = Config::standard()) noexcept
       : config_(config), law_(config.law) {
     state_.asked = least_power();

@@ -57,6 +57,7 @@ class GainScheduler<VoltageGain> {
     }
   };
 
+  /// @param config  constants; ask `validate()` once
   explicit GainScheduler(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.

@@ -28,7 +28,7 @@ class AxisPlant {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
  public:
-  using Scalar = Number;
+  using Scalar = Number;  ///< What it computes in.
 
   /// What describes the axis.
   struct Config {
@@ -45,6 +45,8 @@ class AxisPlant {
     Number body_C;       ///< Temperature of the body.
   };
 
+  /// @param config  the axis; taken as it is
+  /// @param start   at rest in space, with these temperatures
   AxisPlant(const Config& config, const Start& start) noexcept
       : mechanics_(config.mechanics, {start.angle_deg * rad_per_deg(), start.angle_deg * Real(0)}),
         drive_(config.drive),

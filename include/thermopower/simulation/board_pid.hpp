@@ -34,6 +34,7 @@ class BoardPid {
     Number share;      ///< Share asked for in the last cycle, -1 .. 1.
   };
 
+  /// Starts with an empty integral.
   explicit BoardPid(const Config& config) noexcept : config_(config) {
     state_.integral = config.share_per_deg * Real(0);
     state_.share = state_.integral;

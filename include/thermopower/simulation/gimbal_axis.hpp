@@ -30,7 +30,7 @@ class GimbalAxis {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
  public:
-  using Scalar = Number;
+  using Scalar = Number;  ///< What it computes in.
 
   /// What describes the axis.
   struct Config {
@@ -57,6 +57,8 @@ class GimbalAxis {
     BaseMotion<Number> base;    ///< What the bearing is fixed to.
   };
 
+  /// @param config  the mechanics; taken as it is
+  /// @param state   where it starts from
   explicit GimbalAxis(const Config& config, const State& state) noexcept
       : config_(config), per_inertia_(Real(1) / config.inertia_kg_m2), state_(state) {}
 

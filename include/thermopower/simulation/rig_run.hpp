@@ -119,7 +119,7 @@ RigMetrics run_rig(const RigConfig& config, const Scenario& scenario, Controller
   return meter.figures(rig);
 }
 
-/// @overload Without a sink.
+/// Runs a scenario to its end without looking at the cycles in between.
 template <class Controller>
 RigMetrics run_rig(const RigConfig& config, const Scenario& scenario, Controller& controller) {
   return run_rig(config, scenario, controller, [](const RigSample&) {});
