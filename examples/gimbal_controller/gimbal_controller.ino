@@ -8,22 +8,15 @@
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <thermopower.h>
 
+#include "gimbal.h"
+
 namespace tp = thermopower;
 namespace sbgc = thermopower::sbgc;
-
-typedef tp::StepPowerLaw<tp::HysteresisLevels> PowerLaw;
-typedef tp::SafetyLimiter<tp::PerSecond> Limiter;
-typedef tp::GainScheduler<tp::RoundedGain> Gain;
-typedef tp::AxisController<tp::motors::Bgm2606_90t, PowerLaw, Limiter, Gain> Small;
-typedef tp::AxisController<tp::motors::Bgm5208_200_12, PowerLaw, Limiter, Gain> Large;
 
 const uint32_t request_interval_us = 10000;
 const uint32_t answer_timeout_us = 50000;  // a board answers within 24 ms, its 8 ms pause between commands included
 
-// A three-cell battery is empty at 9 V; your rig's supply, limits and gains go here.
-const tp::GimbalConfig config = {13.0f, 9.0f, 0.5f, tp::AirTemperature::Config::standard()};
-tp::GimbalController<Small, Small, Large> gimbal(config, Small::Config::with_gain({24.0f, 4.0f}),
-                                                 Small::Config::with_gain({180.0f, 105.0f}), Large::Config::with_gain({40.0f, 2.0f}));
+Gimbal gimbal = new_gimbal();
 tp::SbgcCodec<> codec;
 
 uint32_t requested_us, stepped_us;
@@ -56,8 +49,9 @@ void receive() {
   }
 }
 
-// A silent board may still listen: it is told what holds for half a second, and then the least power. Before the first answer nothing
-// is stepped: the ceiling must not start from the bottom only because the board takes longer to start than we do.
+// A silent board may still listen: it is told what holds for half a second, and then the least power. Before
+// the first answer nothing is stepped: the ceiling must not start from the bottom only because the board takes
+// longer to start than we do.
 void miss_answer() {
   is_waiting = false;
   if (has_telemetry)

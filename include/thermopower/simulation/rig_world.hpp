@@ -53,6 +53,7 @@ struct ByteLoop {
   double silence_us = 500000.0;           ///< After which the controller is told of the silence.
   double byte_us = 1e6 / 11520.0;         ///< One byte on the wire, 115200 baud 8N1.
   double poll_us = 100.0;                 ///< The loop's own cycle.
+  double compute_us = 0.0;                ///< From an answer's last byte to the command's first: 4400 on an ATmega328P.
 };
 
 /// Runs a gimbal controller against the rig through an emulated board, byte by byte. @return the figures of the run
@@ -63,7 +64,7 @@ RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, Emul
                          const ByteLoop& loop = {}) {
   RigWorld world(config, scenario);
   SbgcCodec<> codec;
-  double wire_free_us = 0.0, requested_us = -1e9, stepped_us = 0.0;
+  double wire_free_us = 0.0, requested_us = -1e9, stepped_us = 0.0, busy_until_us = 0.0;
   bool is_waiting = false, has_telemetry = false;
   struct Wire {
     EmulatedBoard& board;
@@ -83,6 +84,7 @@ RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, Emul
       const double parse_us = board.next_parse_us();
       board.step(parse_us, world(parse_us * 1e-6, board));
     }
+    if (now_us < busy_until_us) continue;
     Wire wire = {board, wire_free_us, now_us, loop.byte_us};
     const auto since_step_s = [&] {
       const double since_us = now_us - stepped_us;
@@ -95,6 +97,7 @@ RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, Emul
         const sbgc::RealtimeData* telemetry = codec.realtime_data();
         if (telemetry == nullptr) continue;
         const auto& command = gimbal.step(*telemetry, since_step_s());
+        busy_until_us = wire.now_us = now_us + loop.compute_us;
         codec.send(sbgc::power_and_gain(command), wire);
         sink(now_us * 1e-6, *telemetry, command);
         is_waiting = false;
