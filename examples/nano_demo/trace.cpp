@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 namespace nano {
 namespace {
@@ -11,47 +12,52 @@ namespace {
 namespace tp = thermopower;
 
 // The types of nano_gimbal.ino.
-typedef tp::StepPowerLaw<tp::ProgrammedLevels> PowerLaw;
-typedef tp::SafetyLimiter<tp::PerCycle> Limiter;
-typedef tp::GainScheduler<tp::TruncatedGain> Gain;
-typedef tp::AxisController<tp::motors::Bgm2606_90t::AsProgrammed, PowerLaw, Limiter, Gain> Small;
-typedef tp::AxisController<tp::motors::Bgm5208_200_12::AsProgrammed, PowerLaw, Limiter, Gain> Large;
-typedef tp::GimbalController<Small, Small, Large> Gimbal;
+typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed>> Small;
+typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed>> Large;
+typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
+typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<24, 4>> Roll;
+typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<180, 105>> Pitch;
+typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2>> Yaw;
+typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
 
-template <class State>
-AxisPoint point_of(const State& state, double true_C) {
-  return {double(state.error_deg), state.demand, state.power, state.p_gain, double(state.motor_C), true_C, state.reason};
-}
+/// Telemetry as the gimbal reads it.
+struct Telemetry {
+  const tp::sbgc::RealtimeFields& fields;
+  std::int16_t target_angle(std::uint8_t axis) const { return fields.target_angle[axis]; }
+  std::int16_t imu_angle(std::uint8_t axis) const { return fields.imu_angle[axis]; }
+  std::int8_t imu_C() const { return fields.imu_C; }
+  std::int8_t frame_imu_C() const { return fields.frame_imu_C; }
+  std::uint16_t battery_cV() const { return fields.battery_cV; }
+};
 
-Gimbal::Inputs inputs_of(const tp::sbgc::RealtimeFields& telemetry) {
-  Gimbal::Inputs inputs;
-  for (int axis = 0; axis < 3; ++axis)
-    inputs.error_deg[axis] = tp::sbgc::angle_deg(std::int32_t(telemetry.target_angle[axis]) - telemetry.imu_angle[axis]);
-  inputs.camera_C = telemetry.imu_C;
-  inputs.frame_C = telemetry.frame_imu_C;
-  inputs.supply_V = static_cast<float>(telemetry.battery_cV) * 0.01f;
-  return inputs;
+template <class Axis>
+AxisPoint point_of(const Axis& axis, const Telemetry& telemetry, std::uint8_t index, double true_C) {
+  const std::int16_t error = tp::position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
+  const std::uint8_t demand = tp::FixedLevels<>().step(static_cast<std::uint16_t>(std::abs(int(error))));
+  const tp::LimitedPower& granted = axis.state();
+  return {double(tp::deg_from_units(error)), demand, granted.power, axis.p_gain(), double(axis.thermal().motor_C()), true_C,
+          granted.reason};
 }
 
 }  // namespace
 
 Trace Trace::of(const Rig& rig, const Story& story) {
-  Gimbal gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}), Small::Config::with_gain({180.0f, 105.0f}),
-                Large::Config::with_gain({40.0f, 2.0f}));
+  Gimbal gimbal;
+  tp::FixedClock clock;
   Trace trace;
-  std::uint64_t before = 0;
   std::size_t sample = 0;
   for (const Update& update : rig.updates()) {
-    const auto elapsed_us = static_cast<float>(update.last_in_cycle - before) / static_cast<float>(cycles_per_us);
-    before = update.last_in_cycle;
-    const Gimbal::Command& command = gimbal.step(inputs_of(update.telemetry), elapsed_us * 1e-6f);
+    const Telemetry telemetry = {update.telemetry};
+    const auto now_us = static_cast<std::uint32_t>(update.last_in_cycle / static_cast<std::uint64_t>(cycles_per_us));
+    const Gimbal::Command& command = gimbal.step(telemetry, clock.elapsed(now_us));
+    gimbal.prepare();
     trace.agreeing += std::equal(command.power, command.power + 3, update.power) &&
                       std::equal(command.p_gain, command.p_gain + 3, update.p_gain);
     while (sample + 1 < story.samples().size() && story.samples()[sample + 1].time_s <= update.time_s()) ++sample;
     const auto& true_C = story.samples()[sample].motor_C;
     Point point = {update.time_s(), update.response_cycles(),
-                   {point_of(gimbal.axis<0>().state(), true_C[0]), point_of(gimbal.axis<1>().state(), true_C[1]),
-                    point_of(gimbal.axis<2>().state(), true_C[2])}};
+                   {point_of(gimbal.axis<0>(), telemetry, 0, true_C[0]), point_of(gimbal.axis<1>(), telemetry, 1, true_C[1]),
+                    point_of(gimbal.axis<2>(), telemetry, 2, true_C[2])}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       point.axes[axis].power = update.power[axis];
       point.axes[axis].p_gain = update.p_gain[axis];

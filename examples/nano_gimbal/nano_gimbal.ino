@@ -4,47 +4,49 @@
 // Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear, as the thesis's
 //           program does it: the same decisions from the same telemetry, without its faults (README.md lists both).
 // Model:    per axis the programmed laws: ten levels of error, current and heating as fitted, Euler, a ceiling that moves by one
-//           count per update, a gain cut to a whole count. Supply 13 V.
+//           count per update, a gain cut to a whole count. Supply 13 V. All in whole numbers: tables instead of a float library.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <thermopower.h>
 
 namespace tp = thermopower;
 namespace sbgc = thermopower::sbgc;
 
-typedef tp::StepPowerLaw<tp::ProgrammedLevels> PowerLaw;
-typedef tp::SafetyLimiter<tp::PerCycle> Limiter;
-typedef tp::GainScheduler<tp::TruncatedGain> Gain;
-typedef tp::AxisController<tp::motors::Bgm2606_90t::AsProgrammed, PowerLaw, Limiter, Gain> Small;
-typedef tp::AxisController<tp::motors::Bgm5208_200_12::AsProgrammed, PowerLaw, Limiter, Gain> Large;
+typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed> > Small;
+typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed> > Large;
+typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
+typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<24, 4> > Roll;
+typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<180, 105> > Pitch;
+typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2> > Yaw;
+typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
 
 const uint32_t request_interval_us = 10000;
 const uint32_t answer_timeout_us = 50000;   // a board answers within 24 ms, its 8 ms pause between commands included
-const uint32_t silence_us = 500000;         // GimbalConfig::standard().timeout_s
+const uint32_t silence_us = 501000;         // a little above StandardGimbal::timeout_s(), so that the gimbal agrees
 
-tp::GimbalController<Small, Small, Large> gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
-                                                 Small::Config::with_gain({180.0f, 105.0f}), Large::Config::with_gain({40.0f, 2.0f}));
+Gimbal gimbal;
+tp::FixedClock step_clock;
 tp::SbgcCodec<> codec;
 
-uint32_t requested_us, stepped_us;
-bool is_waiting, has_telemetry;
+uint32_t requested_us;
+bool is_waiting;
 
 void setup() { Serial.begin(115200); }
 
-float seconds_since_step() {
-  const uint32_t now_us = micros();
-  const float elapsed_s = static_cast<float>(now_us - stepped_us) * 1e-6f;
-  stepped_us = now_us;
-  return elapsed_s;
+// What the next step needs is computed while the command is on its way.
+void send_command() {
+  codec.send(sbgc::PowerAndGain<Gimbal::Command>(gimbal.command()), Serial);
+  gimbal.prepare();
 }
 
 // Everything that has come is taken at once: an answer is twice as long as the core's buffer.
 void receive() {
   while (Serial.available() > 0) {
-    for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), micros()); got; got = codec.next()) {
+    const uint32_t now_us = micros();
+    for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), now_us); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
       if (telemetry == nullptr) continue;  // a CONFIRM
-      codec.send(sbgc::power_and_gain(gimbal.step(*telemetry, seconds_since_step())), Serial);
-      has_telemetry = true;
+      gimbal.step(*telemetry, step_clock.elapsed(now_us));
+      send_command();
       is_waiting = false;
     }
   }
@@ -54,10 +56,13 @@ void receive() {
 // start from the bottom only because the board takes longer to start than we do.
 void miss_answer() {
   is_waiting = false;
-  if (!has_telemetry)
-    codec.send(sbgc::power_and_gain(gimbal.state().command), Serial);
-  else if (micros() - stepped_us > silence_us)
-    codec.send(sbgc::power_and_gain(gimbal.step_silent(seconds_since_step())), Serial);
+  const uint32_t now_us = micros();
+  const tp::LimitReason reason = gimbal.command().reason[0];
+  if (reason != tp::LimitReason::no_telemetry_yet) {
+    if (reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us) return;
+    gimbal.step_silent(step_clock.elapsed(now_us));
+  }
+  send_command();
 }
 
 void loop() {

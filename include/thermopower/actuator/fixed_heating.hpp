@@ -14,7 +14,7 @@ namespace detail {
 
 /// Heating at one level: rate = level (power_slope T + power) / (capacity_slope T + capacity), in scaled units.
 struct HeatNode {
-  int16_t power_slope;     ///< p1 / level
+  int16_t first;           ///< power_slope: p1 / level
   int16_t power;           ///< p0 / level
   int16_t capacity_slope;  ///< c1
   int16_t capacity;        ///< c0
@@ -93,15 +93,15 @@ struct HeatScaling {
 };
 
 /// Not a template: one copy serves every motor. @param scaled_level  level times level_factor
-[[gnu::noinline]] inline FixedRate heating_between(const HeatNode* table, uint8_t level, uint16_t scaled_level, bool drops_byte,
+[[gnu::noinline]] inline FixedRate heating_between(const int16_t* table, uint8_t level, uint16_t scaled_level, bool drops_byte,
                                                    FixedCelsius motor) noexcept {
+  constexpr uint8_t stride = sizeof(HeatNode) / sizeof(int16_t);
   const LevelPosition position = level_position(level);
-  const HeatNode* below = table + position.node;
-  const HeatNode* above = below + 1;
-  const int16_t power_slope = between(&below->power_slope, &above->power_slope, position.share);
-  const int16_t power = between(&below->power, &above->power, position.share);
-  const int16_t capacity_slope = between(&below->capacity_slope, &above->capacity_slope, position.share);
-  const int16_t capacity = between(&below->capacity, &above->capacity, position.share);
+  const int16_t* at = table + static_cast<uint8_t>(position.node * stride);
+  const int16_t power_slope = next_between<stride>(at, position.share);
+  const int16_t power = next_between<stride>(at, position.share);
+  const int16_t capacity_slope = next_between<stride>(at, position.share);
+  const int16_t capacity = next_between<stride>(at, position.share);
   const int16_t warm_power = static_cast<int16_t>(power + product_q15(power_slope, motor));
   if (warm_power <= 0) return 0;
   uint32_t dividend = static_cast<uint32_t>(static_cast<uint16_t>(warm_power)) * scaled_level;

@@ -18,22 +18,43 @@ struct FixedThermalState {
 
 namespace detail {
 
-// Not templates: one copy serves every motor.
-[[gnu::noinline]] inline FixedTemperature within_range(FixedTemperature value) noexcept {
+inline FixedTemperature within_range(FixedTemperature value) noexcept {
   constexpr FixedTemperature coldest = fixed_temperature(fixed_coldest_C());
   constexpr FixedTemperature hottest = fixed_temperature(fixed_hottest_C());
   return value > hottest ? hottest : (value < coldest ? coldest : value);
 }
 
-[[gnu::noinline]] inline FixedRate thermal_step(FixedThermalState& state, FixedCelsius air, FixedTicks ticks,
-                                                int16_t cooling_factor) noexcept {
-  const int16_t above_air = static_cast<int16_t>(rounded_celsius(state.motor) - air);
-  const FixedRate rate = state.heating - static_cast<int32_t>(above_air) * cooling_factor;
-  state.motor = within_range(state.motor + scaled(rate, ticks));
-  return rate;
-}
-
 }  // namespace detail
+
+/// The part of FixedThermalModel that is the same for every motor, so that axes share its code.
+/// @ingroup actuator
+class FixedThermalCore {
+ public:
+  typedef FixedThermalState State;  ///< What one logs.
+
+  /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates at -50 and 180 degC
+  void start(FixedTemperature motor) noexcept {
+    state_.motor = detail::within_range(motor);
+    state_.heating = 0;
+  }
+
+  /// Advances by eq 4.21 with the heating prepared.
+  /// @param air             -60 .. 125 degC
+  /// @param cooling_factor  FixedThermalModel::cooling_factor of the motor
+  /// @return dT/dt at the start of the step, which eq 4.23 uses
+  FixedRate step(FixedCelsius air, FixedTicks ticks, int16_t cooling_factor) noexcept {
+    const int16_t above_air = static_cast<int16_t>(detail::rounded_celsius(state_.motor) - air);
+    const FixedRate rate = state_.heating - static_cast<int32_t>(above_air) * cooling_factor;
+    state_.motor = detail::within_range(state_.motor + detail::scaled(rate, ticks));
+    return rate;
+  }
+
+  const State& state() const noexcept { return state_; }               ///< After the last step.
+  float motor_C() const noexcept { return celsius_of(state_.motor); }  ///< The temperature, for a log.
+
+ protected:
+  State state_ = {0, 0};  ///< Written by `prepare()` of the motor's model.
+};
 
 /// One-node thermal model that takes 16-bit multiplications where ThermalModel takes a floating-point library: CurrentModel,
 /// heating law, cooling law and step in one. Take it on a chip without a floating-point unit, when the supply is known and the motor's
@@ -48,35 +69,21 @@ namespace detail {
 /// @tparam Source  the motor: fixed_source.hpp
 /// @ingroup actuator
 template <class Source>
-class FixedThermalModel {
+class FixedThermalModel : public FixedThermalCore {
  public:
-  typedef FixedThermalState State;  ///< What one logs.
-
-  /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates
-  void start(FixedTemperature motor) noexcept {
-    state_.motor = detail::within_range(motor);
-    state_.heating = 0;
-  }
+  typedef FixedThermalCore Core;  ///< What models of all motors share.
+  /// k in 2^-32 per tick: what `Core::step()` needs to know of the motor.
+  static constexpr int16_t cooling_factor = static_cast<int16_t>(
+      detail::nearest(detail::lesser(Source::cooling_per_s() / detail::fixed_ticks_per_s() * 4294967296.0, 32767.0)));
+  static_assert(cooling_factor >= 300 && cooling_factor < 32767,
+                "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within 2.7e-4 .. 0.0298 per second); "
+                "take ThermalModel");
 
   /// Computes the heating for the next step. @param power  power parameter that acts from now on
   void prepare(uint8_t power) noexcept { state_.heating = FixedHeating<Source>::rate(power, detail::rounded_celsius(state_.motor)); }
 
-  /// Advances by eq 4.21 with the heating prepared. @param air  -60 .. 125 degC
-  /// @return dT/dt at the start of the step, which eq 4.23 uses
-  FixedRate step(FixedCelsius air, FixedTicks ticks) noexcept {
-    constexpr int16_t cooling_factor = static_cast<int16_t>(detail::nearest(
-        detail::lesser(Source::cooling_per_s() / detail::fixed_ticks_per_s() * 4294967296.0, 32767.0)));
-    static_assert(cooling_factor >= 300 && cooling_factor < 32767,
-                  "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within 2.7e-4 .. 0.0298 per second); "
-                  "take ThermalModel");
-    return detail::thermal_step(state_, air, ticks, cooling_factor);
-  }
-
-  const State& state() const noexcept { return state_; }                      ///< After the last step.
-  float motor_C() const noexcept { return celsius_of(state_.motor); }         ///< The temperature, for a log.
-
- private:
-  State state_ = {0, 0};
+  /// `Core::step()` of this motor. @param air  -60 .. 125 degC  @return dT/dt at the start of the step
+  FixedRate step(FixedCelsius air, FixedTicks ticks) noexcept { return Core::step(air, ticks, cooling_factor); }
 };
 
 }  // namespace thermopower

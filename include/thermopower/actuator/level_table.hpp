@@ -29,18 +29,19 @@ struct LevelPosition {
 
 /// The position of a level; at most four rounds.
 inline LevelPosition level_position(uint8_t level) noexcept {
-  LevelPosition position = {0, 0};
-  while (level >= 16) {
-    position.share = static_cast<uint8_t>((position.share >> 1) | (level << 7));
-    level = static_cast<uint8_t>(level >> 1);
-    position.node = static_cast<uint8_t>(position.node + 8);
+  // Level and share in one 16-bit number, so that halving moves a bit from one to the other.
+  uint16_t halved = static_cast<uint16_t>(static_cast<uint16_t>(level) << 8);
+  uint8_t node = 0;
+  while (halved >= 16u * 256u) {
+    halved = static_cast<uint16_t>(halved >> 1);
+    node = static_cast<uint8_t>(node + 8);
   }
-  position.node = static_cast<uint8_t>(position.node + level);
+  const LevelPosition position = {static_cast<uint8_t>(node + (halved >> 8)), static_cast<uint8_t>(halved)};
   return position;
 }
 
 /// The values of a function of the level at every node.
-/// @tparam Source  names `Node`, a struct of `int16_t`, and has `static constexpr Node at(int level)`, level 0 .. 256. Functions that
+/// @tparam Source  names `Node`, a struct of `int16_t` whose first member is `first`, and has `static constexpr Node at(int level)`, level 0 .. 256. Functions that
 ///                 are read together are members of one Node, so that one position serves them all.
 template <class Source, class Nodes = typename MakeIndices<level_node_count()>::Type>
 struct LevelTable;
@@ -50,17 +51,50 @@ template <class Source, int... node>
 struct LevelTable<Source, Indices<node...> > {
   typedef typename Source::Node Node;
   static constexpr Node nodes[level_node_count()] thermopower_flash = {Source::at(level_of_node(node))...};
-  /// For `between` and nothing else.
-  static const Node* table() noexcept { return flash_pointer(&nodes[0]); }
+  /// For `next_between` and nothing else.
+  static const int16_t* table() noexcept { return flash_pointer(&nodes[0].first); }
 };
 template <class Source, int... node>
 constexpr typename Source::Node LevelTable<Source, Indices<node...> >::nodes[level_node_count()];
 
-/// A value between two neighbouring nodes. @param below, above  the same member of both, in flash
-inline int16_t between(const int16_t* below, const int16_t* above, uint8_t share) noexcept {
-  const int16_t start = read_flash(below);
-  return static_cast<int16_t>(start + part_of(static_cast<int16_t>(read_flash(above) - start), share));
+#if defined(__AVR__)
+/// The value between a member of a node and the same member of the next node, which lies `stride` values on; moves on to the next member.
+/// @param at  in flash, from LevelTable::table()
+template <uint8_t stride>
+[[gnu::always_inline]] inline int16_t next_between(const int16_t*& at, uint8_t share) noexcept {
+  int16_t below, above;
+  asm("lpm %A[below], Z+\n\t"
+      "lpm %B[below], Z+\n\t"
+      "adiw r30, %[ahead]\n\t"
+      "lpm %A[above], Z+\n\t"
+      "lpm %B[above], Z+\n\t"
+      "sbiw r30, %[back]\n\t"
+      "sub %A[above], %A[below]\n\t"
+      "sbc %B[above], %B[below]\n\t"
+      "mul %A[above], %[share]\n\t"
+      "mov %A[above], r1\n\t"
+      "mulsu %B[above], %[share]\n\t"
+      "clr %B[above]\n\t"
+      "add %A[below], %A[above]\n\t"
+      "adc %B[below], %B[above]\n\t"
+      "add %A[below], r0\n\t"
+      "adc %B[below], r1\n\t"
+      "clr r1"
+      : [below] "=&r"(below), [above] "=&a"(above), "+z"(at)
+      : [share] "a"(share), [ahead] "I"(2 * stride - 2), [back] "I"(2 * stride)
+      : "r0");
+  return below;
 }
+#else
+/// The value between a member of a node and the same member of the next node, which lies `stride` values on; moves on to the next member.
+/// @param at  in flash, from LevelTable::table()
+template <uint8_t stride>
+inline int16_t next_between(const int16_t*& at, uint8_t share) noexcept {
+  const int16_t below = read_flash(at), above = read_flash(at + stride);
+  ++at;
+  return static_cast<int16_t>(below + part_of(static_cast<int16_t>(above - below), share));
+}
+#endif
 
 }  // namespace detail
 }  // namespace thermopower

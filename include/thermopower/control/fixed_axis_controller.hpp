@@ -21,17 +21,16 @@ struct FixedAxisInputs {
 
 namespace detail {
 
-/// An axis but for its gain: axes that differ in nothing else share its code.
-template <class Thermal, class PowerLaw, class Limiter>
+/// An axis but for its motor's constants and its gain: axes that differ in nothing else share its code.
+template <class Core, class PowerLaw, class Limiter>
 class FixedAxis {
  public:
-  [[gnu::noinline]] void step(const FixedAxisInputs& inputs, FixedTicks ticks) noexcept {
-    const FixedRate rate = thermal.step(inputs.air, ticks);
+  [[gnu::noinline]] void step(Core& thermal, const FixedAxisInputs& inputs, FixedTicks ticks, int16_t cooling_factor) noexcept {
+    const FixedRate rate = thermal.step(inputs.air, ticks, cooling_factor);
     const uint8_t demand = power_law.step(inputs.error_units);
     granted = is_fault(inputs.fault) ? limiter.cut(inputs.fault, demand) : limiter.step(demand, thermal.state().motor, rate, ticks);
   }
 
-  Thermal thermal;
   PowerLaw power_law;
   Limiter limiter;
   LimitedPower granted = {least_power(), LimitReason::no_telemetry_yet};
@@ -42,7 +41,7 @@ class FixedAxis {
 /// Temperature estimate, power law, limiter and gain of one axis, in the order of AxisController, which says what each does. Constants are
 /// types, so the object is its state: twelve bytes with the thesis's policies.
 ///
-/// @tparam Thermal   FixedThermalModel of a motor, or a model with `start`, `prepare`, `step`, `state`
+/// @tparam Thermal   FixedThermalModel of a motor, or a model with the same members
 /// @tparam PowerLaw  how much power an error is worth: fixed_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: fixed_safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: fixed_gain.hpp
@@ -55,16 +54,16 @@ class FixedAxisController {
 
   /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then the motor is at 0 degC and
   /// every step needs a fault. @param motor  saturates at -50 and 180 degC
-  void start(FixedTemperature motor) noexcept { axis_.thermal.start(motor); }
+  void start(FixedTemperature motor) noexcept { thermal_.start(motor); }
 
   /// One control cycle; `prepare()` must have been called since the last one. @param ticks  time since then
   const State& step(const Inputs& inputs, FixedTicks ticks) noexcept {
-    axis_.step(inputs, ticks);
+    axis_.step(thermal_, inputs, ticks, Thermal::cooling_factor);
     return axis_.granted;
   }
 
   /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for it there.
-  void prepare() noexcept { axis_.thermal.prepare(axis_.granted.power); }
+  void prepare() noexcept { thermal_.prepare(axis_.granted.power); }
 
   /// Send this as P.
   uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
@@ -72,11 +71,12 @@ class FixedAxisController {
   static constexpr uint8_t first_gain() { return Gain::gain(least_power()); }
 
   const State& state() const noexcept { return axis_.granted; }         ///< After the last step.
-  const Thermal& thermal() const noexcept { return axis_.thermal; }     ///< The temperature.
+  const Thermal& thermal() const noexcept { return thermal_; }     ///< The temperature.
   uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
 
  private:
-  detail::FixedAxis<Thermal, PowerLaw, Limiter> axis_;
+  Thermal thermal_;
+  detail::FixedAxis<typename Thermal::Core, PowerLaw, Limiter> axis_;
 };
 
 }  // namespace thermopower

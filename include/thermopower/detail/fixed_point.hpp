@@ -68,6 +68,8 @@ class FixedClock {
     last_us_ += ticks << 8;
     return ticks > 0xFFFFu ? static_cast<FixedTicks>(0xFFFFu) : static_cast<FixedTicks>(ticks);
   }
+  /// Time since the last call of `elapsed()`, within 256 us, in microseconds.
+  uint32_t waiting_us(uint32_t now_us) const noexcept { return now_us - last_us_; }
   /// Starts here.
   void start(uint32_t now_us) noexcept { last_us_ = now_us; }
 

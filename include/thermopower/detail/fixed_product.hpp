@@ -63,7 +63,7 @@ namespace detail {
 }
 
 /// left * right / 32768, rounded down; the quotient must fit.
-inline int16_t product_q15(int16_t left, int16_t right) noexcept {
+[[gnu::always_inline]] inline int16_t product_q15(int16_t left, int16_t right) noexcept {
   int16_t result;
   uint8_t rest, zero;
   asm("clr %[zero]\n\t"

@@ -32,7 +32,10 @@ constexpr uint16_t ReciprocalTable<Indices<node...> >::values[33];
 inline uint16_t reciprocal(uint16_t divisor) noexcept {
   typedef ReciprocalTable<MakeIndices<33>::Type> Table;
   const uint8_t high = static_cast<uint8_t>(divisor >> 8);
-  const uint8_t share = static_cast<uint8_t>((high << 6) | (static_cast<uint8_t>(divisor) >> 2));
+  uint8_t share = static_cast<uint8_t>(static_cast<uint8_t>(divisor) >> 2);
+  // The divisor's bits 8 and 9: an 8-bit chip tests bits faster than it shifts.
+  if ((high & 1u) != 0) share = static_cast<uint8_t>(share | 0x40u);
+  if ((high & 2u) != 0) share = static_cast<uint8_t>(share | 0x80u);
   const uint16_t* node = flash_pointer(&Table::values[0]) + static_cast<uint8_t>((high >> 2) & 31u);
   const uint16_t below = read_flash(node), above = read_flash(node + 1);
   const int16_t fall = static_cast<int16_t>(below - above);  // at most 1985
@@ -41,7 +44,7 @@ inline uint16_t reciprocal(uint16_t divisor) noexcept {
 
 /// 2^15 dividend / divisor, saturated at `fixed_most_heating()`; 0 where the divisor is not positive.
 /// @param dividend  0 .. 2^31 - 1
-[[gnu::noinline]] inline int32_t quotient_q15(uint32_t dividend, int16_t divisor) noexcept {
+inline int32_t quotient_q15(uint32_t dividend, int16_t divisor) noexcept {
   if (divisor <= 0) return 0;
   uint16_t normal = static_cast<uint16_t>(divisor);
   while ((normal & 0x8000u) == 0) {
