@@ -97,37 +97,29 @@ const char* css_of(thermopower::LimitReason reason) {
   }
 }
 
-// The limiter alternates faster than a picture can show: each column has the gravest of its reasons.
-int gravity(thermopower::LimitReason reason) {
-  switch (reason) {
-    case thermopower::LimitReason::none: return 0;
-    case thermopower::LimitReason::recovering: return 1;
-    case thermopower::LimitReason::safety_temperature: return 2;
-    case thermopower::LimitReason::over_temperature: return 3;
-    default: return 4;
-  }
-}
+// From the gravest, which lies at the bottom of the strip, to the mildest.
+constexpr thermopower::LimitReason by_gravity[] = {thermopower::LimitReason::over_temperature, thermopower::LimitReason::safety_temperature,
+                                                   thermopower::LimitReason::recovering, thermopower::LimitReason::none};
 
+// The limiter alternates faster than a picture can show: each column is divided by how often each reason was given in it.
 std::string strip(const Panel& panel, const std::vector<Point>& points, std::size_t axis) {
-  constexpr double column_s = 0.15;
-  std::string svg;
-  thermopower::LimitReason drawn = thermopower::LimitReason::none;
-  double from_s = 0;
-  const auto draw_until = [&](double time_s) {
-    if (time_s > from_s)
-      svg += box(panel.at_time(from_s), panel.y, panel.at_time(time_s) - panel.at_time(from_s), panel.height, css_of(drawn));
-    from_s = time_s;
-  };
+  constexpr double column_s = 0.5;
+  std::string svg = box(panel.x, panel.y, panel_width, panel.height, "fault");
   for (std::size_t index = 0; index < points.size();) {
-    const double column = std::floor(points[index].time_s / column_s);
-    auto gravest = points[index].axes[axis].reason;
-    for (; index < points.size() && std::floor(points[index].time_s / column_s) <= column; ++index)
-      if (gravity(points[index].axes[axis].reason) > gravity(gravest)) gravest = points[index].axes[axis].reason;
-    if (gravest == drawn) continue;
-    draw_until(column * column_s);
-    drawn = gravest;
+    const double from_s = std::floor(points[index].time_s / column_s) * column_s;
+    std::size_t end = index;
+    while (end < points.size() && points[end].time_s < from_s + column_s) ++end;
+    const double x = panel.at_time(from_s), column_width = panel.at_time(std::min(from_s + column_s, Story::end_s())) - x;
+    double bottom = panel.y + panel.height;
+    for (const thermopower::LimitReason reason : by_gravity) {
+      const auto given = std::count_if(points.begin() + std::ptrdiff_t(index), points.begin() + std::ptrdiff_t(end),
+                                       [&](const Point& point) { return point.axes[axis].reason == reason; });
+      const double part = panel.height * double(given) / double(end - index);
+      if (given > 0) svg += box(x, bottom - part, column_width, part, css_of(reason));
+      bottom -= part;
+    }
+    index = end;
   }
-  draw_until(Story::end_s());
   return svg;
 }
 
@@ -135,10 +127,10 @@ constexpr const char* style =
     "<style>text{font-family:'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#222}.title{font-size:19px;font-weight:600}"
     ".sub{font-size:12.5px;fill:#555}.axis{font-size:15px;font-weight:600}.tick{font-size:11.5px;fill:#555}.end{text-anchor:end}"
     ".middle{text-anchor:middle}.label{font-size:12.5px}.frame{fill:none;stroke:#888}.grid{stroke:#e2e2e2}.band{fill:#f5f6f8}"
-    ".error{fill:none;stroke:#4a5568;stroke-width:1.1}.demand{fill:none;stroke:#b9c3d3;stroke-width:1.1}"
+    ".error{fill:none;stroke:#4a5568;stroke-width:1.1}.demand{fill:none;stroke:#7f8fa9;stroke-width:1.1;stroke-dasharray:3 2}"
     ".power{fill:none;stroke:#1f5fa8;stroke-width:1.5}.estimate{fill:none;stroke:#c4441c;stroke-width:2}"
     ".true{fill:none;stroke:#222;stroke-width:1.3;stroke-dasharray:5 3}.limit{stroke:#a3123a;stroke-width:1.2;stroke-dasharray:2 3}"
-    ".granted{fill:#d9e6dc}.safety{fill:#f0a432}.over{fill:#a3123a}.recovering{fill:#5aa0d0}.fault{fill:#444}</style>\n";
+    ".granted{fill:#d9e6dc}.safety{fill:#f0a432}.over{fill:#a3123a}.recovering{fill:#5aa0d0}.fault{fill:#444}.granted,.safety,.over,.recovering{shape-rendering:crispEdges}</style>\n";
 
 }  // namespace
 
@@ -196,7 +188,7 @@ std::string Trace::svg() const {
   vertical(top + 55, "error / deg");
   vertical(top + 201, "POWER / count");
   vertical(top + 377, "motor / degC");
-  svg += text(left - 8, top + 505, "label end", "limiter");
+  svg += text(left - 8, top + 505, "label end", "reasons");
 
   double x = left;
   double y = height - 60;
@@ -215,7 +207,8 @@ std::string Trace::svg() const {
   key("granted", true, "demand granted", 150);
   key("safety", true, "heating too fast: ceiling falls", 236);
   key("over", true, "above the limit: cut", 178);
-  key("recovering", true, "ceiling recovers", 100);
+  key("recovering", true, "ceiling recovers", 150);
+  key("fault", true, "fault: least power", 100);
   return svg + "</svg>\n";
 }
 
