@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "certified_product.hpp"
 
 /// @file certified_fixed.hpp
 /// Whole-number arithmetic of the certified limiter: every rounding goes to the safe side, and a PC and an
@@ -83,15 +84,6 @@ inline float celsius_from(KelvinUnits units) noexcept {
   return static_cast<float>(units) * (1.0f / units_per_K());
 }
 
-/// floor(value * fraction): for both signs, the largest whole number that is not above.
-inline int32_t part_down(int32_t value, UnitFraction fraction) noexcept {
-  // In 16-bit pieces, which an 8-bit chip multiplies in hardware; a 64-bit product would cost it ten times as
-  // much.
-  const int16_t high = static_cast<int16_t>(value >> 16);
-  const uint16_t low = static_cast<uint16_t>(value);
-  return static_cast<int32_t>(high) * fraction +
-         static_cast<int32_t>((static_cast<uint32_t>(low) * fraction) >> 16);
-}
 /// Not below value * fraction.
 inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept {
   return part_down(value, fraction) + 1;
@@ -101,7 +93,7 @@ inline int32_t part_up(int32_t value, UnitFraction fraction) noexcept {
 /// @param size  >= 0, and `most` times it must fit
 inline uint8_t count_within(int32_t room, int32_t size, uint8_t most) noexcept {
   if (room < 0) return 0;
-  if (size * static_cast<int32_t>(most) <= room) return most;  // the usual case
+  if (times(size, most) <= room) return most;  // the usual case
   // Below 255 the quotient has eight bits: eight steps of a long division cost a quarter of a general one.
   uint32_t left = static_cast<uint32_t>(room), part = static_cast<uint32_t>(size) << 7;
   uint8_t count = 0;
@@ -134,23 +126,26 @@ class UpperBound {
   }
   /// Adds way * fraction, exactly.
   void go(KelvinUnits way, FineFraction fraction) noexcept {
-    const int16_t way_high = static_cast<int16_t>(way >> 16);
+    // Four products of 16 bits without a sign, which an 8-bit chip has in hardware; what a negative way adds too
+    // much is a whole `fraction` in the upper half.
+    const uint16_t way_high = static_cast<uint16_t>(static_cast<uint32_t>(way) >> 16);
     const uint16_t way_low = static_cast<uint16_t>(way);
-    const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16),
-                   fraction_low = static_cast<uint16_t>(fraction);
-    const uint32_t lowest = static_cast<uint32_t>(way_low) * fraction_low;
-    const int32_t signed_middle = static_cast<int32_t>(way_high) * fraction_low;
-    uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(signed_middle);
-    KelvinUnits highest = signed_middle >> 16;
+    const uint16_t fraction_low = static_cast<uint16_t>(fraction);
+    const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16);
+    const uint32_t lowest = product(way_low, fraction_low), other = product(way_high, fraction_low);
+    uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(other);
+    uint32_t upper = other >> 16;
     if (fraction_high != 0) {
-      const uint32_t other_middle = static_cast<uint32_t>(way_low) * fraction_high;
-      middle += static_cast<uint16_t>(other_middle);
-      highest +=
-          static_cast<int32_t>(way_high) * fraction_high + static_cast<KelvinUnits>(other_middle >> 16);
+      const uint32_t another = product(way_low, fraction_high);
+      middle += static_cast<uint16_t>(another);
+      upper += product(way_high, fraction_high) + (another >> 16);
     }
+    upper += middle >> 16;
+    if (way < 0) upper -= fraction;
     const uint32_t added = (middle << 16) | static_cast<uint16_t>(lowest);
     low_ += added;
-    high_ += highest + static_cast<KelvinUnits>(middle >> 16) + (low_ < added ? 1 : 0);
+    if (low_ < added) ++upper;
+    high_ = static_cast<KelvinUnits>(static_cast<uint32_t>(high_) + upper);
   }
 
  private:

@@ -93,13 +93,13 @@ class CertifiedOneNode {
     if (step.is_late)
       to_air_now_ = to_air_;  // the winding may have cooled, and drawn more, than one hold allows for
     node_.raise(base_);
-    const detail::KelvinUnits way = base_ + count * to_air_now_ - node_.below();
+    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
     node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
   }
   /// Carries the bound over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
-    const detail::KelvinUnits way = base_ + count * to_air_now_ - node_.below();
+    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
     if (way > 0) node_.go(way, travel(hold_s_).body.heating);
   }
   /// Takes note of the air and the supply until the next step. See CertifiedTwoNode.
@@ -143,7 +143,7 @@ class CertifiedOneNode {
   /// Time until the limit is reached at a constant count; infinite when it never is. 0 when it is reached.
   float seconds_to_limit(uint8_t count) const noexcept {
     const float above_K = detail::celsius_from(room()), limit_K = detail::celsius_from(limit_ - base_);
-    const float settled_K = detail::celsius_from(count * to_air_now_);
+    const float settled_K = detail::celsius_from(detail::times(to_air_now_, count));
     if (above_K >= limit_K) return 0.0f;
     if (settled_K <= limit_K) return static_cast<float>(INFINITY);
     return static_cast<float>(logf((settled_K - above_K) / (settled_K - limit_K))) / fastest_per_s_;

@@ -117,15 +117,15 @@ class CertifiedTwoNode {
   void advance(uint8_t count, const Travel& step) noexcept {
     mean_.raise(base_ + least_mean_);
     const detail::KelvinUnits soaked =
-        step.is_late ? soaked_late(count) : mean_.above() + gap_ + count * soak_now_;
+        step.is_late ? soaked_late(count) : mean_.above() + gap_ + detail::times(soak_now_, count);
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
-    const detail::KelvinUnits winding_way = soaked + count * across_now_ - winding_.below();
+    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
     winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
     const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
     const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
     mean_.raise(floor);
-    const detail::KelvinUnits mean_way = floor + count * to_air_now_ - mean_.below();
+    const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
     mean_.go(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
   }
 
@@ -185,7 +185,7 @@ class CertifiedTwoNode {
     return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
   }
   /// True when the winding has no more heat to hand on than it would have at this count for ever.
-  bool is_below(uint8_t count) const noexcept { return room().apart <= count * (across_now_ + soak_now_); }
+  bool is_below(uint8_t count) const noexcept { return room().apart <= detail::times(across_now_ + soak_now_, count); }
 
   float winding_C() const noexcept {
     return detail::celsius_from(winding_.above());
@@ -198,8 +198,8 @@ class CertifiedTwoNode {
   float seconds_to_limit(uint8_t count) const noexcept {
     const Room room = this->room();
     const detail::KelvinUnits rise = across_now_ + soak_now_;
-    const float apart = detail::celsius_from(gap_ + count * rise);
-    const float settled = detail::celsius_from(count * to_air_now_) + share() * apart;
+    const float apart = detail::celsius_from(gap_ + detail::times(rise, count));
+    const float settled = detail::celsius_from(detail::times(to_air_now_, count)) + share() * apart;
     const float mean_s = crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
                                     detail::celsius_from(room.mean + room.mean_left), fastest_body_per_s_);
     const float winding_s =
@@ -255,15 +255,15 @@ class CertifiedTwoNode {
   detail::KelvinUnits soaked_late(uint8_t count) noexcept {
     take(detail::whole_fraction(), detail::whole_fraction());
     taken_winding_ = -1000L * 262144L;  // to be taken anew
-    const float apart_K = detail::celsius_from(gap_ + count * (across_now_ + soak_now_));
-    const float to_air_K = detail::celsius_from(count * to_air_now_);
+    const float apart_K = detail::celsius_from(gap_ + detail::times(across_now_ + soak_now_, count));
+    const float to_air_K = detail::celsius_from(detail::times(to_air_now_, count));
     const detail::KelvinUnits settled =
         base_ + detail::kelvin_up((to_air_K + share() * apart_K) / (1.0f - share()));
     const detail::KelvinUnits fed =
-        base_ + detail::part_up(winding_.above() - base_, weight_) + count * to_air_now_;
+        base_ + detail::part_up(winding_.above() - base_, weight_) + detail::times(to_air_now_, count);
     detail::KelvinUnits mean = mean_.above() > settled ? mean_.above() : settled;
     if (fed > mean) mean = fed;
-    return mean + gap_ + count * soak_now_;
+    return mean + gap_ + detail::times(soak_now_, count);
   }
 
   // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a

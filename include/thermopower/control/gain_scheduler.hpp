@@ -82,14 +82,24 @@ struct TableGain {
 
   /// @return P, 0 .. 255
   static uint8_t gain(uint8_t power, const Config&) noexcept {
-    const uint16_t position = static_cast<uint16_t>(static_cast<uint16_t>(power) * static_cast<uint16_t>(Table::size() - 1));
-    const uint8_t index = static_cast<uint8_t>(position / 255u);
-    const int16_t fraction = static_cast<int16_t>(position % 255u);
-    const int16_t below = detail::read_flash(Table::gains() + index);
-    if (fraction == 0) return static_cast<uint8_t>(below);
-    const int16_t above = detail::read_flash(Table::gains() + index + 1);
-    const int32_t change = static_cast<int32_t>(above - below) * fraction;
-    return static_cast<uint8_t>(below + (change + (change < 0 ? -127 : 127)) / 255);
+    const uint16_t position = static_cast<uint16_t>(static_cast<uint16_t>(power) * (Table::size() - 1u));
+    const uint8_t index = by_255(position);
+    const uint8_t fraction = static_cast<uint8_t>(position - index * 255u);
+    const uint8_t below = detail::read_flash(Table::gains() + index);
+    if (fraction == 0) return below;
+    const uint8_t above = detail::read_flash(Table::gains() + index + 1);
+    if (above >= below) return static_cast<uint8_t>(below + part(static_cast<uint8_t>(above - below), fraction));
+    return static_cast<uint8_t>(below - part(static_cast<uint8_t>(below - above), fraction));
+  }
+
+ private:
+  // value / 255, without the division that an 8-bit chip has not: exact below 65535.
+  static uint8_t by_255(uint16_t value) noexcept {
+    return static_cast<uint8_t>(static_cast<uint16_t>(value + 1u + (value >> 8)) >> 8);
+  }
+  // change * fraction / 255 to the nearest.
+  static uint8_t part(uint8_t change, uint8_t fraction) noexcept {
+    return by_255(static_cast<uint16_t>(static_cast<uint16_t>(change) * fraction + 127u));
   }
 };
 

@@ -12,7 +12,8 @@ namespace thermopower {
 /// Folds an angle to -180 .. 180 degrees. Angles beyond a million degrees, NaN and Inf give NaN.
 /// @ingroup control
 inline float wrap_deg(float angle_deg) noexcept {
-  if (angle_deg >= -180.0f && angle_deg <= 180.0f) return angle_deg;
+  // The usual case by its bits, which costs a small chip a tenth of two comparisons: -180 .. 180, and no NaN.
+  if (detail::magnitude_bits(angle_deg) <= 0x43340000u) return angle_deg;
   if (!(detail::magnitude(angle_deg) < 1.0e6f)) return detail::not_a_number();
   const float turns = angle_deg * (1.0f / 360.0f);
   const int16_t whole = static_cast<int16_t>(turns < 0.0f ? turns - 0.5f : turns + 0.5f);

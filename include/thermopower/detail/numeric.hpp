@@ -105,6 +105,20 @@ inline bool is_finite(double x) noexcept {
 inline bool is_finite(double x) noexcept { return is_finite(static_cast<float>(x)); }
 #endif
 
+/// The bits of |x|: they order as the numbers do, infinity after every number and NaN after infinity.
+inline uint32_t magnitude_bits(float x) noexcept {
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits & 0x7fffffffu;
+}
+/// True when both are the same to the bit: also two NaNs of a kind, but not 0 and -0.
+inline bool is_same(float left, float right) noexcept {
+  uint32_t left_bits, right_bits;
+  memcpy(&left_bits, &left, sizeof left_bits);
+  memcpy(&right_bits, &right, sizeof right_bits);
+  return left_bits == right_bits;
+}
+
 /// NaN as a float: avr-libc's own is a double.
 inline float not_a_number() noexcept { return static_cast<float>(NAN); }
 
