@@ -250,7 +250,7 @@ private:
   // An axis runs in windows of half a second: over a whole run nothing could be seen. The worst few seconds tell.
   std::pair<double, double> stretch_to_show(const SignalSeries& s) const {
     const Eigen::Index n = s.t_s.size();
-    const double begin = s.t_s[0], end = s.t_s[n - 1];
+    const double begin = s.t_s.minCoeff(), end = s.t_s.maxCoeff();  // several runs may start at 0 each
     double horizon = 0.0;
     for (const auto& gap : d_.gap) {
       if (gap.signal == s.signal && gap.horizon_s) horizon = *gap.horizon_s;
@@ -297,7 +297,7 @@ private:
         if (rms(difference(run->baseline, run->measured)) > rms(difference(worst->baseline, worst->measured))) worst = run;
       }
       const auto [from, to] = stretch_to_show(*worst);
-      const bool part = from > worst->t_s[0] || to < worst->t_s[worst->t_s.size() - 1];
+      const bool part = from > worst->t_s.minCoeff() || to < worst->t_s.maxCoeff();
       out_ += "<h3>" + escaped(capital(signal_text(signal))) + "</h3>\n";
       std::string caption = part ? "The stretch where the simulation as configured is worst, each window started from the measured state." : "";
       if (runs.size() > 1) {

@@ -154,9 +154,11 @@ private:
         ++i;
         continue;
       }
+      if (i > 0 && series.x[i] < series.x[i - 1]) pen_down = false;  // another run begins
       const int column = static_cast<int>((series.x[i] - x_.from) / (x_.to - x_.from) * columns);
       std::size_t low = i, high = i, last = i, j = i;
-      while (j < n && std::isfinite(series.y[j]) && static_cast<int>((series.x[j] - x_.from) / (x_.to - x_.from) * columns) == column) {
+      while (j < n && std::isfinite(series.y[j]) && (j == i || series.x[j] >= series.x[j - 1]) &&
+             static_cast<int>((series.x[j] - x_.from) / (x_.to - x_.from) * columns) == column) {
         if (series.y[j] < series.y[low]) low = j;
         if (series.y[j] > series.y[high]) high = j;
         last = j++;

@@ -15,7 +15,7 @@ struct Series {
   std::string label;              ///< in the legend; empty: none
   std::string role;               ///< CSS class: `measured`, `baseline`, `augmented`, `effect`
   Style style = Style::line;      ///< line or points
-  std::vector<double> x;          ///< abscissae, ascending for lines
+  std::vector<double> x;          ///< abscissae; where they fall, a new line begins
   std::vector<double> y;          ///< ordinates
   std::vector<double> low, high;  ///< ends of the bars, for `interval` only
 };
