@@ -7,56 +7,60 @@
 #include "level_table.hpp"
 
 /// @file fixed_heating.hpp
-/// Current, power and heating of a motor in one look-up: r P of eq 3.7 from a power parameter and a temperature, in whole numbers.
+/// Current, power and heating of a motor in one look-up: r P of eq 3.7 from a power parameter and a
+/// temperature, in whole numbers.
 
 namespace thermopower {
 namespace detail {
-
-/// Heating at one level: rate = level (power_slope T + power) / (capacity_slope T + capacity), in scaled units.
-struct HeatNode {
-  int16_t first;           ///< power_slope: p1 / level
-  int16_t power;           ///< p0 / level
-  int16_t capacity_slope;  ///< c1
-  int16_t capacity;        ///< c0
-};
 
 /// A source's constants over the levels, and what they span.
 template <class Source>
 struct HeatCurves {
   static constexpr double volt(int level) { return Source::supply_V() * constexpr_pow(level / 255.0, 0.5); }
-  // Dividing the power by the level leaves (V_rms I) / V_rms^2, which varies 20-fold between level 25 and 255 where the power varies
-  // 200-fold. Level 0 is never heated; its node only has to be finite.
+  // Dividing the power by the level leaves (V_rms I) / V_rms^2, which varies 20-fold between level 25 and 255
+  // where the power varies 200-fold. Level 0 is never heated; its node only has to be finite.
   static constexpr int driven(int level) { return level < 1 ? 1 : level; }
   static constexpr double power(int level) { return Source::power_W(volt(driven(level))) / driven(level); }
-  static constexpr double power_slope(int level) { return Source::power_slope_W_per_K(volt(driven(level))) / driven(level); }
+  static constexpr double power_slope(int level) {
+    return Source::power_slope_W_per_K(volt(driven(level))) / driven(level);
+  }
   static constexpr double capacity(int level) { return Source::capacity_J_per_K(volt(level)); }
   static constexpr double capacity_slope(int level) { return Source::capacity_slope_J_per_K2(volt(level)); }
 
-  // The largest of what must fit into 16 bits: offset, slope (T/256 is what product_q15 makes of 2^-7 K), and their sum.
+  // The largest of what must fit into 16 bits: offset, slope (T/256 is what product_q15 makes of 2^-7 K), and
+  // their sum.
   static constexpr double span(double offset, double slope) {
-    return greater(greater(absolute(offset), absolute(256.0 * slope)),
-                   greater(absolute(offset + fixed_coldest_C() * slope), absolute(offset + fixed_hottest_C() * slope)));
+    return greater(
+        greater(absolute(offset), absolute(256.0 * slope)),
+        greater(absolute(offset + fixed_coldest_C() * slope), absolute(offset + fixed_hottest_C() * slope)));
   }
-  // From level 16 up. Below, a measured law's slope over the level can grow without end, with a current that is cut to 0 anyway: the
-  // slope then saturates.
+  // From level 16 up. Below, a measured law's slope over the level can grow without end, with a current that
+  // is cut to 0 anyway: the slope then saturates.
   static constexpr double widest_power(int node = 16) {
-    return node == level_node_count() ? 0.0
-                                      : greater(span(power(level_of_node(node)), power_slope(level_of_node(node))), widest_power(node + 1));
+    return node == level_node_count()
+               ? 0.0
+               : greater(span(power(level_of_node(node)), power_slope(level_of_node(node))),
+                         widest_power(node + 1));
   }
   static constexpr double widest_capacity(int node = 0) {
     return node == level_node_count()
                ? 0.0
-               : greater(span(capacity(level_of_node(node)), capacity_slope(level_of_node(node))), widest_capacity(node + 1));
+               : greater(span(capacity(level_of_node(node)), capacity_slope(level_of_node(node))),
+                         widest_capacity(node + 1));
   }
 
   /// The least exponent with which the powers fit. @param fullest  the widest power, scaled with exponent 0
-  static constexpr int exponent_for(double fullest, int exponent = -8) {
-    return exponent == 8 || fullest <= 32700.0 * power_of_two(exponent) ? exponent : exponent_for(fullest, exponent + 1);
+  static constexpr int8_t exponent_for(double fullest, int exponent = -8) {
+    return exponent == 8 || fullest <= 32700.0 * power_of_two(exponent) ? static_cast<int8_t>(exponent)
+                                                                        : exponent_for(fullest, exponent + 1);
   }
-  static constexpr double power_of_two(int exponent) { return static_cast<double>(1 << (exponent + 8)) / 256.0; }
+  static constexpr double power_of_two(int exponent) {
+    return static_cast<double>(1 << (exponent + 8)) / 256.0;
+  }
   /// The highest level that does not heat.
   static constexpr uint8_t idle_level(int level = 0) {
-    return static_cast<uint8_t>(level < 255 && volt(level + 1) <= Source::minimum_V_rms() ? idle_level(level + 1) : level);
+    return static_cast<uint8_t>(
+        level < 255 && volt(level + 1) <= Source::minimum_V_rms() ? idle_level(level + 1) : level);
   }
   static constexpr int16_t whole(double value) {
     return static_cast<int16_t>(nearest(lesser(greater(value, -32767.0), 32767.0)));
@@ -66,58 +70,51 @@ struct HeatCurves {
 /// How they are scaled into 16 bits. Constants and not functions, so that each is computed once.
 template <class Source>
 struct HeatScaling {
-  typedef HeatNode Node;
   typedef HeatCurves<Source> Curves;
 
   static constexpr double widest_power = Curves::widest_power();
   static constexpr double capacity_scale = 32700.0 / Curves::widest_capacity();
   // heating_between() computes 2^15 2^exponent level power / capacity.
   static constexpr double power_scale_unit = capacity_scale * fixed_rate_per_K_per_s() / 32768.0;
-  static constexpr int exponent = Curves::exponent_for(power_scale_unit * widest_power);
+  static constexpr int8_t exponent = Curves::exponent_for(power_scale_unit * widest_power);
   static constexpr double power_scale = power_scale_unit / Curves::power_of_two(exponent);
-  /// A negative exponent is made of a positive one and a dropped byte.
-  static constexpr bool drops_byte = exponent < 0;
-  static constexpr uint16_t level_factor = static_cast<uint16_t>(1 << (exponent < 0 ? exponent + 8 : exponent));
   static constexpr uint8_t idle_level = Curves::idle_level();
 
-  static_assert(power_scale * widest_power <= 32767.0,
-                "thermopower: this motor heats too fast for a fixed-point model (above 3.8 K/s); take ThermalModel");
+  static_assert(
+      power_scale * widest_power <= 32767.0,
+      "thermopower: this motor heats too fast for a fixed-point model (above 3.8 K/s); take ThermalModel");
   static_assert(power_scale * widest_power >= 2000.0,
                 "thermopower: this motor heats too slowly for a fixed-point model; take ThermalModel");
 
-  static constexpr Node at(int level) {
-    return Node{Curves::whole(Curves::power_slope(level) * power_scale * 256.0), Curves::whole(Curves::power(level) * power_scale),
-                Curves::whole(Curves::capacity_slope(level) * capacity_scale * 256.0),
-                Curves::whole(Curves::capacity(level) * capacity_scale)};
+  /// p1 / level, p0 / level, c1, c0: rate = level (first T + second) / (third T + fourth), in scaled units.
+  static constexpr LevelNode at(int level) {
+    return LevelNode{Curves::whole(Curves::power_slope(level) * power_scale * 256.0),
+                     Curves::whole(Curves::power(level) * power_scale),
+                     Curves::whole(Curves::capacity_slope(level) * capacity_scale * 256.0),
+                     Curves::whole(Curves::capacity(level) * capacity_scale)};
   }
 };
 
-/// Not a template: one copy serves every motor. @param scaled_level  level times level_factor
-[[gnu::noinline]] inline FixedRate heating_between(const int16_t* table, uint8_t level, uint16_t scaled_level, bool drops_byte,
+/// Not a template: one copy serves every motor. @param exponent  HeatScaling::exponent
+[[gnu::noinline]] inline FixedRate heating_between(const int16_t* table, uint8_t level, int8_t exponent,
                                                    FixedCelsius motor) noexcept {
-  constexpr uint8_t stride = sizeof(HeatNode) / sizeof(int16_t);
-  const LevelPosition position = level_position(level);
-  const int16_t* at = table + static_cast<uint8_t>(position.node * stride);
-  const int16_t power_slope = next_between<stride>(at, position.share);
-  const int16_t power = next_between<stride>(at, position.share);
-  const int16_t capacity_slope = next_between<stride>(at, position.share);
-  const int16_t capacity = next_between<stride>(at, position.share);
-  const int16_t warm_power = static_cast<int16_t>(power + product_q15(power_slope, motor));
-  if (warm_power <= 0) return 0;
-  uint32_t dividend = static_cast<uint32_t>(static_cast<uint16_t>(warm_power)) * scaled_level;
-  if (drops_byte) dividend >>= 8;
-  return quotient_q15(dividend, static_cast<int16_t>(capacity + product_q15(capacity_slope, motor)));
+  const LevelNode node = between_nodes(table, level_position(level));
+  const int16_t power = static_cast<int16_t>(node.second + product_q15(node.first, motor));
+  if (power <= 0) return 0;
+  return quotient(static_cast<uint16_t>(power), level, exponent,
+                  static_cast<int16_t>(node.fourth + product_q15(node.third, motor)));
 }
 
 }  // namespace detail
 
 /// The heating of a motor, r P, for a model that computes in whole numbers.
 ///
-/// For the thesis motors at 13 V, against the laws in double precision: within 0.25 % from level 25 up and between 20 and 80 degC; within
-/// 0.8 % (of at least 0.001 K/s) over all levels and -50 .. 180 degC, wherever the apparent heat capacity is at least 1/32 of its
-/// largest. What the error can make of a temperature that has settled is below 0.1 K. Where the apparent heat capacity comes nearer to zero
-/// (below about 13 degC at the lowest levels of the 2606, 4 degC for the 5208 as programmed) the laws have a pole: the heating then is
-/// bounded by 3.8 K/s, and 0 beyond the pole, as programmed.
+/// For the thesis motors at 13 V, against the laws in double precision: within 0.25 % from level 25 up and
+/// between 20 and 80 degC; within 0.8 % (of at least 0.001 K/s) over all levels and -50 .. 180 degC, wherever
+/// the apparent heat capacity is at least 1/32 of its largest. What the error can make of a temperature that
+/// has settled is below 0.1 K. Where the apparent heat capacity comes nearer to zero (below about 13 degC at
+/// the lowest levels of the 2606, 4 degC for the 5208 as programmed) the laws have a pole: the heating then
+/// is bounded by 3.8 K/s, and 0 beyond the pole, as programmed.
 /// @tparam Source  fixed_source.hpp
 /// @ingroup actuator
 template <class Source>
@@ -126,8 +123,7 @@ struct FixedHeating {
   static FixedRate rate(uint8_t level, FixedCelsius motor) noexcept {
     typedef detail::HeatScaling<Source> Scaling;
     if (level <= Scaling::idle_level) return 0;
-    return detail::heating_between(detail::LevelTable<Scaling>::table(), level,
-                                   static_cast<uint16_t>(level * Scaling::level_factor), Scaling::drops_byte, motor);
+    return detail::heating_between(detail::LevelTable<Scaling>::table(), level, Scaling::exponent, motor);
   }
 };
 

@@ -5,16 +5,17 @@
 #include "../detail/constexpr_math.hpp"
 
 /// @file fixed_source.hpp
-/// Motors as the fixed-point models take them: constants as types, so that the compiler makes tables of them and an object holds
-/// nothing but its state.
+/// Motors as the fixed-point models take them: constants as types, so that the compiler makes tables of them
+/// and an object holds nothing but its state.
 ///
 /// | source | the motor | when to take it |
 /// |---|---|---|
-/// | `FixedThesisMotor<Motor, Supply>` | a motor of `motors/` with its measured laws | the thesis motors, in any of their forms |
-/// | `FixedOhmicMotor<Constants>` | a resistance that rises with temperature, on a heat capacity | everything else |
+/// | `FixedThesisMotor<Motor, Supply>` | a motor of `motors/` with its laws | the thesis motors, in any form |
+/// | `FixedOhmicMotor<Constants>` | a resistance on a heat capacity | everything else |
 ///
-/// A source of your own has the functions of `FixedThesisMotor`, all `constexpr`. Its heat is (p1 T + p0) / (c1 T + c0): a power that
-/// is linear in the temperature, over an apparent heat capacity that is. Both may depend on the voltage in any way.
+/// A source of your own has the functions of `FixedThesisMotor`, all `constexpr`. Its heat is (p1 T + p0) /
+/// (c1 T + c0): a power that is linear in the temperature, over an apparent heat capacity that is. Both may
+/// depend on the voltage in any way.
 /// @ingroup actuator
 
 namespace thermopower {
@@ -26,7 +27,8 @@ struct ThirteenVolts {
 };
 
 /// A motor with the thesis's laws, for the fixed-point models.
-/// @tparam Motor   has `constexpr` `current_law<double>()`, `heating_law<double>()`, `cooling_law<double>()`, as the motors in `motors/`
+/// @tparam Motor   has `constexpr` `current_law<double>()`, `heating_law<double>()`, `cooling_law<double>()`,
+/// as the motors in `motors/`
 /// @tparam Supply  has `static constexpr double supply_V()`
 /// @ingroup actuator
 template <class Motor, class Supply = ThirteenVolts>
@@ -35,7 +37,8 @@ struct FixedThesisMotor {
   static constexpr double supply_V() { return Supply::supply_V(); }
   /// At or below this voltage there is no heating, V.
   static constexpr double minimum_V_rms() {
-    return Motor::template current_law<double>().minimum_V_rms > Motor::template heating_law<double>().minimum_V_rms
+    return Motor::template current_law<double>().minimum_V_rms >
+                   Motor::template heating_law<double>().minimum_V_rms
                ? Motor::template current_law<double>().minimum_V_rms
                : Motor::template heating_law<double>().minimum_V_rms;
   }
@@ -62,15 +65,17 @@ struct FixedThesisMotor {
   static constexpr double cooling_per_s() { return Motor::template cooling_law<double>().cooling_per_s; }
 };
 
-/// A winding whose resistance rises with temperature, on one heat capacity with one conductance to the air: OhmicCurrent,
-/// HeatCapacityHeating and NewtonCooling.
-/// @tparam Constants  `static constexpr double` functions `supply_V()`, `resistance_ohm()` at `reference_C()`, `tempco_per_K()` (copper:
+/// A winding whose resistance rises with temperature, on one heat capacity with one conductance to the air:
+/// OhmicCurrent, HeatCapacityHeating and NewtonCooling.
+/// @tparam Constants  `static constexpr double` functions `supply_V()`, `resistance_ohm()` at
+/// `reference_C()`, `tempco_per_K()` (copper:
 ///                    0.00393), `heat_capacity_J_per_K()`, `conductance_W_per_K()`; all as in those laws
 /// @ingroup actuator
 template <class Constants>
 struct FixedOhmicMotor {
-  static constexpr double supply_V() { return Constants::supply_V(); }  ///< Amplitude of the switched supply, V.
-  static constexpr double minimum_V_rms() { return 0.0; }               ///< Every voltage heats.
+  /// Amplitude of the switched supply, V.
+  static constexpr double supply_V() { return Constants::supply_V(); }
+  static constexpr double minimum_V_rms() { return 0.0; }  ///< Every voltage heats.
   /// p0: V^2 / R at the reference, W. What the warm winding draws less is in the denominator, c1.
   static constexpr double power_W(double v_rms_V) { return v_rms_V * v_rms_V / Constants::resistance_ohm(); }
   static constexpr double power_slope_W_per_K(double) { return 0.0; }  ///< p1, W/K.
@@ -79,9 +84,13 @@ struct FixedOhmicMotor {
     return Constants::heat_capacity_J_per_K() * (1.0 - Constants::tempco_per_K() * Constants::reference_C());
   }
   /// c1, J/K^2.
-  static constexpr double capacity_slope_J_per_K2(double) { return Constants::heat_capacity_J_per_K() * Constants::tempco_per_K(); }
+  static constexpr double capacity_slope_J_per_K2(double) {
+    return Constants::heat_capacity_J_per_K() * Constants::tempco_per_K();
+  }
   /// k, 1/s.
-  static constexpr double cooling_per_s() { return Constants::conductance_W_per_K() / Constants::heat_capacity_J_per_K(); }
+  static constexpr double cooling_per_s() {
+    return Constants::conductance_W_per_K() / Constants::heat_capacity_J_per_K();
+  }
 };
 
 }  // namespace thermopower

@@ -21,7 +21,9 @@ namespace detail {
 inline FixedTemperature within_range(FixedTemperature value) noexcept {
   constexpr FixedTemperature coldest = fixed_temperature(fixed_coldest_C());
   constexpr FixedTemperature hottest = fixed_temperature(fixed_hottest_C());
-  return value > hottest ? hottest : (value < coldest ? coldest : value);
+  // Whole degrees decide, so that an 8-bit chip compares half of the bytes.
+  const int16_t upper = static_cast<int16_t>(value >> 16);
+  return upper >= hottest >> 16 ? hottest : (upper < coldest >> 16 ? coldest : value);
 }
 
 }  // namespace detail
@@ -32,19 +34,23 @@ class FixedThermalCore {
  public:
   typedef FixedThermalState State;  ///< What one logs.
 
-  /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates at -50 and 180 degC
+  /// Sets the temperature; nothing heats until `prepare()`. @param motor  a temperature; saturates at -50 and
+  /// 180 degC
   void start(FixedTemperature motor) noexcept {
     state_.motor = detail::within_range(motor);
     state_.heating = 0;
   }
 
+  /// Prepares the heating for the next step. @param heating  FixedThermalModel::heating of the motor
+  void heat(FixedRate heating) noexcept { state_.heating = heating; }
+
   /// Advances by eq 4.21 with the heating prepared.
   /// @param air             -60 .. 125 degC
   /// @param cooling_factor  FixedThermalModel::cooling_factor of the motor
   /// @return dT/dt at the start of the step, which eq 4.23 uses
-  FixedRate step(FixedCelsius air, FixedTicks ticks, int16_t cooling_factor) noexcept {
+  FixedRate step(FixedCelsius air, FixedTicks ticks, uint16_t cooling_factor) noexcept {
     const int16_t above_air = static_cast<int16_t>(detail::rounded_celsius(state_.motor) - air);
-    const FixedRate rate = state_.heating - static_cast<int32_t>(above_air) * cooling_factor;
+    const FixedRate rate = state_.heating - detail::product(above_air, cooling_factor);
     state_.motor = detail::within_range(state_.motor + detail::scaled(rate, ticks));
     return rate;
   }
@@ -52,20 +58,23 @@ class FixedThermalCore {
   const State& state() const noexcept { return state_; }               ///< After the last step.
   float motor_C() const noexcept { return celsius_of(state_.motor); }  ///< The temperature, for a log.
 
- protected:
-  State state_ = {0, 0};  ///< Written by `prepare()` of the motor's model.
+ private:
+  State state_ = {0, 0};
 };
 
-/// One-node thermal model that takes 16-bit multiplications where ThermalModel takes a floating-point library: CurrentModel,
-/// heating law, cooling law and step in one. Take it on a chip without a floating-point unit, when the supply is known and the motor's
-/// constants need not change at run time; otherwise take ThermalModel.
+/// One-node thermal model that takes 16-bit multiplications where ThermalModel takes a floating-point
+/// library: CurrentModel, heating law, cooling law and step in one. Take it on a chip without a
+/// floating-point unit, when the supply is known and the motor's constants need not change at run time;
+/// otherwise take ThermalModel.
 ///
-/// The heating depends on the power of the last command and on the temperature, and both are known long before the next telemetry
-/// comes: `prepare()` computes it while the program would wait, and `step()` only adds.
+/// The heating depends on the power of the last command and on the temperature, and both are known long
+/// before the next telemetry comes: `prepare()` computes it while the program would wait, and `step()` only
+/// adds.
 ///
-/// Error against ThermalModel in double precision, for the thesis motors at 13 V: at most 0.1 K over an hour in closed loop. The
-/// temperature is kept to 1.2e-7 K; heat is exchanged with the air at the temperature to the nearest 2^-7 K. The temperature saturates
-/// at -50 and 180 degC. Never unstable: the largest k that fits (0.029 per s) times the longest step (16.8 s) is below 1.
+/// Error against ThermalModel in double precision, for the thesis motors at 13 V: at most 0.1 K over an hour
+/// in closed loop. The temperature is kept to 1.2e-7 K; heat is exchanged with the air at the temperature to
+/// the nearest 2^-7 K. The temperature saturates at -50 and 180 degC. Never unstable: the largest k that fits
+/// (0.029 per s) times the longest step (16.8 s) is below 1.
 /// @tparam Source  the motor: fixed_source.hpp
 /// @ingroup actuator
 template <class Source>
@@ -73,17 +82,24 @@ class FixedThermalModel : public FixedThermalCore {
  public:
   typedef FixedThermalCore Core;  ///< What models of all motors share.
   /// k in 2^-32 per tick: what `Core::step()` needs to know of the motor.
-  static constexpr int16_t cooling_factor = static_cast<int16_t>(
-      detail::nearest(detail::lesser(Source::cooling_per_s() / detail::fixed_ticks_per_s() * 4294967296.0, 32767.0)));
+  static constexpr uint16_t cooling_factor = static_cast<uint16_t>(detail::nearest(
+      detail::lesser(Source::cooling_per_s() / detail::fixed_ticks_per_s() * 4294967296.0, 32767.0)));
   static_assert(cooling_factor >= 300 && cooling_factor < 32767,
-                "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within 2.7e-4 .. 0.0298 per second); "
+                "thermopower: this motor cools too fast or too slowly for a fixed-point model (k within "
+                "2.7e-4 .. 0.0298 per second); "
                 "take ThermalModel");
 
   /// Computes the heating for the next step. @param power  power parameter that acts from now on
-  void prepare(uint8_t power) noexcept { state_.heating = FixedHeating<Source>::rate(power, detail::rounded_celsius(state_.motor)); }
+  void prepare(uint8_t power) noexcept { Core::heat(heating(power, Core::state().motor)); }
+  /// The heating of this motor. @param power  power parameter  @param motor  temperature, -50 .. 180 degC
+  static FixedRate heating(uint8_t power, FixedTemperature motor) noexcept {
+    return FixedHeating<Source>::rate(power, detail::rounded_celsius(motor));
+  }
 
   /// `Core::step()` of this motor. @param air  -60 .. 125 degC  @return dT/dt at the start of the step
-  FixedRate step(FixedCelsius air, FixedTicks ticks) noexcept { return Core::step(air, ticks, cooling_factor); }
+  FixedRate step(FixedCelsius air, FixedTicks ticks) noexcept {
+    return Core::step(air, ticks, cooling_factor);
+  }
 };
 
 }  // namespace thermopower

@@ -13,9 +13,12 @@ namespace thermopower {
 /// What AirTemperature::Config::standard() has. A set of your own has the same functions.
 /// @ingroup control
 struct StandardAir {
-  static constexpr int8_t minimum_plausible_C() { return -40; }  ///< Below this a reading is rejected. -60 or more.
-  static constexpr int8_t maximum_plausible_C() { return 85; }   ///< Above this a reading is rejected. 125 or less.
-  static constexpr uint8_t maximum_difference_K() { return 15; } ///< Further apart than this the two are not averaged.
+  /// Below this a reading is rejected. -60 or more.
+  static constexpr int8_t minimum_plausible_C() { return -40; }
+  /// Above this a reading is rejected. 125 or less.
+  static constexpr int8_t maximum_plausible_C() { return 85; }
+  /// Further apart than this the two are not averaged.
+  static constexpr uint8_t maximum_difference_K() { return 15; }
 };
 
 /// Fuses two thermometers as AirTemperature does, whose documentation says why.
@@ -34,7 +37,8 @@ class FixedAirTemperature {
     AirSource source;  ///< Which thermometers the last reading rests on; `neither` keeps `air` as it was.
   };
 
-  /// @param camera_C  thermometer of the camera's IMU  @param frame_C  of the frame's IMU; an implausible one is as good as none
+  /// @param camera_C  thermometer of the camera's IMU
+  /// @param frame_C   of the frame's IMU; an implausible one is as good as none
   const State& step(int8_t camera_C, int8_t frame_C) noexcept {
     const bool camera = is_plausible(camera_C), frame = is_plausible(frame_C);
     const int16_t difference = static_cast<int16_t>(camera_C - frame_C);
@@ -42,7 +46,8 @@ class FixedAirTemperature {
     if (!camera && !frame) return state_;
     int16_t doubled = static_cast<int16_t>(2 * (camera && (!frame || difference > 0) ? camera_C : frame_C));
     state_.source = camera ? (frame ? AirSource::warmer : AirSource::camera) : AirSource::frame;
-    if (state_.source == AirSource::warmer && frame_C != 0 && difference <= Constants::maximum_difference_K() &&
+    if (state_.source == AirSource::warmer && frame_C != 0 &&
+        difference <= Constants::maximum_difference_K() &&
         difference >= -static_cast<int16_t>(Constants::maximum_difference_K())) {
       doubled = static_cast<int16_t>(camera_C + frame_C);
       state_.source = AirSource::both;

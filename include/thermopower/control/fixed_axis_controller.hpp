@@ -25,12 +25,16 @@ namespace detail {
 template <class Core, class PowerLaw, class Limiter>
 class FixedAxis {
  public:
-  [[gnu::noinline]] void step(Core& thermal, const FixedAxisInputs& inputs, FixedTicks ticks, int16_t cooling_factor) noexcept {
-    const FixedRate rate = thermal.step(inputs.air, ticks, cooling_factor);
-    const uint8_t demand = power_law.step(inputs.error_units);
-    granted = is_fault(inputs.fault) ? limiter.cut(inputs.fault, demand) : limiter.step(demand, thermal.state().motor, rate, ticks);
+  // Numbers and not a struct: this compiler keeps them in registers.
+  [[gnu::noinline]] void step(uint16_t error_units, FixedCelsius air, LimitReason fault, FixedTicks ticks,
+                              uint16_t cooling_factor) noexcept {
+    const uint8_t demand = power_law.step(error_units);
+    const FixedRate rate = thermal.step(air, ticks, cooling_factor);
+    granted = is_fault(fault) ? limiter.cut(fault, demand)
+                              : limiter.step(demand, thermal.state().motor, rate, ticks);
   }
 
+  Core thermal;
   PowerLaw power_law;
   Limiter limiter;
   LimitedPower granted = {least_power(), LimitReason::no_telemetry_yet};
@@ -38,44 +42,47 @@ class FixedAxis {
 
 }  // namespace detail
 
-/// Temperature estimate, power law, limiter and gain of one axis, in the order of AxisController, which says what each does. Constants are
-/// types, so the object is its state: twelve bytes with the thesis's policies.
+/// Temperature estimate, power law, limiter and gain of one axis, in the order of AxisController, which says
+/// what each does. Constants are types, so the object is its state: twelve bytes with the thesis's policies.
 ///
 /// @tparam Thermal   FixedThermalModel of a motor, or a model with the same members
 /// @tparam PowerLaw  how much power an error is worth: fixed_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: fixed_safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: fixed_gain.hpp
 /// @ingroup control
-template <class Thermal, class PowerLaw = FixedLevels<>, class Limiter = FixedSafetyLimiter<>, class Gain = FixedNoGain>
+template <class Thermal, class PowerLaw = FixedLevels<>, class Limiter = FixedSafetyLimiter<>,
+          class Gain = FixedNoGain>
 class FixedAxisController {
  public:
   typedef FixedAxisInputs Inputs;  ///< What the axis decides on.
-  typedef LimitedPower State;      ///< The power granted, to be sent as POWER, and why it is below the demand.
+  typedef LimitedPower State;  ///< The power granted, to be sent as POWER, and why it is below the demand.
 
-  /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then the motor is at 0 degC and
-  /// every step needs a fault. @param motor  saturates at -50 and 180 degC
-  void start(FixedTemperature motor) noexcept { thermal_.start(motor); }
+  /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then
+  /// the motor is at 0 degC and every step needs a fault. @param motor  saturates at -50 and 180 degC
+  void start(FixedTemperature motor) noexcept { axis_.thermal.start(motor); }
 
   /// One control cycle; `prepare()` must have been called since the last one. @param ticks  time since then
   const State& step(const Inputs& inputs, FixedTicks ticks) noexcept {
-    axis_.step(thermal_, inputs, ticks, Thermal::cooling_factor);
+    axis_.step(inputs.error_units, inputs.air, inputs.fault, ticks, Thermal::cooling_factor);
     return axis_.granted;
   }
 
-  /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for it there.
-  void prepare() noexcept { thermal_.prepare(axis_.granted.power); }
+  /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for
+  /// it there.
+  void prepare() noexcept {
+    axis_.thermal.heat(Thermal::heating(axis_.granted.power, axis_.thermal.state().motor));
+  }
 
   /// Send this as P.
   uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
   /// P at the least power.
   static constexpr uint8_t first_gain() { return Gain::gain(least_power()); }
 
-  const State& state() const noexcept { return axis_.granted; }         ///< After the last step.
-  const Thermal& thermal() const noexcept { return thermal_; }     ///< The temperature.
+  const State& state() const noexcept { return axis_.granted; }                     ///< After the last step.
+  const typename Thermal::Core& thermal() const noexcept { return axis_.thermal; }  ///< The temperature.
   uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
 
  private:
-  Thermal thermal_;
   detail::FixedAxis<typename Thermal::Core, PowerLaw, Limiter> axis_;
 };
 

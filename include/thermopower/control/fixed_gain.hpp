@@ -5,12 +5,13 @@
 #include <stdint.h>
 
 /// @file fixed_gain.hpp
-/// The proportional gain that keeps an axis's response the same when its power changes, eq 4.27, exactly: no rounding error.
+/// The proportional gain that keeps an axis's response the same when its power changes, eq 4.27, exactly: no
+/// rounding error.
 ///
 /// | rule | gain | the same in floating point |
 /// |---|---|---|
 /// | `FixedGain<low, high>` | eq 4.27 to the nearest count | `GainScheduler<RoundedGain>` |
-/// | `FixedTruncatedGain<low, high>` | eq 4.27 cut to a whole count | `GainScheduler<TruncatedGain>`, the original program |
+/// | `FixedTruncatedGain<low, high>` | cut to a whole count | `GainScheduler<TruncatedGain>`, the original |
 /// | `FixedNoGain` | none: always 0, which the caller ignores | `NoGain` |
 ///
 /// A rule of your own has `static constexpr uint8_t gain(uint8_t power)`.
@@ -27,8 +28,12 @@ constexpr uint8_t divided_by_255(uint16_t value) noexcept {
 template <uint8_t low_power, uint8_t high_power>
 constexpr uint16_t gain_times_255(uint8_t power) noexcept {
   return low_power >= high_power
-             ? static_cast<uint16_t>(255u * low_power - static_cast<uint16_t>(power * static_cast<uint8_t>(low_power - high_power)))
-             : static_cast<uint16_t>(255u * low_power + static_cast<uint16_t>(power * static_cast<uint8_t>(high_power - low_power)));
+             ? static_cast<uint16_t>(
+                   255u * low_power -
+                   static_cast<uint16_t>(power * static_cast<uint8_t>(low_power - high_power)))
+             : static_cast<uint16_t>(
+                   255u * low_power +
+                   static_cast<uint16_t>(power * static_cast<uint8_t>(high_power - low_power)));
 }
 
 }  // namespace detail
@@ -40,7 +45,8 @@ template <uint8_t low_power, uint8_t high_power>
 struct FixedGain {
   /// @param power  granted power parameter  @return P
   static constexpr uint8_t gain(uint8_t power) noexcept {
-    return detail::divided_by_255(static_cast<uint16_t>(detail::gain_times_255<low_power, high_power>(power) + 127u));
+    return detail::divided_by_255(
+        static_cast<uint16_t>(detail::gain_times_255<low_power, high_power>(power) + 127u));
   }
 };
 
@@ -50,7 +56,9 @@ struct FixedGain {
 template <uint8_t low_power, uint8_t high_power>
 struct FixedTruncatedGain {
   /// @copydoc FixedGain::gain
-  static constexpr uint8_t gain(uint8_t power) noexcept { return detail::divided_by_255(detail::gain_times_255<low_power, high_power>(power)); }
+  static constexpr uint8_t gain(uint8_t power) noexcept {
+    return detail::divided_by_255(detail::gain_times_255<low_power, high_power>(power));
+  }
 };
 
 /// For actuators without a gain.

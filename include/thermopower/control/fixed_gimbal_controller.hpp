@@ -8,16 +8,20 @@
 #include "position_error.hpp"
 
 /// @file fixed_gimbal_controller.hpp
-/// One `FixedAxisController` per axis, fed by one telemetry message: GimbalController without a floating-point library.
+/// One `FixedAxisController` per axis, fed by one telemetry message: GimbalController without a
+/// floating-point library.
 
 namespace thermopower {
 
-/// The constants of GimbalConfig::standard() that a fixed-point gimbal has; the supply is the motors'. A set of your own has the same.
+/// The constants of GimbalConfig::standard() that a fixed-point gimbal has; the supply is the motors'. A set
+/// of your own has the same.
 /// @ingroup control
 struct StandardGimbal {
-  typedef StandardAir Air;                                          ///< When a thermometer is believed.
-  static constexpr double minimum_supply_V() { return 3.0; }        ///< Below this the battery counts as empty or missing. 0 .. 600.
-  static constexpr double timeout_s() { return 0.5; }               ///< Silence of the link that is tolerated, 0.01 .. 16 s.
+  typedef StandardAir Air;  ///< When a thermometer is believed.
+  /// Below this the battery counts as empty or missing. 0 .. 600.
+  static constexpr double minimum_supply_V() { return 3.0; }
+  /// Silence of the link that is tolerated, 0.01 .. 16 s.
+  static constexpr double timeout_s() { return 0.5; }
 };
 
 namespace detail {
@@ -47,8 +51,8 @@ const First& fixed_axis_at(const FixedAxisChain<index, First, Rest...>& chain) n
 
 }  // namespace detail
 
-/// The controller of a whole gimbal in whole numbers. It decides as GimbalController does with the same policies, and obeys the same rules
-/// for a link, a sensor and a battery that fail.
+/// The controller of a whole gimbal in whole numbers. It decides as GimbalController does with the same
+/// policies, and obeys the same rules for a link, a sensor and a battery that fail.
 ///
 ///     const auto& command = gimbal.step(*telemetry, clock.elapsed(now_us));
 ///     codec.send(power_and_gain(command), wire);
@@ -67,37 +71,43 @@ class BasicFixedGimbalController {
                 "thermopower: timeout_s must be within 0.01 .. 16 s for a fixed-point gimbal");
 
  public:
-  static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }  ///< Number of axes.
-  typedef GimbalCommand<sizeof...(Axes)> Command;                                          ///< What goes back to the board.
+  /// Number of axes.
+  static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }
+  typedef GimbalCommand<sizeof...(Axes)> Command;  ///< What goes back to the board.
 
   /// Every axis at the least power. A constant: the object is ready before any constructor runs.
   constexpr BasicFixedGimbalController() noexcept
-      : command_{{first_power<Axes>()...}, {Axes::first_gain()...}, {first_reason<Axes>()...}}, error_units_{} {}
+      : command_{{first_power<Axes>()...}, {Axes::first_gain()...}, {first_reason<Axes>()...}},
+        error_units_{} {}
 
   /// One control cycle from a telemetry message.
-  /// @param telemetry  offers `target_angle(axis)`, `imu_angle(axis)` in units of 360/16384 degree, `imu_C()`, `frame_imu_C()` and
-  ///                   `battery_cV()`, as `sbgc::RealtimeData` does
+  /// @param telemetry  offers `target_angle(axis)`, `imu_angle(axis)` in units of 360/16384 degree, `imu_C()`,
+  ///                   `frame_imu_C()` and `battery_cV()`, as `sbgc::RealtimeData` does
   /// @param ticks      time since the last step or silent cycle
   template <class Telemetry>
   const Command& step(const Telemetry& telemetry, FixedTicks ticks) noexcept {
-    constexpr uint16_t minimum_cV = static_cast<uint16_t>(detail::nearest(Constants::minimum_supply_V() * 100.0));
+    constexpr uint16_t minimum_cV =
+        static_cast<uint16_t>(detail::nearest(Constants::minimum_supply_V() * 100.0));
     for (uint8_t index = 0; index < axis_count(); ++index) {
       const int16_t error = position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
       error_units_[index] = static_cast<uint16_t>(error < 0 ? -error : error);
     }
     const bool has_air = air_.step(telemetry.imu_C(), telemetry.frame_imu_C()).source != AirSource::neither;
-    telemetry_fault_ = telemetry.battery_cV() < minimum_cV ? LimitReason::supply_low
-                                                           : (has_air ? LimitReason::none : LimitReason::air_implausible);
+    telemetry_fault_ = telemetry.battery_cV() < minimum_cV
+                           ? LimitReason::supply_low
+                           : (has_air ? LimitReason::none : LimitReason::air_implausible);
     silent_ = 0;
     has_telemetry_ = true;
     return decide(telemetry_fault_, ticks);
   }
 
-  /// One cycle in which no telemetry came: what the last one asked for, or its fault, holds until `timeout_s()`, then the power is the
-  /// least. @param ticks  time since the last step or silent cycle
+  /// One cycle in which no telemetry came: what the last one asked for, or its fault, holds until
+  /// `timeout_s()`, then the power is the least. @param ticks  time since the last step or silent cycle
   const Command& step_silent(FixedTicks ticks) noexcept {
-    constexpr uint16_t tolerated = static_cast<uint16_t>(detail::nearest(Constants::timeout_s() * detail::fixed_ticks_per_s()));
-    silent_ = ticks > static_cast<uint16_t>(0xFFFFu - silent_) ? static_cast<uint16_t>(0xFFFFu) : static_cast<uint16_t>(silent_ + ticks);
+    constexpr uint16_t tolerated =
+        static_cast<uint16_t>(detail::nearest(Constants::timeout_s() * detail::fixed_ticks_per_s()));
+    silent_ = ticks > static_cast<uint16_t>(0xFFFFu - silent_) ? static_cast<uint16_t>(0xFFFFu)
+                                                               : static_cast<uint16_t>(silent_ + ticks);
     if (!has_telemetry_) return decide(LimitReason::no_telemetry_yet, ticks);
     return decide(silent_ <= tolerated ? telemetry_fault_ : LimitReason::link_silent, ticks);
   }
@@ -108,13 +118,15 @@ class BasicFixedGimbalController {
     axes_.visit(visitor);
   }
 
-  const Command& command() const noexcept { return command_; }                                 ///< The last command.
-  const typename FixedAirTemperature<typename Constants::Air>::State& air() const noexcept {   ///< The air and where it was read.
+  const Command& command() const noexcept { return command_; }  ///< The last command.
+  /// The air and where it was read.
+  const typename FixedAirTemperature<typename Constants::Air>::State& air() const noexcept {
     return air_.state();
   }
   /// The controller of one axis, to log it.
   template <uint8_t index>
-  auto axis() const noexcept -> decltype(detail::fixed_axis_at<index>(*static_cast<const detail::FixedAxisChain<0, Axes...>*>(nullptr))) {
+  auto axis() const noexcept -> decltype(detail::fixed_axis_at<index>(
+      *static_cast<const detail::FixedAxisChain<0, Axes...>*>(nullptr))) {
     return detail::fixed_axis_at<index>(axes_);
   }
 

@@ -13,12 +13,13 @@
 /// | `FixedPerSecond` | at a rate in counts per second: the same at any loop rate | `PerSecond` |
 /// | `FixedPerCycle` | by 1 per call | `PerCycle`, the original program |
 ///
-/// A rule of your own has `start()`, `lower(ticks)`, `raise(ticks)`, `cut()` and `ceiling()`.
+/// A rule of your own has `lower(ticks)`, `raise(ticks)`, `cut()` and `ceiling()`.
 
 namespace thermopower {
 namespace detail {
 
-/// t_safety as a 16-bit factor: what `scaled` makes of a rate with it is t_safety dT/dt in units of 2^shift temperature units.
+/// t_safety as a 16-bit factor: what `scaled` makes of a rate with it is t_safety dT/dt in units of 2^shift
+/// temperature units.
 template <class Constants>
 struct SafetyHorizon {
   static constexpr double ticks = Constants::safety_time_s() * fixed_ticks_per_s();
@@ -31,9 +32,10 @@ struct SafetyHorizon {
 /// The thesis's constants: 60 degC, 30 s, one count per 30 ms. A set of your own has the same functions.
 /// @ingroup control
 struct ThesisLimit {
-  static constexpr double maximum_C() { return 60.0; }             ///< T_max, 0 .. 170 degC.
-  static constexpr double safety_time_s() { return 30.0; }         ///< t_safety, 0.1 .. 240 s.
-  static constexpr double rate_per_s() { return 1.0 / 0.03; }      ///< Read by `FixedPerSecond` only: counts per second, 0.1 .. 3900.
+  static constexpr double maximum_C() { return 60.0; }      ///< T_max, 0 .. 170 degC.
+  static constexpr double safety_time_s() { return 30.0; }  ///< t_safety, 0.1 .. 240 s.
+  /// Read by `FixedPerSecond` only: counts per second, 0.1 .. 3900.
+  static constexpr double rate_per_s() { return 1.0 / 0.03; }
 };
 
 /// The thesis's rule: one count per call, so the speed depends on the loop rate.
@@ -48,8 +50,8 @@ class FixedPerCycle {
   void raise(FixedTicks) noexcept {  ///< Cool enough.
     if (ceiling_ < 255) ++ceiling_;
   }
-  void cut() noexcept { ceiling_ = least_power(); }            ///< Much too warm, or a fault.
-  uint8_t ceiling() const noexcept { return ceiling_; }        ///< Highest power granted, 1 .. 255.
+  void cut() noexcept { ceiling_ = least_power(); }      ///< Much too warm, or a fault.
+  uint8_t ceiling() const noexcept { return ceiling_; }  ///< Highest power granted, 1 .. 255.
 
  private:
   uint8_t ceiling_ = 255;
@@ -71,8 +73,10 @@ class FixedPerSecond {
     const uint32_t room = (uint32_t(255) << 16) - ceiling_;
     ceiling_ += way < room ? way : room;
   }
-  void cut() noexcept { ceiling_ = static_cast<uint32_t>(least_power()) << 16; }             ///< Much too warm, or a fault.
-  uint8_t ceiling() const noexcept { return static_cast<uint8_t>(ceiling_ >> 16); }          ///< Highest power granted, 1 .. 255.
+  /// Much too warm, or a fault.
+  void cut() noexcept { ceiling_ = static_cast<uint32_t>(least_power()) << 16; }
+  /// Highest power granted, 1 .. 255.
+  uint8_t ceiling() const noexcept { return static_cast<uint8_t>(ceiling_ >> 16); }
 
  private:
   static_assert(Constants::rate_per_s() >= 0.1 && Constants::rate_per_s() <= 3900.0,
@@ -85,8 +89,8 @@ class FixedPerSecond {
 
 /// Limits the power so that the actuator stays below its limit temperature.
 ///
-/// Guarantees: the power is never above the demand; above T_max it is the least; at equal history a hotter actuator never gets more.
-/// There is no number here that is not one, so nothing needs to be asked about it.
+/// Guarantees: the power is never above the demand; above T_max it is the least; at equal history a hotter
+/// actuator never gets more. There is no number here that is not one, so nothing needs to be asked about it.
 /// @tparam Constants  ThesisLimit, or your own
 /// @tparam Rule       how the ceiling moves
 /// @ingroup control
@@ -98,7 +102,9 @@ class FixedSafetyLimiter {
                 "thermopower: safety_time_s must be within 0.1 .. 240 s for a fixed-point limiter");
 
  public:
-  /// @param demand  power parameter asked for  @param motor  temperature  @param rate  dT/dt at the power of the last step
+  /// @param demand  power parameter asked for
+  /// @param motor   temperature
+  /// @param rate    dT/dt at the power of the last step
   /// @param ticks   time since the last step
   LimitedPower step(uint8_t demand, FixedTemperature motor, FixedRate rate, FixedTicks ticks) noexcept {
     constexpr FixedTemperature maximum = detail::fixed_temperature(Constants::maximum_C());
@@ -118,7 +124,8 @@ class FixedSafetyLimiter {
     return granted;
   }
 
-  /// Least power, or the demand if that is less, for a reason found elsewhere; the ceiling starts again from there.
+  /// Least power, or the demand if that is less, for a reason found elsewhere; the ceiling starts again from
+  /// there.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     rule_.cut();
     const LimitedPower least = {demand < least_power() ? demand : least_power(), reason};

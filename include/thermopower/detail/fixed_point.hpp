@@ -7,8 +7,8 @@
 #include "fixed_product.hpp"
 
 /// @file fixed_point.hpp
-/// Units and products of the fixed-point controllers. Each unit is chosen so that the shifts between them are whole bytes, which an
-/// 8-bit chip gets for nothing.
+/// Units and products of the fixed-point controllers. Each unit is chosen so that the shifts between them are
+/// whole bytes, which an 8-bit chip gets for nothing.
 
 namespace thermopower {
 
@@ -27,8 +27,8 @@ namespace detail {
 constexpr double fixed_ticks_per_s() { return 3906.25; }
 /// Units of a FixedRate in 1 K/s.
 constexpr double fixed_rate_per_K_per_s() { return 549755813888.0 / fixed_ticks_per_s(); }
-/// No FixedTemperature leaves -50 .. 180 degC: what is hotter or colder counts as that. With these ends no sum of a temperature and a
-/// step overflows.
+/// No FixedTemperature leaves -50 .. 180 degC: what is hotter or colder counts as that. With these ends no
+/// sum of a temperature and a step overflows.
 constexpr double fixed_coldest_C() { return -50.0; }
 /// @copydoc fixed_coldest_C
 constexpr double fixed_hottest_C() { return 180.0; }
@@ -36,9 +36,13 @@ constexpr double fixed_hottest_C() { return 180.0; }
 constexpr int32_t fixed_most_heating() { return 0x20000000; }
 
 /// The nearest whole number, at compile time.
-constexpr int32_t nearest(double value) { return static_cast<int32_t>(value < 0.0 ? value - 0.5 : value + 0.5); }
+constexpr int32_t nearest(double value) {
+  return static_cast<int32_t>(value < 0.0 ? value - 0.5 : value + 0.5);
+}
 /// A temperature in its fixed-point unit, at compile time.
-constexpr FixedTemperature fixed_temperature(double temperature_C) { return nearest(temperature_C * 8388608.0); }
+constexpr FixedTemperature fixed_temperature(double temperature_C) {
+  return nearest(temperature_C * 8388608.0);
+}
 /// The lesser of two numbers, at compile time.
 constexpr double lesser(double left, double right) { return left < right ? left : right; }
 /// The greater of two numbers, at compile time.
@@ -54,15 +58,20 @@ inline FixedCelsius rounded_celsius(FixedTemperature temperature) noexcept {
 }  // namespace detail
 
 /// Degrees of a fixed-point temperature, for a log.
-inline float celsius_of(FixedTemperature temperature) noexcept { return static_cast<float>(temperature) * (1.0f / 8388608.0f); }
+inline float celsius_of(FixedTemperature temperature) noexcept {
+  return static_cast<float>(temperature) * (1.0f / 8388608.0f);
+}
 /// A rate in K/s, for a log.
-inline float K_per_s_of(FixedRate rate) noexcept { return static_cast<float>(rate) * static_cast<float>(3906.25 / 549755813888.0); }
+inline float K_per_s_of(FixedRate rate) noexcept {
+  return static_cast<float>(rate) * static_cast<float>(3906.25 / 549755813888.0);
+}
 
-/// Turns a clock in microseconds that wraps at 2^32 into elapsed ticks; what is less than a tick is kept for the next time, so that
-/// no time is lost in the long run.
+/// Turns a clock in microseconds that wraps at 2^32 into elapsed ticks; what is less than a tick is kept for
+/// the next time, so that no time is lost in the long run.
 class FixedClock {
  public:
-  /// Ticks since the last call (since `start()` or 0 at the first). @param now_us  at most 71 minutes after the last call
+  /// Ticks since the last call (since `start()` or 0 at the first).
+  /// @param now_us  at most 71 minutes after the last call
   FixedTicks elapsed(uint32_t now_us) noexcept {
     const uint32_t ticks = (now_us - last_us_) >> 8;
     last_us_ += ticks << 8;

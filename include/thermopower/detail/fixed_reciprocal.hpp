@@ -3,8 +3,8 @@
 #pragma once
 
 #include "constexpr_math.hpp"
-#include "flash.hpp"
 #include "fixed_point.hpp"
+#include "flash.hpp"
 
 /// @file fixed_reciprocal.hpp
 /// Division by a number that may be small, without a division: normalise, look up, multiply.
@@ -15,8 +15,8 @@ namespace detail {
 template <class Nodes>
 struct ReciprocalTable;
 
-// 2^31 / x at x = 2^15 .. 2^16 in 32 pieces, less half of what a chord is above the curve. The two lowest bits of x are not used, so x
-// counts as the middle of its four.
+// 2^31 / x at x = 2^15 .. 2^16 in 32 pieces, less half of what a chord is above the curve. The two lowest
+// bits of x are not used, so x counts as the middle of its four.
 template <int... node>
 struct ReciprocalTable<Indices<node...> > {
   static constexpr double divisor(int index) { return 32769.5 + 1024.0 * index; }
@@ -42,19 +42,29 @@ inline uint16_t reciprocal(uint16_t divisor) noexcept {
   return static_cast<uint16_t>(below - static_cast<uint16_t>(part_of(fall, share)));
 }
 
-/// 2^15 dividend / divisor, saturated at `fixed_most_heating()`; 0 where the divisor is not positive.
-/// @param dividend  0 .. 2^31 - 1
-inline int32_t quotient_q15(uint32_t dividend, int16_t divisor) noexcept {
+/// 2^(15 + exponent) dividend factor / divisor, saturated at `fixed_most_heating()`; 0 where the divisor is
+/// not positive. Each loop takes at most fifteen rounds.
+/// @param dividend  0 .. 32767  @param exponent  -8 .. 8
+inline int32_t quotient(uint16_t dividend, uint8_t factor, int8_t exponent, int16_t divisor) noexcept {
   if (divisor <= 0) return 0;
   uint16_t normal = static_cast<uint16_t>(divisor);
+  int8_t excess = static_cast<int8_t>(8 - exponent);
   while ((normal & 0x8000u) == 0) {
-    // From here on the quotient could only be above 2^29.
-    if ((dividend & 0x40000000u) != 0) return fixed_most_heating();
-    dividend <<= 1;
     normal = static_cast<uint16_t>(normal << 1);
+    --excess;
   }
-  const int32_t quotient = scaled(static_cast<int32_t>(dividend), reciprocal(normal));
-  return quotient < fixed_most_heating() ? quotient : fixed_most_heating();
+  uint32_t result = product_of_three(dividend, reciprocal(normal), factor);
+  if (excess >= 8) {
+    result >>= 8;
+    excess = static_cast<int8_t>(excess - 8);
+  }
+  for (; excess > 0; --excess) result >>= 1;
+  for (; excess < 0; ++excess) {
+    if (result >= static_cast<uint32_t>(fixed_most_heating())) return fixed_most_heating();
+    result <<= 1;
+  }
+  return result < static_cast<uint32_t>(fixed_most_heating()) ? static_cast<int32_t>(result)
+                                                              : fixed_most_heating();
 }
 
 }  // namespace detail

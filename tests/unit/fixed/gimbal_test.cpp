@@ -2,10 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 
 // The fixed-point gimbal beside the floating-point one with the same policies, on the same telemetry.
-#include <thermopower/thermopower.hpp>
-
 #include <cmath>
 #include <cstdlib>
+#include <thermopower/thermopower.hpp>
 
 #include "../../catch.hpp"
 
@@ -17,18 +16,21 @@ typedef tp::motors::Bgm2606_90t::AsProgrammed Small;
 typedef tp::motors::Bgm5208_200_12::AsProgrammed Large;
 typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> WholeLimiter;
 template <class Motor, class Gain>
-using Whole = tp::FixedAxisController<tp::FixedThermalModel<tp::FixedThesisMotor<Motor> >, tp::FixedLevels<>, WholeLimiter, Gain>;
+using Whole = tp::FixedAxisController<tp::FixedThermalModel<tp::FixedThesisMotor<Motor> >, tp::FixedLevels<>,
+                                      WholeLimiter, Gain>;
 template <class Motor>
-using Real = tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<tp::PerCycle>, tp::GainScheduler<tp::TruncatedGain> >;
+using Real = tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<tp::PerCycle>,
+                                tp::GainScheduler<tp::TruncatedGain> >;
 
-typedef tp::FixedGimbalController<Whole<Small, tp::FixedTruncatedGain<24, 4> >, Whole<Small, tp::FixedTruncatedGain<180, 105> >,
+typedef tp::FixedGimbalController<Whole<Small, tp::FixedTruncatedGain<24, 4> >,
+                                  Whole<Small, tp::FixedTruncatedGain<180, 105> >,
                                   Whole<Large, tp::FixedTruncatedGain<40, 2> > >
     WholeGimbal;
 typedef tp::GimbalController<Real<Small>, Real<Small>, Real<Large> > RealGimbal;
 
 RealGimbal real_gimbal() {
-  return RealGimbal(tp::GimbalConfig::standard(), Real<Small>::Config::with_gain({24, 4}), Real<Small>::Config::with_gain({180, 105}),
-                    Real<Large>::Config::with_gain({40, 2}));
+  return RealGimbal(tp::GimbalConfig::standard(), Real<Small>::Config::with_gain({24, 4}),
+                    Real<Small>::Config::with_gain({180, 105}), Real<Large>::Config::with_gain({40, 2}));
 }
 
 struct Telemetry {
@@ -82,8 +84,8 @@ struct Pair {
 
 }  // namespace
 
-// Minutes of demand and minutes of rest. A motor that is held at its limit for long stays within millikelvins of it; whether it is above
-// is then decided by a float's last digits, and any two computations part.
+// Minutes of demand and minutes of rest. A motor that is held at its limit for long stays within millikelvins
+// of it; whether it is above is then decided by a float's last digits, and any two computations part.
 TEST_CASE("the same decisions for an hour of motion, heat and cold") {
   Pair pair;
   Telemetry telemetry;
@@ -92,7 +94,8 @@ TEST_CASE("the same decisions for an hour of motion, heat and cold") {
     telemetry.camera = static_cast<std::int8_t>(std::lround(30 + 14 * std::sin(time_s / 400)));
     telemetry.frame = static_cast<std::int8_t>(telemetry.camera + 2);
     const double demand = std::sin(time_s / 90) > 0 ? 1.0 : 0.004;
-    telemetry.angle[0] = static_cast<std::int16_t>(std::lround(60 * demand * std::sin(time_s * 2.1) * std::sin(time_s / 40)));
+    telemetry.angle[0] =
+        static_cast<std::int16_t>(std::lround(60 * demand * std::sin(time_s * 2.1) * std::sin(time_s / 40)));
     telemetry.angle[1] = static_cast<std::int16_t>(std::lround(16384 + demand * 8000 * std::sin(time_s / 9)));
     telemetry.angle[2] = static_cast<std::int16_t>(std::lround(32767 * std::sin(time_s / 31)));
     telemetry.target[2] = static_cast<std::int16_t>(std::lround(32767 * std::cos(time_s / 31)));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Heating in whole numbers against the laws in double precision: every level, every 1/16 K of the whole range.
+// Heating in whole numbers against the laws in double precision: every level, every 1/16 K of the whole
+// range.
+#include <cmath>
+#include <cstdio>
 #include <thermopower/actuator/fixed_thermal_model.hpp>
 #include <thermopower/actuator/ohmic_current.hpp>
 #include <thermopower/motors/bgm2606_90t.hpp>
 #include <thermopower/motors/bgm5208_200_12.hpp>
-
-#include <cmath>
-#include <cstdio>
 
 #include "../../catch.hpp"
 
@@ -17,13 +17,15 @@ using namespace thermopower;
 namespace {
 
 struct Error {
-  double relative = 0;   // of heating above 0.001 K/s
-  double settled_K = 0;  // what the error would make of the temperature if it lasted, where the laws' heating lasts at all
+  double relative = 0;  // of heating above 0.001 K/s
+  double settled_K =
+      0;  // what the error would make of the temperature if it lasted, where the laws' heating lasts at all
   int level = 0;
   double motor_C = 0;
 };
 
-constexpr double capacity_share = 1.0 / 32.0;  // of the largest apparent heat capacity: nearer to the pole nothing is promised
+constexpr double capacity_share =
+    1.0 / 32.0;  // of the largest apparent heat capacity: nearer to the pole nothing is promised
 
 /// The laws in double precision; the apparent heat capacity in units of its largest.
 template <class Motor>
@@ -34,7 +36,8 @@ struct Laws {
     return Motor::template heating_law<double>().rise_K_per_J(volt, motor_C) * volt * current_A;
   }
   static double capacity(int level, double motor_C) {
-    return Motor::template heating_law<double>().apparent_capacity_J_per_K(v_rms_from_power<double>(13.0, level), motor_C);
+    return Motor::template heating_law<double>().apparent_capacity_J_per_K(
+        v_rms_from_power<double>(13.0, level), motor_C);
   }
   static double cooling_per_s() { return Motor::template cooling_law<double>().cooling_per_s; }
   typedef FixedThesisMotor<Motor> Source;
@@ -64,7 +67,8 @@ template <class Motor>
 Error error_of(int least_level, double coldest_C, double hottest_C) {
   double largest = 0;
   for (int level = 0; level < 256; ++level)
-    for (double motor_C = -50; motor_C <= 180; motor_C += 10) largest = std::max(largest, Motor::capacity(level, motor_C));
+    for (double motor_C = -50; motor_C <= 180; motor_C += 10)
+      largest = std::max(largest, Motor::capacity(level, motor_C));
   Error worst;
   for (int level = least_level; level < 256; ++level) {
     for (int step = static_cast<int>(coldest_C * 16); step <= static_cast<int>(hottest_C * 16); ++step) {
@@ -72,23 +76,26 @@ Error error_of(int least_level, double coldest_C, double hottest_C) {
       if (Motor::capacity(level, motor_C) < capacity_share * largest) continue;
       const double exact = Motor::heating_K_per_s(level, motor_C);
       if (exact > 3.8) continue;
-      const double got = static_cast<double>(FixedHeating<typename Motor::Source>::rate(static_cast<std::uint8_t>(level),
-                                                                                         static_cast<FixedCelsius>(step * 8))) /
+      const double got = static_cast<double>(FixedHeating<typename Motor::Source>::rate(
+                             static_cast<std::uint8_t>(level), static_cast<FixedCelsius>(step * 8))) /
                          detail::fixed_rate_per_K_per_s();
       const double error = std::fabs(got - exact);
       const double relative = error / std::max(exact, 0.001);
       if (relative > worst.relative) worst.relative = relative, worst.level = level, worst.motor_C = motor_C;
-      if (exact <= Motor::cooling_per_s() * (motor_C + 10.0)) worst.settled_K = std::max(worst.settled_K, error / Motor::cooling_per_s());
+      if (exact <= Motor::cooling_per_s() * (motor_C + 10.0))
+        worst.settled_K = std::max(worst.settled_K, error / Motor::cooling_per_s());
     }
   }
-  std::printf("  from level %d, %g .. %g degC: %.3f %% (level %d, %.2f degC); settled %.4f K\n", least_level, coldest_C, hottest_C,
-              100 * worst.relative, worst.level, worst.motor_C, worst.settled_K);
+  std::printf("  from level %d, %g .. %g degC: %.3f %% (level %d, %.2f degC); settled %.4f K\n", least_level,
+              coldest_C, hottest_C, 100 * worst.relative, worst.level, worst.motor_C, worst.settled_K);
   return worst;
 }
 
 }  // namespace
 
-TEST_CASE("the heating of the thesis motors is within 0.8 % over all levels and temperatures, and 0.25 % where a motor works") {
+TEST_CASE(
+    "the heating of the thesis motors is within 0.8 % over all levels and temperatures, and 0.25 % where a "
+    "motor works") {
   const auto small = error_of<Laws<motors::Bgm2606_90t::AsProgrammed> >(0, -50, 180);
   CHECK(small.relative < 0.008);
   CHECK(error_of<Laws<motors::Bgm2606_90t::AsProgrammed> >(25, 20, 80).relative < 0.0025);
@@ -98,8 +105,10 @@ TEST_CASE("the heating of the thesis motors is within 0.8 % over all levels and 
   CHECK(error_of<Laws<motors::Bgm2606_90t> >(25, 20, 80).relative < 0.0025);
 }
 
-TEST_CASE("an error in the heating never settles to more than 0.1 K where the motor's temperature can settle") {
-  // Where heating is at most what cooling takes away in air of -10 degC; above, the temperature only passes through.
+TEST_CASE(
+    "an error in the heating never settles to more than 0.1 K where the motor's temperature can settle") {
+  // Where heating is at most what cooling takes away in air of -10 degC; above, the temperature only passes
+  // through.
   CHECK(error_of<Laws<motors::Bgm2606_90t::AsProgrammed> >(0, 15, 100).settled_K < 0.1);
   CHECK(error_of<Laws<motors::Bgm5208_200_12::AsProgrammed> >(0, 15, 100).settled_K < 0.1);
   CHECK(error_of<Laws<motors::Bgm2606_90t> >(0, 15, 100).settled_K < 0.1);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Power law, gain, limiter and air in whole numbers against their floating-point siblings: exhaustively, where the inputs can be counted.
+// Power law, gain, limiter and air in whole numbers against their floating-point siblings: exhaustively,
+// where the inputs can be counted.
+#include <cmath>
+#include <cstdlib>
 #include <thermopower/control/air_temperature.hpp>
 #include <thermopower/control/fixed_air_temperature.hpp>
 #include <thermopower/control/fixed_gain.hpp>
@@ -11,9 +14,6 @@
 #include <thermopower/control/position_error.hpp>
 #include <thermopower/control/safety_limiter.hpp>
 #include <thermopower/control/step_power_law.hpp>
-
-#include <cmath>
-#include <cstdlib>
 
 #include "../../catch.hpp"
 
@@ -49,8 +49,10 @@ void check_gain() {
     CHECK(FixedTruncatedGain<low, high>::gain(static_cast<std::uint8_t>(power)) == numerator / 255);
     CHECK(FixedGain<low, high>::gain(static_cast<std::uint8_t>(power)) == (2 * numerator + 255) / 510);
     const GainScheduler<RoundedGain> rounded(GainConfig{float(low), float(high)});
-    CHECK(FixedGain<low, high>::gain(static_cast<std::uint8_t>(power)) == rounded.step(static_cast<std::uint8_t>(power)));
-    // In floating point a gain that is a whole number may come out a rounding below it, and is then cut to the number below.
+    CHECK(FixedGain<low, high>::gain(static_cast<std::uint8_t>(power)) ==
+          rounded.step(static_cast<std::uint8_t>(power)));
+    // In floating point a gain that is a whole number may come out a rounding below it, and is then cut to
+    // the number below.
     const GainScheduler<TruncatedGain> truncated(GainConfig{float(low), float(high)});
     const int difference = FixedTruncatedGain<low, high>::gain(static_cast<std::uint8_t>(power)) -
                            truncated.step(static_cast<std::uint8_t>(power));
@@ -65,7 +67,8 @@ TEST_CASE("with the program's constants every error gives the program's power") 
   StepPowerLaw<ProgrammedLevels> real;
   for (int units = 0; units <= 8192; ++units) {
     CAPTURE(units);
-    CHECK(law.step(static_cast<std::uint16_t>(units)) == real.step(deg_from_units(static_cast<std::int16_t>(units))));
+    CHECK(law.step(static_cast<std::uint16_t>(units)) ==
+          real.step(deg_from_units(static_cast<std::int16_t>(units))));
     // The program's own conversion, 45.5111 units to a degree.
     const int level = static_cast<int>(10.0 * units / 45.5111);
     CHECK(law.step(static_cast<std::uint16_t>(units)) == 25 * (level < 1 ? 1 : std::min(level, 10)));
@@ -85,7 +88,8 @@ TEST_CASE("hysteresis holds a level on the way down as the floating-point rule d
   for (const int end : {60, 3, 40, 20, 30, 0}) {
     static int units = 0;
     for (; units != end; units += units < end ? 1 : -1)
-      different += law.step(static_cast<std::uint16_t>(units)) != real.step(deg_from_units(static_cast<std::int16_t>(units)));
+      different += law.step(static_cast<std::uint16_t>(units)) !=
+                   real.step(deg_from_units(static_cast<std::int16_t>(units)));
   }
   CHECK(different <= 10);
 }
@@ -113,8 +117,9 @@ TEST_CASE("both thermometers, every pair of readings: the same air from the same
       FixedAirTemperature<> whole;
       const auto expected = real.step(static_cast<float>(camera), static_cast<float>(frame));
       const auto got = whole.step(static_cast<std::int8_t>(camera), static_cast<std::int8_t>(frame));
-      const bool is_same = got.source == expected.source &&
-                           (got.source == AirSource::neither || static_cast<float>(got.air) / 128.0f == expected.air_C);
+      const bool is_same =
+          got.source == expected.source &&
+          (got.source == AirSource::neither || static_cast<float>(got.air) / 128.0f == expected.air_C);
       if (!is_same) FAIL("camera " << camera << ", frame " << frame);
     }
 }
@@ -133,10 +138,12 @@ TEST_CASE("the limiter decides as the floating-point one, but within 0.001 K of 
     const double rate_K_per_s = next(-0.05, count % 2 == 0 ? 1.0 : 0.05);
     const FixedRate rate = static_cast<FixedRate>(rate_K_per_s * detail::fixed_rate_per_K_per_s());
     const double distance_K = 60.0 - 30.0 * rate_K_per_s - static_cast<double>(celsius_of(motor));
-    if (std::fabs(distance_K) < 0.001 || std::fabs(60.0 - static_cast<double>(celsius_of(motor))) < 0.001) continue;
+    if (std::fabs(distance_K) < 0.001 || std::fabs(60.0 - static_cast<double>(celsius_of(motor))) < 0.001)
+      continue;
     const auto demand = static_cast<std::uint8_t>(next(1, 255));
     const LimitedPower got = whole.step(demand, motor, rate, 129);
-    const LimitedPower expected = real.step({demand, celsius_of(motor), static_cast<float>(rate_K_per_s)}, 0.033f);
+    const LimitedPower expected =
+        real.step({demand, celsius_of(motor), static_cast<float>(rate_K_per_s)}, 0.033f);
     ++decisions;
     different += got.power != expected.power || got.reason != expected.reason;
   }
@@ -160,7 +167,9 @@ TEST_CASE("the power is never above the demand, and a cut leaves the least") {
   FixedSafetyLimiter<> limiter;
   for (int demand = 0; demand < 256; ++demand) {
     CHECK(limiter.step(static_cast<std::uint8_t>(demand), 0, 0, 100).power <= demand);
-    CHECK(limiter.step(static_cast<std::uint8_t>(demand), detail::fixed_temperature(61), 0, 100).power == std::min(demand, 1));
-    CHECK(limiter.cut(LimitReason::link_silent, static_cast<std::uint8_t>(demand)).power == std::min(demand, 1));
+    CHECK(limiter.step(static_cast<std::uint8_t>(demand), detail::fixed_temperature(61), 0, 100).power ==
+          std::min(demand, 1));
+    CHECK(limiter.cut(LimitReason::link_silent, static_cast<std::uint8_t>(demand)).power ==
+          std::min(demand, 1));
   }
 }

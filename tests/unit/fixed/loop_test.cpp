@@ -2,13 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 
 // An hour of closed loop: the fixed-point model beside the laws in double precision, under the same commands.
+#include <cmath>
+#include <cstdio>
 #include <thermopower/actuator/fixed_thermal_model.hpp>
 #include <thermopower/control/fixed_axis_controller.hpp>
 #include <thermopower/motors/bgm2606_90t.hpp>
 #include <thermopower/motors/bgm5208_200_12.hpp>
-
-#include <cmath>
-#include <cstdio>
 
 #include "../../catch.hpp"
 
@@ -37,12 +36,15 @@ double worst_error_K(double demand_units, double air_C, double swing_K) {
     const double air = std::round(2 * (air_C + swing_K * std::sin(time_s / 300))) / 2;
     exact_C += (heat - cooling_per_s * (exact_C - air)) * elapsed_s;
     const double wave = demand_units * (0.7 + 0.6 * std::sin(time_s / 17) * std::sin(time_s / 211));
-    axis.step({static_cast<std::uint16_t>(wave < 0 ? 0 : wave), static_cast<FixedCelsius>(air * 128), LimitReason::none}, ticks);
+    axis.step({static_cast<std::uint16_t>(wave < 0 ? 0 : wave), static_cast<FixedCelsius>(air * 128),
+               LimitReason::none},
+              ticks);
     time_s += elapsed_s;
     worst_K = std::max(worst_K, std::fabs(static_cast<double>(axis.thermal().motor_C()) - exact_C));
     hottest_C = std::max(hottest_C, exact_C);
   }
-  std::printf("  demand %.0f, air %.0f degC: hottest %.2f degC, error at most %.4f K\n", demand_units, air_C, hottest_C, worst_K);
+  std::printf("  demand %.0f, air %.0f degC: hottest %.2f degC, error at most %.4f K\n", demand_units, air_C,
+              hottest_C, worst_K);
   return worst_K;
 }
 
