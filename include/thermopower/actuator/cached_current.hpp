@@ -31,21 +31,59 @@ class CachedCurrent {
 
   /// As `CurrentModel::at_power`. A NaN is never equal to what was asked before, so it is always looked at.
   const State& at_power(float power_param, float supply_V, float motor_C) noexcept {
-    if (power_param == power_ && supply_V == supply_V_ && detail::magnitude(motor_C - motor_C_) < 0.5f)
-      return state_;
+    const bool is_same_voltage = detail::is_same(power_param, power_) && detail::is_same(supply_V, supply_V_);
+    const bool is_same_winding = is_near(motor_C);
+    if (is_same_voltage && is_same_winding) return state_;
+    if (!detail::is_same(power_param, power_)) share_ = v_rms_from_power<float>(1.0f, power_param);
     power_ = power_param;
     supply_V_ = supply_V;
-    motor_C_ = motor_C;
-    state_ = model_.at_power(power_param, supply_V, motor_C);
+    if (!is_same_winding) {
+      motor_C_ = motor_C;
+      conductance_S_ = conductance_of(model_.config(), motor_C, 0);
+      is_near_ = true;
+    }
+    evaluate(model_.config(), supply_V * share_, 0);
     return state_;
   }
 
   const Config& config() const noexcept { return model_.config(); }  ///< The law with its constants.
 
  private:
+  // Most steps ask for the very temperature that was asked for last: that is seen by its bits.
+  bool is_near(float motor_C) noexcept {
+    if (detail::is_same(motor_C, asked_C_)) return is_near_;
+    asked_C_ = motor_C;
+    is_near_ = detail::magnitude(motor_C - motor_C_) < 0.5f;
+    return is_near_;
+  }
+
+  // A law that has a conductance is evaluated by a product, any other as it is.
+  template <class Any>
+  static auto conductance_of(const Any& law, float motor_C, int) noexcept -> decltype(law.conductance_S(motor_C)) {
+    return law.conductance_S(motor_C);
+  }
+  template <class Any>
+  static float conductance_of(const Any&, float, long) noexcept {
+    return 0.0f;
+  }
+  template <class Any>
+  auto evaluate(const Any& law, float v_rms_V, int) noexcept
+      -> decltype(static_cast<void>(law.conductance_S(v_rms_V))) {
+    state_.v_rms_V = v_rms_V;
+    state_.current_A = v_rms_V * conductance_S_;
+    state_.winding_power_W = v_rms_V * state_.current_A;
+  }
+  template <class Any>
+  void evaluate(const Any&, float v_rms_V, long) noexcept {
+    state_ = model_.at_voltage(v_rms_V, motor_C_);
+  }
+
   CurrentModel<Law> model_;
   State state_;
-  float power_ = -1.0f, supply_V_ = 0.0f, motor_C_ = 0.0f;
+  float power_ = -1.0f, supply_V_ = 0.0f, motor_C_ = 0.0f, asked_C_ = 0.0f;
+  float share_ = 0.0f;          // V_rms / V_supply
+  float conductance_S_ = 0.0f;  // at `motor_C_`
+  bool is_near_ = false;
 };
 
 }  // namespace thermopower

@@ -47,6 +47,7 @@ class ObservedThermal {
         maximum_C_(config.maximum_C),
         per_capacity_(1.0f / config.observer.thermal.winding_heat_capacity_J_per_K),
         coupling_W_per_K_(config.observer.thermal.coupling_W_per_K),
+        per_turn_(1.0f / static_cast<float>(config.every < 1 ? 1 : config.every)),
         every_(config.every),
         turn_(config.phase) {
     start(motor_C);
@@ -71,13 +72,26 @@ class ObservedThermal {
   const State& step(const Inputs& inputs, float dt_s) noexcept {
     float power_W = inputs.power_W;
     if (every_ > 1) {
-      pending_s_ += dt_s;
-      pending_J_ += power_W * dt_s;
+      // Steps of equal length add up their powers alone; the time is counted.
+      if (!detail::is_same(dt_s, each_s_)) {
+        fold();
+        each_s_ = dt_s;
+        turn_s_ = dt_s * static_cast<float>(every_);
+      }
+      sum_W_ += power_W;
+      ++count_;
       if (++turn_ < every_) return state_;
       turn_ = 0;
-      dt_s = pending_s_;
-      if (dt_s > 0.0f) power_W = pending_J_ / dt_s;
-      pending_s_ = pending_J_ = 0.0f;
+      if (count_ == every_) {
+        power_W = sum_W_ * per_turn_;
+        dt_s = turn_s_;
+      } else {
+        fold();
+        dt_s = pending_s_;
+        if (dt_s > 0.0f) power_W = pending_J_ / dt_s;
+      }
+      pending_s_ = pending_J_ = sum_W_ = 0.0f;
+      count_ = 0;
     }
     const float across_W = coupling_W_per_K_ * (state_.winding_C - state_.body_C);
     observer_.step(power_W, inputs.around.air_C, dt_s);
@@ -90,9 +104,7 @@ class ObservedThermal {
     return observer_;
   }                                                       ///< Estimates and their uncertainty.
   const State& state() const noexcept { return state_; }  ///< After the last step.
-  float hottest_C() const noexcept {
-    return detail::at_least(state_.winding_C, state_.body_C);
-  }  ///< The node that decides.
+  float hottest_C() const noexcept { return hottest_C_; }  ///< The node that decides.
   float hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
 
  private:
@@ -100,13 +112,23 @@ class ObservedThermal {
     state_.winding_C = observer_.state().winding_C;
     state_.body_C = observer_.state().body_C;
     state_.winding_rate_K_per_s = rate_K_per_s;
+    hottest_C_ = detail::at_least(state_.winding_C, state_.body_C);
+  }
+  void fold() noexcept {
+    if (count_ == 0) return;
+    pending_s_ += each_s_ * static_cast<float>(count_);
+    pending_J_ += each_s_ * sum_W_;
+    sum_W_ = 0.0f;
+    count_ = 0;
   }
 
   TemperatureObserver observer_;
   State state_;
   float maximum_C_, per_capacity_, coupling_W_per_K_;
-  float pending_s_ = 0.0f, pending_J_ = 0.0f;
-  uint8_t every_, turn_;
+  float hottest_C_ = 0.0f, per_turn_;
+  float each_s_ = 0.0f, turn_s_ = 0.0f, sum_W_ = 0.0f;  // steps of one length
+  float pending_s_ = 0.0f, pending_J_ = 0.0f;           // and of other lengths before them
+  uint8_t every_, turn_, count_ = 0;
 };
 
 }  // namespace thermopower

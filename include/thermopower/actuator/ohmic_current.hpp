@@ -35,6 +35,12 @@ struct OhmicCurrent {
     return v_rms_V / resistance_at(winding_C);
   }
 
+  /// Its reciprocal, for who needs a current at many voltages and one temperature. @return siemens
+  Number conductance_S(const Number& winding_C) const noexcept {
+    typedef typename detail::Numeric<Number>::Real Real;
+    return Real(1) / resistance_at(winding_C);
+  }
+
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(detail::require_positive(resistance_ohm, ConfigError::resistance_ohm),

@@ -115,12 +115,24 @@ class AxisController {
 
   /// One control cycle. @param dt_s  time since the last one, >= 0
   const State& step(const Inputs& inputs, float dt_s) noexcept {
-    const LimitReason fault = find_fault(inputs, dt_s);
-    if (is_plausible_air(inputs.air_C)) last_air_C_ = inputs.air_C;
-    if (detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f) last_supply_V_ = inputs.supply_V;
-    estimate_temperature(detail::is_finite(dt_s) && dt_s > 0.0f ? dt_s : 0.0f);
-
+    // What has not changed since the last step is known to be good: comparing bits is cheap on a small chip,
+    // comparing floats is not.
+    const bool is_air_new = !detail::is_same(inputs.air_C, last_air_C_);
+    const bool is_supply_new = !detail::is_same(inputs.supply_V, last_supply_V_);
+    const bool is_air_bad =
+        is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
+    const bool is_supply_bad = is_supply_new && !(detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f);
+    if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
+    if (is_supply_new && !is_supply_bad) last_supply_V_ = inputs.supply_V;
+    const bool is_time_positive = detail::is_finite_positive(dt_s);
     state_.error_deg = wrap_deg(inputs.error_deg);
+    LimitReason fault = inputs.fault;
+    if (is_error(config_error_))
+      fault = LimitReason::config_invalid;
+    else if (!is_fault(fault))
+      fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
+    estimate_temperature(is_time_positive ? dt_s : 0.0f);
+
     AxisFacts facts = {0, state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s, last_air_C_, last_supply_V_};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
@@ -140,26 +152,28 @@ class AxisController {
   const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
 
  private:
-  LimitReason find_fault(const Inputs& inputs, float dt_s) const noexcept {
-    if (is_error(config_error_)) return LimitReason::config_invalid;
-    if (is_fault(inputs.fault)) return inputs.fault;
-    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return LimitReason::time_invalid;
-    if (!detail::is_finite(wrap_deg(inputs.error_deg))) return LimitReason::error_not_finite;
-    if (!detail::is_finite(inputs.supply_V)) return LimitReason::supply_not_finite;
-    if (inputs.supply_V < 0.0f) return LimitReason::supply_low;
-    if (!is_plausible_air(inputs.air_C)) return LimitReason::air_implausible;
-    return LimitReason::none;
+  LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad, bool is_time_good) const noexcept {
+    if (!is_time_good) return LimitReason::time_invalid;
+    if (!detail::is_finite(state_.error_deg)) return LimitReason::error_not_finite;
+    if (is_supply_bad) return detail::is_finite(supply_V) ? LimitReason::supply_low : LimitReason::supply_not_finite;
+    return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
   // Wider than any sensor's range, which is AirTemperature's business: only what no air can be.
-  static bool is_plausible_air(float air_C) noexcept { return air_C >= -100.0f && air_C <= 200.0f; }
+  static bool is_plausible_air(float air_C) noexcept {
+    const uint32_t bits = detail::magnitude_bits(air_C);
+    return bits <= detail::magnitude_bits(100.0f) || (bits <= detail::magnitude_bits(200.0f) && air_C > 0.0f);
+  }
 
   void estimate_temperature(float dt_s) noexcept {
     if (!detail::is_finite(last_air_C_)) return;
     if (!is_started_) detail::start_thermal(thermal_, last_air_C_, 0);
     is_started_ = true;
-    const typename Current::State drawn =
-        current_.at_power(static_cast<float>(state_.power), last_supply_V_, thermal_.hottest_C());
+    if (state_.power != converted_) {
+      converted_ = state_.power;
+      acting_power_ = static_cast<float>(converted_);
+    }
+    const typename Current::State& drawn = current_.at_power(acting_power_, last_supply_V_, thermal_.hottest_C());
     const typename Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {last_air_C_, 0.0f}};
     thermal_.step(heat, dt_s);
     state_.v_rms_V = drawn.v_rms_V;
@@ -177,6 +191,8 @@ class AxisController {
   State state_;
   float last_air_C_ = detail::not_a_number();
   float last_supply_V_ = 0.0f;
+  float acting_power_ = 0.0f;  // `converted_` as a float
+  uint8_t converted_ = 0;
   bool is_started_ = false;
   ConfigError config_error_;
 };

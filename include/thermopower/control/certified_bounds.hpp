@@ -137,7 +137,9 @@ class CertifiedRelief {
     const detail::KelvinUnits over = over_coldest < end_ ? over_coldest : end_;
     if (over <= 0) return detail::whole_fraction();
     const uint16_t coarse = static_cast<uint16_t>(static_cast<uint32_t>(over) >> 10);  // 1/256 K
-    const uint16_t relief = static_cast<uint16_t>((static_cast<uint32_t>(coarse) * per_K_) >> 15);
+    // Below one half of 2^32, because the relief is less than the whole; so doubled instead of shifted by 15.
+    const uint32_t half_relief = detail::product(coarse, per_K_);
+    const uint16_t relief = static_cast<uint16_t>((half_relief + half_relief) >> 16);
     return static_cast<detail::UnitFraction>(detail::whole_fraction() - relief);
   }
 
@@ -155,8 +157,9 @@ enum class CertifiedNode : uint8_t {
 
 /// The largest power that a network can bear, in counts of heat above the least, and which node says so.
 struct CertifiedCount {
-  uint8_t count;       ///< 0: the least power; each count adds the same heat.
-  CertifiedNode node;  ///< Whose limit the next count would pass.
+  uint8_t count;              ///< 0 .. 254.
+  CertifiedNode node;         ///< `none` at 254.
+  detail::KelvinUnits apart;  ///< What the winding has to hand on beyond the least power's; 0 with one node.
 
   /// Lowers the count to how often `size` goes into `room`.
   void fit(int32_t room, int32_t size, CertifiedNode which) noexcept {

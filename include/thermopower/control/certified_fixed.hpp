@@ -55,8 +55,9 @@ inline KelvinUnits kelvin_per_count_up(float difference_K) noexcept {
 }
 /// A fraction, towards one. @param fraction  >= 0
 inline UnitFraction fraction_up(float fraction) noexcept {
-  const int32_t whole = rounded_up(fraction * 65536.0f);
-  return whole < 0xffffL ? static_cast<UnitFraction>(whole) : whole_fraction();
+  // Written out, because it is needed whenever the supply moves: a power of two multiplies without rounding.
+  const float wide = fraction * (65536.0f * (1.0f + float_margin())) + 1.0f;
+  return is_from_zero_to(wide, 65535.0f) ? static_cast<UnitFraction>(wide) : whole_fraction();
 }
 /// A fraction, towards zero.
 inline UnitFraction fraction_down(float fraction) noexcept {
@@ -76,6 +77,7 @@ inline FineFraction fine_down(float fraction) noexcept {
 /// An absolute temperature, towards 0 degC by less than a unit. NaN and what is beyond 4000 degC count as
 /// 4000 degC.
 inline KelvinUnits celsius_units(float temperature_C) noexcept {
+  if (is_from_zero_to(temperature_C, 4000.0f)) return static_cast<KelvinUnits>(temperature_C * units_per_K());
   if (!(temperature_C < 4000.0f)) return static_cast<KelvinUnits>(4000.0f * units_per_K());
   return static_cast<KelvinUnits>((temperature_C > -300.0f ? temperature_C : -300.0f) * units_per_K());
 }

@@ -132,6 +132,7 @@ class CertifiedLimiter {
       : network_(config.network, config.use),
         travel_(network_.travel(0.0f)),
         highest_air_C_(config.use.highest_air_C),
+        air_upper_C_(config.use.highest_air_C),
         air_error_K_(config.air_error_K),
         coldest_C_(config.use.heat.coldest_C),
         per_supply_V_(config.use.heat.supply_error < 1.0f
@@ -155,7 +156,8 @@ class CertifiedLimiter {
   /// @param dt_s  time since the last step, during which the power granted then acted, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
     if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
-    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
+    if (!detail::is_finite_positive(dt_s) && !(dt_s == 0.0f))
+      return cut(LimitReason::time_invalid, inputs.demand);
     const uint8_t wanted =
         static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
     pass(dt_s);
@@ -187,7 +189,7 @@ class CertifiedLimiter {
   /// and nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     if (!is_error(config_error_)) {
-      if (pending_s_ > 0.0f) advance();
+      if (pending() > 0.0f) advance();
       network_.advance_unknown(acting_);
     }
     return least(reason, demand);
@@ -225,21 +227,38 @@ class CertifiedLimiter {
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
 
  private:
-  // Between plans only the time and the largest count that acted are kept.
+  // Between plans only the time and the largest count that acted are kept; of steps of one length only their
+  // number.
   void pass(float dt_s) noexcept {
-    pending_s_ += dt_s;
+    if (!detail::is_same(dt_s, each_s_) || steps_ == 255u) {
+      pending_s_ = pending();
+      each_s_ = dt_s;
+      steps_ = 0;
+    }
+    ++steps_;
     if (acting_ > acted_) acted_ = acting_;
+  }
+  float pending() const noexcept {
+    return steps_ == 0 ? pending_s_ : pending_s_ + each_s_ * static_cast<float>(steps_);
   }
 
   void advance() noexcept {
-    if (!(pending_s_ == travel_s_)) {
-      travel_s_ = pending_s_;
-      travel_ = network_.travel(pending_s_);
+    // The same number of steps of the same length as last time: the travel is known.
+    if (!is_travel_known()) {
+      const float passed_s = pending();
+      travelled_s_ = each_s_;
+      travelled_ = detail::is_same(pending_s_, 0.0f) ? steps_ : 0;
+      travel_ = network_.travel(passed_s);
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
     network_.advance(acted_, travel_);
     pending_s_ = 0.0f;
+    steps_ = 0;
     acted_ = 0;
+  }
+  bool is_travel_known() const noexcept {
+    return steps_ != 0 && steps_ == travelled_ && detail::is_same(each_s_, travelled_s_) &&
+           detail::is_same(pending_s_, 0.0f);
   }
 
   void plan(const Inputs& inputs, uint8_t wanted) noexcept {
@@ -251,7 +270,7 @@ class CertifiedLimiter {
     if (is_limiting_ && wanted > ceiling_ && largest.count > ceiling_) {
       const uint8_t sustainable = network_.sustainable();
       const bool may_rise =
-          sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable);
+          sustainable > ceiling_ && sustainable <= largest.count && network_.is_below(sustainable, largest);
       largest.count = may_rise ? sustainable : ceiling_;
       if (largest.node == CertifiedNode::none) largest.node = node_;
     }
@@ -260,18 +279,17 @@ class CertifiedLimiter {
   }
 
   void observe(float air_C, float supply_V) noexcept {
-    // A NaN is never equal, so it is looked at each time; all else only when it changed: floats are dear on a
-    // small chip.
-    if (!(air_C == read_air_C_)) {
+    // Only when it changed: floats are dear on a small chip, comparing bits is not.
+    if (!detail::is_same(air_C, read_air_C_)) {
       read_air_C_ = air_C;
       const float warmest_C = air_C + air_error_K_;
       air_upper_C_ = highest_air_C_;
       if (warmest_C < air_upper_C_) air_upper_C_ = detail::at_least(warmest_C, coldest_C_);
     }
-    if (!(supply_V == read_supply_V_)) {
+    if (!detail::is_same(supply_V, read_supply_V_)) {
       read_supply_V_ = supply_V;
       const float ratio = supply_V * per_supply_V_;
-      const bool is_used = ratio >= 0.0f && ratio < 1.0f;
+      const bool is_used = detail::is_from_zero_to(ratio, 1.0f);
       supply_squared_ = is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
     }
     network_.surroundings(air_upper_C_, supply_squared_);
@@ -290,12 +308,13 @@ class CertifiedLimiter {
 
   Network network_;
   typename Network::Travel travel_;
-  float highest_air_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_;
-  float travel_s_ = 0.0f;
-  float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number(), air_upper_C_ = 0.0f;
+  float highest_air_C_, air_upper_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_;
+  float travelled_s_ = 0.0f;  // length of each of the `travelled_` steps that `travel_` is for
+  float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number();
   detail::UnitFraction supply_squared_ = detail::whole_fraction();
   uint16_t late_steps_ = 0;
-  float pending_s_ = 0.0f;
+  float each_s_ = 0.0f, pending_s_ = 0.0f;  // `steps_` of the one, after the other
+  uint8_t steps_ = 0, travelled_ = 0;
   uint8_t acting_ = 0;  // count that acts since the last step
   uint8_t acted_ = 0;   // largest count that acted since the last plan
   uint8_t ceiling_ = 0;

@@ -104,7 +104,7 @@ class CertifiedOneNode {
   }
   /// Takes note of the air and the supply until the next step. See CertifiedTwoNode.
   void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
-    if (!(air_C == air_C_)) {
+    if (!detail::is_same(air_C, air_C_)) {
       air_C_ = air_C;
       base_ = detail::celsius_units(air_C) + 1 + to_air_;
     }
@@ -118,7 +118,7 @@ class CertifiedOneNode {
 
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold.
   CertifiedCount largest() const noexcept {
-    CertifiedCount largest = {254, CertifiedNode::none};
+    CertifiedCount largest = {254, CertifiedNode::none, 0};
     const detail::KelvinUnits above = room(), left = limit_ - base_ - above;
     largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_),
                 CertifiedNode::body);
@@ -133,7 +133,7 @@ class CertifiedOneNode {
   /// within the contract.
   bool is_certified() const noexcept { return limit_ - base_ - room() >= -64; }
   /// Always true: there is no second node that could hand on heat.
-  bool is_below(uint8_t) const noexcept { return true; }
+  bool is_below(uint8_t, const CertifiedCount&) const noexcept { return true; }
 
   float winding_C() const noexcept {
     return detail::celsius_from(node_.above());

@@ -141,7 +141,7 @@ class CertifiedTwoNode {
   /// @param air_C  never below the truth  @param supply_squared  (supply / highest supply)^2, never below the
   /// truth
   void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
-    if (!(air_C == air_C_)) {
+    if (!detail::is_same(air_C, air_C_)) {
       air_C_ = air_C;
       base_ = detail::celsius_units(air_C) + 1 + base_over_air_;
     }
@@ -151,7 +151,7 @@ class CertifiedTwoNode {
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
   CertifiedCount largest() const noexcept {
     const Room room = this->room();
-    CertifiedCount largest = {254, CertifiedNode::none};
+    CertifiedCount largest = {254, CertifiedNode::none, room.apart};
     // Horizon: how authority falls. Not needed for safety.
     const detail::KelvinUnits lost =
         detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
@@ -171,7 +171,7 @@ class CertifiedTwoNode {
   /// The largest count that is bearable for ever in this air. (28)
   uint8_t sustainable() const noexcept {
     const detail::KelvinUnits mean = mean_limit_ - base_, winding = winding_limit_ - base_;
-    CertifiedCount count = {254, CertifiedNode::none};
+    CertifiedCount count = {254, CertifiedNode::none, 0};
     count.fit(mean - detail::part_up(mean + gap_, weight_), sizes_.settled, CertifiedNode::body);
     count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_,
               CertifiedNode::winding);
@@ -184,8 +184,11 @@ class CertifiedTwoNode {
     const Room room = this->room();
     return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
   }
-  /// True when the winding has no more heat to hand on than it would have at this count for ever.
-  bool is_below(uint8_t count) const noexcept { return room().apart <= detail::times(across_now_ + soak_now_, count); }
+  /// True when the winding had no more heat to hand on, at the last plan, than it would have at this count for
+  /// ever.
+  bool is_below(uint8_t count, const CertifiedCount& plan) const noexcept {
+    return plan.apart <= detail::times(across_now_ + soak_now_, count);
+  }
 
   float winding_C() const noexcept {
     return detail::celsius_from(winding_.above());

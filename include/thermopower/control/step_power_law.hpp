@@ -45,23 +45,34 @@ struct StepPowerConfig {
 /// @ingroup control
 struct NoState {};
 
-namespace detail {
-/// int(10 e / e_max), saturated at `highest`; 0 where a refused configuration makes it NaN or negative.
-inline uint8_t error_level(float magnitude_deg, const StepPowerConfig& config, uint8_t highest) noexcept {
-  const float level = magnitude_deg * 10.0f / config.full_power_error_deg;
-  if (!(level > 0.0f)) return 0;
-  return level >= static_cast<float>(highest) ? highest : static_cast<uint8_t>(level);
-}
-}  // namespace detail
+/// Levels per degree, divided once: a division in every step is dear on a small chip.
+/// @ingroup control
+class LevelScale {
+ public:
+  /// int(10 e / e_max), saturated at `highest`; 0 where a refused configuration makes it NaN or negative.
+  /// @param magnitude_deg  size of the error, finite and >= 0
+  uint8_t level(float magnitude_deg, const StepPowerConfig& config, uint8_t highest) noexcept {
+    if (!is_known_) per_deg_ = 10.0f / config.full_power_error_deg;
+    is_known_ = true;
+    const float level = magnitude_deg * per_deg_;
+    const uint32_t bits = detail::magnitude_bits(level);
+    if (level < 0.0f || bits > 0x7f800000u) return 0;
+    return bits >= detail::magnitude_bits(static_cast<float>(highest)) ? highest : static_cast<uint8_t>(level);
+  }
+
+ private:
+  float per_deg_ = 0.0f;
+  bool is_known_ = false;
+};
 
 /// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).
 /// @ingroup control
 struct ProgrammedLevels {
   typedef StepPowerConfig Config;  ///< What one tunes.
-  typedef NoState State;  ///< Nothing to remember.
+  typedef LevelScale State;        ///< Nothing but the scale.
   /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
-  static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
-    const uint8_t level = detail::error_level(magnitude_deg, config, 10);
+  static uint8_t power(float magnitude_deg, const Config& config, State& scale) noexcept {
+    const uint8_t level = scale.level(magnitude_deg, config, 10);
     return static_cast<uint8_t>(config.power_step * (level < 1 ? 1 : level));
   }
 };
@@ -70,10 +81,10 @@ struct ProgrammedLevels {
 /// @ingroup control
 struct PrintedLevels {
   typedef StepPowerConfig Config;  ///< What one tunes.
-  typedef NoState State;  ///< Nothing to remember.
+  typedef LevelScale State;        ///< Nothing but the scale.
   /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
-  static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
-    const uint16_t power = static_cast<uint16_t>(config.power_step * detail::error_level(magnitude_deg, config, 255));
+  static uint8_t power(float magnitude_deg, const Config& config, State& scale) noexcept {
+    const uint16_t power = static_cast<uint16_t>(config.power_step * scale.level(magnitude_deg, config, 255));
     return static_cast<uint8_t>(power > 255u ? 255u : power);
   }
 };
@@ -85,11 +96,12 @@ struct HysteresisLevels {
   /// The level held.
   struct State {
     uint8_t level = 1;  ///< 1 .. 10
+    LevelScale scale;   ///< Levels per degree.
   };
   /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State& state) noexcept {
-    const uint8_t up = detail::error_level(magnitude_deg, config, 10);
-    const uint8_t down = detail::error_level(magnitude_deg + config.hysteresis_deg, config, 10);
+    const uint8_t up = state.scale.level(magnitude_deg, config, 10);
+    const uint8_t down = state.scale.level(magnitude_deg + config.hysteresis_deg, config, 10);
     if (up > state.level) state.level = up;
     if (down < state.level) state.level = down < 1 ? 1 : down;
     return static_cast<uint8_t>(config.power_step * state.level);

@@ -111,6 +111,19 @@ inline uint32_t magnitude_bits(float x) noexcept {
   memcpy(&bits, &x, sizeof bits);
   return bits & 0x7fffffffu;
 }
+/// True above 0 and below infinity.
+inline bool is_finite_positive(float x) noexcept {
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits - 1u < 0x7f7fffffu;
+}
+/// True from 0 to below `limit`, which must be positive; -0 and NaN are not.
+inline bool is_from_zero_to(float x, float limit) noexcept {
+  uint32_t bits, limit_bits;
+  memcpy(&bits, &x, sizeof bits);
+  memcpy(&limit_bits, &limit, sizeof limit_bits);
+  return bits < limit_bits;
+}
 /// True when both are the same to the bit: also two NaNs of a kind, but not 0 and -0.
 inline bool is_same(float left, float right) noexcept {
   uint32_t left_bits, right_bits;
