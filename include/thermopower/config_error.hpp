@@ -9,8 +9,9 @@
 
 namespace thermopower {
 
-/// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger, a log of the number or
-/// `name_of()` tell what to mend. Numbers are stable: they are never reused, new ones are added at the end.
+/// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger, a log
+/// of the number or `name_of()` tell what to mend. Numbers are stable: they are never reused, new ones are
+/// added at the end.
 /// @ingroup control
 enum class ConfigError : uint8_t {
   none = 0,                           ///< Every field is in its range.
@@ -86,6 +87,8 @@ constexpr bool is_error(ConfigError error) { return error != ConfigError::none; 
 
 /// The first of two results that is an error: lets a component report its parts in order.
 /// @ingroup control
-constexpr ConfigError first_error(ConfigError first, ConfigError second) { return is_error(first) ? first : second; }
+constexpr ConfigError first_error(ConfigError first, ConfigError second) {
+  return is_error(first) ? first : second;
+}
 
 }  // namespace thermopower

@@ -3,7 +3,8 @@
 #pragma once
 
 /// @file thermopower.hpp
-/// Everything that runs in firmware, and nothing else. No heap, no exception, no clock, no global, no standard library beyond
+/// Everything that runs in firmware, and nothing else. No heap, no exception, no clock, no global, no
+/// standard library beyond
 /// `<stdint.h> <stddef.h> <math.h> <string.h>`.
 
 #include "actuator/cached_current.hpp"

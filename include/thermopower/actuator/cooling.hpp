@@ -20,6 +20,7 @@
 /// | `ForcedAirflow` | G (1 + g v^n) (T - T_air) | a fan, a propeller's downwash, forward flight |
 /// | `SumOfCooling` | the sum of two | two paths in parallel, e.g. convection and radiation |
 ///
-/// A law of your own has `Scalar`, `is_linear()` (true when the rate is proportional to T - T_air), `is_in_watts()` (true when it is
-/// a loss that r turns into a rate), and, each per second and given r in K/J from the heating law:
-/// `rate_K_per_s(motor_C, around, rise_K_per_J)`, `slope_per_s(...)` (its derivative by motor_C), and `validate()`.
+/// A law of your own has `Scalar`, `is_linear()` (true when the rate is proportional to T - T_air),
+/// `is_in_watts()` (true when it is a loss that r turns into a rate), and, each per second and given r in K/J
+/// from the heating law: `rate_K_per_s(motor_C, around, rise_K_per_J)`, `slope_per_s(...)` (its derivative by
+/// motor_C), and `validate()`.

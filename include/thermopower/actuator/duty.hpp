@@ -5,7 +5,8 @@
 #include "../detail/numeric.hpp"
 
 /// @file duty.hpp
-/// From the controller's 8-bit power parameter to the voltage that drives the winding (thesis eq 3.10 and 3.11).
+/// From the controller's 8-bit power parameter to the voltage that drives the winding (thesis eq 3.10
+/// and 3.11).
 
 namespace thermopower {
 

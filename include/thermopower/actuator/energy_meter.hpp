@@ -5,8 +5,8 @@
 #include "../detail/numeric.hpp"
 
 /// @file energy_meter.hpp
-/// Energy and average power, eq 4.24 to 4.26. What is integrated is part of the type: the thesis compares V_rms I in one run with
-/// the power at the supply in another, and the published savings depend on it.
+/// Energy and average power, eq 4.24 to 4.26. What is integrated is part of the type: the thesis compares
+/// V_rms I in one run with the power at the supply in another, and the published savings depend on it.
 
 namespace thermopower {
 
@@ -52,8 +52,8 @@ class EnergyMeter {
     last_power_W_ = Number(0);
   }
 
-  /// Adds one interval during which the inputs were constant. A NaN or Inf in what is integrated, or a negative time, is counted in
-  /// `rejected()` and not added: one bad sample must not lose an hour's sum.
+  /// Adds one interval during which the inputs were constant. A NaN or Inf in what is integrated, or a
+  /// negative time, is counted in `rejected()` and not added: one bad sample must not lose an hour's sum.
   void step(Number v_rms_V, Number supply_V, Number current_A, Number dt_s) noexcept {
     const Number power_W = Where::power_W(v_rms_V, supply_V, current_A);
     const Number energy_J = power_W * dt_s;
@@ -79,7 +79,8 @@ class EnergyMeter {
   uint32_t rejected() const noexcept { return rejected_; }
 
  private:
-  // Compensated (Kahan): in single precision an hour of 10 ms steps would otherwise lose every small addition.
+  // Compensated (Kahan): in single precision an hour of 10 ms steps would otherwise lose every small
+  // addition.
   struct Sum {
     Number total = Number(0);
     Number lost = Number(0);
@@ -96,7 +97,8 @@ class EnergyMeter {
   uint32_t rejected_ = 0;
 };
 
-/// Saving of the second average power against the first, eq 4.26. Of two meters, take `saving_percent`: it compares like with like.
+/// Saving of the second average power against the first, eq 4.26. Of two meters, take `saving_percent`: it
+/// compares like with like.
 /// @return percent; NaN when the first is 0
 /// @ingroup actuator
 template <class Number>
@@ -116,11 +118,13 @@ struct IsSamePlace<Where, Where> {
 };
 }  // namespace detail
 
-/// Saving of the second meter's average power against the first's, eq 4.26. Meters of different places do not compile.
+/// Saving of the second meter's average power against the first's, eq 4.26. Meters of different places do not
+/// compile.
 /// @return percent; NaN when the first average is 0
 /// @ingroup actuator
 template <class First, class Second, class Number>
-Number saving_percent(const EnergyMeter<First, Number>& first, const EnergyMeter<Second, Number>& second) noexcept {
+Number saving_percent(const EnergyMeter<First, Number>& first,
+                      const EnergyMeter<Second, Number>& second) noexcept {
   static_assert(detail::IsSamePlace<First, Second>::value,
                 "thermopower: a saving compares like with like: two meters AtWinding or two AtSupply");
   return difference_percent(first.average_W(), second.average_W());

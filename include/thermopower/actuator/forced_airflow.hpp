@@ -10,7 +10,8 @@
 
 namespace thermopower {
 
-/// Conductance that grows with the speed of the air: G (1 + g v^n). n is about 0.5 (laminar) to 0.8 (turbulent).
+/// Conductance that grows with the speed of the air: G (1 + g v^n). n is about 0.5 (laminar) to 0.8
+/// (turbulent).
 /// @ingroup actuator
 template <class Number = float>
 struct ForcedAirflow {
@@ -27,25 +28,29 @@ struct ForcedAirflow {
     return conductance_at(around) * (motor_C - around.air_C);
   }
   /// Cooling rate, K/s.
-  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                      const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * loss_W(motor_C, around);
   }
   /// d rate / dT, 1/s.
-  Number slope_per_s(const Number&, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number slope_per_s(const Number&, const Surroundings<Number>& around,
+                     const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * conductance_at(around);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
-    return first_error(detail::require_positive(conductance_W_per_K, ConfigError::conductance_W_per_K),
-                       first_error(detail::require_not_negative(airflow_gain, ConfigError::airflow_gain),
-                                   detail::require_within(exponent, Number(0.2), Number(1), ConfigError::exponent)));
+    return first_error(
+        detail::require_positive(conductance_W_per_K, ConfigError::conductance_W_per_K),
+        first_error(detail::require_not_negative(airflow_gain, ConfigError::airflow_gain),
+                    detail::require_within(exponent, Number(0.2), Number(1), ConfigError::exponent)));
   }
 
  private:
   Number conductance_at(const Surroundings<Number>& around) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;
-    // Kept off zero, where v^n has an infinite derivative; so little that still air still has G to rounding at any n.
+    // Kept off zero, where v^n has an infinite derivative; so little that still air still has G to rounding
+    // at any n.
     const Number speed = detail::at_least(around.airspeed_mps, Math::constant(Real(1e-36)));
     return conductance_W_per_K * (Real(1) + airflow_gain * Math::power(speed, exponent));
   }

@@ -12,9 +12,9 @@
 /// | `HeatCapacityHeating` | 1 / C | always, unless the thesis's figures are to be reproduced |
 /// | `ThesisHeating` | r(V_rms, T), eq 4.16 to 4.18 | the thesis motors, as measured, as printed or as programmed |
 ///
-/// A law of your own has `Scalar`, `is_linear()` (true when r is a constant), `is_heat_capacity()` (true when 1/r is a heat capacity
-/// at any voltage), `rise_K_per_J(v_rms_V, motor_C)`, `rise_slope_per_J(v_rms_V, motor_C)` (its derivative by temperature) and
-/// `validate()`.
+/// A law of your own has `Scalar`, `is_linear()` (true when r is a constant), `is_heat_capacity()` (true when
+/// 1/r is a heat capacity at any voltage), `rise_K_per_J(v_rms_V, motor_C)`, `rise_slope_per_J(v_rms_V,
+/// motor_C)` (its derivative by temperature) and `validate()`.
 
 namespace thermopower {
 
@@ -26,8 +26,9 @@ struct HeatCapacityHeating {
 
   Number heat_capacity_J_per_K;  ///< C, above 0.
 
-  static constexpr bool is_linear() { return true; }         ///< r depends neither on temperature nor on voltage.
-  static constexpr bool is_heat_capacity() { return true; }  ///< 1/r is C: any cooling law may divide its watts by it.
+  static constexpr bool is_linear() { return true; }  ///< r depends neither on temperature nor on voltage.
+  /// 1/r is C: any cooling law may divide its watts by it.
+  static constexpr bool is_heat_capacity() { return true; }
 
   /// r, in kelvin per joule.
   Number rise_K_per_J(const Number&, const Number&) const noexcept {
@@ -47,12 +48,14 @@ struct HeatCapacityHeating {
   }
 };
 
-/// The thesis's coefficient of heating: 1/r = (s1 V + s0) T + (o1 V + o0), with V = V_rms and T the motor's temperature in degC.
-/// 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute` takes them as the thesis prints them.
-/// No heating at or below `minimum_V_rms`, nor where 1/r is not positive (as programmed).
+/// The thesis's coefficient of heating: 1/r = (s1 V + s0) T + (o1 V + o0), with V = V_rms and T the motor's
+/// temperature in degC. 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute`
+/// takes them as the thesis prints them. No heating at or below `minimum_V_rms`, nor where 1/r is not
+/// positive (as programmed).
 ///
-/// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 = -0.4952; the program
-/// multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by name.
+/// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 =
+/// -0.4952; the program multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by
+/// name.
 /// @ingroup actuator
 template <class Number = float>
 struct ThesisHeating {
@@ -65,14 +68,16 @@ struct ThesisHeating {
   Number minimum_V_rms;       ///< At or below this voltage there is no heating (the program: 1 V).
 
   /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
-  static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1, Number offset_V0,
-                                            Number minimum_V_rms) noexcept {
+  static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1,
+                                            Number offset_V0, Number minimum_V_rms) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    return ThesisHeating{slope_V1 * Real(60), slope_V0 * Real(60), offset_V1 * Real(60), offset_V0 * Real(60), minimum_V_rms};
+    return ThesisHeating{slope_V1 * Real(60), slope_V0 * Real(60), offset_V1 * Real(60), offset_V0 * Real(60),
+                         minimum_V_rms};
   }
 
-  static constexpr bool is_linear() { return false; }         ///< r depends on the temperature.
-  static constexpr bool is_heat_capacity() { return false; }  ///< 0 without voltage: a loss in watts would vanish with it.
+  static constexpr bool is_linear() { return false; }  ///< r depends on the temperature.
+  /// 0 without voltage: a loss in watts would vanish with it.
+  static constexpr bool is_heat_capacity() { return false; }
 
   /// 1/r, J/K; may be zero or negative outside the measured range.
   Number apparent_capacity_J_per_K(const Number& v_rms_V, const Number& motor_C) const noexcept {
@@ -94,9 +99,10 @@ struct ThesisHeating {
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
-    return first_error(detail::require_finite(slope_V1_J_per_K2 + slope_V0_J_per_K2 + offset_V1_J_per_K + offset_V0_J_per_K,
-                                              ConfigError::heating_J_per_K),
-                       detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms));
+    return first_error(
+        detail::require_finite(slope_V1_J_per_K2 + slope_V0_J_per_K2 + offset_V1_J_per_K + offset_V0_J_per_K,
+                               ConfigError::heating_J_per_K),
+        detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms));
   }
 
  private:
@@ -108,7 +114,8 @@ struct ThesisHeating {
     typedef detail::Numeric<Number> Math;
     // Not a plain 0: NaN in temperature or voltage must stay visible instead of becoming "no heating".
     const Number zero = (capacity + v_rms_V) * typename Math::Real(0);
-    return Math::choose_if_greater(v_rms_V, minimum_V_rms, Math::choose_if_greater(capacity, zero, value, zero), zero);
+    return Math::choose_if_greater(v_rms_V, minimum_V_rms,
+                                   Math::choose_if_greater(capacity, zero, value, zero), zero);
   }
 };
 

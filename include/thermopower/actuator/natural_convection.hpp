@@ -10,8 +10,8 @@
 
 namespace thermopower {
 
-/// Natural convection: loss = G (T - T_air) (|T - T_air| / T_ref)^n. At a difference of `reference_K` it equals Newton's G.
-/// n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
+/// Natural convection: loss = G (T - T_air) (|T - T_air| / T_ref)^n. At a difference of `reference_K` it
+/// equals Newton's G. n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
 /// @ingroup actuator
 template <class Number = float>
 struct NaturalConvection {
@@ -28,19 +28,22 @@ struct NaturalConvection {
     return conductance_at(motor_C, around) * (motor_C - around.air_C);
   }
   /// Cooling rate, K/s.
-  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                      const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * loss_W(motor_C, around);
   }
   /// d rate / dT, 1/s.
-  Number slope_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number slope_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                     const Number& rise_K_per_J) const noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
     return rise_K_per_J * conductance_at(motor_C, around) * (Real(1) + exponent);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
-    return first_error(detail::require_positive(conductance_W_per_K, ConfigError::conductance_W_per_K),
-                       first_error(detail::require_within(exponent, Number(0), Number(1), ConfigError::exponent),
-                                   detail::require_positive(reference_K, ConfigError::reference_K)));
+    return first_error(
+        detail::require_positive(conductance_W_per_K, ConfigError::conductance_W_per_K),
+        first_error(detail::require_within(exponent, Number(0), Number(1), ConfigError::exponent),
+                    detail::require_positive(reference_K, ConfigError::reference_K)));
   }
 
  private:
@@ -49,7 +52,8 @@ struct NaturalConvection {
     typedef typename Math::Real Real;
     const Number difference = motor_C - around.air_C;
     // Kept off zero, where |x|^n has an infinite derivative that no recording can show.
-    const Number distance = detail::at_least(detail::at_least(difference, Number(-difference)), Math::constant(Real(1e-6)));
+    const Number distance =
+        detail::at_least(detail::at_least(difference, Number(-difference)), Math::constant(Real(1e-6)));
     return conductance_W_per_K * Math::power(distance / reference_K, exponent);
   }
 };

@@ -27,13 +27,18 @@ struct RateCooling {
   static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
   static constexpr bool is_in_watts() { return false; }  ///< A rate by itself: goes with every heating law.
   /// Cooling rate, K/s.
-  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number&) const noexcept {
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                      const Number&) const noexcept {
     return cooling_per_s * (motor_C - around.air_C);
   }
   /// d rate / dT, 1/s.
-  Number slope_per_s(const Number&, const Surroundings<Number>&, const Number&) const noexcept { return cooling_per_s; }
+  Number slope_per_s(const Number&, const Surroundings<Number>&, const Number&) const noexcept {
+    return cooling_per_s;
+  }
   /// First constant out of its range, or ConfigError::none.
-  ConfigError validate() const noexcept { return detail::require_positive(cooling_per_s, ConfigError::cooling_per_s); }
+  ConfigError validate() const noexcept {
+    return detail::require_positive(cooling_per_s, ConfigError::cooling_per_s);
+  }
 };
 
 /// Newton's law as a conductance: loss = G (T - T_air).
@@ -51,7 +56,8 @@ struct NewtonCooling {
     return conductance_W_per_K * (motor_C - around.air_C);
   }
   /// Cooling rate, K/s.
-  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                      const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * loss_W(motor_C, around);
   }
   /// d rate / dT, 1/s.

@@ -10,7 +10,8 @@
 
 namespace thermopower {
 
-/// Radiation to surroundings at air temperature: loss = sigma A eps (T^4 - T_air^4), in kelvin (Stefan-Boltzmann).
+/// Radiation to surroundings at air temperature: loss = sigma A eps (T^4 - T_air^4), in kelvin
+/// (Stefan-Boltzmann).
 /// @ingroup actuator
 template <class Number = float>
 struct RadiationCooling {
@@ -27,11 +28,13 @@ struct RadiationCooling {
     return strength() * (surface - air) * (surface + air);
   }
   /// Cooling rate, K/s.
-  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around, const Number& rise_K_per_J) const noexcept {
+  Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
+                      const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * loss_W(motor_C, around);
   }
   /// d rate / dT, 1/s.
-  Number slope_per_s(const Number& motor_C, const Surroundings<Number>&, const Number& rise_K_per_J) const noexcept {
+  Number slope_per_s(const Number& motor_C, const Surroundings<Number>&,
+                     const Number& rise_K_per_J) const noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
     return rise_K_per_J * strength() * Real(4) * squared_kelvin(motor_C) * (motor_C + Real(273.15));
   }

@@ -20,18 +20,23 @@ struct SumOfCooling {
   Second second;  ///< The other; may itself be a sum.
 
   static constexpr bool is_linear() { return First::is_linear() && Second::is_linear(); }  ///< When both are.
-  static constexpr bool is_in_watts() { return First::is_in_watts() || Second::is_in_watts(); }  ///< When one is.
+  /// When one is.
+  static constexpr bool is_in_watts() { return First::is_in_watts() || Second::is_in_watts(); }
   /// Loss, W; needs two laws stated in watts.
   Scalar loss_W(const Scalar& motor_C, const Surroundings<Scalar>& around) const noexcept {
     return first.loss_W(motor_C, around) + second.loss_W(motor_C, around);
   }
   /// Cooling rate, K/s.
-  Scalar rate_K_per_s(const Scalar& motor_C, const Surroundings<Scalar>& around, const Scalar& rise_K_per_J) const noexcept {
-    return first.rate_K_per_s(motor_C, around, rise_K_per_J) + second.rate_K_per_s(motor_C, around, rise_K_per_J);
+  Scalar rate_K_per_s(const Scalar& motor_C, const Surroundings<Scalar>& around,
+                      const Scalar& rise_K_per_J) const noexcept {
+    return first.rate_K_per_s(motor_C, around, rise_K_per_J) +
+           second.rate_K_per_s(motor_C, around, rise_K_per_J);
   }
   /// d rate / dT, 1/s.
-  Scalar slope_per_s(const Scalar& motor_C, const Surroundings<Scalar>& around, const Scalar& rise_K_per_J) const noexcept {
-    return first.slope_per_s(motor_C, around, rise_K_per_J) + second.slope_per_s(motor_C, around, rise_K_per_J);
+  Scalar slope_per_s(const Scalar& motor_C, const Surroundings<Scalar>& around,
+                     const Scalar& rise_K_per_J) const noexcept {
+    return first.slope_per_s(motor_C, around, rise_K_per_J) +
+           second.slope_per_s(motor_C, around, rise_K_per_J);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return first_error(first.validate(), second.validate()); }

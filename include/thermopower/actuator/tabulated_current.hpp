@@ -7,12 +7,15 @@
 #include "../detail/flash.hpp"
 
 /// @file tabulated_current.hpp
-/// A current law as a table in flash: no `pow` at run time, no RAM, and the table is computed by the compiler.
+/// A current law as a table in flash: no `pow` at run time, no RAM, and the table is computed by the
+/// compiler.
 
 namespace thermopower {
 
-/// What TabulatedCurrent tabulates: the thesis's law of a motor. A source of your own has the same four functions, all `constexpr`.
-/// @tparam Motor  has a `constexpr current_law<double>()` that is a ThesisCurrent, as the motors in `motors/` do
+/// What TabulatedCurrent tabulates: the thesis's law of a motor. A source of your own has the same four
+/// functions, all `constexpr`.
+/// @tparam Motor  has a `constexpr current_law<double>()` that is a ThesisCurrent, as the motors in `motors/`
+/// do
 /// @ingroup actuator
 template <class Motor>
 struct ThesisCurrentSource {
@@ -22,7 +25,9 @@ struct ThesisCurrentSource {
            detail::constexpr_pow(v_rms_V, Motor::template current_law<double>().exponent);
   }
   /// Change of the current with temperature. @return A/K
-  static constexpr double slope_A_per_K(double v_rms_V) { return Motor::template current_law<double>().slope_A_per_K(v_rms_V); }
+  static constexpr double slope_A_per_K(double v_rms_V) {
+    return Motor::template current_law<double>().slope_A_per_K(v_rms_V);
+  }
   /// At or below this voltage there is no current. @return V
   static constexpr double minimum_V_rms() { return Motor::template current_law<double>().minimum_V_rms; }
   /// End of the table: four lithium cells, full, less the drop of the leads. @return V
@@ -38,8 +43,10 @@ struct CurrentNodes;
 template <class Source, int node_count, int... node>
 struct CurrentNodes<Source, node_count, Indices<node...> > {
   static constexpr double volt(int index) { return Source::maximum_V_rms() * index / (node_count - 1); }
-  static constexpr float intercepts[node_count] thermopower_flash = {static_cast<float>(Source::intercept_A(volt(node)))...};
-  static constexpr float slopes[node_count] thermopower_flash = {static_cast<float>(Source::slope_A_per_K(volt(node)))...};
+  static constexpr float intercepts[node_count] thermopower_flash = {
+      static_cast<float>(Source::intercept_A(volt(node)))...};
+  static constexpr float slopes[node_count] thermopower_flash = {
+      static_cast<float>(Source::slope_A_per_K(volt(node)))...};
 };
 /// @cond
 template <class Source, int node_count, int... node>
@@ -50,17 +57,18 @@ constexpr float CurrentNodes<Source, node_count, Indices<node...> >::slopes[node
 
 }  // namespace detail
 
-/// Current law from a table: I = m(V) T + b(V), with m and b interpolated linearly between equally spaced voltages. Take it when a
-/// law's `pow` is too slow for the chip; the models take it as any other law:
+/// Current law from a table: I = m(V) T + b(V), with m and b interpolated linearly between equally spaced
+/// voltages. Take it when a law's `pow` is too slow for the chip; the models take it as any other law:
 ///
 ///     struct FastRoll : motors::Bgm2606_90t {
 ///       typedef CurrentModel<TabulatedCurrent<ThesisCurrentSource<motors::Bgm2606_90t> > > Current;
 ///       static Current::Config current() { return Current::Config(); }
 ///     };
 ///
-/// Error against the law in double precision, 0 .. 16 V and 0 .. 100 degC: at most 0.6 mA for both thesis motors with the default 65
-/// nodes (520 bytes of flash); a linear interpolation, so half the spacing is a quarter of the error. Above `maximum_V_rms()` the
-/// current is NaN, which every limiter treats as hot: an extrapolation would be too low.
+/// Error against the law in double precision, 0 .. 16 V and 0 .. 100 degC: at most 0.6 mA for both thesis
+/// motors with the default 65 nodes (520 bytes of flash); a linear interpolation, so half the spacing is a
+/// quarter of the error. Above `maximum_V_rms()` the current is NaN, which every limiter treats as hot: an
+/// extrapolation would be too low.
 /// @tparam Source      the law: ThesisCurrentSource, or your own
 /// @tparam node_count  entries of the table, 2 .. 255; eight bytes of flash each
 /// @ingroup actuator

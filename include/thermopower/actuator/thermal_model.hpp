@@ -17,17 +17,20 @@ namespace thermopower {
 /// @tparam Cooling  how it loses heat: cooling.hpp
 /// @tparam Step     how a time step is made: thermal_step.hpp
 ///
-/// Energy balance: with `HeatCapacityHeating` and a cooling law in watts, C (T2 - T1) is the heat in less the heat lost. With
-/// constant power the temperature settles where the cooling equals r P; for `NewtonCooling` that is T_air + P / G.
+/// Energy balance: with `HeatCapacityHeating` and a cooling law in watts, C (T2 - T1) is the heat in less the
+/// heat lost. With constant power the temperature settles where the cooling equals r P; for `NewtonCooling`
+/// that is T_air + P / G.
 /// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {
  public:
   typedef typename Heating::Scalar Scalar;  ///< What it computes in.
   static_assert(!Step::needs_linear_laws() || (Heating::is_linear() && Cooling::is_linear()),
-                "thermopower: ExactStep needs linear heating and cooling laws; take LinearizedStep or EulerStep for these");
+                "thermopower: ExactStep needs linear heating and cooling laws; take LinearizedStep or "
+                "EulerStep for these");
   static_assert(Heating::is_heat_capacity() || !Cooling::is_in_watts(),
-                "thermopower: this heating law has no heat capacity to turn a loss in watts into a rate; take RateCooling with it");
+                "thermopower: this heating law has no heat capacity to turn a loss in watts into a rate; "
+                "take RateCooling with it");
 
   /// What one tunes: the constants of both laws.
   struct Config {
@@ -40,8 +43,9 @@ class ThermalModel {
 
   /// What acts on the actuator during a step; constant over the step.
   struct Inputs {
-    Scalar power_W;               ///< Heat, normally V_rms I. For `ThesisHeating` it must be V_rms I (that is how r was fitted).
-    Scalar v_rms_V;               ///< Read by `ThesisHeating` only.
+    Scalar power_W;  ///< Heat, normally V_rms I. For `ThesisHeating` it must be V_rms I (that is how r was
+                     ///< fitted).
+    Scalar v_rms_V;  ///< Read by `ThesisHeating` only.
     Surroundings<Scalar> around;  ///< Air temperature and speed.
   };
 
@@ -69,7 +73,8 @@ class ThermalModel {
     state_.rate_K_per_s = zero;
   }
 
-  /// Advances by `dt_s` seconds (>= 0). NaN or Inf in an input makes the temperature NaN, which the limiter treats as hot.
+  /// Advances by `dt_s` seconds (>= 0). NaN or Inf in an input makes the temperature NaN, which the limiter
+  /// treats as hot.
   const State& step(const Inputs& inputs, const Scalar& dt_s) noexcept {
     const Scalar rise = config_.heating.rise_K_per_J(inputs.v_rms_V, state_.motor_C);
     state_.heating_K_per_s = rise * inputs.power_W;
@@ -81,10 +86,10 @@ class ThermalModel {
     return state_;
   }
 
-  const State& state() const noexcept { return state_; }                                 ///< After the last step.
-  Scalar hottest_C() const noexcept { return state_.motor_C; }                           ///< The only node.
-  Scalar hottest_rate_K_per_s() const noexcept { return state_.rate_K_per_s; }           ///< dT/dt of eq 3.9.
-  const Config& config() const noexcept { return config_; }  ///< The constants.
+  const State& state() const noexcept { return state_; }                        ///< After the last step.
+  Scalar hottest_C() const noexcept { return state_.motor_C; }                  ///< The only node.
+  Scalar hottest_rate_K_per_s() const noexcept { return state_.rate_K_per_s; }  ///< dT/dt of eq 3.9.
+  const Config& config() const noexcept { return config_; }                     ///< The constants.
 
  private:
   typedef typename detail::Numeric<Scalar>::Real Real;

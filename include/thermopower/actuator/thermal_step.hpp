@@ -32,7 +32,8 @@ struct EulerStep {
 /// @ingroup actuator
 struct LinearizedStep {
   static constexpr bool needs_linear_laws() { return false; }  ///< Takes any law; exact for a linear one.
-  /// @param slope_per_s  s = -d rate / dT, >= 0. A negative slope (runaway) is stepped as 0, that is by Euler.
+  /// @param slope_per_s  s = -d rate / dT, >= 0. A negative slope (runaway) is stepped as 0, that is by
+  /// Euler.
   template <class Number>
   static Number change_K(const Number& rate_K_per_s, const Number& slope_per_s, const Number& dt_s) noexcept {
     typedef detail::Numeric<Number> Math;
@@ -41,10 +42,12 @@ struct LinearizedStep {
   }
 };
 
-/// As LinearizedStep, but only for laws that are linear, where it is exact: two half steps equal one whole step.
+/// As LinearizedStep, but only for laws that are linear, where it is exact: two half steps equal one whole
+/// step.
 /// @ingroup actuator
 struct ExactStep : LinearizedStep {
-  static constexpr bool needs_linear_laws() { return true; }  ///< Refuses, at compile time, laws that are not linear.
+  /// Refuses, at compile time, laws that are not linear.
+  static constexpr bool needs_linear_laws() { return true; }
 };
 
 }  // namespace thermopower

@@ -9,12 +9,14 @@
 
 namespace thermopower {
 
-/// Current law of the thesis: I = m(V) T + b(V), eq 4.1, with m(V) = m2 V^2 + m1 V + m0 (eq 4.2, 4.4) and b(V) = base V^exponent
-/// (eq 4.3, 4.5); T in degC. Zero at or below `minimum_V_rms`, and never negative (as programmed).
+/// Current law of the thesis: I = m(V) T + b(V), eq 4.1, with m(V) = m2 V^2 + m1 V + m0 (eq 4.2, 4.4) and
+/// b(V) = base V^exponent (eq 4.3, 4.5); T in degC. Zero at or below `minimum_V_rms`, and never negative (as
+/// programmed).
 ///
-/// The text prints m2 with a plus sign; the program and the regression of Tables 4.1 and 4.2 have a minus. The motor constants in
-/// `motors/` carry the minus. Take it for the two thesis motors; it is an interpolation of measurements, not physics: outside
-/// 5.8 .. 12.9 V and 25 .. 75 degC it extrapolates, and below about 4 V the 5208's current comes out as zero.
+/// The text prints m2 with a plus sign; the program and the regression of Tables 4.1 and 4.2 have a minus.
+/// The motor constants in `motors/` carry the minus. Take it for the two thesis motors; it is an
+/// interpolation of measurements, not physics: outside 5.8 .. 12.9 V and 25 .. 75 degC it extrapolates, and
+/// below about 4 V the 5208's current comes out as zero.
 /// @tparam Number  see OhmicCurrent
 /// @ingroup actuator
 template <class Number = float>
@@ -28,8 +30,10 @@ struct ThesisCurrent {
   Number exponent;          ///< 1 .. 6
   Number minimum_V_rms;     ///< At or below this voltage the current is taken as 0 (the program: 1 V).
 
-  /// The law with its constants as the thesis prints them, in milliampere. The conversion to SI happens here and nowhere else.
-  static constexpr ThesisCurrent from_milliampere(Number slope_V2, Number slope_V1, Number slope_V0, Number base, Number exponent,
+  /// The law with its constants as the thesis prints them, in milliampere. The conversion to SI happens here
+  /// and nowhere else.
+  static constexpr ThesisCurrent from_milliampere(Number slope_V2, Number slope_V1, Number slope_V0,
+                                                  Number base, Number exponent,
                                                   Number minimum_V_rms) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
     return ThesisCurrent{slope_V2 * Real(0.001), slope_V1 * Real(0.001), slope_V0 * Real(0.001),
@@ -50,7 +54,8 @@ struct ThesisCurrent {
   Number current_A(const Number& v_rms_V, const Number& motor_C) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;
-    // Not a plain 0: a NaN voltage must stay visible, or a broken measurement would read as "no current, cold motor".
+    // Not a plain 0: a NaN voltage must stay visible, or a broken measurement would read as "no current, cold
+    // motor".
     const Number zero = v_rms_V * Real(0);
     // Kept off 0 V before the power: the derivative of V^exponent there would be 0 * infinity.
     const Number driven_V = detail::at_least(v_rms_V, Math::constant(Real(1e-3)));
@@ -61,7 +66,8 @@ struct ThesisCurrent {
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(
-        detail::require_finite(slope_V2_A_per_K + slope_V1_A_per_K + slope_V0_A_per_K, ConfigError::slope_A_per_K),
+        detail::require_finite(slope_V2_A_per_K + slope_V1_A_per_K + slope_V0_A_per_K,
+                               ConfigError::slope_A_per_K),
         first_error(detail::require_positive(base_A, ConfigError::base_A),
                     first_error(detail::require_within(exponent, Number(1), Number(6), ConfigError::exponent),
                                 detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms))));

@@ -15,8 +15,9 @@ namespace thermopower {
 ///     C_w dT_w/dt = P - K (T_w - T_b)
 ///     C_b dT_b/dt = K (T_w - T_b) - G (T_b - T_air)
 ///
-/// Take it when the winding is much faster than the housing, so that a short overload heats copper long before a thermometer on the
-/// housing shows it. Both eigenvalues are real and negative (the network has no way to store what would oscillate).
+/// Take it when the winding is much faster than the housing, so that a short overload heats copper long
+/// before a thermometer on the housing shows it. Both eigenvalues are real and negative (the network has no
+/// way to store what would oscillate).
 /// @ingroup actuator
 template <class Number = float>
 class TwoNodeThermalModel {
@@ -34,8 +35,10 @@ class TwoNodeThermalModel {
     ConfigError validate() const noexcept {
       return first_error(
           detail::require_positive(winding_heat_capacity_J_per_K, ConfigError::winding_heat_capacity_J_per_K),
-          first_error(detail::require_positive(body_heat_capacity_J_per_K, ConfigError::body_heat_capacity_J_per_K),
-                      first_error(detail::require_positive(coupling_W_per_K, ConfigError::coupling_W_per_K), cooling.validate())));
+          first_error(
+              detail::require_positive(body_heat_capacity_J_per_K, ConfigError::body_heat_capacity_J_per_K),
+              first_error(detail::require_positive(coupling_W_per_K, ConfigError::coupling_W_per_K),
+                          cooling.validate())));
     }
   };
 
@@ -58,12 +61,14 @@ class TwoNodeThermalModel {
   TwoNodeThermalModel(const Config& config, const Number& motor_C) noexcept : config_(config) {
     typedef detail::Numeric<Number> Math;
     start(motor_C);
-    // Rates in 1/s of the 2 x 2 system and its eigenvalues -fast, -slow, once: the step then costs two exponentials.
+    // Rates in 1/s of the 2 x 2 system and its eigenvalues -fast, -slow, once: the step then costs two
+    // exponentials.
     winding_to_body_ = config.coupling_W_per_K / config.winding_heat_capacity_J_per_K;
     body_to_winding_ = config.coupling_W_per_K / config.body_heat_capacity_J_per_K;
     const Number to_air = config.cooling.conductance_W_per_K / config.body_heat_capacity_J_per_K;
     const Number half_trace = (winding_to_body_ + body_to_winding_ + to_air) * Real(0.5);
-    // A sum of squares: half_trace^2 less the determinant could come out negative where the eigenvalues nearly meet.
+    // A sum of squares: half_trace^2 less the determinant could come out negative where the eigenvalues
+    // nearly meet.
     const Number half_difference = (winding_to_body_ - body_to_winding_ - to_air) * Real(0.5);
     const Number half_gap =
         Math::square_root(Number(half_difference * half_difference + winding_to_body_ * body_to_winding_));
@@ -98,16 +103,18 @@ class TwoNodeThermalModel {
     const Number gap = fast_per_s_ - slow_per_s_;
     const Number mixing = slow * dt_s * detail::mean_decay(Number(gap * dt_s));
     const Number body_diagonal = slow_per_s_ - (fast_per_s_ + slow_per_s_ - winding_to_body_);
-    state_.winding_C =
-        settled_winding_C + slow * winding + mixing * ((slow_per_s_ - winding_to_body_) * winding + winding_to_body_ * body);
-    state_.body_C = settled_body_C + slow * body + mixing * (body_to_winding_ * winding + body_diagonal * body);
+    state_.winding_C = settled_winding_C + slow * winding +
+                       mixing * ((slow_per_s_ - winding_to_body_) * winding + winding_to_body_ * body);
+    state_.body_C =
+        settled_body_C + slow * body + mixing * (body_to_winding_ * winding + body_diagonal * body);
     return state_;
   }
 
-  const State& state() const noexcept { return state_; }                        ///< After the last step.
-  Number hottest_C() const noexcept { return detail::at_least(state_.winding_C, state_.body_C); }  ///< The node that decides.
-  Number hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }             ///< dT_w/dt.
-  const Config& config() const noexcept { return config_; }  ///< The constants.
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+  /// The node that decides.
+  Number hottest_C() const noexcept { return detail::at_least(state_.winding_C, state_.body_C); }
+  Number hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
+  const Config& config() const noexcept { return config_; }                             ///< The constants.
 
  private:
   typedef typename detail::Numeric<Number>::Real Real;

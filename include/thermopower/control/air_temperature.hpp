@@ -5,7 +5,8 @@
 #include "../detail/check.hpp"
 
 /// @file air_temperature.hpp
-/// Air temperature from the two thermometers on a gimbal, eq 4.20, and what to do when one of them is missing or lies.
+/// Air temperature from the two thermometers on a gimbal, eq 4.20, and what to do when one of them is missing
+/// or lies.
 
 namespace thermopower {
 
@@ -19,9 +20,10 @@ enum class AirSource : uint8_t {
   warmer = 4     ///< Both are plausible, but they disagree or the frame reads exactly 0: the warmer one.
 };
 
-/// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC, and the average would be half the truth. So a
-/// frame that reads exactly 0 is not averaged, nor are two that disagree: the warmer one is taken, because an air that is believed
-/// too warm costs power, and one that is believed too cold costs the motor.
+/// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC, and the average would
+/// be half the truth. So a frame that reads exactly 0 is not averaged, nor are two that disagree: the warmer
+/// one is taken, because an air that is believed too warm costs power, and one that is believed too cold
+/// costs the motor.
 /// @ingroup control
 class AirTemperature {
  public:

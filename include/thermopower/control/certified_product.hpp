@@ -5,9 +5,9 @@
 #include <stdint.h>
 
 /// @file certified_product.hpp
-/// The products that the certified limiter is made of. For AVR they are written out: its compiler calls a 32-bit
-/// multiplication for what a few 8-bit ones do in a third of the time. The results are the same to the bit, which
-/// a test on the chip confirms (tests/unit/beyond/avr_cost).
+/// The products that the certified limiter is made of. For AVR they are written out: its compiler calls a
+/// 32-bit multiplication for what a few 8-bit ones do in a third of the time. The results are the same to the
+/// bit, which a test on the chip confirms (tests/unit/beyond/avr_cost).
 
 namespace thermopower {
 namespace detail {

@@ -25,7 +25,8 @@ struct GainConfig {
   float gain_low_power;   ///< P at power 0, 0 .. 255.
   float gain_high_power;  ///< P at power 255, 0 .. 255.
 
-  /// There is no gain that suits every rig: these are NaN, which `validate()` refuses by name until they are set.
+  /// There is no gain that suits every rig: these are NaN, which `validate()` refuses by name until they are
+  /// set.
   static GainConfig standard() noexcept {
     GainConfig config = {detail::not_a_number(), detail::not_a_number()};
     return config;
@@ -40,8 +41,9 @@ struct GainConfig {
 namespace detail {
 /// Eq 4.27, plus `rounding`, as a whole count; 0 where the gains are not numbers.
 inline uint8_t scheduled_gain(uint8_t power, const GainConfig& config, float rounding) noexcept {
-  const float gain =
-      config.gain_low_power - static_cast<float>(power) / 255.0f * (config.gain_low_power - config.gain_high_power) + rounding;
+  const float gain = config.gain_low_power -
+                     static_cast<float>(power) / 255.0f * (config.gain_low_power - config.gain_high_power) +
+                     rounding;
   if (!(gain > 0.0f)) return 0;
   return static_cast<uint8_t>(gain >= 255.0f ? 255.0f : gain);
 }
@@ -67,18 +69,20 @@ struct RoundedGain {
   }
 };
 
-/// Gains at equally spaced powers, linearly interpolated. `Table` has `static constexpr uint8_t size()` (2 .. 255) and
-/// `static const uint8_t* gains()`, the address of that many bytes declared with `thermopower_flash`; the first is for power 0, the
-/// last for power 255.
+/// Gains at equally spaced powers, linearly interpolated. `Table` has `static constexpr uint8_t size()` (2 ..
+/// 255) and `static const uint8_t* gains()`, the address of that many bytes declared with
+/// `thermopower_flash`; the first is for power 0, the last for power 255.
 /// @ingroup control
 template <class Table>
 struct TableGain {
   /// The table is the configuration.
   struct Config {
-    static Config standard() noexcept { return Config(); }               ///< Nothing to set.
-    ConfigError validate() const noexcept { return ConfigError::none; }  ///< Sizes are checked at compile time.
+    static Config standard() noexcept { return Config(); }  ///< Nothing to set.
+    /// Sizes are checked at compile time.
+    ConfigError validate() const noexcept { return ConfigError::none; }
   };
-  static_assert(Table::size() >= 2, "thermopower: a gain table needs at least two entries, for power 0 and power 255");
+  static_assert(Table::size() >= 2,
+                "thermopower: a gain table needs at least two entries, for power 0 and power 255");
 
   /// @return P, 0 .. 255
   static uint8_t gain(uint8_t power, const Config&) noexcept {
@@ -88,7 +92,8 @@ struct TableGain {
     const uint8_t below = detail::read_flash(Table::gains() + index);
     if (fraction == 0) return below;
     const uint8_t above = detail::read_flash(Table::gains() + index + 1);
-    if (above >= below) return static_cast<uint8_t>(below + part(static_cast<uint8_t>(above - below), fraction));
+    if (above >= below)
+      return static_cast<uint8_t>(below + part(static_cast<uint8_t>(above - below), fraction));
     return static_cast<uint8_t>(below - part(static_cast<uint8_t>(below - above), fraction));
   }
 

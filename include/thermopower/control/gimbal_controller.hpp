@@ -26,7 +26,8 @@ struct GimbalConfigError {
   ConfigError field;  ///< `ConfigError::none` when all is well.
 };
 
-/// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate to compute with.
+/// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate
+/// to compute with.
 /// @ingroup control
 struct NominalSupply {
   /// @return V
@@ -56,7 +57,8 @@ struct GimbalConfig {
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(detail::require_positive(supply_V, ConfigError::supply_V))) return ConfigError::supply_V;
-    if (is_error(detail::require_not_negative(minimum_supply_V, ConfigError::minimum_supply_V)) || minimum_supply_V >= supply_V)
+    if (is_error(detail::require_not_negative(minimum_supply_V, ConfigError::minimum_supply_V)) ||
+        minimum_supply_V >= supply_V)
       return ConfigError::minimum_supply_V;
     return first_error(detail::require_positive(timeout_s, ConfigError::timeout_s), air.validate());
   }
@@ -84,7 +86,8 @@ struct AxisChain {
 
 template <uint8_t index, class First, class... Rest>
 struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
-  static_assert(IsAxis<First>::value, "thermopower: every parameter of GimbalController must be an AxisController");
+  static_assert(IsAxis<First>::value,
+                "thermopower: every parameter of GimbalController must be an AxisController");
   typedef AxisChain<index + 1, Rest...> Next;
   AxisChain() noexcept {}
   explicit AxisChain(const typename First::Config& first, const typename Rest::Config&... rest) noexcept
@@ -115,8 +118,10 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 template <class Supply, class... Axes>
 class BasicGimbalController {
  public:
-  static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }  ///< Number of axes.
-  static_assert(sizeof...(Axes) >= 1 && sizeof...(Axes) < 255, "thermopower: a GimbalController needs at least one AxisController");
+  /// Number of axes.
+  static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }
+  static_assert(sizeof...(Axes) >= 1 && sizeof...(Axes) < 255,
+                "thermopower: a GimbalController needs at least one AxisController");
 
   typedef GimbalConfig Config;                                  ///< What one tunes on the gimbal as a whole.
   typedef GimbalCommand<sizeof...(Axes)> Command;               ///< What goes back to the board.
@@ -138,16 +143,19 @@ class BasicGimbalController {
     begin();
   }
 
-  /// The first wrong field found when the controller was made. Anything but none keeps the power of every axis at its least.
+  /// The first wrong field found when the controller was made. Anything but none keeps the power of every
+  /// axis at its least.
   GimbalConfigError validate() const noexcept { return config_error_; }
 
   /// One control cycle from a telemetry message.
-  /// @param telemetry  offers `error_deg(axis)`, `imu_C()`, `frame_imu_C()` and `battery_V()`, as `sbgc::RealtimeData` does
+  /// @param telemetry  offers `error_deg(axis)`, `imu_C()`, `frame_imu_C()` and `battery_V()`, as
+  /// `sbgc::RealtimeData` does
   /// @param dt_s       time since the last step, >= 0
   template <class Telemetry>
   const Command& step(const Telemetry& telemetry, float dt_s) noexcept {
     Inputs inputs;
-    for (uint8_t index = 0; index < axis_count(); ++index) inputs.error_deg[index] = telemetry.error_deg(index);
+    for (uint8_t index = 0; index < axis_count(); ++index)
+      inputs.error_deg[index] = telemetry.error_deg(index);
     inputs.camera_C = static_cast<float>(telemetry.imu_C());
     inputs.frame_C = static_cast<float>(telemetry.frame_imu_C());
     inputs.supply_V = telemetry.battery_V();
@@ -168,8 +176,9 @@ class BasicGimbalController {
     return step_axes(telemetry_fault_, dt_s);
   }
 
-  /// One cycle in which no telemetry came. The temperatures go on; what the last telemetry asked for, or its fault, holds until
-  /// `timeout_s`, then the power is the least. @param dt_s  time since the last step or silent cycle, >= 0
+  /// One cycle in which no telemetry came. The temperatures go on; what the last telemetry asked for, or its
+  /// fault, holds until `timeout_s`, then the power is the least. @param dt_s  time since the last step or
+  /// silent cycle, >= 0
   const Command& step_silent(float dt_s) noexcept {
     // Asked this way round so that a NaN time counts as silence, and a negative one buys no more of it.
     if (!(dt_s < 0.0f)) state_.silent_s += dt_s;
@@ -182,12 +191,14 @@ class BasicGimbalController {
 
   /// The controller of one axis, to log its state or set its temperature.
   template <uint8_t index>
-  auto axis() noexcept -> decltype(detail::axis_at<index>(*static_cast<detail::AxisChain<0, Axes...>*>(nullptr))) {
+  auto axis() noexcept
+      -> decltype(detail::axis_at<index>(*static_cast<detail::AxisChain<0, Axes...>*>(nullptr))) {
     return detail::axis_at<index>(axes_);
   }
   /// @overload
   template <uint8_t index>
-  auto axis() const noexcept -> decltype(detail::axis_at<index>(*static_cast<const detail::AxisChain<0, Axes...>*>(nullptr))) {
+  auto axis() const noexcept
+      -> decltype(detail::axis_at<index>(*static_cast<const detail::AxisChain<0, Axes...>*>(nullptr))) {
     return detail::axis_at<index>(axes_);
   }
 

@@ -9,8 +9,9 @@
 
 namespace thermopower {
 
-/// The reason behind a power that is less than what was asked for. Numbers are stable, for logs. Below 64 the controller is limiting,
-/// which is its job; from 64 up something is wrong (a fault), and the power is the least there is.
+/// The reason behind a power that is less than what was asked for. Numbers are stable, for logs. Below 64 the
+/// controller is limiting, which is its job; from 64 up something is wrong (a fault), and the power is the
+/// least there is.
 /// @ingroup control
 enum class LimitReason : uint8_t {
   none = 0,                   ///< The demand was granted.
@@ -43,8 +44,8 @@ struct LimitedPower {
   LimitReason reason;  ///< Why it is less than the demand; `none` when it is not.
 };
 
-/// What is left to an actuator that is cut: the lowest power parameter the controller board takes (0 is not valid, section 4.2). A
-/// power law that asks for 0, for an actuator that may be switched off, is granted 0.
+/// What is left to an actuator that is cut: the lowest power parameter the controller board takes (0 is not
+/// valid, section 4.2). A power law that asks for 0, for an actuator that may be switched off, is granted 0.
 /// @ingroup control
 constexpr uint8_t least_power() { return 1; }
 

@@ -25,19 +25,25 @@ inline float wrap_deg(float angle_deg) noexcept {
 
 /// Error of an axis, eq 4.19, folded. @return -180 .. 180 degrees
 /// @ingroup control
-inline float position_error_deg(float target_deg, float measured_deg) noexcept { return wrap_deg(target_deg - measured_deg); }
+inline float position_error_deg(float target_deg, float measured_deg) noexcept {
+  return wrap_deg(target_deg - measured_deg);
+}
 
 /// The same in the controller's integer units of 360/16384 degree. @return -8192 .. 8191
 /// @ingroup control
 inline int16_t position_error_units(int16_t target, int16_t measured) noexcept {
   const uint16_t turn = 16384u;
-  const uint16_t difference = static_cast<uint16_t>(static_cast<uint16_t>(target) - static_cast<uint16_t>(measured));
-  const uint16_t within = static_cast<uint16_t>(difference & (turn - 1u));  // 16384 divides 65536, so wrapping costs nothing
+  const uint16_t difference =
+      static_cast<uint16_t>(static_cast<uint16_t>(target) - static_cast<uint16_t>(measured));
+  // 16384 divides 65536, so wrapping costs nothing
+  const uint16_t within = static_cast<uint16_t>(difference & (turn - 1u));
   return static_cast<int16_t>(within >= turn / 2u ? static_cast<int32_t>(within) - turn : within);
 }
 
 /// Degrees of an angle in units of 360/16384 degree.
 /// @ingroup control
-inline float deg_from_units(int16_t units) noexcept { return static_cast<float>(units) * (360.0f / 16384.0f); }
+inline float deg_from_units(int16_t units) noexcept {
+  return static_cast<float>(units) * (360.0f / 16384.0f);
+}
 
 }  // namespace thermopower

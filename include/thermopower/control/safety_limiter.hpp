@@ -13,16 +13,20 @@
 /// | `PerSecond` | at a rate in counts per second | the default: the same at any loop rate |
 /// | `PerCycle` | by 1 per call | the original program |
 ///
-/// A rule of your own has a `State` with the ceiling, `start()`, and `lower(state, config, dt_s)`, `raise(...)`, `cut(state)`, `ceiling(state)`.
+/// A rule of your own has a `State` with the ceiling, `start()`, and `lower(state, config, dt_s)`,
+/// `raise(...)`, `cut(state)`, `ceiling(state)`.
 
 namespace thermopower {
 
 /// What one tunes.
 /// @ingroup control
 struct SafetyLimiterConfig {
-  float maximum_C;      ///< T_max: above it the power is cut to the least. 0 .. 200 degC. The thesis: 60, because PLA softens.
-  float safety_time_s;  ///< t_safety: how long the actuator must be able to go on at its present rate. Above 0. The thesis: 30.
-  float rate_per_s;     ///< Read by `PerSecond` only: speed of the ceiling, counts per second, above 0. 33.3 is 1 per 30 ms.
+  float maximum_C;  ///< T_max: above it the power is cut to the least. 0 .. 200 degC. The thesis: 60, because
+                    ///< PLA softens.
+  float safety_time_s;  ///< t_safety: how long the actuator must be able to go on at its present rate. Above
+                        ///< 0. The thesis: 30.
+  float rate_per_s;  ///< Read by `PerSecond` only: speed of the ceiling, counts per second, above 0. 33.3 is
+                     ///< 1 per 30 ms.
 
   /// The thesis's values.
   static SafetyLimiterConfig standard() noexcept {
@@ -65,21 +69,25 @@ struct PerSecond {
   };
   /// One step down, not below the least power.
   static void lower(State& state, const SafetyLimiterConfig& config, float dt_s) noexcept {
-    state.ceiling = detail::at_least(state.ceiling - config.rate_per_s * dt_s, static_cast<float>(least_power()));
+    state.ceiling =
+        detail::at_least(state.ceiling - config.rate_per_s * dt_s, static_cast<float>(least_power()));
   }
   /// One step up, not above 255.
   static void raise(State& state, const SafetyLimiterConfig& config, float dt_s) noexcept {
     state.ceiling = detail::at_most(state.ceiling + config.rate_per_s * dt_s, 255.0f);
   }
-  static void cut(State& state) noexcept { state.ceiling = static_cast<float>(least_power()); }  ///< To the least power.
-  static uint8_t ceiling(const State& state) noexcept { return static_cast<uint8_t>(state.ceiling); }  ///< In whole counts.
+  /// To the least power.
+  static void cut(State& state) noexcept { state.ceiling = static_cast<float>(least_power()); }
+  /// In whole counts.
+  static uint8_t ceiling(const State& state) noexcept { return static_cast<uint8_t>(state.ceiling); }
 };
 
 /// Limits the power so that the actuator stays below its limit temperature.
 /// @tparam Rule  how the ceiling moves
 ///
-/// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time that is NaN, infinite or
-/// impossible (below absolute zero, a negative time) counts as too hot; at equal history a hotter actuator never gets more.
+/// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time
+/// that is NaN, infinite or impossible (below absolute zero, a negative time) counts as too hot; at equal
+/// history a hotter actuator never gets more.
 /// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {
@@ -102,7 +110,8 @@ class SafetyLimiter {
 
   /// @param dt_s  time since the last step, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
-    if (!detail::is_finite(inputs.motor_C) || inputs.motor_C < -273.15f || !detail::is_finite(inputs.rate_K_per_s))
+    if (!detail::is_finite(inputs.motor_C) || inputs.motor_C < -273.15f ||
+        !detail::is_finite(inputs.rate_K_per_s))
       return cut(LimitReason::temperature_not_finite, inputs.demand);
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
     if (inputs.motor_C > config_.maximum_C) return cut(LimitReason::over_temperature, inputs.demand);
@@ -123,8 +132,8 @@ class SafetyLimiter {
     return granted;
   }
 
-  /// Least power, or the demand if that is less, for a reason found elsewhere; the ceiling starts again from there, so that power
-  /// returns gradually.
+  /// Least power, or the demand if that is less, for a reason found elsewhere; the ceiling starts again from
+  /// there, so that power returns gradually.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     Rule::cut(state_);
     LimitedPower least = {demand < least_power() ? demand : least_power(), reason};

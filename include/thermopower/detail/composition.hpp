@@ -5,7 +5,8 @@
 #include <stdint.h>
 
 /// @file composition.hpp
-/// Asks whether a type can play a part in a controller, so that a wrong composition is refused in a sentence and not in a page.
+/// Asks whether a type can play a part in a controller, so that a wrong composition is refused in a sentence
+/// and not in a page.
 
 namespace thermopower {
 namespace detail {

@@ -6,8 +6,9 @@
 #include <string.h>
 
 /// @file flash.hpp
-/// Constant tables that live in program memory where that is a separate address space (AVR), and in plain memory elsewhere.
-/// A test replaces `THERMOPOWER_FLASH_HEADER` by a stand-in with shifted pointers, so that reading flash as RAM fails on a PC too.
+/// Constant tables that live in program memory where that is a separate address space (AVR), and in plain
+/// memory elsewhere. A test replaces `THERMOPOWER_FLASH_HEADER` by a stand-in with shifted pointers, so that
+/// reading flash as RAM fails on a PC too.
 
 #if defined(THERMOPOWER_FLASH_HEADER)
 #include THERMOPOWER_FLASH_HEADER
@@ -29,7 +30,8 @@ inline const Value* flash_pointer(const Value* table) noexcept {
   return table;
 }
 
-/// Copies a value of any plain type out of flash. `address` must point at an object declared with `thermopower_flash`.
+/// Copies a value of any plain type out of flash. `address` must point at an object declared with
+/// `thermopower_flash`.
 template <class Value>
 inline Value read_flash(const Value* address) noexcept {
 #if defined(__AVR__)
@@ -48,7 +50,9 @@ inline uint8_t read_flash(const uint8_t* address) noexcept { return pgm_read_byt
 template <>
 inline uint16_t read_flash(const uint16_t* address) noexcept { return pgm_read_word(address); }
 template <>
-inline int16_t read_flash(const int16_t* address) noexcept { return static_cast<int16_t>(pgm_read_word(address)); }
+inline int16_t read_flash(const int16_t* address) noexcept {
+  return static_cast<int16_t>(pgm_read_word(address));
+}
 template <>
 inline float read_flash(const float* address) noexcept { return pgm_read_float(address); }
 #endif

@@ -7,31 +7,33 @@
 #include "../actuator/thesis_current.hpp"
 
 /// @file bgm5208_200_12.hpp
-/// iPower BGM5208-200-12 gimbal motor (yaw axis of the thesis), on a printed PLA bracket, in still laboratory air.
+/// iPower BGM5208-200-12 gimbal motor (yaw axis of the thesis), on a printed PLA bracket, in still laboratory
+/// air.
 
 namespace thermopower {
 namespace motors {
 
-/// The motor with the corrected laws: the printed tables fitted again, and the heating coefficient of eq 4.18 a function of the
-/// voltage, as the text has it. Use this one.
-/// Valid for V_rms 5.8 .. 12.9 V, motor 25 .. 65 degC (Table 4.2); cooling from Table 4.6.
+/// The motor with the corrected laws: the printed tables fitted again, and the heating coefficient of eq 4.18
+/// a function of the voltage, as the text has it. Use this one. Valid for V_rms 5.8 .. 12.9 V, motor 25 .. 65
+/// degC (Table 4.2); cooling from Table 4.6.
 ///
 /// As a motor type for `AxisController` it names its models (`Current`, `Thermal`) and gives their constants.
 /// @ingroup motors
 struct Bgm5208_200_12 {
-  typedef CurrentModel<ThesisCurrent<float> > Current;                                      ///< Current law.
-  typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, LinearizedStep> Thermal;   ///< Thermal model.
+  typedef CurrentModel<ThesisCurrent<float>> Current;                                      ///< Current law.
+  typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, LinearizedStep> Thermal;  ///< Thermal model.
 
   /// Eq 4.4 and 4.5 as the regression of Table 4.2 gives them (the text prints the first sign wrong).
   template <class Number = float>
   static constexpr ThesisCurrent<Number> current_law() noexcept {
-    return ThesisCurrent<Number>::from_milliampere(Number(-0.054978), Number(0.631148), Number(-2.497093), Number(0.125709),
-                                                   Number(3.413451), Number(1));
+    return ThesisCurrent<Number>::from_milliampere(Number(-0.054978), Number(0.631148), Number(-2.497093),
+                                                   Number(0.125709), Number(3.413451), Number(1));
   }
   /// Eq 4.18 as the text has it, 1/r = 0.2435 V_rms - 0.4952, unrounded (regression of Table 4.10).
   template <class Number = float>
   static constexpr ThesisHeating<Number> heating_law() noexcept {
-    return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.243455), Number(-0.495180), Number(1));
+    return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.243455), Number(-0.495180),
+                                             Number(1));
   }
   /// k = 0.05 per minute, eq 4.11 (which prints it per second).
   template <class Number = float>
@@ -47,9 +49,9 @@ struct Bgm5208_200_12 {
     return config;
   }
 
-  /// The motor as the thesis's program computes it: 0.2435 of eq 4.18 multiplies the temperature instead of the voltage, so the
-  /// motor seems 3 to 5 times as heavy as it is and the estimate is 6 to 12 K too cold after five minutes (Table 5.2). For
-  /// reproducing the original only.
+  /// The motor as the thesis's program computes it: 0.2435 of eq 4.18 multiplies the temperature instead of
+  /// the voltage, so the motor seems 3 to 5 times as heavy as it is and the estimate is 6 to 12 K too cold
+  /// after five minutes (Table 5.2). For reproducing the original only.
   struct AsProgrammed {
     typedef CurrentModel<ThesisCurrent<float> > Current;                                 ///< Current law.
     typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, EulerStep> Thermal;   ///< Thermal model.
@@ -57,13 +59,14 @@ struct Bgm5208_200_12 {
     /// Program lines 32 to 36.
     template <class Number = float>
     static constexpr ThesisCurrent<Number> current_law() noexcept {
-      return ThesisCurrent<Number>::from_milliampere(Number(-0.055), Number(0.6311), Number(-2.497), Number(0.1257),
-                                                     Number(3.4135), Number(1));
+      return ThesisCurrent<Number>::from_milliampere(Number(-0.055), Number(0.6311), Number(-2.497),
+                                                     Number(0.1257), Number(3.4135), Number(1));
     }
     /// Program lines 38 to 41: 0.2435 stands in the slope against temperature.
     template <class Number = float>
     static constexpr ThesisHeating<Number> heating_law() noexcept {
-      return ThesisHeating<Number>::per_minute(Number(0), Number(0.2435), Number(0), Number(-0.4952), Number(1));
+      return ThesisHeating<Number>::per_minute(Number(0), Number(0.2435), Number(0), Number(-0.4952),
+                                               Number(1));
     }
     /// Program line 30.
     template <class Number = float>
@@ -80,18 +83,20 @@ struct Bgm5208_200_12 {
     }
   };
 
-  /// The motor as the text prints it: eq 4.4 with its wrong sign, eq 4.18 with the voltage. Here to be compared, not to be used.
+  /// The motor as the text prints it: eq 4.4 with its wrong sign, eq 4.18 with the voltage. Here to be
+  /// compared, not to be used.
   struct AsPrinted : AsProgrammed {
     /// Eq 4.4 and 4.5, sign as printed.
     template <class Number = float>
     static constexpr ThesisCurrent<Number> current_law() noexcept {
-      return ThesisCurrent<Number>::from_milliampere(Number(0.055), Number(0.6311), Number(-2.497), Number(0.1257),
-                                                     Number(3.4135), Number(1));
+      return ThesisCurrent<Number>::from_milliampere(Number(0.055), Number(0.6311), Number(-2.497),
+                                                     Number(0.1257), Number(3.4135), Number(1));
     }
     /// Eq 4.18 as printed.
     template <class Number = float>
     static constexpr ThesisHeating<Number> heating_law() noexcept {
-      return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.2435), Number(-0.4952), Number(1));
+      return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.2435), Number(-0.4952),
+                                               Number(1));
     }
     /// Constants for `Current`.
     static Current::Config current() noexcept { return current_law<float>(); }

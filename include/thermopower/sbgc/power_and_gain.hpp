@@ -14,9 +14,10 @@
 namespace thermopower {
 namespace sbgc {
 
-/// @brief A view of a gimbal command that is sent as power_and_gain() sends it: the same bytes, without the 30-byte table in between.
-/// Take it where stack and time are short.
-/// @tparam Command any type with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw. It must outlive the view.
+/// @brief A view of a gimbal command that is sent as power_and_gain() sends it: the same bytes, without the
+/// 30-byte table in between. Take it where stack and time are short.
+/// @tparam Command any type with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw. It must outlive the
+/// view.
 /// @ingroup sbgc
 template <class Command>
 class PowerAndGain {

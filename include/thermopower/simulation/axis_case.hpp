@@ -38,14 +38,16 @@ struct AxisOutcome {
 
 /// Clocks of a run.
 struct AxisClock {
-  double board_cycle_s = 0.0008;   ///< Torque and mechanics.
-  int cycles_per_slow = 100;       ///< Temperatures and what follows from them: every 80 ms, against 10 s of the fastest winding.
+  double board_cycle_s = 0.0008;  ///< Torque and mechanics.
+  int cycles_per_slow = 100;  ///< Temperatures and what follows from them: every 80 ms, against 10 s of the
+                              ///< fastest winding.
 };
 
 /// Simulates a case.
 /// @param duration_s  rounded to whole slow steps
 template <class Number>
-AxisOutcome<Number> run_case(const AxisCase<Number>& happens, double duration_s, const AxisClock& clock = {}) noexcept {
+AxisOutcome<Number> run_case(const AxisCase<Number>& happens, double duration_s,
+                             const AxisClock& clock = {}) noexcept {
   using Math = thermopower::detail::Numeric<Number>;
   using Real = typename Math::Real;
   const Real turn = static_cast<Real>(6.283185307179586), quarter = static_cast<Real>(1.5707963267948966);
@@ -64,7 +66,8 @@ AxisOutcome<Number> run_case(const AxisCase<Number>& happens, double duration_s,
     energy_J += plant.driven().heat_W * slow_s;
     Number recent = zero;
     for (int i = 0; i < clock.cycles_per_slow; ++i) {
-      const Real now_s = static_cast<Real>((static_cast<double>(slow) * clock.cycles_per_slow + i) * clock.board_cycle_s);
+      const Real now_s =
+          static_cast<Real>((static_cast<double>(slow) * clock.cycles_per_slow + i) * clock.board_cycle_s);
       const Number sway = sway_omega * now_s + happens.sway_turns * turn;
       const Number wind = wind_omega * now_s + happens.wind_turns * turn;
       const Number sway_sine = sway_rad * sine(sway);
@@ -80,8 +83,8 @@ AxisOutcome<Number> run_case(const AxisCase<Number>& happens, double duration_s,
     squares += recent;
   }
   const Real count = static_cast<Real>(slow_steps * clock.cycles_per_slow);
-  AxisOutcome<Number> outcome = {Math::square_root(Number(squares / count)), Math::square_root(peak), energy_J,
-                                 plant.temperatures().winding_C, plant.temperatures().body_C};
+  AxisOutcome<Number> outcome = {Math::square_root(Number(squares / count)), Math::square_root(peak),
+                                 energy_J, plant.temperatures().winding_C, plant.temperatures().body_C};
   return outcome;
 }
 

@@ -18,9 +18,9 @@ class Battery {
  public:
   /// What describes the battery.
   struct Config {
-    Number full_V;          ///< Open-circuit voltage when full, above 0.
-    Number empty_V;         ///< Open-circuit voltage when empty, above 0; in between it falls in a straight line.
-    Number capacity_C;      ///< Charge, coulomb (1 Ah is 3600 C), above 0.
+    Number full_V;      ///< Open-circuit voltage when full, above 0.
+    Number empty_V;     ///< Open-circuit voltage when empty, above 0; in between it falls in a straight line.
+    Number capacity_C;  ///< Charge, coulomb (1 Ah is 3600 C), above 0.
     Number resistance_ohm;  ///< In series, >= 0.
   };
 
@@ -41,7 +41,8 @@ class Battery {
   /// Voltage without load; never below `empty_V`.
   Number open_circuit_V() const noexcept {
     const Number left = Real(1) - state_.used_C / config_.capacity_C;
-    const Number share = thermopower::detail::at_least(left, thermopower::detail::Numeric<Number>::constant(Real(0)));
+    const Number share =
+        thermopower::detail::at_least(left, thermopower::detail::Numeric<Number>::constant(Real(0)));
     return config_.empty_V + (config_.full_V - config_.empty_V) * share;
   }
 

@@ -39,15 +39,15 @@ struct BoardCounters {
   double shortest_request_gap_us = 1e300;  ///< Between the ends of two requests for telemetry.
 };
 
-/// An emulated SimpleBGC board (protocol v1 and v2). It knows nothing of motors: a plant reads `power()` and `p_gain()` and writes the
-/// truth.
+/// An emulated SimpleBGC board (protocol v1 and v2). It knows nothing of motors: a plant reads `power()` and
+/// `p_gain()` and writes the truth.
 ///
 ///     board.receive(byte, end_us);                 // whatever the controller sends, at its time
 ///     board.step(board.next_parse_us(), truth);    // when that time has come
 ///     while (board.transmit(now_us, byte)) ...     // whatever has arrived at the controller
 ///
-/// It answers REALTIME_DATA_3/4, BOARD_INFO, GET_ADJ_VARS_VAL and confirms SET_ADJ_VARS_VAL, MOTORS_ON/OFF and DATA_STREAM_INTERVAL
-/// (whose streams it sends). Anything else is counted and ignored.
+/// It answers REALTIME_DATA_3/4, BOARD_INFO, GET_ADJ_VARS_VAL and confirms SET_ADJ_VARS_VAL, MOTORS_ON/OFF
+/// and DATA_STREAM_INTERVAL (whose streams it sends). Anything else is counted and ignored.
 class EmulatedBoard {
  public:
   /// @throws std::invalid_argument naming the field that is out of range
@@ -77,11 +77,12 @@ class EmulatedBoard {
   /// Takes the next byte that has arrived at the controller by a time. @return false when there is none
   bool transmit(double until_us, LineByte& byte) { return line_.take(until_us, byte); }
 
-  std::uint8_t power(int axis) const { return variables_[sbgc::variable::power_roll + axis]; }  ///< POWER in force.
-  std::uint8_t p_gain(int axis) const { return variables_[sbgc::variable::p_roll + axis]; }     ///< P in force.
-  bool motors_on() const { return motors_on_; }                                                 ///< Are the motors powered?
-  const BoardCounters& counters() const { return counters_; }                                   ///< What happened so far.
-  const sbgc::ReceiverCounters& received() const { return codec_.counters(); }                  ///< What its receiver lost.
+  /// POWER in force.
+  std::uint8_t power(int axis) const { return variables_[sbgc::variable::power_roll + axis]; }
+  std::uint8_t p_gain(int axis) const { return variables_[sbgc::variable::p_roll + axis]; }  ///< P in force.
+  bool motors_on() const { return motors_on_; }                                 ///< Are the motors powered?
+  const BoardCounters& counters() const { return counters_; }                   ///< What happened so far.
+  const sbgc::ReceiverCounters& received() const { return codec_.counters(); }  ///< What its receiver lost.
   /// The telemetry sent last, as sent.
   const sbgc::RealtimeFields& last_telemetry() const { return last_telemetry_; }
 
@@ -100,12 +101,14 @@ class EmulatedBoard {
   };
 
   static const BoardConfig& checked(const BoardConfig& config) {
-    if (!(config.parse_interval_us > 0)) throw std::invalid_argument("BoardConfig::parse_interval_us must be above 0");
+    if (!(config.parse_interval_us > 0))
+      throw std::invalid_argument("BoardConfig::parse_interval_us must be above 0");
     if (!(config.baud > 0)) throw std::invalid_argument("BoardConfig::baud must be above 0");
     if (config.bits_per_byte < 10 || config.bits_per_byte > 12)
       throw std::invalid_argument("BoardConfig::bits_per_byte must be within 10 .. 12");
     if (config.transmit_buffer_bytes < 130)
-      throw std::invalid_argument("BoardConfig::transmit_buffer_bytes must be at least 130, the longest answer");
+      throw std::invalid_argument(
+          "BoardConfig::transmit_buffer_bytes must be at least 130, the longest answer");
     return config;
   }
 
@@ -115,7 +118,8 @@ class EmulatedBoard {
       arrived_.pop_front();
       if (faults.is_deaf) continue;
       const auto at_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(arrived.end_us));
-      for (bool got = codec_.receive(arrived.byte, at_us); got; got = codec_.next()) obey(codec_.frame(), arrived.end_us, now_us);
+      for (bool got = codec_.receive(arrived.byte, at_us); got; got = codec_.next())
+        obey(codec_.frame(), arrived.end_us, now_us);
     }
     if (stream_.interval_us > 0 && now_us >= stream_.next_us && has_room(now_us)) {
       send_telemetry(stream_.id, now_us);
@@ -186,7 +190,9 @@ class EmulatedBoard {
       payload.insert(payload.end(), {id, variables_[id], 0, 0, 0});
       ++payload[0];
     }
-    send(sbgc::Raw{sbgc::command::set_adj_vars_val, {payload.data(), static_cast<std::uint8_t>(payload.size())}}, now_us, false);
+    send(sbgc::Raw{sbgc::command::set_adj_vars_val,
+                   {payload.data(), static_cast<std::uint8_t>(payload.size())}},
+         now_us, false);
   }
 
   void start_stream(const sbgc::Frame& frame, double now_us) {

@@ -10,15 +10,16 @@
 #include "emulated_board_truth.hpp"
 
 /// @file emulated_board_line.hpp
-/// The sending half of an emulated board's serial line: each byte at its time, and damage where it is asked for.
+/// The sending half of an emulated board's serial line: each byte at its time, and damage where it is asked
+/// for.
 
 namespace thermopower::simulation {
 
 /// A byte on its way to the other end.
 struct LineByte {
-  double end_us;                  ///< When its stop bit ends.
-  std::uint8_t value;             ///< As it arrives.
-  bool ends_whole_telemetry;      ///< Last byte of a telemetry frame all of whose bytes arrive as they were sent.
+  double end_us;              ///< When its stop bit ends.
+  std::uint8_t value;         ///< As it arrives.
+  bool ends_whole_telemetry;  ///< Last byte of a telemetry frame all of whose bytes arrive as they were sent.
 };
 
 /// Bytes in a row, one after the other, at the line's pace.
@@ -28,14 +29,17 @@ class BoardLine {
   /// @param seed     of the random damage; the same seed gives the same damage
   BoardLine(double byte_us, std::uint64_t seed) : byte_us_(byte_us), random_(seed) {}
 
-  /// Queues one frame. @param earliest_us  its first byte starts now or when the line is free, whichever is later
-  void send(const std::uint8_t* bytes, std::size_t size, double earliest_us, bool is_telemetry, const BoardFaults& faults) {
+  /// Queues one frame. @param earliest_us  its first byte starts now or when the line is free, whichever is
+  /// later
+  void send(const std::uint8_t* bytes, std::size_t size, double earliest_us, bool is_telemetry,
+            const BoardFaults& faults) {
     bool is_whole = is_telemetry && !faults.is_silent;
     for (std::size_t at = 0; at < size; ++at) {
       free_us_ = (earliest_us > free_us_ ? earliest_us : free_us_) + byte_us_;
       std::uint8_t value = bytes[at];
       const bool is_lost = faults.is_silent || happens(faults.lost_byte_rate);
-      if (happens(faults.changed_byte_rate)) value = static_cast<std::uint8_t>(value ^ (1u << (random_() % 8u)));
+      if (happens(faults.changed_byte_rate))
+        value = static_cast<std::uint8_t>(value ^ (1u << (random_() % 8u)));
       is_whole = is_whole && !is_lost && value == bytes[at];
       if (!is_lost) bytes_.push_back({free_us_, value, is_whole && at + 1 == size});
       if (happens(faults.noise_byte_rate)) {
@@ -57,7 +61,9 @@ class BoardLine {
   /// When everything queued will have been sent.
   double free_us() const { return free_us_; }
   /// Bytes that are still to be sent at a time.
-  double backlog_bytes(double now_us) const { return free_us_ > now_us ? (free_us_ - now_us) / byte_us_ : 0.0; }
+  double backlog_bytes(double now_us) const {
+    return free_us_ > now_us ? (free_us_ - now_us) / byte_us_ : 0.0;
+  }
 
  private:
   bool happens(double probability) {

@@ -23,7 +23,8 @@ struct BaseMotion {
 ///     J dw/dt = M_motor + M_disturbance - m g l sin(angle - hanging) - M_friction(w - w_base)
 ///               - k (joint - rest) - M_cogging sin(n joint)        joint = angle - angle_base
 ///
-/// Integrated by the classical Runge-Kutta rule; torques are constant over a step, the base moves on its parabola.
+/// Integrated by the classical Runge-Kutta rule; torques are constant over a step, the base moves on its
+/// parabola.
 /// @tparam Number  double, float, or `Lanes`: one axis per lane
 template <class Number>
 class GimbalAxis {
@@ -34,14 +35,16 @@ class GimbalAxis {
 
   /// What describes the axis.
   struct Config {
-    Number inertia_kg_m2;            ///< J, above 0.
-    Number imbalance_Nm;             ///< m g l: torque of the weight when the centre of mass lies level with the bearing. >= 0.
-    Number hanging_rad;              ///< Angle in space at which the centre of mass hangs straight down.
+    Number inertia_kg_m2;  ///< J, above 0.
+    Number imbalance_Nm;   ///< m g l: torque of the weight when the centre of mass lies level with the
+                           ///< bearing. >= 0.
+    Number hanging_rad;    ///< Angle in space at which the centre of mass hangs straight down.
     JointFriction<Number> friction;  ///< In the bearing.
     Number cable_Nm_per_rad;         ///< k, >= 0.
     Number cable_rest_rad;           ///< Joint angle at which the cable is slack.
     Number cogging_Nm;               ///< Amplitude, >= 0.
-    Number cogging_per_turn;         ///< n: periods per turn; the least common multiple of slots and poles. Whole, above 0.
+    Number cogging_per_turn;  ///< n: periods per turn; the least common multiple of slots and poles. Whole,
+                              ///< above 0.
   };
 
   /// The camera, in space.
@@ -79,7 +82,8 @@ class GimbalAxis {
     return state_;
   }
 
-  /// Angular acceleration in a state, `since_s` after the start of the step. The right-hand side, for other integrators.
+  /// Angular acceleration in a state, `since_s` after the start of the step. The right-hand side, for other
+  /// integrators.
   Number acceleration(const Number& angle_rad, const Number& rate_rad_per_s, const Inputs& inputs,
                       Real since_s) const noexcept {
     const BaseMotion<Number>& base = inputs.base;

@@ -10,17 +10,18 @@
 
 namespace thermopower::simulation {
 
-/// A brushless gimbal motor on a sine drive. POWER sets the amplitude of the field, whether torque is needed or not; the board turns
-/// the field ahead of the rotor to get torque, up to the amplitude `Kt I`. So the motor heats alike at rest and at work, which is what
-/// makes POWER worth controlling.
+/// A brushless gimbal motor on a sine drive. POWER sets the amplitude of the field, whether torque is needed
+/// or not; the board turns the field ahead of the rotor to get torque, up to the amplitude `Kt I`. So the
+/// motor heats alike at rest and at work, which is what makes POWER worth controlling.
 ///
 ///     winding voltage  V_w = V_supply (V_rms / V_supply)^(2 n)      V_rms by eq 3.11
 ///     current          I = V_w / R(T_winding)
 ///     torque           at most Kt (1 + a_m (T_magnet - 25 degC)) I
 ///     supply           V_supply I_supply = I^2 R: all of it becomes heat
 ///
-/// n = 1/2 would be eq 3.11 as it stands. The currents of Tables 4.1 and 4.2 rise faster: n = 0.93 and 0.95 fit them (a drive that
-/// scales the sine's amplitude would have n = 1). Counter-voltage is left out: at 100 deg/s it is a hundredth of the supply.
+/// n = 1/2 would be eq 3.11 as it stands. The currents of Tables 4.1 and 4.2 rise faster: n = 0.93 and 0.95
+/// fit them (a drive that scales the sine's amplitude would have n = 1). Counter-voltage is left out: at 100
+/// deg/s it is a hundredth of the supply.
 template <class Number>
 struct GimbalDrive {
   OhmicCurrent<Number> winding;         ///< R(T).
@@ -36,7 +37,8 @@ struct GimbalDrive {
     Number available_Nm;   ///< Amplitude of the torque.
   };
 
-  /// Conductance that the drive puts across the supply: independent of the supply's voltage. @param power_param  0 .. 255
+  /// Conductance that the drive puts across the supply: independent of the supply's voltage. @param
+  /// power_param  0 .. 255
   Number load_at(const Number& power_param, const Number& winding_C) const noexcept {
     const Number share = amplitude(power_param);
     return share * share / winding.resistance_at(winding_C);
@@ -44,14 +46,16 @@ struct GimbalDrive {
 
   /// @param power_param  0 .. 255
   /// @param supply_V     at the board's terminals, >= 0
-  State at(const Number& power_param, const Number& supply_V, const Number& winding_C, const Number& magnet_C) const noexcept {
+  State at(const Number& power_param, const Number& supply_V, const Number& winding_C,
+           const Number& magnet_C) const noexcept {
     const Number share = amplitude(power_param);
     const Number current_A = winding.current_A(Number(supply_V * share), winding_C);
     State state;
     state.v_rms_V = v_rms_from_power<Number>(supply_V, power_param);
     state.load_S = share * share / winding.resistance_at(winding_C);
     state.heat_W = current_A * supply_V * share;
-    state.available_Nm = torque_Nm_per_A * (Real(1) + magnet_tempco_per_K * (magnet_C - Real(25))) * current_A;
+    state.available_Nm =
+        torque_Nm_per_A * (Real(1) + magnet_tempco_per_K * (magnet_C - Real(25))) * current_A;
     return state;
   }
 
@@ -62,7 +66,8 @@ struct GimbalDrive {
   Number amplitude(const Number& power_param) const noexcept {
     const Number duty = duty_from_power<Number>(power_param);
     const Number driven = thermopower::detail::at_least(duty, Math::constant(Real(1e-9)));
-    return Math::choose_if_greater(duty, Math::constant(Real(0)), Math::power(driven, exponent), Number(duty * Real(0)));
+    return Math::choose_if_greater(duty, Math::constant(Real(0)), Math::power(driven, exponent),
+                                   Number(duty * Real(0)));
   }
 };
 

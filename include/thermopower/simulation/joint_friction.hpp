@@ -13,8 +13,9 @@ namespace thermopower::simulation {
 ///
 ///     M(w) = (M_c + (M_s - M_c) / (1 + (w / w_s)^2)) w / sqrt(w^2 + w_0^2) + b w
 ///
-/// The Stribeck term falls off as 1 / (1 + (w/w_s)^2) (Hess and Soom, J. Tribology 112, 1990). Below the speed w_0 the joint creeps
-/// instead of sticking: the law stays smooth, so that a fixed-step integrator keeps its order.
+/// The Stribeck term falls off as 1 / (1 + (w/w_s)^2) (Hess and Soom, J. Tribology 112, 1990). Below the
+/// speed w_0 the joint creeps instead of sticking: the law stays smooth, so that a fixed-step integrator
+/// keeps its order.
 template <class Number>
 struct JointFriction {
   Number coulomb_Nm;                ///< M_c, >= 0.

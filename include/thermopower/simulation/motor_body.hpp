@@ -11,12 +11,14 @@
 
 namespace thermopower::simulation {
 
-/// Two nodes, a winding that is heated and a body that loses the heat by natural convection, radiation and a forced stream:
+/// Two nodes, a winding that is heated and a body that loses the heat by natural convection, radiation and a
+/// forced stream:
 ///
 ///     C_w dT_w/dt = P - K (T_w - T_b)
 ///     C_b dT_b/dt = K (T_w - T_b) - convection(T_b) - stream(T_b) - radiation(T_b)
 ///
-/// The controllers believe in one node with a loss proportional to the rise. Magnets and the printed bracket are as warm as the body.
+/// The controllers believe in one node with a loss proportional to the rise. Magnets and the printed bracket
+/// are as warm as the body.
 template <class Number>
 class MotorBody {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
@@ -42,7 +44,8 @@ class MotorBody {
   /// @param config  constants  @param state  to start from
   MotorBody(const Config& config, const State& state) noexcept : config_(config), state_(state) {}
 
-  /// Advances by `dt_s` with the midpoint rule; small against C_w / K (ten seconds for the smallest motor here).
+  /// Advances by `dt_s` with the midpoint rule; small against C_w / K (ten seconds for the smallest motor
+  /// here).
   const State& step(const Number& heat_W, const Surroundings<Number>& around,
                     Real dt_s) noexcept {
     const State first = slope(state_, heat_W, around);

@@ -9,8 +9,8 @@
 
 namespace thermopower::simulation {
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a seed gives the same numbers everywhere, which `<random>`'s distributions do not
-/// promise.
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a seed gives the same numbers everywhere, which `<random>`'s
+/// distributions do not promise.
 class Random {
  public:
   /// @param seed  any; equal seeds give equal numbers

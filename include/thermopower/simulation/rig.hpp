@@ -14,22 +14,22 @@ namespace thermopower::simulation {
 
 /// What may be wrong with how the board sees an axis. The default is a board without faults.
 struct AxisFault {
-  double seen_gain = 1.0;         ///< The board's own loop and its telemetry see the error times this.
-  double sent_gain = 1.0;         ///< Only the telemetry shows the error times this.
-  double field_slip = 0.0;        ///< Electrical angle by which the field goes astray per angle of the base: 0 with a frame IMU that
-                                  ///< tells the rotor's place, the number of pole pairs without.
-  double sent_offset_deg = 0.0;   ///< Only the telemetry's target is off by this.
+  double seen_gain = 1.0;   ///< The board's own loop and its telemetry see the error times this.
+  double sent_gain = 1.0;   ///< Only the telemetry shows the error times this.
+  double field_slip = 0.0;  ///< Electrical angle by which the field goes astray per angle of the base: 0 with
+                            ///< a frame IMU that tells the rotor's place, the number of pole pairs without.
+  double sent_offset_deg = 0.0;  ///< Only the telemetry's target is off by this.
 };
 
 /// What one sets up.
 struct RigConfig {
-  std::array<AxisPlant<double>::Config, 3> axes;   ///< Roll, pitch, yaw.
-  double board_cycle_s = 0.0008;                   ///< The board computes torque this often, and the mechanics take this step.
-  int cycles_per_parse = 10;                       ///< The board reads commands this often: every 8 ms.
-  int cycles_per_control = 38;                     ///< The controller runs this often: 30.4 ms, as the thesis's "about 30 ms".
-  double body_limit_C = 60.0;                      ///< What the printed bracket bears: time above it is counted.
-  Optics optics = Optics::line_scan();             ///< For the blur.
-  std::array<AxisFault, 3> faults{};               ///< None.
+  std::array<AxisPlant<double>::Config, 3> axes;  ///< Roll, pitch, yaw.
+  double board_cycle_s = 0.0008;  ///< The board computes torque this often, and the mechanics take this step.
+  int cycles_per_parse = 10;      ///< The board reads commands this often: every 8 ms.
+  int cycles_per_control = 38;    ///< The controller runs this often: 30.4 ms, as the thesis's "about 30 ms".
+  double body_limit_C = 60.0;     ///< What the printed bracket bears: time above it is counted.
+  Optics optics = Optics::line_scan();  ///< For the blur.
+  std::array<AxisFault, 3> faults{};    ///< None.
 
   /// The gimbal of the thesis.
   static RigConfig thesis() {
@@ -39,19 +39,24 @@ struct RigConfig {
   }
 };
 
-/// The rig in motion. Everything follows from the configuration, the scenario and the commands: no clock, no randomness.
+/// The rig in motion. Everything follows from the configuration, the scenario and the commands: no clock, no
+/// randomness.
 class Rig {
  public:
   /// @param config    copied  @param scenario  copied
   Rig(const RigConfig& config, const Scenario& scenario)
-      : config_(config), scenario_(scenario), battery_(scenario.supply, scenario.charge), axes_{axis(0), axis(1), axis(2)} {
+      : config_(config),
+        scenario_(scenario),
+        battery_(scenario.supply, scenario.charge),
+        axes_{axis(0), axis(1), axis(2)} {
     parse();
   }
 
   /// Time since the start. @return s
   double time_s() const noexcept { return static_cast<double>(cycle_) * config_.board_cycle_s; }
 
-  /// Leaves a command with the board, which reads it when it next parses. @param power, p_gain  0 .. 255, one per axis
+  /// Leaves a command with the board, which reads it when it next parses. @param power, p_gain  0 .. 255, one
+  /// per axis
   template <class Bytes>
   void command(const Bytes& power, const Bytes& p_gain) noexcept {
     for (std::size_t i = 0; i < 3; ++i) mailbox_[i] = {power[i], p_gain[i]};
@@ -63,7 +68,8 @@ class Rig {
     for (std::size_t i = 0; i < 3; ++i) {
       const AxisFault& fault = config_.faults[i];
       const double target_deg = scenario_.axes[i].target_deg + fault.sent_offset_deg;
-      const double shown_deg = target_deg - (target_deg - axes_[i].angle_deg()) * fault.seen_gain * fault.sent_gain;
+      const double shown_deg =
+          target_deg - (target_deg - axes_[i].angle_deg()) * fault.seen_gain * fault.sent_gain;
       sample.imu_units[i] = folded_angle_units(shown_deg);
       sample.target_units[i] = folded_angle_units(target_deg);
       sample.frame_units[i] = folded_angle_units(scenario_.axes[i].base_deg(time_s()));
@@ -83,7 +89,8 @@ class Rig {
       AxisPlant<double>& plant = axes_[i];
       const AxisScenario& happens = scenario_.axes[i];
       const double base_deg = base_deg_[i], next_deg = happens.base_deg(now_s + dt_s);
-      const BaseMotion<double> base = {base_deg / deg_per_rad, (next_deg - base_deg) / (deg_per_rad * dt_s), 0.0};
+      const BaseMotion<double> base = {base_deg / deg_per_rad, (next_deg - base_deg) / (deg_per_rad * dt_s),
+                                       0.0};
       double share = plant.ask(config_.faults[i].seen_gain * error_deg(i), in_force_[i].p_gain, dt_s);
       if (config_.faults[i].field_slip > 0.0)
         share = std::sin(std::asin(share) + config_.faults[i].field_slip * base.angle_rad);
@@ -93,19 +100,24 @@ class Rig {
     ++cycle_;
   }
 
-  /// Where the camera points less where it should, the short way round: the truth, not what the board sees. @return degrees
+  /// Where the camera points less where it should, the short way round: the truth, not what the board sees.
+  /// @return degrees
   double error_deg(std::size_t index) const noexcept {
     const double error = scenario_.axes[index].target_deg - axes_[index].angle_deg();
     return error - 360.0 * std::nearbyint(error / 360.0);
   }
 
-  const AxisPlant<double>& plant(std::size_t index) const noexcept { return axes_[index]; }   ///< One axis.
-  const Battery<double>& battery() const noexcept { return battery_; }                        ///< The supply.
-  double axis_energy_J(std::size_t index) const noexcept { return energy_J_[index]; }         ///< Drawn from the supply so far.
-  double supply_A() const noexcept { return supply_A_; }                                      ///< Drawn by all motors.
-  std::uint8_t power(std::size_t index) const noexcept { return in_force_[index].power; }     ///< POWER in force.
-  const RigConfig& config() const noexcept { return config_; }                                ///< As set up.
-  const Scenario& scenario() const noexcept { return scenario_; }                             ///< As set up.
+  const AxisPlant<double>& plant(std::size_t index) const noexcept { return axes_[index]; }  ///< One axis.
+  const Battery<double>& battery() const noexcept { return battery_; }                       ///< The supply.
+  double axis_energy_J(std::size_t index) const noexcept {
+    return energy_J_[index];
+  }                                                       ///< Drawn from the supply so far.
+  double supply_A() const noexcept { return supply_A_; }  ///< Drawn by all motors.
+  std::uint8_t power(std::size_t index) const noexcept {
+    return in_force_[index].power;
+  }                                                                ///< POWER in force.
+  const RigConfig& config() const noexcept { return config_; }     ///< As set up.
+  const Scenario& scenario() const noexcept { return scenario_; }  ///< As set up.
 
  private:
   struct Setting {

@@ -47,10 +47,12 @@ struct RigMetrics {
     for (const AxisMetrics& axis : axes) sum += axis.blur_rms_px * axis.blur_rms_px;
     return std::sqrt(sum);
   }
-  double peak_body_C() const noexcept { return largest(&AxisMetrics::peak_body_C); }         ///< degC
-  double peak_winding_C() const noexcept { return largest(&AxisMetrics::peak_winding_C); }   ///< degC
-  double over_limit_s() const noexcept { return largest(&AxisMetrics::over_limit_s); }       ///< Of the worst axis.
-  double limiting_s() const noexcept { return largest(&AxisMetrics::limiting_s); }           ///< Of the worst axis.
+  double peak_body_C() const noexcept { return largest(&AxisMetrics::peak_body_C); }        ///< degC
+  double peak_winding_C() const noexcept { return largest(&AxisMetrics::peak_winding_C); }  ///< degC
+  double over_limit_s() const noexcept {
+    return largest(&AxisMetrics::over_limit_s);
+  }                                                                                 ///< Of the worst axis.
+  double limiting_s() const noexcept { return largest(&AxisMetrics::limiting_s); }  ///< Of the worst axis.
 
  private:
   double largest(double AxisMetrics::*figure) const noexcept {

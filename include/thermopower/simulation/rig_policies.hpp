@@ -30,8 +30,8 @@ inline ConstantPower constant_power(std::uint8_t power = standard_power) noexcep
 
 /// An axis as the thesis's program has it.
 template <class Motor>
-using ThesisAxis = AxisController<typename Motor::AsProgrammed, StepPowerLaw<ProgrammedLevels>, SafetyLimiter<PerCycle>,
-                                  GainScheduler<TruncatedGain>>;
+using ThesisAxis = AxisController<typename Motor::AsProgrammed, StepPowerLaw<ProgrammedLevels>,
+                                  SafetyLimiter<PerCycle>, GainScheduler<TruncatedGain>>;
 /// The gimbal as the thesis's program has it.
 using ThesisGimbal = GimbalController<ThesisAxis<motors::Bgm2606_90t>, ThesisAxis<motors::Bgm2606_90t>,
                                       ThesisAxis<motors::Bgm5208_200_12>>;
@@ -40,23 +40,26 @@ using ThesisGimbal = GimbalController<ThesisAxis<motors::Bgm2606_90t>, ThesisAxi
 template <class Motor>
 using CorrectedAxis = AxisController<Motor>;
 /// The gimbal with these.
-using CorrectedGimbal = GimbalController<CorrectedAxis<motors::Bgm2606_90t>, CorrectedAxis<motors::Bgm2606_90t>,
-                                         CorrectedAxis<motors::Bgm5208_200_12>>;
+using CorrectedGimbal =
+    GimbalController<CorrectedAxis<motors::Bgm2606_90t>, CorrectedAxis<motors::Bgm2606_90t>,
+                     CorrectedAxis<motors::Bgm5208_200_12>>;
 
 /// A gimbal of these axes with the thesis's gains and every policy's standard.
 template <class Gimbal, class Small, class Large>
 Gimbal gimbal_with_thesis_gains() {
-  return Gimbal(GimbalConfig::standard(), Small::Config::with_gain(thesis_gain(0)), Small::Config::with_gain(thesis_gain(1)),
-                Large::Config::with_gain(thesis_gain(2)));
+  return Gimbal(GimbalConfig::standard(), Small::Config::with_gain(thesis_gain(0)),
+                Small::Config::with_gain(thesis_gain(1)), Large::Config::with_gain(thesis_gain(2)));
 }
 
 /// The thesis's controller.
 inline ThesisGimbal thesis_gimbal() {
-  return gimbal_with_thesis_gains<ThesisGimbal, ThesisAxis<motors::Bgm2606_90t>, ThesisAxis<motors::Bgm5208_200_12>>();
+  return gimbal_with_thesis_gains<ThesisGimbal, ThesisAxis<motors::Bgm2606_90t>,
+                                  ThesisAxis<motors::Bgm5208_200_12>>();
 }
 /// The corrected controller.
 inline CorrectedGimbal corrected_gimbal() {
-  return gimbal_with_thesis_gains<CorrectedGimbal, CorrectedAxis<motors::Bgm2606_90t>, CorrectedAxis<motors::Bgm5208_200_12>>();
+  return gimbal_with_thesis_gains<CorrectedGimbal, CorrectedAxis<motors::Bgm2606_90t>,
+                                  CorrectedAxis<motors::Bgm5208_200_12>>();
 }
 
 }  // namespace thermopower::simulation

@@ -95,7 +95,8 @@ class RigMeter {
 };
 
 /// Runs a scenario to its end.
-/// @param controller  anything with `step(telemetry, dt_s)` that gives a `GimbalCommand<3>`: `GimbalController` as it is
+/// @param controller  anything with `step(telemetry, dt_s)` that gives a `GimbalCommand<3>`:
+/// `GimbalController` as it is
 /// @param sink        called with a `RigSample` in every control cycle
 template <class Controller, class Sink>
 RigMetrics run_rig(const RigConfig& config, const Scenario& scenario, Controller& controller, Sink&& sink) {

@@ -42,7 +42,8 @@ struct RigTelemetry {
 /// An angle as the board's int16 carries it: more than two turns fold, as they would on the wire.
 inline std::int16_t folded_angle_units(double angle_deg) noexcept {
   const double turns = std::nearbyint(angle_deg / 360.0);
-  return sbgc::angle_units(static_cast<float>(std::fabs(turns) > 1.0 ? angle_deg - 360.0 * turns : angle_deg));
+  return sbgc::angle_units(
+      static_cast<float>(std::fabs(turns) > 1.0 ? angle_deg - 360.0 * turns : angle_deg));
 }
 
 }  // namespace thermopower::simulation

@@ -10,8 +10,9 @@
 
 namespace thermopower::simulation {
 
-/// The rig as the world of an `EmulatedBoard`: called before each look of the board at its input, it lets the time since the last call
-/// pass under the board's POWER and P, and says what there is to be measured. Call it at multiples of the rig's parse interval.
+/// The rig as the world of an `EmulatedBoard`: called before each look of the board at its input, it lets the
+/// time since the last call pass under the board's POWER and P, and says what there is to be measured. Call
+/// it at multiples of the rig's parse interval.
 class RigWorld {
  public:
   /// @param config, scenario  as for `Rig`; the board's own faults are the emulated board's
@@ -38,8 +39,9 @@ class RigWorld {
     return truth;
   }
 
-  const Rig& rig() const noexcept { return rig_; }                               ///< What is behind the board.
-  RigMetrics figures() const noexcept { return meter_.figures(rig_); }          ///< Of the run so far; without limiting times.
+  const Rig& rig() const noexcept { return rig_; }  ///< What is behind the board.
+  /// Of the run so far; without limiting times.
+  RigMetrics figures() const noexcept { return meter_.figures(rig_); }
 
  private:
   Rig rig_;
@@ -48,20 +50,21 @@ class RigWorld {
 
 /// How a controller on a PC talks to the emulated board: as the firmware's loop does.
 struct ByteLoop {
-  double request_interval_us = 10000.0;   ///< Between requests for telemetry.
-  double answer_timeout_us = 50000.0;     ///< After which a request is repeated.
-  double silence_us = 500000.0;           ///< After which the controller is told of the silence.
-  double byte_us = 1e6 / 11520.0;         ///< One byte on the wire, 115200 baud 8N1.
-  double poll_us = 100.0;                 ///< The loop's own cycle.
-  double compute_us = 0.0;                ///< From an answer's last byte to the command's first: 4400 on an ATmega328P.
+  double request_interval_us = 10000.0;  ///< Between requests for telemetry.
+  double answer_timeout_us = 50000.0;    ///< After which a request is repeated.
+  double silence_us = 500000.0;          ///< After which the controller is told of the silence.
+  double byte_us = 1e6 / 11520.0;        ///< One byte on the wire, 115200 baud 8N1.
+  double poll_us = 100.0;                ///< The loop's own cycle.
+  double compute_us = 0.0;  ///< From an answer's last byte to the command's first: 4400 on an ATmega328P.
 };
 
-/// Runs a gimbal controller against the rig through an emulated board, byte by byte. @return the figures of the run
+/// Runs a gimbal controller against the rig through an emulated board, byte by byte. @return the figures of
+/// the run
 /// @param gimbal  a `GimbalController`, as firmware has it
 /// @param sink    called with (time, telemetry, command) after every telemetry message
 template <class Gimbal, class Sink>
-RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, EmulatedBoard& board, Gimbal& gimbal, Sink&& sink,
-                         const ByteLoop& loop = {}) {
+RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, EmulatedBoard& board,
+                         Gimbal& gimbal, Sink&& sink, const ByteLoop& loop = {}) {
   RigWorld world(config, scenario);
   SbgcCodec<> codec;
   double wire_free_us = 0.0, requested_us = -1e9, stepped_us = 0.0, busy_until_us = 0.0;
@@ -92,8 +95,9 @@ RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, Emul
       return static_cast<float>(since_us * 1e-6);
     };
     for (LineByte byte; board.transmit(now_us, byte);)
-      for (bool got = codec.receive(byte.value, static_cast<std::uint32_t>(static_cast<std::uint64_t>(byte.end_us))); got;
-           got = codec.next()) {
+      for (bool got =
+               codec.receive(byte.value, static_cast<std::uint32_t>(static_cast<std::uint64_t>(byte.end_us)));
+           got; got = codec.next()) {
         const sbgc::RealtimeData* telemetry = codec.realtime_data();
         if (telemetry == nullptr) continue;
         const auto& command = gimbal.step(*telemetry, since_step_s());

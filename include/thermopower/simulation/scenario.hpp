@@ -70,7 +70,8 @@ struct AxisScenario {
   }
 };
 
-/// A whole run. Nothing in it is random: a scenario with wind is made from a seed by `scenarios.hpp` and is then fixed.
+/// A whole run. Nothing in it is random: a scenario with wind is made from a seed by `scenarios.hpp` and is
+/// then fixed.
 struct Scenario {
   std::string name;                    ///< One word or two.
   double duration_s = 60.0;            ///< Length.

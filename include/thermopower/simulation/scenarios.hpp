@@ -44,8 +44,10 @@ inline void sway(Scenario& scenario, double amplitude_deg, double from_s, double
   }
 }
 
-/// Wind torque on the camera: sines of random phase whose amplitude falls with frequency as Dryden's spectrum does.
-inline void gusts(Scenario& scenario, const std::array<double, 3>& rms_Nm, double from_s, double to_s, std::uint64_t seed) {
+/// Wind torque on the camera: sines of random phase whose amplitude falls with frequency as Dryden's spectrum
+/// does.
+inline void gusts(Scenario& scenario, const std::array<double, 3>& rms_Nm, double from_s, double to_s,
+                  std::uint64_t seed) {
   Random random(seed);
   constexpr int count = 14;
   for (std::size_t index = 0; index < 3; ++index) {
@@ -86,15 +88,18 @@ inline Scenario gusts(double duration_s = 300.0, std::uint64_t seed = 12) {
   return scenario;
 }
 
-/// Pushes every few seconds, some of them beyond what the motors can hold; one carries yaw across 180 degrees.
+/// Pushes every few seconds, some of them beyond what the motors can hold; one carries yaw across 180
+/// degrees.
 inline Scenario impacts(double duration_s = 300.0, std::uint64_t seed = 13) {
   Scenario scenario = detail::blank("impacts", duration_s);
   Random random(seed);
   const std::array<double, 3> peak_Nm = {0.02, 0.04, 0.10};
   for (std::size_t index = 0; index < 3; ++index)
-    for (double at_s = 8.0 + 2.0 * static_cast<double>(index); at_s < duration_s - 6.0; at_s += random.between(6.0, 12.0))
-      scenario.axes[index].pushes.push_back({at_s, random.between(0.03, 0.12),
-                                             random.between(-1.0, 1.0) < 0.0 ? -peak_Nm[index] : peak_Nm[index]});
+    for (double at_s = 8.0 + 2.0 * static_cast<double>(index); at_s < duration_s - 6.0;
+         at_s += random.between(6.0, 12.0))
+      scenario.axes[index].pushes.push_back(
+          {at_s, random.between(0.03, 0.12),
+           random.between(-1.0, 1.0) < 0.0 ? -peak_Nm[index] : peak_Nm[index]});
   scenario.axes[2].target_deg = 170.0;
   scenario.axes[2].pushes.push_back({0.5 * duration_s, 0.5, 0.35});
   return scenario;

@@ -9,11 +9,11 @@
 
 namespace thermopower::simulation {
 
-/// Sine of an angle, without a branch and the same for every scalar: a lane of a batch and a plain number take the same additions
-/// and multiplications, and compilers turn both into vector instructions.
+/// Sine of an angle, without a branch and the same for every scalar: a lane of a batch and a plain number
+/// take the same additions and multiplications, and compilers turn both into vector instructions.
 ///
-/// Error below 2e-11 in double and 1e-6 in float for angles up to a thousand turns; the angle's own rounding comes on top.
-/// NaN and Inf give NaN.
+/// Error below 2e-11 in double and 1e-6 in float for angles up to a thousand turns; the angle's own rounding
+/// comes on top. NaN and Inf give NaN.
 /// @param angle_rad  up to 2^51 turns in double, 2^22 in float
 template <class Number>
 Number sine(const Number& angle_rad) noexcept {

@@ -8,13 +8,15 @@
 /// @file thesis_gimbal.hpp
 /// The gimbal of the thesis as a simulated rig: two BGM2606-90T (roll, pitch), one BGM5208-200-12 (yaw).
 ///
-/// Measured there and fitted here: resistance, drive exponent, heat capacities and losses, from Tables 4.1 to 4.3 and 4.6; a test
-/// compares the outcome with these and with Tables 5.1 and 5.3. The copper's share of the heat capacity and its coupling to the body
-/// cannot be seen in those tables and are typical of motors of that size.
+/// Measured there and fitted here: resistance, drive exponent, heat capacities and losses, from Tables 4.1
+/// to 4.3 and 4.6; a test compares the outcome with these and with Tables 5.1 and 5.3. The copper's share of
+/// the heat capacity and its coupling to the body cannot be seen in those tables and are typical of motors of
+/// that size.
 ///
-/// Not measured there, and assumed: torque constants (0.045 and 0.19 N m at full power, cold: the class of such motors), imbalance,
-/// friction, cable. Inertias are those for which the thesis's auto-tuned P gains (section 4.2) give every axis the same crossover of
-/// about 40 rad/s at POWER 89; D and I are set for a damping of 0.7 and a reset of half a second there.
+/// Not measured there, and assumed: torque constants (0.045 and 0.19 N m at full power, cold: the class of
+/// such motors), imbalance, friction, cable. Inertias are those for which the thesis's auto-tuned P gains
+/// (section 4.2) give every axis the same crossover of about 40 rad/s at POWER 89; D and I are set for a
+/// damping of 0.7 and a reset of half a second there.
 
 namespace thermopower::simulation {
 
