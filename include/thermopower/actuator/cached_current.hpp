@@ -59,7 +59,8 @@ class CachedCurrent {
 
   // A law that has a conductance is evaluated by a product, any other as it is.
   template <class Any>
-  static auto conductance_of(const Any& law, float motor_C, int) noexcept -> decltype(law.conductance_S(motor_C)) {
+  static auto conductance_of(const Any& law, float motor_C, int) noexcept
+      -> decltype(law.conductance_S(motor_C)) {
     return law.conductance_S(motor_C);
   }
   template <class Any>

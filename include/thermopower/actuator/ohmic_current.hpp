@@ -10,8 +10,10 @@
 namespace thermopower {
 
 /// Current law: I = V_rms / R(T) with R(T) = R_ref (1 + a (T - T_ref)).
-/// Take it when the winding's resistance is known or can be measured; it is physical at any voltage and temperature.
-/// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the desk
+/// Take it when the winding's resistance is known or can be measured; it is physical at any voltage and
+/// temperature.
+/// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the
+/// desk
 /// @ingroup actuator
 template <class Number = float>
 struct OhmicCurrent {
@@ -21,8 +23,8 @@ struct OhmicCurrent {
   Number tempco_per_K;    ///< Relative rise per kelvin: copper 0.00393. 0 .. 0.02.
   Number reference_C;     ///< Temperature at which `resistance_ohm` was measured. -50 .. 200.
 
-  /// Winding resistance at a temperature, at least a tenth of `resistance_ohm`: far below any real winding the straight line would
-  /// reach zero, and a current without bound. @return ohm
+  /// Winding resistance at a temperature, at least a tenth of `resistance_ohm`: far below any real winding
+  /// the straight line would reach zero, and a current without bound. @return ohm
   Number resistance_at(const Number& winding_C) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;
@@ -43,9 +45,10 @@ struct OhmicCurrent {
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
-    return first_error(detail::require_positive(resistance_ohm, ConfigError::resistance_ohm),
-                       first_error(detail::require_within(tempco_per_K, Number(0), Number(0.02), ConfigError::tempco_per_K),
-                                   detail::require_within(reference_C, Number(-50), Number(200), ConfigError::reference_C)));
+    return first_error(
+        detail::require_positive(resistance_ohm, ConfigError::resistance_ohm),
+        first_error(detail::require_within(tempco_per_K, Number(0), Number(0.02), ConfigError::tempco_per_K),
+                    detail::require_within(reference_C, Number(-50), Number(200), ConfigError::reference_C)));
   }
 };
 

@@ -16,26 +16,34 @@
 namespace thermopower {
 
 /// Temperature estimate, power law, limiter and gain of one axis, in the order of the original program:
-/// the power of the last step heats the model, the error asks for a power, the limiter grants it, the gain follows.
+/// the power of the last step heats the model, the error asks for a power, the limiter grants it, the gain
+/// follows.
 ///
-/// @tparam Motor     names `Current` and `Thermal` and gives their constants: `motors/`, or a struct of your own
+/// @tparam Motor     names `Current` and `Thermal` and gives their constants: `motors/`, or a struct of your
+/// own
 /// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
 ///
-/// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is the least there is. The
-/// temperature is estimated through a fault with the last valid air and supply: the motor stays warm even if its sensor is gone.
+/// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is
+/// the least there is. The temperature is estimated through a fault with the last valid air and supply: the
+/// motor stays warm even if its sensor is gone.
 /// @ingroup control
-template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>, class Gain = GainScheduler<> >
+template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>,
+          class Gain = GainScheduler<>>
 class AxisController {
   static_assert(detail::IsMotor<Motor>::value,
-                "thermopower: the first parameter of AxisController must be a motor: a type that names Current and Thermal");
+                "thermopower: the first parameter of AxisController must be a motor: a type that names "
+                "Current and Thermal");
   static_assert(detail::IsPowerLaw<PowerLaw>::value,
-                "thermopower: the second parameter of AxisController must be a power law: a type with Config and step(error_deg)");
+                "thermopower: the second parameter of AxisController must be a power law: a type with Config "
+                "and step(error_deg)");
   static_assert(detail::IsLimiter<Limiter>::value,
-                "thermopower: the third parameter of AxisController must be a limiter: a type with Inputs, step, cut and ceiling");
+                "thermopower: the third parameter of AxisController must be a limiter: a type with Inputs, "
+                "step, cut and ceiling");
   static_assert(detail::IsGain<Gain>::value,
-                "thermopower: the fourth parameter of AxisController must be a gain: a type with Config and step(power) const, such "
+                "thermopower: the fourth parameter of AxisController must be a gain: a type with Config and "
+                "step(power) const, such "
                 "as GainScheduler or NoGain");
 
  public:
@@ -52,8 +60,8 @@ class AxisController {
 
     /// The motor's constants and every policy's standard.
     static Config standard() noexcept {
-      Config config = {Motor::current(), Motor::thermal(), PowerLaw::Config::standard(), Limiter::Config::standard(),
-                       Gain::Config::standard()};
+      Config config = {Motor::current(), Motor::thermal(), PowerLaw::Config::standard(),
+                       Limiter::Config::standard(), Gain::Config::standard()};
       return config;
     }
     /// `standard()` with the axis's gains.
@@ -81,32 +89,48 @@ class AxisController {
 
   /// What one logs: every intermediate of the last step.
   struct State {
-    float error_deg;      ///< Folded to -180 .. 180.
-    float v_rms_V;        ///< At the power of the step before.
-    float current_A;      ///< At the power of the step before.
-    float power_W;        ///< V_rms I at the power of the step before.
-    float motor_C;        ///< Estimated temperature of the hottest node; NaN before the first valid air temperature.
-    float rate_K_per_s;   ///< dT/dt of that node.
-    uint8_t demand;       ///< Power asked for.
-    uint8_t ceiling;      ///< Highest power the limiter grants.
-    uint8_t power;        ///< Power granted: send this as POWER.
-    uint8_t p_gain;       ///< Send this as P.
-    LimitReason reason;   ///< Why `power` is below `demand`.
+    float error_deg;     ///< Folded to -180 .. 180.
+    float v_rms_V;       ///< At the power of the step before.
+    float current_A;     ///< At the power of the step before.
+    float power_W;       ///< V_rms I at the power of the step before.
+    float motor_C;       ///< Estimated temperature of the hottest node; NaN before the first valid air
+                         ///< temperature.
+    float rate_K_per_s;  ///< dT/dt of that node.
+    uint8_t demand;      ///< Power asked for.
+    uint8_t ceiling;     ///< Highest power the limiter grants.
+    uint8_t power;       ///< Power granted: send this as POWER.
+    uint8_t p_gain;      ///< Send this as P.
+    LimitReason reason;  ///< Why `power` is below `demand`.
   };
 
   /// @param config  constants; ask `validate()` once
   explicit AxisController(const Config& config = Config::standard()) noexcept
-      : current_(config.current), thermal_(config.thermal, detail::not_a_number()), power_law_(config.power_law), limiter_(config.limiter),
-        gain_(config.gain), config_error_(config.validate()) {
-    const State state = {0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f, least_power(), limiter_.ceiling(), least_power(),
-                         gain_.step(least_power()), LimitReason::no_telemetry_yet};
+      : current_(config.current),
+        thermal_(config.thermal, detail::not_a_number()),
+        power_law_(config.power_law),
+        limiter_(config.limiter),
+        gain_(config.gain),
+        config_error_(config.validate()) {
+    const State state = {0.0f,
+                         0.0f,
+                         0.0f,
+                         0.0f,
+                         detail::not_a_number(),
+                         0.0f,
+                         least_power(),
+                         limiter_.ceiling(),
+                         least_power(),
+                         gain_.step(least_power()),
+                         LimitReason::no_telemetry_yet};
     state_ = state;
   }
 
-  /// What `Config::validate()` found when the controller was made. Anything but none keeps the power at its least.
+  /// What `Config::validate()` found when the controller was made. Anything but none keeps the power at its
+  /// least.
   ConfigError validate() const noexcept { return config_error_; }
 
-  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite; NaN: as warm as the air
+  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite;
+  /// NaN: as warm as the air
   void start(float motor_C) noexcept {
     thermal_.start(motor_C);
     state_.motor_C = motor_C;
@@ -121,7 +145,8 @@ class AxisController {
     const bool is_supply_new = !detail::is_same(inputs.supply_V, last_supply_V_);
     const bool is_air_bad =
         is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
-    const bool is_supply_bad = is_supply_new && !(detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f);
+    const bool is_supply_bad =
+        is_supply_new && !(detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f);
     if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
     if (is_supply_new && !is_supply_bad) last_supply_V_ = inputs.supply_V;
     const bool is_time_positive = detail::is_finite_positive(dt_s);
@@ -133,11 +158,13 @@ class AxisController {
       fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
 
-    AxisFacts facts = {0, state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s, last_air_C_, last_supply_V_};
+    AxisFacts facts = {0,           state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s,
+                       last_air_C_, last_supply_V_};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
-    const LimitedPower granted = is_fault(fault) ? detail::cut_limiter(limiter_, fault, state_.demand, dt_s, 0)
-                                                 : limiter_.step(detail::limiter_inputs<Limiter>(facts, 0), dt_s);
+    const LimitedPower granted = is_fault(fault)
+                                     ? detail::cut_limiter(limiter_, fault, state_.demand, dt_s, 0)
+                                     : limiter_.step(detail::limiter_inputs<Limiter>(facts, 0), dt_s);
     state_.ceiling = limiter_.ceiling();
     state_.power = granted.power;
     state_.reason = granted.reason;
@@ -145,17 +172,19 @@ class AxisController {
     return state_;
   }
 
-  const State& state() const noexcept { return state_; }      ///< After the last step.
-  Limiter& limiter() noexcept { return limiter_; }            ///< To tell a limiter what was measured; its own state.
-  PowerLaw& power_law() noexcept { return power_law_; }       ///< To tell a law what was measured; its own state.
-  Thermal& thermal() noexcept { return thermal_; }              ///< To tell an observer what was measured.
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+  Limiter& limiter() noexcept { return limiter_; }  ///< To tell a limiter what was measured; its own state.
+  PowerLaw& power_law() noexcept { return power_law_; }  ///< To tell a law what was measured; its own state.
+  Thermal& thermal() noexcept { return thermal_; }       ///< To tell an observer what was measured.
   const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
 
  private:
-  LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad, bool is_time_good) const noexcept {
+  LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad,
+                         bool is_time_good) const noexcept {
     if (!is_time_good) return LimitReason::time_invalid;
     if (!detail::is_finite(state_.error_deg)) return LimitReason::error_not_finite;
-    if (is_supply_bad) return detail::is_finite(supply_V) ? LimitReason::supply_low : LimitReason::supply_not_finite;
+    if (is_supply_bad)
+      return detail::is_finite(supply_V) ? LimitReason::supply_low : LimitReason::supply_not_finite;
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
@@ -173,7 +202,8 @@ class AxisController {
       converted_ = state_.power;
       acting_power_ = static_cast<float>(converted_);
     }
-    const typename Current::State& drawn = current_.at_power(acting_power_, last_supply_V_, thermal_.hottest_C());
+    const typename Current::State& drawn =
+        current_.at_power(acting_power_, last_supply_V_, thermal_.hottest_C());
     const typename Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {last_air_C_, 0.0f}};
     thermal_.step(heat, dt_s);
     state_.v_rms_V = drawn.v_rms_V;

@@ -184,18 +184,16 @@ class CertifiedTwoNode {
     const Room room = this->room();
     return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
   }
-  /// True when the winding had no more heat to hand on, at the last plan, than it would have at this count for
-  /// ever.
+  /// True when the winding had no more heat to hand on, at the last plan, than it would have at this count
+  /// for ever.
   bool is_below(uint8_t count, const CertifiedCount& plan) const noexcept {
     return plan.apart <= detail::times(across_now_ + soak_now_, count);
   }
 
-  float winding_C() const noexcept {
-    return detail::celsius_from(winding_.above());
-  }  ///< Upper bound of the winding.
-  float body_C() const noexcept {
-    return detail::celsius_from(mean_.above());
-  }  ///< Upper bound of the body, now and after a cut.
+  /// Upper bound of the winding.
+  float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }
+  /// Upper bound of the body, now and after a cut.
+  float body_C() const noexcept { return detail::celsius_from(mean_.above()); }
 
   /// Time until a node reaches its limit at a constant count; infinite when none does. 0 when one is there.
   float seconds_to_limit(uint8_t count) const noexcept {
@@ -273,9 +271,10 @@ class CertifiedTwoNode {
   // little, so that it need not be taken anew before a bound has moved by about as much.
   void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
     const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
-    if (supply_squared == taken_supply_ && winding - taken_winding_ >= -slack_units() &&
-        winding - taken_winding_ < slack_units() && mean - taken_mean_ >= -slack_units() &&
-        mean - taken_mean_ < slack_units())
+    // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
+    if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
+        winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
+        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
       return;
     taken_supply_ = supply_squared;
     taken_winding_ = winding;

@@ -23,9 +23,11 @@ namespace thermopower {
 /// What one tunes in every stepped rule.
 /// @ingroup control
 struct StepPowerConfig {
-  float full_power_error_deg;  ///< Error worth full power: error_max of eq 4.22. Above 0. The program: 1 degree.
+  float full_power_error_deg;  ///< Error worth full power: error_max of eq 4.22. Above 0. The program: 1
+                               ///< degree.
   uint8_t power_step;          ///< Power of one level, at least 1, at most 25. The program: 25.
-  float hysteresis_deg;        ///< Read by `HysteresisLevels` only: how far the error must fall below a level's edge. >= 0.
+  float hysteresis_deg;  ///< Read by `HysteresisLevels` only: how far the error must fall below a level's
+                         ///< edge. >= 0.
 
   /// The program's values; hysteresis of a quarter of a level.
   static StepPowerConfig standard() noexcept {
@@ -57,7 +59,8 @@ class LevelScale {
     const float level = magnitude_deg * per_deg_;
     const uint32_t bits = detail::magnitude_bits(level);
     if (level < 0.0f || bits > 0x7f800000u) return 0;
-    return bits >= detail::magnitude_bits(static_cast<float>(highest)) ? highest : static_cast<uint8_t>(level);
+    return bits >= detail::magnitude_bits(static_cast<float>(highest)) ? highest
+                                                                       : static_cast<uint8_t>(level);
   }
 
  private:

@@ -7,23 +7,28 @@
 #include <string.h>
 
 /// @file numeric.hpp
-/// What the models need from their scalar: avr-libc has neither `<cmath>` nor overloads, and the same models also run on
-/// `Eigen::Array` (many actuators at once) and on automatic-differentiation scalars.
+/// What the models need from their scalar: avr-libc has neither `<cmath>` nor overloads, and the same models
+/// also run on `Eigen::Array` (many actuators at once) and on automatic-differentiation scalars.
 
 namespace thermopower {
 namespace detail {
 
-/// Operations on one kind of scalar. This primary template serves every class that has a nested `Scalar`, compares to a plain `bool`
-/// and whose functions are found beside it (Eigen's AutoDiffScalar); lanes of numbers specialise it in `simulation/lanes.hpp`.
+/// Operations on one kind of scalar. This primary template serves every class that has a nested `Scalar`,
+/// compares to a plain `bool` and whose functions are found beside it (Eigen's AutoDiffScalar); lanes of
+/// numbers specialise it in `simulation/lanes.hpp`.
 template <class Number>
 struct Numeric {
-  typedef typename Number::Scalar Real;  ///< The built-in type of literals: `Real(0.5)` multiplies any Number.
+  typedef typename Number::Scalar Real;  ///< The built-in type of literals: `Real(0.5)` multiplies any
+                                         ///< Number.
 
   static Number constant(Real value) { return Number(value); }
   static Number square_root(const Number& x) { return Number(sqrt(x)); }
   static Number exponential(const Number& x) { return Number(exp(x)); }
-  static Number power(const Number& base, const Number& exponent) { return Number(exp(exponent * log(base))); }
-  static Number choose_if_greater(const Number& left, const Number& right, const Number& yes, const Number& no) {
+  static Number power(const Number& base, const Number& exponent) {
+    return Number(exp(exponent * log(base)));
+  }
+  static Number choose_if_greater(const Number& left, const Number& right, const Number& yes,
+                                  const Number& no) {
     return left > right ? yes : no;
   }
 };
@@ -35,7 +40,9 @@ struct Numeric<float> {
   static float square_root(float x) { return sqrtf(x); }
   static float exponential(float x) { return expf(x); }
   static float power(float base, float exponent) { return powf(base, exponent); }
-  static float choose_if_greater(float left, float right, float yes, float no) { return left > right ? yes : no; }
+  static float choose_if_greater(float left, float right, float yes, float no) {
+    return left > right ? yes : no;
+  }
 };
 
 template <>
@@ -45,7 +52,9 @@ struct Numeric<double> {
   static double square_root(double x) { return sqrt(x); }
   static double exponential(double x) { return exp(x); }
   static double power(double base, double exponent) { return pow(base, exponent); }
-  static double choose_if_greater(double left, double right, double yes, double no) { return left > right ? yes : no; }
+  static double choose_if_greater(double left, double right, double yes, double no) {
+    return left > right ? yes : no;
+  }
 };
 
 /// The value, but not below the bound. A NaN value stays NaN: it must reach whoever decides about it.
@@ -60,14 +69,14 @@ Number at_most(const Number& value, const Number& bound) {
   return Numeric<Number>::choose_if_greater(value, bound, bound, value);
 }
 
-/// (1 - exp(-x)) / x for x >= 0: the mean of a decay over a step. Right to rounding everywhere, also near 0, where the quotient
-/// would lose every digit.
+/// (1 - exp(-x)) / x for x >= 0: the mean of a decay over a step. Right to rounding everywhere, also near 0,
+/// where the quotient would lose every digit.
 template <class Number>
 Number mean_decay(const Number& x) {
   typedef Numeric<Number> Math;
   typedef typename Math::Real Real;
-  // With y = x / 2 it is also exp(-y) sinh(y) / y, whose series in y^2 subtracts nothing. Up to x = 1 four terms serve a float,
-  // eight a double; beyond, the quotient has its digits.
+  // With y = x / 2 it is also exp(-y) sinh(y) / y, whose series in y^2 subtracts nothing. Up to x = 1 four
+  // terms serve a float, eight a double; beyond, the quotient has its digits.
   const Number limit = Math::constant(Real(1));
   const Number half_decay = Math::exponential(Number(x * Real(-0.5)));
   const Number half = at_most(x, limit) * Real(0.5);
