@@ -111,16 +111,8 @@ class AxisController {
         limiter_(config.limiter),
         gain_(config.gain),
         config_error_(config.validate()) {
-    const State state = {0.0f,
-                         0.0f,
-                         0.0f,
-                         0.0f,
-                         detail::not_a_number(),
-                         0.0f,
-                         least_power(),
-                         limiter_.ceiling(),
-                         least_power(),
-                         gain_.step(least_power()),
+    const State state = {0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f, least_power(),
+                         limiter_.ceiling(), least_power(), gain_.step(least_power()),
                          LimitReason::no_telemetry_yet};
     state_ = state;
   }
