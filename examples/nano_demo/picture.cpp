@@ -47,16 +47,27 @@ std::string curve(const Panel& panel, const std::vector<Point>& points, const st
                   const std::string& css) {
   std::string path;
   double last_y = 0;
+  std::string waiting;  // the last point of a flat stretch, which its first point already stands for
   const auto add = [&](const Point& point) {
     const double x = panel.at_time(point.time_s), y = panel.at(value(point));
-    if (!path.empty() && is_stepped) path += "L" + number(x) + " " + number(last_y);
-    path += (path.empty() ? "M" : "L") + number(x) + " " + number(y);
+    const std::string here = "L" + number(x) + " " + number(y);
+    if (path.empty()) {
+      path = "M" + number(x) + " " + number(y);
+    } else if (std::fabs(y - last_y) < 0.05) {
+      waiting = here;
+      return;
+    } else {
+      path += waiting;
+      if (is_stepped) path += "L" + number(x) + " " + number(last_y);
+      path += here;
+    }
+    waiting.clear();
     last_y = y;
   };
   for (std::size_t index = 0; index < points.size();) {
-    const double column = std::floor(panel.at_time(points[index].time_s) * 2);
+    const double column = std::floor(panel.at_time(points[index].time_s));
     std::size_t end = index, least = index, greatest = index;
-    for (; end < points.size() && std::floor(panel.at_time(points[end].time_s) * 2) <= column; ++end) {
+    for (; end < points.size() && std::floor(panel.at_time(points[end].time_s)) <= column; ++end) {
       if (value(points[end]) < value(points[least])) least = end;
       if (value(points[end]) > value(points[greatest])) greatest = end;
     }
@@ -66,7 +77,7 @@ std::string curve(const Panel& panel, const std::vector<Point>& points, const st
       if (at == 0 || kept[at] != kept[at - 1]) add(points[kept[at]]);
     index = end;
   }
-  return "<path d=\"" + path + "\" class=\"" + css + "\"/>\n";
+  return "<path d=\"" + path + waiting + "\" class=\"" + css + "\"/>\n";
 }
 
 std::string frame(const Panel& panel, const std::vector<double>& ticks, bool has_labels, bool has_times) {
