@@ -138,7 +138,7 @@ class AxisController {
     const bool is_air_bad =
         is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
     const bool is_supply_bad =
-        is_supply_new && !(detail::is_finite(inputs.supply_V) && inputs.supply_V >= 0.0f);
+        is_supply_new && !(detail::is_finite_positive(inputs.supply_V) || inputs.supply_V == 0.0f);
     if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
     if (is_supply_new && !is_supply_bad) last_supply_V_ = inputs.supply_V;
     const bool is_time_positive = detail::is_finite_positive(dt_s);

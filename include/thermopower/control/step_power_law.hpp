@@ -57,10 +57,8 @@ class LevelScale {
     if (!is_known_) per_deg_ = 10.0f / config.full_power_error_deg;
     is_known_ = true;
     const float level = magnitude_deg * per_deg_;
-    const uint32_t bits = detail::magnitude_bits(level);
-    if (level < 0.0f || bits > 0x7f800000u) return 0;
-    return bits >= detail::magnitude_bits(static_cast<float>(highest)) ? highest
-                                                                       : static_cast<uint8_t>(level);
+    if (detail::is_from_zero_to(level, static_cast<float>(highest))) return static_cast<uint8_t>(level);
+    return level > 0.0f ? highest : 0;
   }
 
  private:

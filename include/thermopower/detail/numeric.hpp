@@ -145,7 +145,12 @@ inline bool is_same(float left, float right) noexcept {
 inline float not_a_number() noexcept { return static_cast<float>(NAN); }
 
 /// Absolute value. Arduino.h makes a macro of the usual name.
-inline float magnitude(float x) noexcept { return x < 0.0f ? -x : x; }
+inline float magnitude(float x) noexcept {
+  const uint32_t bits = magnitude_bits(x);
+  float result;
+  memcpy(&result, &bits, sizeof result);
+  return result;
+}
 /// @overload
 inline double magnitude(double x) noexcept { return x < 0.0 ? -x : x; }
 

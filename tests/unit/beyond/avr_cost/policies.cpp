@@ -149,12 +149,12 @@ const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
 typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable>>> Axis;
 // Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
 // measures in a third.
-static const uint8_t every = THERMOPOWER_POLICY == 15 ? 9 : 3;
+static const uint8_t every = THERMOPOWER_POLICY == 16 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
   Axis::Config config = Axis::Config::standard();
   config.limiter = bounds();
   config.limiter.use.every = config.thermal.every = every;
-  config.limiter.use.phase = THERMOPOWER_POLICY == 15 ? static_cast<uint8_t>(3 * axis) : 0;
+  config.limiter.use.phase = THERMOPOWER_POLICY == 16 ? static_cast<uint8_t>(3 * axis) : 0;
   config.thermal.phase = static_cast<uint8_t>(config.limiter.use.phase + 1);
   return config;
 }
@@ -168,7 +168,7 @@ static void step(Axis& axis, float dt_s) {
 static void measure(Axis& axis) {
   axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
 }
-#if THERMOPOWER_POLICY == 15  // all three in every cycle of 10 ms
+#if THERMOPOWER_POLICY == 16  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
   step(pitch, cycle_s);
@@ -190,10 +190,10 @@ static void work() {
 int main() {
   for (uint16_t i = 0; i < 600; ++i) {
     call = i;
-    // Demands that come and go, an error that moves, a battery that sags now and then, air that warms.
+    // Demands that come and go, an error that moves, a supply that no two cycles read alike, air that warms.
     demand = (i & 16) != 0 ? 250 : static_cast<uint8_t>(20 + (i & 15));
     error_deg = 0.05f * static_cast<float>(i & 31);
-    if ((i & 31) == 0) supply_V = 13.0f - 0.002f * static_cast<float>(i);
+    supply_V = 13.0f - 0.002f * static_cast<float>(i) + ((i & 1) != 0 ? 0.01f : 0.0f);
     if ((i & 63) == 0) air_C = 24.0f + 0.01f * static_cast<float>(i);
     winding_C = 40.0f + 0.05f * static_cast<float>(i);
     body_C = 35.0f + 0.04f * static_cast<float>(i);
