@@ -48,7 +48,7 @@ class FixedThermalCore {
   /// @param air             -60 .. 125 degC
   /// @param cooling_factor  FixedThermalModel::cooling_factor of the motor
   /// @return dT/dt at the start of the step, which eq 4.23 uses
-  FixedRate step(FixedCelsius air, FixedTicks ticks, uint16_t cooling_factor) noexcept {
+  [[gnu::always_inline]] FixedRate step(FixedCelsius air, FixedTicks ticks, uint16_t cooling_factor) noexcept {
     const int16_t above_air = static_cast<int16_t>(detail::rounded_celsius(state_.motor) - air);
     const FixedRate rate = state_.heating - detail::product(above_air, cooling_factor);
     state_.motor = detail::within_range(state_.motor + detail::scaled(rate, ticks));

@@ -106,7 +106,8 @@ class FixedSafetyLimiter {
   /// @param motor   temperature
   /// @param rate    dT/dt at the power of the last step
   /// @param ticks   time since the last step
-  LimitedPower step(uint8_t demand, FixedTemperature motor, FixedRate rate, FixedTicks ticks) noexcept {
+  [[gnu::always_inline]] LimitedPower step(uint8_t demand, FixedTemperature motor, FixedRate rate,
+                                           FixedTicks ticks) noexcept {
     constexpr FixedTemperature maximum = detail::fixed_temperature(Constants::maximum_C());
     if (motor > maximum) return cut(LimitReason::over_temperature, demand);
     const int32_t soon = detail::scaled(rate, Horizon::factor);

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The cost of policies in whole numbers.
+#include "cost.hpp"
+
+using namespace cost;
+
+typedef tp::FixedThermalModel<tp::FixedThesisMotor<Small> > Thermal;
+typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
+
+static Thermal& thermal() {
+  static Thermal model;
+  return model;
+}
+
+extern "C" void fixed_thermal_set() {
+  thermal().start(static_cast<tp::FixedTemperature>(given.warm) * 65536);
+}
+extern "C" void fixed_heating() {
+  sink = static_cast<uint32_t>(tp::FixedHeating<tp::FixedThesisMotor<Small> >::rate(given.level, given.warm));
+}
+extern "C" void fixed_thermal() { sink = static_cast<uint32_t>(thermal().step(given.air, given.ticks)); }
+extern "C" void fixed_levels() {
+  static tp::FixedLevels<> law;
+  small_sink = law.step(given.error_units);
+}
+extern "C" void fixed_hysteresis() {
+  static tp::FixedHysteresisLevels<> law;
+  small_sink = law.step(given.error_units);
+}
+extern "C" void fixed_limiter_cycle() {
+  static Limiter limiter;
+  small_sink =
+      limiter
+          .step(given.level, static_cast<tp::FixedTemperature>(given.warm) * 65536, given.rate, given.ticks)
+          .power;
+}
+extern "C" void fixed_limiter_second() {
+  static tp::FixedSafetyLimiter<> limiter;
+  small_sink =
+      limiter
+          .step(given.level, static_cast<tp::FixedTemperature>(given.warm) * 65536, given.rate, given.ticks)
+          .power;
+}
+extern "C" void fixed_gain_cut() { small_sink = tp::FixedTruncatedGain<24, 4>::gain(given.level); }
+extern "C" void fixed_gain() { small_sink = tp::FixedGain<24, 4>::gain(given.level); }
+extern "C" void fixed_air() {
+  static tp::FixedAirTemperature<> air;
+  sink = static_cast<uint32_t>(air.step(given.camera_C, given.frame_C).air);
+}
+
+extern "C" void measure_all() {
+  thermopower_cost(fixed_heating);
+  thermopower_cost_after(fixed_thermal, fixed_thermal_set);
+  thermopower_cost(fixed_levels);
+  thermopower_cost(fixed_hysteresis);
+  thermopower_cost(fixed_limiter_cycle);
+  thermopower_cost(fixed_limiter_second);
+  thermopower_cost(fixed_gain_cut);
+  thermopower_cost(fixed_gain);
+  thermopower_cost(fixed_air);
+}

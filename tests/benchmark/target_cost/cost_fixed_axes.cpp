@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The cost of controllers in whole numbers: apart from the policies, so that the compiler inlines as in a
+// firmware.
+#include "cost.hpp"
+
+using namespace cost;
+
+template <class Motor, class Gain>
+using AxisOf = tp::FixedAxisController<tp::FixedThermalModel<tp::FixedThesisMotor<Motor> >, tp::FixedLevels<>,
+                                       tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle>, Gain>;
+typedef AxisOf<Small, tp::FixedTruncatedGain<24, 4> > Axis;
+typedef tp::FixedGimbalController<Axis, AxisOf<Small, tp::FixedTruncatedGain<180, 105> >,
+                                  AxisOf<Large, tp::FixedTruncatedGain<40, 2> > >
+    Gimbal;
+
+static Axis& axis() {
+  static Axis controller;
+  return controller;
+}
+static Gimbal& gimbal() {
+  static Gimbal controller;
+  return controller;
+}
+
+extern "C" void fixed_axis_set() { axis().start(static_cast<tp::FixedTemperature>(given.warm) * 65536); }
+extern "C" void fixed_axis_step() {
+  const tp::FixedAxisInputs inputs = {given.error_units, given.air, given.fault};
+  axis().step(inputs, given.ticks);
+  small_sink = axis().p_gain();
+}
+extern "C" void fixed_axis_whole() {
+  fixed_axis_step();
+  axis().prepare();
+}
+extern "C" void fixed_gimbal_step() {
+  const Telemetry telemetry = Telemetry();
+  small_sink = gimbal().step(telemetry, given.ticks).power[2];
+}
+extern "C" void fixed_gimbal_prepare() { gimbal().prepare(); }
+extern "C" void fixed_gimbal_silent() { small_sink = gimbal().step_silent(given.ticks).power[2]; }
+extern "C" void fixed_gimbal_whole() {
+  fixed_gimbal_step();
+  gimbal().prepare();
+}
+
+// From a state and an input, a step takes as long after a thousand others as it took before them.
+static Gimbal before;
+extern "C" void remember() {
+  fixed_gimbal_whole();
+  before = gimbal();
+}
+extern "C" void restore() { gimbal() = before; }
+extern "C" void live() {
+  const Given now = given;
+  for (uint16_t round = 0; round < 1000; ++round) {
+    give(round & 127u);
+    fixed_gimbal_whole();
+  }
+  given = now;
+}
+static void same_after_a_thousand() {
+  for (uint16_t round = 0; round < 8; ++round) {
+    give(static_cast<uint16_t>(60 + round));
+    remember();
+    const uint32_t first = counter::once(fixed_gimbal_whole, restore);
+    live();
+    const uint32_t second = counter::once(fixed_gimbal_whole, restore);
+    const uint32_t difference = first > second ? first - second : second - first;
+    if (difference > counter::resolution)
+      cost::row("time_depends_on_history", fixed_gimbal_whole, cost_nothing);
+  }
+}
+
+extern "C" void measure_all() {
+  thermopower_cost_after(fixed_axis_step, fixed_axis_set);
+  thermopower_cost_after(fixed_axis_whole, fixed_axis_set);
+  thermopower_cost_after(fixed_gimbal_step, fixed_gimbal_prepare);
+  thermopower_cost_after(fixed_gimbal_prepare, fixed_gimbal_step);
+  thermopower_cost(fixed_gimbal_whole);
+  thermopower_cost_after(fixed_gimbal_silent, fixed_gimbal_prepare);
+  same_after_a_thousand();
+}
