@@ -18,9 +18,9 @@ motor=examples/thesis_gap/bgm5208
 
 echo "== Building: two programs for the Nano, four for this computer (some two minutes the first time)"
 export NINJA_STATUS="[%f of %t, %e s] "
-cmake --preset avr-nano --log-level=WARNING -DTHERMOPOWER_TESTS=OFF >/dev/null
+cmake --preset avr-nano --log-level=WARNING --no-warn-unused-cli -DTHERMOPOWER_TESTS=OFF >/dev/null
 cmake --build --preset avr-nano
-cmake --preset release --log-level=WARNING -DTHERMOPOWER_TESTS=OFF >/dev/null
+cmake --preset release --log-level=WARNING --no-warn-unused-cli -DTHERMOPOWER_TESTS=OFF >/dev/null
 cmake --build --preset release --target thesis_replay nano_demo known_gap thermopower-gap
 
 rm -rf "$out"
