@@ -243,7 +243,9 @@ private:
       only(item.value(), here, names);
       EffectParameters& parameters = model.effects[item.key()];
       for (const auto& parameter : info->parameters) {
-        const double value = number(item.value(), here, parameter.name.c_str(), Allowed::any);
+        const bool left_out = parameter.standard && !item.value().contains(parameter.name);
+        const double value =
+            left_out ? *parameter.standard : number(item.value(), here, parameter.name.c_str(), Allowed::any);
         if (!(value >= parameter.lower && value <= parameter.upper)) {
           fail(below(here, parameter.name), "is " + number_text(value) + "; expected " + number_text(parameter.lower) + " to " +
                                                 number_text(parameter.upper) + (parameter.unit == "1" ? "" : " " + parameter.unit));

@@ -142,7 +142,8 @@ std::string catalogue_text(const std::vector<EffectInfo>& effects) {
     bool first = true;
     for (const auto& parameter : effect.parameters) {
       out += std::string(first ? "    parameters  " : "                ") + parameter.name + " in " +
-             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " + readable(parameter.upper) + "\n";
+             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " + readable(parameter.upper) +
+             (parameter.standard ? ", " + readable(*parameter.standard) + " where left out" : std::string()) + "\n";
       first = false;
     }
     std::string needs;

@@ -17,13 +17,14 @@ struct AxisState {
   Scalar twist_rate_rad_per_s;  ///< its derivative
 };
 
-/// Integrates the axis under a constant drive, with dry friction by events.
+/// Integrates the axis under a constant drive, with dry friction.
 ///
-/// Between events (a zero crossing of the rate, a break-away) the equations are smooth and the classical
-/// Runge-Kutta rule integrates them, halving its step where the acceleration bends. At a crossing the step is
-/// cut there: the axis sticks while friction holds the other torques, else it leaves with friction reversed.
-/// With an automatic-differentiation scalar the cut's position is differentiated too, so derivatives are
-/// exact through reversals.
+/// Where the equations are smooth the classical Runge-Kutta rule integrates them, halving its step where the
+/// acceleration bends. Friction that turns over within a transition is smooth but stiff near standstill: there
+/// the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length. Friction
+/// without a transition goes by events: at a zero crossing of the rate the step is cut; the axis sticks while
+/// friction holds the other torques, else it leaves with friction reversed. With an automatic-differentiation
+/// scalar the cut's position is differentiated too, so derivatives are exact through reversals.
 template <class Scalar>
 class AxisStep {
 public:
@@ -42,6 +43,9 @@ public:
     double fastest = std::abs(value_of(instance.viscous_Nms_per_rad) / value_of(near_inertia_kgm2));
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
+    const Scalar zero = constant<Scalar>(0.0);
+    soft_ = value_of(balance({zero, zero, zero, zero}, 0.0, zero).transition_rad_per_s) >
+            1.001 * friction_sticks_below_rad_per_s;
   }
 
   /// Moves the state by `h_s` under the drive torque `drive_Nm`.
@@ -60,18 +64,33 @@ public:
 private:
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
+    double stiffness = 0.0;  ///< of friction inside its transition, N m s/rad
   };
   struct Balance {
-    Scalar torque_Nm, forward_Nm, backward_Nm;
+    Scalar torque_Nm, forward_Nm, backward_Nm, transition_rad_per_s;
   };
 
   Balance balance(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
     const Scalar zero = constant<Scalar>(0.0);
-    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero};
+    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero, zero};
     for (const auto& effect : instance_.axis) effect(terms);
     terms.load_Nm += drive_Nm;
     terms.load_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
-    return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm};
+    return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm, terms.transition_rad_per_s};
+  }
+
+  /// Friction inside its transition. `stiffness` receives its derivative by the rate.
+  static Scalar soft_friction(const Balance& now, const Scalar& rate_rad_per_s, double& stiffness) {
+    using std::tanh;
+    const bool forward = value_of(rate_rad_per_s) >= 0.0;
+    const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
+    stiffness = 0.0;
+    constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
+    if (std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s))
+      return forward ? size_Nm : Scalar(-size_Nm);
+    const Scalar share = tanh(Scalar(rate_rad_per_s / now.transition_rad_per_s));
+    stiffness = value_of(size_Nm) * (1.0 - value_of(share) * value_of(share)) / value_of(now.transition_rad_per_s);
+    return size_Nm * share;
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {
@@ -91,7 +110,8 @@ private:
       } else {
         const Balance now = balance(state, t_s, drive_Nm);
         rate.rate = now.torque_Nm;
-        if (direction > 0) rate.rate -= now.forward_Nm;
+        if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, rate.stiffness);
+        else if (direction > 0) rate.rate -= now.forward_Nm;
         else rate.rate += now.backward_Nm;
       }
       if constexpr (compliant) rate.rate += spring(state);
@@ -131,6 +151,8 @@ private:
     move<compliant>(from, k3, h_s, point);
     slope<compliant>(point, t_s + h, drive_Nm, direction, k4);
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
+    // A transition of friction between the second and the third slope shows in their difference only.
+    if (soft_) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
     const auto mean = [](Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
       a += d;
       a += 2.0 * (b + c);
@@ -160,8 +182,9 @@ private:
 
   template <bool compliant>
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const Scalar& drive_Nm, int depth) const {
-    constexpr double bend_limit_rad_per_s = 5e-4;
-    const bool dry = !instance_.axis.empty();
+    const double bend_limit_rad_per_s = soft_ ? 1e-4 : 5e-4;
+    const bool dry = !instance_.axis.empty() && !soft_;
+    if (soft_ && creep<compliant>(state, t_s, left_s, drive_Nm, depth)) return;
     for (int event = 0; event < 12; ++event) {
       const int direction = dry ? direction_of<compliant>(state, t_s, drive_Nm) : 1;
       double bend = 0.0;
@@ -203,9 +226,42 @@ private:
     }
   }
 
+  /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
+  /// exactly; what the linearisation missed is the error. @return false: not stiff here, nothing was done
+  template <bool compliant>
+  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth) const {
+    constexpr double error_limit_rad_per_s = 1e-4;
+    Slope now;
+    slope<compliant>(state, t_s, drive_Nm, 1, now);
+    const double h = value_of(h_s), decay = h * now.stiffness * value_of(per_near_inertia_);
+    if (!(decay > 0.3)) return false;
+    const double phi_1 = -std::expm1(-decay) / decay, phi_2 = (1.0 - phi_1) / decay;
+    AxisState<Scalar> reached = state;
+    reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * (h * phi_2));
+    const Scalar gain_rad_per_s = now.rate * h_s * phi_1;
+    reached.rate_rad_per_s += gain_rad_per_s;
+    if constexpr (compliant) {
+      // Symplectic Euler: the spring neither gains nor loses energy by it.
+      reached.twist_rate_rad_per_s += h_s * now.twist_rate;
+      reached.twist_rad += h_s * reached.twist_rate_rad_per_s;
+    }
+    Slope there;
+    slope<compliant>(reached, t_s + h, drive_Nm, 1, there);
+    const double missed = value_of(there.rate) - value_of(now.rate) + decay / h * value_of(gain_rad_per_s);
+    if (std::abs(missed) * h * phi_2 > error_limit_rad_per_s && depth > 0) {
+      const Scalar half_s = h_s * 0.5;
+      smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
+      smooth<compliant>(state, t_s + 0.5 * h, half_s, drive_Nm, depth - 1);
+    } else {
+      state = reached;
+    }
+    return true;
+  }
+
   const Instance<Scalar>& instance_;
   Scalar per_near_inertia_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
   double longest_s_ = 1e9;
+  bool soft_ = false;  ///< dry friction has a transition
 };
 
 }  // namespace thermopower::gap

@@ -56,7 +56,9 @@ public:
       if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
     }
     stage("which");
-    report(attempt.candidates, conclude(attempt.candidates, options_), attempt.problem);
+    Conclusion conclusion = conclude(attempt.candidates, options_);
+    if (conclusion.verdict != Verdict::no_gap && holds(attempt)) conclusion = nothing_missing();
+    report(attempt.candidates, conclusion, attempt.problem);
     stage("how far");
     return std::move(result_);
   }
@@ -67,6 +69,24 @@ private:
     FitProblem problem;
     std::vector<Candidate> candidates;
   };
+
+  /// Whether the model, its constants within their slack, scores what the noise allows on the held-out data in
+  /// full. The search looks at averages of many rows: what shows there may be too small for anybody to care.
+  bool holds(const Attempt& attempt) const {
+    constexpr double relevant = 1.2;
+    const Candidate& empty = attempt.candidates.front();
+    if (worst_level(empty) > 8.0) return false;
+    const Model calibrated = augmented(model_, empty.explanation, empty.list, empty.fit.at);
+    const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
+    const Errors errors = errors_of(calibrated, full, catalogue_);
+    std::array<double, signal_count> sigma = noise_of(errors, held_out_inputs_);
+    if (attempt.problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
+      for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], attempt.problem.sigma[i]);
+    const std::array<double, signal_count> floor = noise_floor(calibrated, full, sigma, catalogue_);
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > relevant * floor[i]) return false;
+    return true;
+  }
 
   static double best_level(const Attempt& attempt) { return worst_level(Search::best(attempt.candidates)); }
 
@@ -157,7 +177,7 @@ private:
         list.push_back({{&entry}, {}});
     const std::vector<CalibratedConstant> constants = model_.calibrated();
     for (std::size_t i = 0; i < constants.size(); ++i)
-      if (!removed("calibration." + constants[i].id) && acts(constants[i]))
+      if (constants[i].may_be_cause && !removed("calibration." + constants[i].id) && acts(constants[i]))
         list.push_back({{}, {static_cast<int>(i)}});
     return list;
   }
@@ -246,7 +266,9 @@ private:
     if (named) name_causes(result_, candidates, conclusion, model_, problem, weight);
 
     Explanation all;
-    for (std::size_t i = 0; i < model_.calibrated().size(); ++i) all.released.push_back(static_cast<int>(i));
+    const std::vector<CalibratedConstant> constants = model_.calibrated();
+    for (std::size_t i = 0; i < constants.size(); ++i)
+      if (constants[i].may_be_cause) all.released.push_back(static_cast<int>(i));
     const Attribution attribution(problem, slack_, options_.threads);
     const Candidate recalibrated = attribution.fit(all, {}, &candidates.front());
     result_.recalibrated =

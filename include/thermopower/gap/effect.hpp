@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Parameter {
   std::vector<double> starts = {};  ///< where fits begin, inside the bounds, at least one
   bool logarithmic = false;  ///< positive and known by order of magnitude only: fitted as its logarithm
   std::string starts_relative_to = {};  ///< a column: the starts are fractions of its largest magnitude
+  std::optional<double> standard = {};  ///< its value where a model leaves it out; none: it must be given
 };
 
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.

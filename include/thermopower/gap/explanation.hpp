@@ -84,7 +84,8 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   for (const CalibratedConstant& constant : model.calibrated()) {
     const bool free = std::find(explanation.released.begin(), explanation.released.end(), index) !=
                       explanation.released.end();
-    const double reach = std::log(free ? slack.released_factor : 1.0 + slack.fraction);
+    const double within = constant.has_slack ? -std::log1p(-slack.fraction) : 0.0;
+    const double reach = free ? std::log(slack.released_factor) : within;
     // The prior only keeps combinations that no recording can tell (a common factor of all torques) in place.
     list.push_back(
         {"calibration." + constant.id, "1", -reach, reach, 0.0, free ? 0.0 : std::max(reach, 1e-9), true});
@@ -139,7 +140,7 @@ inline Model augmented(const Model& model, const Explanation& explanation,
   for (const CalibratedConstant& constant : model.calibrated()) {
     for (const std::string& field : constant.fields) {
       const std::string name = constant.block + "." + field;
-      result.set(name, model.get(name) * std::exp(at[index]));
+      result.set(name, result.get(name) * std::exp(at[index]));
     }
     ++index;
   }

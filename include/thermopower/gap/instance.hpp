@@ -155,6 +155,10 @@ private:
     std::vector<Scalar> values;
     for (const Parameter& parameter : entry.info.parameters) {
       const auto found = given.find(parameter.name);
+      if (found == given.end() && parameter.standard) {
+        values.push_back(constant<Scalar>(*parameter.standard));
+        continue;
+      }
       if (found == given.end())
         throw InvalidInput("model '" + model.name + "', effect '" + entry.info.id + "': parameter '" +
                            parameter.name + "' is missing");

@@ -78,6 +78,8 @@ struct CalibratedConstant {
   std::string id;                   ///< `resistance`, `heat_capacity`, ...
   std::string block;                ///< `current`, `thermal` or `axis`
   std::vector<std::string> fields;  ///< the model's fields that scale with it
+  bool may_be_cause = true;         ///< off by more than the slack it is a cause of its own
+  bool has_slack = true;            ///< may move by the slack for free; of a polynomial each coefficient does
 };
 
 /// The simulation under test, as in a model file. Blocks may be absent: what they would say is not judged.
@@ -195,14 +197,18 @@ inline std::vector<CalibratedConstant> Model::calibrated() const {
     if (ohmic->tempco_per_K != 0.0) list.push_back({"tempco", "current", {"tempco_per_K"}});
   } else if (std::holds_alternative<ThesisCurrentModel>(current)) {
     list.push_back({"base", "current", {"base_mA"}});
-    list.push_back({"slope", "current", {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"}});
+    list.push_back({"slope", "current", {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"}, true, false});
+    for (const char* field : {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"})
+      if (get(std::string("current.") + field) != 0.0) list.push_back({field, "current", {field}, false, true});
   }
   if (std::holds_alternative<LumpedThermalModel>(thermal)) {
     list.push_back({"heat_capacity", "thermal", {"heat_capacity_J_per_K"}});
     list.push_back({"conductance", "thermal", {"conductance_W_per_K"}});
   } else if (std::holds_alternative<ThesisThermalModel>(thermal)) {
     list.push_back(
-        {"rinv", "thermal", {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"}});
+        {"rinv", "thermal", {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"}, true, false});
+    for (const char* field : {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"})
+      if (get(std::string("thermal.") + field) != 0.0) list.push_back({field, "thermal", {field}, false, true});
     list.push_back({"cooling", "thermal", {"cooling_per_min"}});
   }
   if (axis) {

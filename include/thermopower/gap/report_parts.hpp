@@ -113,12 +113,28 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   }
   for (std::size_t index : conclusion.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
-  const std::vector<CalibratedConstant> constants = model.calibrated();
-  for (std::size_t i = 0; i < constants.size(); ++i) {
-    const double configured = model.get(constants[i].block + "." + constants[i].fields.front());
-    result.constants.push_back(
-        {constants[i].id, configured, configured * std::exp(chosen.fit.at[static_cast<Eigen::Index>(i)])});
+  const Model fitted = augmented(model, chosen.explanation, chosen.list, chosen.fit.at);
+  for (const CalibratedConstant& constant : model.calibrated())
+    if (constant.fields.size() == 1) {
+      const std::string name = constant.block + "." + constant.fields.front();
+      result.constants.push_back({constant.id, model.get(name), fitted.get(name)});
+    }
+}
+
+/// Noise of every signal: the white part of a simulation's errors, at least that of rounding.
+inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Inputs>& inputs) {
+  std::array<double, signal_count> sigma{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    std::vector<bool> gaps(errors.of[i].size(), false);
+    for (std::size_t k = 1; k < gaps.size(); ++k)
+      gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
+    double quantum = 0.0;
+    for (const Inputs& one : inputs)
+      if (one.judged(static_cast<Signal>(i)))
+        quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
+    sigma[i] = std::max(white_sd(errors.of[i], gaps), quantum / std::sqrt(12.0));
   }
+  return sigma;
 }
 
 /// Scores and curves on held-out data.
@@ -129,17 +145,8 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
   const Errors after = errors_of(result.augmented, segments, catalogue);
   const Errors best = errors_of(fitted, segments, catalogue);
-  std::array<double, signal_count> sigma{};
-  for (std::size_t i = 0; i < signal_count; ++i) {
-    std::vector<bool> gaps(best.of[i].size(), false);
-    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = best.segment[i][k] != best.segment[i][k - 1];
-    double quantum = 0.0;
-    for (const Inputs& one : inputs)
-      if (one.judged(static_cast<Signal>(i)))
-        quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
-    sigma[i] = std::max(white_sd(best.of[i], gaps), quantum / std::sqrt(12.0));
-  }
-  const std::array<double, signal_count> floor = noise_floor(fitted, segments, sigma, catalogue);
+  const std::array<double, signal_count> floor =
+      noise_floor(fitted, segments, noise_of(best, inputs), catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);

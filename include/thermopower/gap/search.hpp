@@ -45,6 +45,7 @@ public:
       for (std::size_t i = 0; i < signal_count; ++i) satisfied = satisfied && leader.train.mean(i) <= enough;
       if (satisfied) break;
       join(candidates, singles, size);
+      exchange(candidates, singles);
     }
   }
 
@@ -137,6 +138,36 @@ private:
     const std::size_t first = candidates.size();
     for (Candidate& one : joined) candidates.push_back(std::move(one));
     refine(candidates, first, 5);
+  }
+
+  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the same
+  /// submodel: of two that do the same beside a third, only one may have been tried.
+  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+    const Explanation leader = best(candidates).explanation;
+    if (leader.size() < 2) return;
+    std::vector<Explanation> tries;
+    for (std::size_t member = 0; member < leader.effects.size(); ++member)
+      for (const Explanation& single : singles) {
+        if (single.effects.empty() || leader.includes(single) ||
+            single.effects.front()->info.submodel != leader.effects[member]->info.submodel)
+          continue;
+        Explanation other = leader;
+        other.effects[member] = single.effects.front();
+        bool known = false;
+        for (const Candidate& one : candidates)
+          known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
+        if (!known) tries.push_back(std::move(other));
+      }
+    std::vector<Candidate> found(tries.size());
+    const Candidate near = best(candidates);
+    FitOptions options;
+    options.iterations = 12;
+    options.relative_decrease = 1e-3;
+    in_parallel(tries.size(), threads_,
+                [&](std::size_t i) { found[i] = coarse_.fit(tries[i], options, &near); });
+    const std::size_t first = candidates.size();
+    for (Candidate& one : found) candidates.push_back(std::move(one));
+    if (!tries.empty()) refine(candidates, first, 5);
   }
 
   const Attribution& coarse_;

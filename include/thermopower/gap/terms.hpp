@@ -67,6 +67,9 @@ struct DriveTerms {
   Scalar torque_constant_Nm_per_A;  ///< as in the model file, to be multiplied
 };
 
+/// A transition of dry friction at or below this, in rad/s, is none: the axis sticks at rest.
+inline constexpr double friction_sticks_below_rad_per_s = 5e-4;
+
 /// Torques on the driven inertia.
 template <class Scalar>
 struct AxisTerms {
@@ -78,6 +81,14 @@ struct AxisTerms {
   Scalar load_Nm;               ///< added to the drive
   Scalar friction_forward_Nm;   ///< magnitude of dry friction while the rate is positive, >= 0
   Scalar friction_backward_Nm;  ///< magnitude of dry friction while the rate is negative, >= 0
+  Scalar transition_rad_per_s;  ///< dry friction turns with the rate as tanh(rate / this); 0: sticks at rest
+
+  /// Adds dry friction of a magnitude for each direction. The widest transition among all frictions holds.
+  void add_friction(const Scalar& forward_Nm, const Scalar& backward_Nm, const Scalar& transition) {
+    friction_forward_Nm += forward_Nm;
+    friction_backward_Nm += backward_Nm;
+    if (transition > transition_rad_per_s) transition_rad_per_s = transition;
+  }
 };
 
 /// The shape of the mechanical model, set once per simulation.

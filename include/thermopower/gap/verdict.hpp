@@ -22,10 +22,11 @@ struct Conclusion {
   std::string reason;                     ///< one sentence in plain words
 };
 
-/// Root of the mean square over training and held-out data of a signal, in units of the noise.
+/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 for a signal
+/// that nobody held out: it may help to fit and to choose, but what is left of its gap cannot be checked.
 inline double level(const Candidate& candidate, std::size_t signal) {
+  if (!(candidate.held_out.samples[signal] > 0.0)) return 0.0;
   const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
-  if (!(samples > 0.0)) return 0.0;
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
@@ -46,7 +47,7 @@ inline bool matters(const Candidate& candidate, const Candidate& than, double to
 inline double left_over(const Candidate& candidate, const Candidate& empty) {
   double worst = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i) {
-    if (!(candidate.train.samples[i] > 0.0)) continue;
+    if (!(candidate.held_out.samples[i] > 0.0)) continue;
     const double excess = std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
     const double whole = std::max(level(empty, i) * level(empty, i) - 1.0, 1e-12);
     if (whole > 0.1) worst = std::max(worst, std::sqrt(excess / whole));
@@ -99,6 +100,14 @@ inline double likeliest_of(const std::vector<Candidate>& candidates, const Candi
   return largest;
 }
 
+/// The conclusion that the simulation holds.
+inline Conclusion nothing_missing() {
+  Conclusion result;
+  result.verdict = Verdict::no_gap;
+  result.reason = "with its constants within their slack the simulation scores what the noise allows";
+  return result;
+}
+
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Options& options) {
   Conclusion result;
@@ -109,18 +118,18 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
   const Candidate& best = candidates[result.chosen];
   if (result.chosen == 0 || !matters(best, empty, options.tolerance)) {
     // Nothing helps: either nothing is missing, or nothing known.
-    const bool at_noise = worst_level(empty) < 1.25;
+    if (worst_level(empty) < 1.25) return nothing_missing();
     result.chosen = 0;
-    result.verdict = at_noise ? Verdict::no_gap : Verdict::unexplained;
-    result.none_of_these = at_noise ? 0.0 : 0.98;
-    result.reason = at_noise
-                        ? "with its constants within their slack the simulation scores what the noise allows"
-                        : "there is a gap, and no effect of the catalogue lowers it on held-out data";
+    result.verdict = Verdict::unexplained;
+    result.none_of_these = 0.98;
+    result.reason = "there is a gap, and no effect of the catalogue lowers it on held-out data";
     return result;
   }
   const double level_left = worst_level(best), share_left = left_over(best, empty);
   // Half way between "at the noise" and "clearly not": a factor 1.6 of the noise and a seventh of the gap.
-  const double doubt = std::min(4.0 * (level_left - 1.5), 30.0 * (share_left - 0.15));
+  double doubt = std::min(4.0 * (level_left - 1.5), 30.0 * (share_left - 0.15));
+  // Far above the noise no share is small enough: something with a structure of its own is left.
+  doubt = std::max(doubt, 2.0 * (level_left - 6.0));
   result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
   if (result.none_of_these > 0.5) {
     result.verdict = Verdict::unexplained;

@@ -133,7 +133,7 @@ TEST_CASE("the result is the same digit for digit on one thread and on two") {
 }
 
 TEST_CASE("too little data is said to be too little") {
-  Recording few = bench_inputs(20, 2.0, 3, true);
+  Recording few = bench_inputs(8, 2.0, 3, true);
   measure(few, bench_model(), 5);
   CHECK(diagnose(bench_model(), {few}, {few}).verdict == Verdict::insufficient);
 }

@@ -39,6 +39,7 @@ TEST_CASE("a model file gives the model it says") {
   CHECK(model.get("conductance_W_per_K") == 0.11);
   CHECK(model.get("torque_constant_Nm_per_A") == -0.2);
   CHECK(model.effects.at("coulomb_friction").at("Nm") == 0.01);
+  CHECK(model.effects.at("coulomb_friction").at("transition_rad_per_s") == 0.01);  // its standard value: it was left out
 }
 
 TEST_CASE("the thesis's laws are read for current and temperature") {

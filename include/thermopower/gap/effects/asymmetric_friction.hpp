@@ -14,9 +14,11 @@ struct AsymmetricFriction {
   static EffectInfo info() {
     return {"asymmetric_friction",
             "mechanical.friction",
-            "torque -= forward (w > 0), torque += backward (w < 0)",
+            "torque -= (forward where w > 0, else backward) tanh(w / transition)",
             "Dry friction that differs between the two directions.",
-            {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false}, {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false}},
+            {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false},
+             {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false},
+             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01}, true, {}, 0.01}},
             {"axis"},
             "slow motion at constant rate in both directions, and standstill"};
   }
@@ -24,8 +26,7 @@ struct AsymmetricFriction {
   /// Adds dry friction by direction.
   template <class Scalar>
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    terms.friction_forward_Nm += p[0];
-    terms.friction_backward_Nm += p[1];
+    terms.add_friction(p[0], p[1], p[2]);
   }
 };
 

@@ -14,9 +14,10 @@ struct CoulombFriction {
   static EffectInfo info() {
     return {"coulomb_friction",
             "mechanical.friction",
-            "torque -= Nm sign(w)",
+            "torque -= Nm tanh(w / transition)",
             "Dry friction: a constant torque against the motion, and sticking at rest.",
-            {{"Nm", "N m", 0.0, 1e3, {0.0}, false}},
+            {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
+             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01}, true, {}, 0.01}},
             {"axis"},
             "slow reversals at small torque"};
   }
@@ -24,8 +25,7 @@ struct CoulombFriction {
   /// Adds dry friction.
   template <class Scalar>
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    terms.friction_forward_Nm += p[0];
-    terms.friction_backward_Nm += p[0];
+    terms.add_friction(p[0], p[0], p[1]);
   }
 };
 

@@ -16,7 +16,7 @@ struct DeadTime {
             "electrical",
             "duty = max(0, power_param / 255 - lost)",
             "The bridge loses a fixed part of each period: low powers suffer most.",
-            {{"duty_lost", "1", 0.0, 0.5, {0.0}, false}},
+            {{"duty_lost", "1", 0.0, 0.5, {0.0, 0.01, 0.03, 0.08}, false}},
             {"current", "current_A", "power_param"},
             "holds at low power parameters"};
   }

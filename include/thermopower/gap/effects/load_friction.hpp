@@ -14,9 +14,10 @@ struct LoadFriction {
   static EffectInfo info() {
     return {"load_friction",
             "mechanical.friction",
-            "torque -= share |drive torque| sign(w)",
+            "torque -= share |drive torque| tanh(w / transition)",
             "Friction that grows with the torque transmitted (gears, screws).",
-            {{"share", "1", 0.0, 0.95, {0.0}, false}},
+            {{"share", "1", 0.0, 0.95, {0.0}, false},
+             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01}, true, {}, 0.01}},
             {"axis"},
             "fast and slow motion at large and at small torque"};
   }
@@ -25,8 +26,7 @@ struct LoadFriction {
   template <class Scalar>
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
     const Scalar friction_Nm = p[0] * magnitude(terms.drive_Nm);
-    terms.friction_forward_Nm += friction_Nm;
-    terms.friction_backward_Nm += friction_Nm;
+    terms.add_friction(friction_Nm, friction_Nm, p[1]);
   }
 };
 

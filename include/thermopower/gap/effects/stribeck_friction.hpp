@@ -14,11 +14,12 @@ struct StribeckFriction {
   static EffectInfo info() {
     return {"stribeck_friction",
             "mechanical.friction",
-            "torque -= (Nm + rise exp(-(w / knee)^2)) sign(w)",
+            "torque -= (Nm + rise exp(-(w / knee)^2)) tanh(w / transition)",
             "Dry friction that is larger near standstill than in motion.",
             {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
              {"rise_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"knee_rad_per_s", "rad/s", 0.005, 100.0, {0.1, 0.5, 2.0}, true}},
+             {"knee_rad_per_s", "rad/s", 0.005, 100.0, {0.1, 0.5, 2.0}, true},
+             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01}, true, {}, 0.01}},
             {"axis"},
             "very slow motion through standstill in both directions"};
   }
@@ -29,8 +30,7 @@ struct StribeckFriction {
     using std::exp;
     const Scalar ratio = terms.rate_rad_per_s / p[2];
     const Scalar friction_Nm = p[0] + p[1] * exp(-ratio * ratio);
-    terms.friction_forward_Nm += friction_Nm;
-    terms.friction_backward_Nm += friction_Nm;
+    terms.add_friction(friction_Nm, friction_Nm, p[3]);
   }
 };
 
