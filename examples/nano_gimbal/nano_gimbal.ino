@@ -19,16 +19,12 @@ typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTrun
 typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2> > Yaw;
 typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
 
-const uint32_t request_interval_us = 10000;
-const uint32_t answer_timeout_us = 50000;   // a board answers within 24 ms, its 8 ms pause between commands included
-const uint32_t silence_us = 501000;         // a little above StandardGimbal::timeout_s(), so that the gimbal agrees
+const uint32_t silence_us = 501000;  // a little above StandardGimbal::timeout_s(), so that the gimbal agrees
 
 Gimbal gimbal;
 tp::FixedClock step_clock;
 tp::SbgcCodec<> codec;
-
-uint32_t requested_us;
-bool is_waiting;
+sbgc::Poller poller;
 
 void setup() { Serial.begin(115200); }
 
@@ -47,16 +43,14 @@ void receive() {
       if (telemetry == nullptr) continue;  // a CONFIRM
       gimbal.step(*telemetry, step_clock.elapsed(now_us));
       send_command();
-      is_waiting = false;
+      poller.answered();
     }
   }
 }
 
 // A silent board may still listen, so it is told the least power. Before the first answer nothing is stepped: the ceiling must not
 // start from the bottom only because the board takes longer to start than we do.
-void miss_answer() {
-  is_waiting = false;
-  const uint32_t now_us = micros();
+void miss_answer(uint32_t now_us) {
   const tp::LimitReason reason = gimbal.command().reason[0];
   if (reason != tp::LimitReason::no_telemetry_yet) {
     if (reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us) return;
@@ -67,11 +61,10 @@ void miss_answer() {
 
 void loop() {
   receive();
-  const uint32_t waited_us = micros() - requested_us;
-  if (is_waiting && waited_us > answer_timeout_us) miss_answer();
-  if (!is_waiting && waited_us > request_interval_us) {
-    codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
-    requested_us = micros();
-    is_waiting = true;
+  const uint32_t now_us = micros();
+  switch (poller.turn(now_us)) {
+    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
+    case sbgc::Turn::missed: miss_answer(now_us); break;
+    case sbgc::Turn::wait: break;
   }
 }

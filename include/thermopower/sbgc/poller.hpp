@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#pragma once
+
+#include <stdint.h>
+
+/// @file
+/// @brief Poller: when to ask a board, and when to stop waiting for its answer.
+
+namespace thermopower {
+namespace sbgc {
+
+/// @brief The pace of the thesis's program, with a time-out. A set of your own has the same functions.
+/// @ingroup sbgc
+struct StandardPolling {
+  /// @brief From one request to the next, at least. A board answers within 24 ms, its 8 ms between commands
+  /// included.
+  static constexpr uint32_t request_interval_us() { return 10000; }
+  /// @brief An answer that takes longer is not waited for.
+  static constexpr uint32_t answer_timeout_us() { return 50000; }
+};
+
+/// @brief What is to be done now.
+/// @ingroup sbgc
+enum class Turn : uint8_t {
+  wait,    ///< nothing: an answer is awaited, or it is too early
+  ask,     ///< send the request now; from here on its answer is awaited
+  missed,  ///< said once when the answer has not come in time
+};
+
+/// @brief Keeps a conversation in step: one request at a time, and none before its answer or the time-out.
+///
+///     switch (poller.turn(now_us)) {
+///       case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), wire); break;
+///       case sbgc::Turn::missed: ...  // no answer came
+///       case sbgc::Turn::wait: break;
+///     }
+///
+/// It knows no wire and no clock. All times are differences, so a clock that wraps at 2^32 (71.6 minutes)
+/// does no harm.
+/// @tparam Constants StandardPolling, or your own
+/// @ingroup sbgc
+template <class Constants>
+class BasicPoller {
+ public:
+  /// @brief What is to be done. Call it in every round of the loop.
+  /// @param now_us a clock that may wrap around at 2^32, such as Arduino's micros().
+  Turn turn(uint32_t now_us) noexcept {
+    const uint32_t waited_us = now_us - asked_us_;
+    if (is_waiting_) {
+      if (waited_us <= Constants::answer_timeout_us()) return Turn::wait;
+      is_waiting_ = false;
+      return Turn::missed;
+    }
+    if (waited_us <= Constants::request_interval_us()) return Turn::wait;
+    asked_us_ = now_us;
+    is_waiting_ = true;
+    return Turn::ask;
+  }
+
+  /// @brief The answer has come.
+  void answered() noexcept { is_waiting_ = false; }
+
+  /// @brief Is an answer awaited?
+  bool is_waiting() const noexcept { return is_waiting_; }
+
+ private:
+  static_assert(Constants::request_interval_us() < 0x80000000u &&
+                    Constants::answer_timeout_us() < 0x80000000u,
+                "thermopower: a Poller's times must be below 2^31 microseconds");
+
+  uint32_t asked_us_ = 0;
+  bool is_waiting_ = false;
+};
+
+/// @brief The poller with the standard pace.
+/// @ingroup sbgc
+typedef BasicPoller<StandardPolling> Poller;
+
+}  // namespace sbgc
+}  // namespace thermopower
