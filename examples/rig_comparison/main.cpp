@@ -71,9 +71,9 @@ AdaptiveGimbal ours(const Scenario& scenario) {
 // Constant power at the stiffness of ours, to show what the gain alone does.
 ConstantPower stiff_constant(const Scenario&) {
   std::array<std::uint8_t, 3> gains{};
-  gains[0] = GainScheduler<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(0).gain).step(standard_power);
-  gains[1] = GainScheduler<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(1).gain).step(standard_power);
-  gains[2] = GainScheduler<VoltageGain>(adaptive_axis<motors::Bgm5208_200_12>(2).gain).step(standard_power);
+  gains[0] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0).gain).step(standard_power);
+  gains[1] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1).gain).step(standard_power);
+  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2).gain).step(standard_power);
   return ConstantPower({standard_power, standard_power, standard_power}, gains);
 }
 
@@ -86,8 +86,8 @@ std::vector<Policy> policies() {
           policy("ours", Palette::ours, ours)};
 }
 
-// Where ours is not at least as good as another: in words.
-void judge(const Row& ours, const Row& other, const char* name) {
+// Where one is not at least as good as another: in words.
+void judge(const char* own_name, const Row& ours, const Row& other, const char* name) {
   const double count_deg = 360.0 / 16384.0;   // what telemetry can tell apart
   std::string worse;
   if (ours.energy_J > other.energy_J) worse += " energy";
@@ -95,7 +95,8 @@ void judge(const Row& ours, const Row& other, const char* name) {
   if (ours.peak_deg > other.peak_deg + 2.0 * count_deg) worse += " peak";
   if (ours.blur_px > std::fmax(other.blur_px, 0.5)) worse += " blur";
   if (ours.over_s > other.over_s) worse += " over-limit";
-  std::printf("  ours against %-16s energy %+6.1f %%, rms %+7.1f %%  %s%s\n", name, 100.0 * (ours.energy_J / other.energy_J - 1.0),
+  std::printf("  %-14s against %-16s energy %+6.1f %%, rms %+7.1f %%  %s%s\n", own_name, name,
+              100.0 * (ours.energy_J / other.energy_J - 1.0),
               other.rms_deg > count_deg ? 100.0 * (ours.rms_deg / other.rms_deg - 1.0) : 0.0,
               worse.empty() ? "at least as good in everything" : "worse in:", worse.c_str());
 }
@@ -150,7 +151,8 @@ int main(int argc, char** argv) {
         panel.series.push_back({one.name, one.colour, figures::Mark::dots, {row.energy_J}, {row.rms_deg}});
         curves.series.push_back({one.name, one.colour, figures::Mark::line, row.minutes, row.body_curve_C});
       }
-      for (std::size_t i = 0; i + 1 < all.size(); ++i) judge(outcome.back(), outcome[i], all[i].name);
+      for (std::size_t own : {all.size() - 1, all.size() - 2})
+        for (std::size_t i = 0; i + 2 < all.size(); ++i) judge(all[own].name, outcome[own], outcome[i], all[i].name);
       for (const Row& row : outcome) {
         panel.x_to = std::fmax(panel.x_to, 1.08 * row.energy_J);
         panel.y_to = std::fmax(std::fmax(panel.y_to, 0.05), 1.1 * row.rms_deg);

@@ -78,6 +78,12 @@ enum class ConfigError : uint8_t {
   magnet_tempco_per_K = 61,           ///< Must be within 0 .. 0.01 per kelvin.
   pose_deg = 62,                      ///< The last pose must be above the first, both finite.
   every = 63,                         ///< Must be at least 1, and the phase below it.
+  reserve_power = 64,                 ///< Must be at least 1.
+  moving_error_deg = 65,              ///< Must be finite and above 0.
+  calm_s = 66,                        ///< Must be finite and not negative.
+  rise_per_s = 67,                    ///< Must be finite and above 0.
+  fall_per_s = 68,                    ///< Must be finite and above 0.
+  ease_from_deg = 69,                 ///< Must be finite and above 0.
   user_defined = 128                  ///< Codes from here up are free for policies of your own.
 };
 

@@ -107,7 +107,9 @@ class AdaptiveHoldingLaw {
   uint8_t step(float error_deg, const AxisFacts&, float dt_s) noexcept {
     if (!detail::is_finite(error_deg)) return config_.least_power;
     const float beyond_deg = detail::magnitude(error_deg) - config_.tolerance_deg;
-    if (!state_.is_held && detail::is_finite(dt_s) && dt_s > 0.0f) learn(beyond_deg, dt_s);
+    // An axis that was thrown this far teaches nothing about what its pose needs.
+    const bool is_thrown = !(beyond_deg < config_.full_power_error_deg - config_.tolerance_deg);
+    if (!state_.is_held && !is_thrown && detail::is_finite_positive(dt_s)) learn(beyond_deg, dt_s);
     const float held = static_cast<float>(state_.learned[state_.bin]) * (1.0f / 128.0f);
     const float power = held + (beyond_deg > 0.0f ? beyond_deg * boost_ : 0.0f) + 0.5f;
     const float highest = static_cast<float>(config_.highest_power);
@@ -115,7 +117,7 @@ class AdaptiveHoldingLaw {
   }
   /// The same without a time: asks, and learns nothing.
   uint8_t step(float error_deg) noexcept {
-    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
     return step(error_deg, none, 0.0f);
   }
 

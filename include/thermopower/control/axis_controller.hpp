@@ -151,7 +151,7 @@ class AxisController {
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
 
     AxisFacts facts = {0,           state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s,
-                       last_air_C_, last_supply_V_};
+                       last_air_C_, last_supply_V_,  state_.error_deg};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
     const LimitedPower granted = is_fault(fault)

@@ -69,7 +69,7 @@ class SagAwareLaw {
   }
   /// Without a supply: the law alone.
   uint8_t step(float error_deg) noexcept {
-    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number()};
+    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f};
     return step(error_deg, none, 0.0f);
   }
 

@@ -20,6 +20,7 @@ struct AxisFacts {
   float rate_K_per_s;  ///< dT/dt of the hottest node.
   float air_C;         ///< Air temperature; NaN when it is not known.
   float supply_V;      ///< Supply; NaN when it is not known.
+  float error_deg;     ///< Folded position error; NaN when it is not known.
 };
 
 namespace detail {

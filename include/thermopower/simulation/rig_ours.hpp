@@ -4,30 +4,40 @@
 
 #include "../control/adaptive_holding_law.hpp"
 #include "../control/certified_limiter.hpp"
+#include "../control/eased_gain.hpp"
+#include "../control/reserve_law.hpp"
 #include "../control/sag_aware_law.hpp"
 #include "../control/voltage_gain.hpp"
 #include "rig_policies.hpp"
 
 /// @file rig_ours.hpp
-/// The library's own choice for the rig: learned holding power, corrected for the supply, under a certified
-/// limiter, with the gain from the torque that is there.
+/// The library's own choice for the rig: learned holding power with a reserve while the axis is disturbed,
+/// corrected for the supply, under a certified limiter, with the gain from the torque that is there, eased
+/// for errors that no tracking makes.
 
 namespace thermopower::simulation {
 
 /// One axis of it.
 template <class Motor>
 using AdaptiveAxis =
-    AxisController<Motor, SagAwareLaw<AdaptiveHoldingLaw<8>>, CertifiedLimiter<CertifiedTwoNode, SquareHeat>,
-                   GainScheduler<VoltageGain>>;
+    AxisController<Motor, SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<8>>>,
+                   CertifiedLimiter<CertifiedTwoNode, SquareHeat>, EasedGain<GainScheduler<VoltageGain>>>;
 
 /// What was tuned for the rig, on draws (see `standard_scenarios`) that no table in the documentation uses.
 struct AdaptiveTuning {
-  float tolerance_deg = 0.14f;                             ///< Error that is good enough.
-  float full_power_error_deg = 0.8f;                       ///< Error worth full power at once.
-  std::array<std::uint8_t, 3> least_power = {30, 22, 20};  ///< Holds each axis at rest: roll carries the most
-                                                           ///< weight.
-  float forgetting_per_s = 8.0f;                           ///< Counts per second that a learned power sinks.
-  float stiffness = 1.7f;  ///< Gain at POWER 45 against the one that is as stiff as eq 4.27 is at POWER 89.
+  float tolerance_deg = 0.2f;         ///< Error that is good enough.
+  float full_power_error_deg = 0.8f;  ///< Error worth full power at once.
+  /// Holds each axis at rest: roll carries the most weight.
+  std::array<std::uint8_t, 3> least_power = {26, 20, 18};
+  /// Kept while the axis is being disturbed.
+  std::array<std::uint8_t, 3> reserve_power = {48, 38, 35};
+  float moving_error_deg = 0.08f;     ///< An error beyond this is a disturbance.
+  float calm_s = 4.0f;                ///< The reserve outlasts the last disturbance by this.
+  float forgetting_per_s = 2.0f;      ///< Counts per second that a learned power sinks.
+  /// Gain at POWER 45 against the one that is as stiff as eq 4.27 is at POWER 89.
+  float stiffness = 2.0f;
+  float ease_from_deg = 1.5f;         ///< Error beyond which the gain is eased.
+  std::uint8_t far_gain = 3;          ///< Not eased below this.
 };
 
 /// Configuration of one axis. @param axis  0 roll, 1 pitch, 2 yaw
@@ -36,11 +46,16 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
   typedef AdaptiveAxis<Motor> Axis;
   const bool is_large = axis == 2;
   typename Axis::Config config = Axis::Config::standard();
-  config.power_law.law.tolerance_deg = tuning.tolerance_deg;
-  config.power_law.law.full_power_error_deg = tuning.full_power_error_deg;
-  config.power_law.law.least_power = tuning.least_power[axis];
-  config.power_law.law.forgetting_per_s = tuning.forgetting_per_s;
-  config.power_law.law.first_pose_deg = -180.0f, config.power_law.law.last_pose_deg = 180.0f;
+  auto& reserve = config.power_law.law;
+  reserve.reserve_power = tuning.reserve_power[axis];
+  reserve.moving_error_deg = tuning.moving_error_deg;
+  reserve.calm_s = tuning.calm_s;
+  auto& holding = reserve.law;
+  holding.tolerance_deg = tuning.tolerance_deg;
+  holding.full_power_error_deg = tuning.full_power_error_deg;
+  holding.least_power = tuning.least_power[axis];
+  holding.forgetting_per_s = tuning.forgetting_per_s;
+  holding.first_pose_deg = -180.0f, holding.last_pose_deg = 180.0f;
 
   // Measured in Tables 4.1 to 4.3 and 4.6; bounds of 15 %. The heat of Tables 4.1 and 4.2 rises with
   // POWER^1.86 to 1.9, a little less than its square: half as much again at full POWER covers that down to
@@ -59,10 +74,12 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
   limiter.use.highest_air_C = 45.0f;
 
   constexpr float gain_at_89[3] = {17.0f, 154.0f, 26.7f};
-  config.gain.gain_low_power = std::fmin(255.0f, tuning.stiffness * gain_at_89[axis] * 1.88f);  // (89 /
-                                                                                                // 45)^0.93
-  config.gain.tuned_power = 45;
-  config.gain.magnet_tempco_per_K = 0.0012f;
+  auto& gain = config.gain.gain;
+  gain.gain_low_power = std::fmin(255.0f, tuning.stiffness * gain_at_89[axis] * 1.88f);  // (89 / 45)^0.93
+  gain.tuned_power = 45;
+  gain.magnet_tempco_per_K = 0.0012f;
+  config.gain.ease_from_deg = tuning.ease_from_deg;
+  config.gain.far_gain = tuning.far_gain;
   return config;
 }
 
@@ -74,9 +91,8 @@ class AdaptiveGimbal {
 
  public:
   /// @param started_C  temperature of each motor at the start, not below the truth: from a stored state and
-  /// the time off, from the
-  ///                   winding's resistance, or 60 (its limit) when nothing is known. "As warm as the air" is
-  ///                   wrong after a hot run.
+  ///                   the time off, from the winding's resistance, or 60 (its limit) when nothing is known.
+  ///                   "As warm as the air" is wrong after a hot run.
   /// @param tuning     the same for every axis
   explicit AdaptiveGimbal(const std::array<float, 3>& started_C = {60.0f, 60.0f, 60.0f},
                           const AdaptiveTuning& tuning = {})
@@ -107,8 +123,9 @@ class AdaptiveGimbal {
  private:
   template <class Axis>
   static void tell(Axis& axis, float pose_deg) noexcept {
-    axis.power_law().law().at_pose(pose_deg);
-    axis.power_law().law().hold_memory(axis.state().reason != LimitReason::none);
+    auto& holding = axis.power_law().law().law();
+    holding.at_pose(pose_deg);
+    holding.hold_memory(axis.state().reason != LimitReason::none);
   }
 
   BasicGimbalController<MeasuredSupply, Small, Small, Large> gimbal_;

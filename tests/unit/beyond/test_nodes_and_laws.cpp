@@ -8,7 +8,9 @@
 #include <thermopower/control/adaptive_holding_law.hpp>
 #include <thermopower/control/axis_controller.hpp>
 #include <thermopower/control/certified_limiter.hpp>
+#include <thermopower/control/eased_gain.hpp>
 #include <thermopower/control/node_limits.hpp>
+#include <thermopower/control/reserve_law.hpp>
 #include <thermopower/control/sag_aware_law.hpp>
 #include <thermopower/control/voltage_gain.hpp>
 #include <thermopower/actuator/ohmic_current.hpp>
@@ -26,7 +28,7 @@ struct Motor {
   static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 };
 
-AxisFacts at_supply(float supply_V) { return {0, 25.0f, 25.0f, 0.0f, 25.0f, supply_V}; }
+AxisFacts at_supply(float supply_V) { return {0, 25.0f, 25.0f, 0.0f, 25.0f, supply_V, 0.0f}; }
 
 /// An axis that must hold a weight: a pose-dependent torque against an authority that grows with the square
 /// root of power.
@@ -216,7 +218,7 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
     for (const float supply_V : {9.0f, 13.0f, 16.0f})
       for (const float winding_C : {0.0f, 25.0f, 100.0f}) {
         const float body_C = 0.5f * (winding_C + 25.0f);
-        const AxisFacts facts = {0, winding_C, body_C, 0.0f, 25.0f, supply_V};
+        const AxisFacts facts = {0, winding_C, body_C, 0.0f, 25.0f, supply_V, 0.0f};
         const int p = gain.step(static_cast<uint8_t>(power), facts);
         const double exact = tuned / authority(power, static_cast<double>(supply_V),
                                                static_cast<double>(winding_C), static_cast<double>(body_C));
@@ -224,7 +226,81 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
       }
   CHECK(gain.step(100) == 60);
   const float nan = detail::not_a_number();
-  CHECK(gain.step(100, {0, nan, nan, 0.0f, 25.0f, nan}) == 60);
+  CHECK(gain.step(100, {0, nan, nan, 0.0f, 25.0f, nan, nan}) == 60);
+}
+
+TEST_CASE("a reserve rises with a disturbance, stays while they last, and an axis at rest pays for none") {
+  typedef ReserveLaw<StepPowerLaw<>> Law;
+  for (const float dt_s : {0.002f, 0.02f}) {
+    INFO("step " << dt_s << " s");
+    Law law;
+    REQUIRE(law.validate() == ConfigError::none);
+    const auto run = [&](float error_deg, float time_s) {
+      int power = 0;
+      for (int i = 0; i < static_cast<int>(time_s / dt_s + 0.5f); ++i)
+        power = law.step(error_deg, at_supply(13.0f), dt_s);
+      return power;
+    };
+    CHECK(run(0.05f, 10.0f) == 25);                 // calm: what the law asks for
+    CHECK(run(0.09f, 0.1f) == Approx(25).margin(1));  // 20 counts in a tenth of a second
+    CHECK(run(0.09f, 0.2f) == 50);
+    CHECK(run(0.0f, 3.9f) == 50);   // kept for four seconds
+    CHECK(run(0.0f, 1.1f) < 50);    // and sinks by 2 a second
+    CHECK(run(0.0f, 1.0f) > 44);
+    CHECK(run(0.0f, 12.0f) == 25);
+    CHECK(run(0.9f, 0.5f) == 225);  // never less than the law asks for
+  }
+}
+
+TEST_CASE("a reserve is not touched by what is not a number, and never gets past a bad time") {
+  ReserveLaw<StepPowerLaw<>> law;
+  const float nan = detail::not_a_number();
+  for (int i = 0; i < 1000; ++i) law.step(0.5f, at_supply(13.0f), nan);
+  CHECK(law.state().reserve == 0.0f);
+  for (int i = 0; i < 1000; ++i) law.step(0.5f, at_supply(13.0f), -1.0f);
+  CHECK(law.state().reserve == 0.0f);
+  law.step(0.5f, at_supply(13.0f), 1000.0f);
+  CHECK(law.state().reserve == 50.0f);
+  for (int i = 0; i < 1000; ++i) CHECK(law.step(nan, at_supply(13.0f), 0.1f) == 50);
+}
+
+TEST_CASE("an eased gain: as it is on target, gain times error bounded beyond, and back without a swing") {
+  EasedGain<>::Config config = EasedGain<>::Config::standard();
+  CHECK(config.validate() == ConfigError::gain_low_power);  // to be set
+  config.gain = {40.0f, 40.0f};
+  EasedGain<> gain(config);
+  REQUIRE(gain.validate() == ConfigError::none);
+  AxisFacts facts = at_supply(13.0f);
+  for (float error_deg = -180.0f; error_deg <= 180.0f; error_deg += 0.25f) {
+    facts.error_deg = error_deg;
+    const int given = gain.step(100, facts);
+    INFO("error " << error_deg << " deg, gain " << given);
+    if (std::abs(error_deg) <= 1.5f)
+      CHECK(given == 40);
+    else
+      CHECK((given == 3 || std::abs(static_cast<float>(given) * error_deg) <= 60.0f + 0.5f * std::abs(error_deg)));
+    CHECK(given >= 3);
+  }
+  facts.error_deg = detail::not_a_number();
+  CHECK(gain.step(100, facts) == 40);
+  config.ease_from_deg = 0.0f;
+  CHECK(config.validate() == ConfigError::ease_from_deg);
+
+  // A rigid axis that is thrown by 100 degrees: torque of the board's loop, bounded, with its damping fixed.
+  double overshoot_deg[2];
+  for (int eased = 0; eased < 2; ++eased) {
+    double angle_deg = -100.0, rate = 0.0, farthest = -1e9;
+    for (int i = 0; i < 40000; ++i) {
+      facts.error_deg = static_cast<float>(-angle_deg);
+      const double p_gain = eased != 0 ? gain.step(100, facts) : 40;
+      const double share = std::fmin(1.0, std::fmax(-1.0, -0.03 * p_gain * angle_deg - 0.035 * rate));
+      rate += 3000.0 * share * 0.0005, angle_deg += rate * 0.0005;
+      farthest = std::fmax(farthest, angle_deg);
+    }
+    overshoot_deg[eased] = farthest;
+  }
+  CHECK(overshoot_deg[0] > 30.0);
+  CHECK(overshoot_deg[1] < 1.0);
 }
 
 TEST_CASE("laws with a wrong field are refused by name") {
@@ -237,6 +313,23 @@ TEST_CASE("laws with a wrong field are refused by name") {
   SagAwareLaw<>::Config sag = SagAwareLaw<>::Config::standard();
   sag.minimum_supply_V = 20.0f;
   CHECK(sag.validate() == ConfigError::minimum_supply_V);
+  ReserveLaw<>::Config reserve = ReserveLaw<>::Config::standard();
+  reserve.reserve_power = 0;
+  CHECK(reserve.validate() == ConfigError::reserve_power);
+  reserve = ReserveLaw<>::Config::standard();
+  reserve.moving_error_deg = 0.0f;
+  CHECK(reserve.validate() == ConfigError::moving_error_deg);
+  reserve = ReserveLaw<>::Config::standard();
+  reserve.calm_s = -1.0f;
+  CHECK(reserve.validate() == ConfigError::calm_s);
+  reserve = ReserveLaw<>::Config::standard();
+  reserve.rise_per_s = 0.0f;
+  CHECK(reserve.validate() == ConfigError::rise_per_s);
+  reserve = ReserveLaw<>::Config::standard();
+  reserve.fall_per_s = detail::not_a_number();
+  CHECK(reserve.validate() == ConfigError::fall_per_s);
+  reserve.law.power_step = 0;
+  CHECK(reserve.validate() == ConfigError::power_step);
   SafetyLimiter<PerNode>::Config nodes = SafetyLimiter<PerNode>::Config::standard();
   nodes.node[1].fraction = 3.0f;
   CHECK(nodes.validate() == ConfigError::offset_fraction);

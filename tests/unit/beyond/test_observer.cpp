@@ -6,6 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include <thermopower/actuator/cached_current.hpp>
+#include <thermopower/actuator/observer_thermal.hpp>
+#include <thermopower/actuator/ohmic_current.hpp>
 #include <thermopower/actuator/temperature_observer.hpp>
 
 using namespace thermopower;
@@ -199,4 +202,55 @@ TEST_CASE("an observer with a wrong field is refused by name") {
   config = TemperatureObserverConfig::standard({});
   CHECK(is_error(config.validate()));  // all-zero parameters
   CHECK(WindingResistance::Config::standard().validate() == ConfigError::resistance_ohm);
+}
+
+TEST_CASE("a cached current is the current, whatever changes, and NaN comes through") {
+  const OhmicCurrent<float> law = {8.0f, 0.0039f, 20.0f};
+  CachedCurrent<OhmicCurrent<float>> cached(law);
+  const CurrentModel<OhmicCurrent<float>> model(law);
+  std::mt19937 random(5);
+  float power = 1.0f, supply_V = 12.0f, motor_C = 25.0f;
+  for (int i = 0; i < 100000; ++i) {
+    if (random() % 4 == 0) power = static_cast<float>(random() % 256);
+    if (random() % 4 == 0) supply_V = 9.0f + 0.01f * static_cast<float>(random() % 400);
+    if (random() % 2 == 0) motor_C += 0.1f * (static_cast<float>(random() % 21) - 10.0f);
+    motor_C = std::fmin(std::fmax(motor_C, -20.0f), 120.0f);
+    const auto expected = model.at_power(power, supply_V, motor_C);
+    const auto& given = cached.at_power(power, supply_V, motor_C);
+    REQUIRE(given.v_rms_V == Approx(expected.v_rms_V).epsilon(1e-6));
+    REQUIRE(given.current_A == Approx(expected.current_A).epsilon(0.0024));  // half a kelvin
+    REQUIRE(given.winding_power_W == Approx(expected.winding_power_W).epsilon(0.0024));
+  }
+  const float nan = detail::not_a_number();
+  for (int twice = 0; twice < 2; ++twice) {
+    CHECK(std::isnan(cached.at_power(nan, 12.0f, 25.0f).winding_power_W));
+    CHECK(cached.at_power(100.0f, 12.0f, 25.0f).winding_power_W > 0.0f);
+    CHECK(std::isnan(cached.at_power(100.0f, nan, 25.0f).winding_power_W));
+    CHECK(std::isnan(cached.at_power(100.0f, 12.0f, nan).winding_power_W));
+    CHECK(std::isnan(cached.at_power(100.0f, 12.0f, nan).winding_power_W));
+    CHECK(cached.at_power(100.0f, 12.0f, 25.0f).winding_power_W > 0.0f);
+  }
+}
+
+TEST_CASE("an observer that steps every n-th time sees the same heat, at equal and at changing steps") {
+  for (const bool is_even : {true, false}) {
+    INFO((is_even ? "equal" : "changing") << " steps");
+    const ObservedThermal::Config config = {TemperatureObserverConfig::standard(motor()), 110.0f, 9, 4};
+    ObservedThermal thermal(config, 25.0f);
+    Truth truth(true_motor(), 25.0);
+    std::mt19937 random(7);
+    for (int i = 0; i < 20000; ++i) {
+      const float dt_s = is_even ? 0.01f : 0.005f + 0.001f * static_cast<float>(random() % 11);
+      const float heat_W = (i / 7) % 3 == 0 ? 9.0f : 2.0f + static_cast<float>(random() % 3);
+      thermal.step({heat_W, 0.0f, {25.0f, 0.0f}}, dt_s);
+      truth.step({static_cast<double>(heat_W), 0.0, {25.0, 0.0}}, static_cast<double>(dt_s));
+      if (i < 100) continue;
+      REQUIRE(thermal.state().winding_C == Approx(truth.state().winding_C).margin(0.25));
+      REQUIRE(thermal.state().body_C == Approx(truth.state().body_C).margin(0.1));
+      REQUIRE(thermal.hottest_C() == std::fmax(thermal.state().winding_C, thermal.state().body_C));
+    }
+  }
+  ObservedThermal thermal({TemperatureObserverConfig::standard(motor()), 110.0f, 3, 0}, 25.0f);
+  for (int i = 0; i < 3; ++i) thermal.step({detail::not_a_number(), 0.0f, {25.0f, 0.0f}}, 0.01f);
+  CHECK(std::isnan(thermal.hottest_C()));
 }

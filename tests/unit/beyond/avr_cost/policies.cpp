@@ -70,13 +70,13 @@ static void work() { result = law.step(error_deg); }
 #elif THERMOPOWER_POLICY == 2
 static AdaptiveHoldingLaw<8> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
   result = law.step(error_deg * 0.2f, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 3
 static SagAwareLaw<> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
   result = law.step(error_deg, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 4
@@ -129,7 +129,7 @@ static void work() { result = gain.step(demand); }
 #elif THERMOPOWER_POLICY == 13
 static GainScheduler<VoltageGain> gain({60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255});
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
   result = gain.step(demand, facts);
 }
 #elif THERMOPOWER_POLICY == 14
