@@ -35,6 +35,7 @@ struct Candidate {
   SignalSums held_out;           ///< and where it was not; empty until somebody looks
   double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
+  bool on_bounds = false;  ///< a cause ended on the bounds of its range, and is none
   bool fitted = false;   ///< false: only listed, the fit is not to be read
 };
 

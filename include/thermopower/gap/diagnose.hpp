@@ -231,7 +231,7 @@ private:
       renew();
     }
     judge(candidates, check);
-    weigh(candidates, correlation_of(Search::best(candidates), problem));
+    weigh(candidates, correlation_of(Search::best(candidates), problem), model_);
     return attempt;
   }
 

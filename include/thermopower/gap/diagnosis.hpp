@@ -140,7 +140,7 @@ struct RankedExplanation {
   double delta_score = 0.0;          ///< evidence against it relative to the best, >= 0 (twice a log odds)
   double held_out_ratio = 0.0;       ///< held-out score over the re-calibrated baseline's, < 1 is better
   bool absorbed = false;             ///< re-calibration imitates it: this recording cannot show it
-  bool at_bound = false;             ///< a parameter ended on its bound
+  bool at_bound = false;             ///< a cause ended on the bounds of its range, and is none
   bool refused = false;              ///< makes held-out data worse
   std::vector<ParameterEstimate> parameters;  ///< named `<effect>.<parameter>`
   std::vector<Likeness> confusable;           ///< others with a likeness of 0.9 or more

@@ -26,13 +26,30 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
   return weight;
 }
 
-/// Deviance of every candidate and its probability among them.
+/// Whether some cause ended with all it has on the bounds of its range: then it is no explanation, but stands
+/// for one that the catalogue lacks. (A transition of friction does not count: at its bound friction sticks.)
+inline bool ends_on_bounds(const Candidate& candidate, const Model& model) {
+  const std::vector<bool>& at_bound = candidate.fit.at_bound;
+  if (at_bound.size() < candidate.list.size()) return false;
+  for (int index : candidate.explanation.released)
+    if (at_bound[static_cast<std::size_t>(index)]) return true;
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    bool all = true;
+    for (const Parameter& parameter : entry->info.parameters)
+      all = (at_bound[at++] || parameter.standard.has_value()) && all;
+    if (all) return true;
+  }
+  return false;
+}
+
+/// Deviance of every candidate and its probability among them; 0 for those that end on their bounds.
 ///
 /// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
 /// of the best candidate's residuals, so that a model error that all share does not decide by sheer number of
 /// rows; training and held-out data together, the parameters from training alone; a Bayesian information
 /// penalty for every parameter, and a further one for every effect beyond the first (effects are rare).
-inline void weigh(std::vector<Candidate>& candidates, const Weight& weight) {
+inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, const Model& model) {
   constexpr double rarity = 6.0;
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
@@ -50,10 +67,12 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight) {
     }
     one.deviance += one.explanation.parameter_count() * std::log(std::max(samples, 2.0));
     if (one.explanation.size() > 1) one.deviance += rarity * static_cast<double>(one.explanation.size() - 1);
-    least = std::min(least, one.deviance);
+    one.on_bounds = ends_on_bounds(one, model);
+    if (!one.on_bounds) least = std::min(least, one.deviance);
   }
   double total = 0.0;
-  for (Candidate& one : candidates) total += one.probability = std::exp(-0.5 * (one.deviance - least));
+  for (Candidate& one : candidates)
+    total += one.probability = one.on_bounds ? 0.0 : std::exp(-0.5 * (one.deviance - least));
   for (Candidate& one : candidates) one.probability /= total;
 }
 

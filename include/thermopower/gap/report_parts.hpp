@@ -77,8 +77,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     entry.held_out_ratio = held > 0.0 ? std::sqrt(held_squares / held) : 1.0;
     entry.refused = entry.held_out_ratio > 1.0;
     entry.absorbed = one.explanation.size() > 0 && squares > 0.99 * whole;
-    for (std::size_t k = problem.model->calibrated().size(); k < one.fit.at_bound.size(); ++k)
-      entry.at_bound = entry.at_bound || one.fit.at_bound[k];
+    entry.at_bound = one.on_bounds;
     entry.parameters = estimates(one, *problem.model, weight);
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;

@@ -80,7 +80,9 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
     for (std::size_t i = 1; i < candidates.size(); ++i) {
       const bool within = candidates[i].explanation.size() + 1 == candidates[chosen].explanation.size() &&
                           candidates[chosen].explanation.includes(candidates[i].explanation);
-      if (within && (part == 0 || candidates[i].deviance < candidates[part].deviance)) part = i;
+      if (within && !candidates[i].on_bounds &&
+          (part == 0 || candidates[i].deviance < candidates[part].deviance))
+        part = i;
     }
     if (part != 0 && (worst_level(candidates[part]) < 1.4 ||
                       excess(candidates[chosen]) > 0.5 * excess(candidates[part]))) {

@@ -16,7 +16,7 @@ struct ThermometerGain {
             "sensing.temperature",
             "reading = Ta + gain (T - Ta)",
             "The thermometer shows only part of the temperature rise (a wrong emissivity, a poor contact).",
-            {{"gain", "1", 0.2, 3.0, {1.0}, false}},
+            {{"gain", "1", 0.2, 2.0, {1.0}, false}},
             {"thermal", "motor_C"},
             "runs with the current recorded: the winding's resistance knows the true temperature"};
   }
