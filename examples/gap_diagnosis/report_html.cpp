@@ -35,6 +35,16 @@ std::string signal_text(const std::string& signal) {
   return found == names.end() ? signal : found->second;
 }
 
+/// Escaped, and a long id may break after its underscores.
+std::string breakable(const std::string& id) {
+  std::string out;
+  for (const char one : escaped(id)) {
+    out += one;
+    if (one == '_') out += "<wbr>";
+  }
+  return out;
+}
+
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
@@ -135,7 +145,7 @@ private:
         more += "; most for <code>" + escaped(first.regime->variable) + "</code> " + readable(first.regime->from) + " to " +
                 readable(first.regime->to);
       }
-      fact("Where", escaped(first.submodel), more);
+      fact("Where", breakable(first.submodel), more);
     }
     for (const auto& cause : d_.cause) {
       std::string more;
@@ -143,7 +153,7 @@ private:
         more += (more.empty() ? "" : "<br>") + escaped(parameter.name) + " " + with_unit(readable(parameter.value), parameter.unit) + " [" +
                 readable(parameter.ci95.low) + ", " + readable(parameter.ci95.high) + "]";
       }
-      fact("Which \u00b7 probability " + percent(cause.probability), escaped(cause.effect), more);
+      fact("Which \u00b7 probability " + percent(cause.probability), breakable(cause.effect), more);
     }
     const GapScore* most = nullptr;
     for (const auto& gap : d_.gap) {
