@@ -15,14 +15,18 @@ endif()
 # The programs that measure time and stack.
 set(target_cost_parts fixed fixed_axes sbgc float float_axes float_gimbal)
 set(target_cost_programs)
+# What all have in common: a program for its flags, whose objects the others take.
+thermopower_add_target_program(cost_nothing ${CMAKE_CURRENT_LIST_DIR}/cost.cpp ${CMAKE_CURRENT_LIST_DIR}/cost_main.cpp)
+target_link_options(cost_nothing PRIVATE -Wl,--defsym=measure_all=cost_nothing)
+set(target_cost_common $<FILTER:$<TARGET_OBJECTS:cost_nothing>,EXCLUDE,/platform_>)
 foreach(part IN LISTS target_cost_parts)
-  thermopower_add_target_program(cost_${part} ${CMAKE_CURRENT_LIST_DIR}/cost_${part}.cpp ${CMAKE_CURRENT_LIST_DIR}/cost.cpp
-                                              ${CMAKE_CURRENT_LIST_DIR}/cost_main.cpp)
+  thermopower_add_target_program(cost_${part} ${CMAKE_CURRENT_LIST_DIR}/cost_${part}.cpp ${target_cost_common})
   list(APPEND target_cost_programs $<TARGET_FILE:cost_${part}>)
 endforeach()
 
 # Flash and RAM: the objects of the same operations, linked once per operation with a main() that calls it.
-thermopower_add_target_program(cost_size ${CMAKE_CURRENT_LIST_DIR}/size_main.cpp ${CMAKE_CURRENT_LIST_DIR}/cost.cpp)
+thermopower_add_target_program(cost_size ${CMAKE_CURRENT_LIST_DIR}/size_main.cpp
+                                         $<FILTER:$<TARGET_OBJECTS:cost_nothing>,INCLUDE,/cost.cpp>)
 target_link_options(cost_size PRIVATE -Wl,--defsym=operation=cost_nothing)
 find_program(target_size NAMES ${CMAKE_SYSTEM_PROCESSOR}-size arm-none-eabi-size REQUIRED)
 find_program(target_nm NAMES ${CMAKE_SYSTEM_PROCESSOR}-nm arm-none-eabi-nm REQUIRED)
@@ -41,7 +45,7 @@ set(programs [[${target_cost_programs}]])
 set(size [[${target_size}]])
 set(nm [[${target_nm}]])
 set(link [[${CMAKE_CXX_COMPILER};${target_cost_flags};${target_cost_link}]])
-set(size_objects [[$<TARGET_OBJECTS:cost_size>]])
+set(size_objects [[$<TARGET_OBJECTS:cost_size>;$<FILTER:$<TARGET_OBJECTS:cost_nothing>,INCLUDE,/cost.cpp>]])
 set(objects [[${target_cost_objects}]])
 set(chip [[${CMAKE_SYSTEM_PROCESSOR}]])
 set(directory [[${PROJECT_BINARY_DIR}]])
