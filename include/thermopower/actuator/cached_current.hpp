@@ -46,6 +46,15 @@ class CachedCurrent {
     return state_;
   }
 
+  /// The same from a whole POWER: only one that changed is converted.
+  const State& at_count(uint8_t power_param, float supply_V, float motor_C) noexcept {
+    if (power_param != count_) {
+      count_ = power_param;
+      counted_ = static_cast<float>(power_param);
+    }
+    return at_power(counted_, supply_V, motor_C);
+  }
+
   const Config& config() const noexcept { return model_.config(); }  ///< The law with its constants.
 
  private:
@@ -84,6 +93,8 @@ class CachedCurrent {
   float power_ = -1.0f, supply_V_ = 0.0f, motor_C_ = 0.0f, asked_C_ = 0.0f;
   float share_ = 0.0f;          // V_rms / V_supply
   float conductance_S_ = 0.0f;  // at `motor_C_`
+  float counted_ = 0.0f;        // `count_`
+  uint8_t count_ = 0;
   bool is_near_ = false;
 };
 

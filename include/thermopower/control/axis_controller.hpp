@@ -190,12 +190,8 @@ class AxisController {
     if (!detail::is_finite(last_air_C_)) return;
     if (!is_started_) detail::start_thermal(thermal_, last_air_C_, 0);
     is_started_ = true;
-    if (state_.power != converted_) {
-      converted_ = state_.power;
-      acting_power_ = static_cast<float>(converted_);
-    }
     const typename Current::State& drawn =
-        current_.at_power(acting_power_, last_supply_V_, thermal_.hottest_C());
+        detail::drawn_at(current_, state_.power, last_supply_V_, thermal_.hottest_C(), 0);
     const typename Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {last_air_C_, 0.0f}};
     thermal_.step(heat, dt_s);
     state_.v_rms_V = drawn.v_rms_V;
@@ -213,8 +209,6 @@ class AxisController {
   State state_;
   float last_air_C_ = detail::not_a_number();
   float last_supply_V_ = 0.0f;
-  float acting_power_ = 0.0f;  // `converted_` as a float
-  uint8_t converted_ = 0;
   bool is_started_ = false;
   ConfigError config_error_;
 };

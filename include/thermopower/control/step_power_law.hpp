@@ -54,16 +54,14 @@ class LevelScale {
   /// int(10 e / e_max), saturated at `highest`; 0 where a refused configuration makes it NaN or negative.
   /// @param magnitude_deg  size of the error, finite and >= 0
   uint8_t level(float magnitude_deg, const StepPowerConfig& config, uint8_t highest) noexcept {
-    if (!is_known_) per_deg_ = 10.0f / config.full_power_error_deg;
-    is_known_ = true;
+    if (detail::is_same(per_deg_, 0.0f)) per_deg_ = 10.0f / config.full_power_error_deg;
     const float level = magnitude_deg * per_deg_;
     if (detail::is_from_zero_to(level, static_cast<float>(highest))) return static_cast<uint8_t>(level);
     return level > 0.0f ? highest : 0;
   }
 
  private:
-  float per_deg_ = 0.0f;
-  bool is_known_ = false;
+  float per_deg_ = 0.0f;  // 0: not yet known
 };
 
 /// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).

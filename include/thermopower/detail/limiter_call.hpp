@@ -65,6 +65,19 @@ uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
   return gain.step(power);
 }
 
+/// What a motor draws at a POWER; a model that remembers may take it as the byte it is, and spare the
+/// conversion.
+template <class Current>
+auto drawn_at(Current& current, uint8_t power, float supply_V, float motor_C, int) noexcept
+    -> decltype(current.at_count(power, supply_V, motor_C)) {
+  return current.at_count(power, supply_V, motor_C);
+}
+template <class Current>
+typename Current::State drawn_at(const Current& current, uint8_t power, float supply_V, float motor_C,
+                                 long) noexcept {
+  return current.at_power(static_cast<float>(power), supply_V, motor_C);
+}
+
 /// Starts a model that nobody told a temperature: its own way, or as warm as the air (the thesis's
 /// assumption, section 4.2).
 template <class Thermal>

@@ -16,7 +16,9 @@
 #include <thermopower/control/adaptive_holding_law.hpp>
 #include <thermopower/control/certified_limiter.hpp>
 #include <thermopower/control/axis_controller.hpp>
+#include <thermopower/control/eased_gain.hpp>
 #include <thermopower/control/node_limits.hpp>
+#include <thermopower/control/reserve_law.hpp>
 #include <thermopower/control/sag_aware_law.hpp>
 #include <thermopower/control/voltage_gain.hpp>
 #include <thermopower/detail/flash.hpp>
@@ -139,6 +141,19 @@ static void work() {
   state.write(bytes);
   result = state.read(bytes) ? 1 : 0;
 }
+#elif THERMOPOWER_POLICY == 15
+static ReserveLaw<AdaptiveHoldingLaw<8>> law;
+static void work() {
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
+  result = law.step(error_deg * 0.2f, facts, cycle_s);
+}
+#elif THERMOPOWER_POLICY == 16
+static EasedGain<GainScheduler<VoltageGain>> gain(
+    {{60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255}, 1.5f, 3});
+static void work() {
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 4.0f * error_deg};
+  result = gain.step(demand, facts);
+}
 #else                         // the whole: three axes, each with observer and certified limiter
 struct GainTable {
   static const uint8_t entries[2] thermopower_flash;
@@ -149,12 +164,12 @@ const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
 typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable>>> Axis;
 // Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
 // measures in a third.
-static const uint8_t every = THERMOPOWER_POLICY == 16 ? 9 : 3;
+static const uint8_t every = THERMOPOWER_POLICY == 18 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
   Axis::Config config = Axis::Config::standard();
   config.limiter = bounds();
   config.limiter.use.every = config.thermal.every = every;
-  config.limiter.use.phase = THERMOPOWER_POLICY == 16 ? static_cast<uint8_t>(3 * axis) : 0;
+  config.limiter.use.phase = THERMOPOWER_POLICY == 18 ? static_cast<uint8_t>(3 * axis) : 0;
   config.thermal.phase = static_cast<uint8_t>(config.limiter.use.phase + 1);
   return config;
 }
@@ -168,7 +183,7 @@ static void step(Axis& axis, float dt_s) {
 static void measure(Axis& axis) {
   axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
 }
-#if THERMOPOWER_POLICY == 16  // all three in every cycle of 10 ms
+#if THERMOPOWER_POLICY == 18  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
   step(pitch, cycle_s);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// On the chip: the products that are written out for AVR against the same in the language itself. GPIOR1 tells
-// which one differs (1, 2, 3), or 0; GPIOR0 says 3 when all is done.
+// On the chip: the products that are written out for AVR against the same in the language itself. GPIOR1
+// tells which one differs (1, 2, 3), or 0; GPIOR0 says 3 when all is done.
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
