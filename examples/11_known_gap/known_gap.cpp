@@ -67,7 +67,7 @@ int main(int count, char** arguments) {
 }
 )";
   if (!model.good() || !record(directory + "/train.csv", 30, 1) ||
-      !record(directory + "/heldout.csv", 20, 2)) {
+      !record(directory + "/heldout.csv", 40, 2)) {
     std::fprintf(stderr, "known_gap: %s: cannot be written to\n", directory.c_str());
     return 3;
   }
