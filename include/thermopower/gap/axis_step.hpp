@@ -64,7 +64,6 @@ public:
 private:
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
-    double stiffness = 0.0;  ///< of friction inside its transition, N m s/rad
   };
   struct Balance {
     Scalar torque_Nm, forward_Nm, backward_Nm, transition_rad_per_s;
@@ -79,17 +78,18 @@ private:
     return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm, terms.transition_rad_per_s};
   }
 
-  /// Friction inside its transition. `stiffness` receives its derivative by the rate.
-  static Scalar soft_friction(const Balance& now, const Scalar& rate_rad_per_s, double& stiffness) {
+  /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
+  static Scalar soft_friction(const Balance& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
     using std::tanh;
     const bool forward = value_of(rate_rad_per_s) >= 0.0;
     const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
-    stiffness = 0.0;
     constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
-    if (std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s))
+    if (std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
+      if (stiffness != nullptr) *stiffness = constant<Scalar>(0.0);
       return forward ? size_Nm : Scalar(-size_Nm);
+    }
     const Scalar share = tanh(Scalar(rate_rad_per_s / now.transition_rad_per_s));
-    stiffness = value_of(size_Nm) * (1.0 - value_of(share) * value_of(share)) / value_of(now.transition_rad_per_s);
+    if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
     return size_Nm * share;
   }
 
@@ -100,7 +100,7 @@ private:
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
   template <bool compliant>
   void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction,
-             Slope& rate) const {
+             Slope& rate, Scalar* stiffness = nullptr) const {
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
     } else {
@@ -110,7 +110,7 @@ private:
       } else {
         const Balance now = balance(state, t_s, drive_Nm);
         rate.rate = now.torque_Nm;
-        if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, rate.stiffness);
+        if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, stiffness);
         else if (direction > 0) rate.rate -= now.forward_Nm;
         else rate.rate += now.backward_Nm;
       }
@@ -231,13 +231,16 @@ private:
   template <bool compliant>
   bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth) const {
     constexpr double error_limit_rad_per_s = 1e-4;
+    using std::exp;
     Slope now;
-    slope<compliant>(state, t_s, drive_Nm, 1, now);
-    const double h = value_of(h_s), decay = h * now.stiffness * value_of(per_near_inertia_);
-    if (!(decay > 0.3)) return false;
-    const double phi_1 = -std::expm1(-decay) / decay, phi_2 = (1.0 - phi_1) / decay;
+    Scalar decay = constant<Scalar>(0.0);
+    slope<compliant>(state, t_s, drive_Nm, 1, now, &decay);
+    decay *= h_s * per_near_inertia_;
+    if (!(value_of(decay) > 0.3)) return false;
+    const double h = value_of(h_s);
+    const Scalar phi_1 = (1.0 - exp(Scalar(-decay))) / decay, phi_2 = (1.0 - phi_1) / decay;
     AxisState<Scalar> reached = state;
-    reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * (h * phi_2));
+    reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * h_s * phi_2);
     const Scalar gain_rad_per_s = now.rate * h_s * phi_1;
     reached.rate_rad_per_s += gain_rad_per_s;
     if constexpr (compliant) {
@@ -247,8 +250,9 @@ private:
     }
     Slope there;
     slope<compliant>(reached, t_s + h, drive_Nm, 1, there);
-    const double missed = value_of(there.rate) - value_of(now.rate) + decay / h * value_of(gain_rad_per_s);
-    if (std::abs(missed) * h * phi_2 > error_limit_rad_per_s && depth > 0) {
+    const double missed =
+        value_of(there.rate) - value_of(now.rate) + value_of(decay) / h * value_of(gain_rad_per_s);
+    if (std::abs(missed) * h * value_of(phi_2) > error_limit_rad_per_s && depth > 0) {
       const Scalar half_s = h_s * 0.5;
       smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
       smooth<compliant>(state, t_s + 0.5 * h, half_s, drive_Nm, depth - 1);

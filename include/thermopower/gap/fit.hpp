@@ -194,6 +194,9 @@ private:
       }
       free = inside;
     }
+    // What is known by its order of magnitude moves by a factor of 3 at most: far away the linear view is blind.
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (list_[static_cast<std::size_t>(i)].logarithmic) change[i] = std::clamp(change[i], -1.1, 1.1);
     FitResult to;
     to.at = from.at + change;
     to.starts = from.starts;
