@@ -45,7 +45,9 @@ class FixedAxis {
 /// Temperature estimate, power law, limiter and gain of one axis, in the order of AxisController, which says
 /// what each does. Constants are types, so the object is its state: twelve bytes with the thesis's policies.
 ///
-/// @tparam Thermal   FixedThermalModel of a motor, or a model with the same members
+/// @tparam Thermal   FixedThermalModel of a motor. A model of your own names its `Core`, which has `start()`,
+///                   `step()`, `heat()` and `state()` as FixedThermalCore, and has `cooling_factor`, which it
+///                   is stepped with, and a static `heating(power, motor)`
 /// @tparam PowerLaw  how much power an error is worth: fixed_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: fixed_safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: fixed_gain.hpp
