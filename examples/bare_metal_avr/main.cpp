@@ -2,12 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Problem:  a gimbal controller on an ATmega328P at 16 MHz without Arduino: no core, no interrupt, no buffer
-// but the
-//           codec's own.
+//           but the codec's own.
 // Model:    the corrected laws in whole numbers. The UART and a timer are polled, which the chip's two-byte
-// buffer
-//           allows: a byte takes 1389 cycles on the wire, and nothing here takes two of them while the board
-//           talks.
+//           buffer allows: a byte takes 1389 cycles on the wire, and nothing here takes two of them while the
+//           board talks.
 // Notation: axes roll, pitch, yaw; time in microseconds, from timer 1 at 2 MHz.
 #include <avr/io.h>
 

@@ -2,11 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Problem:  a robot's joint on a Cortex-M without an operating system. Its power is decided in a control
-// interrupt, at an exact pace;
-//           main() has the time in between.
+//           interrupt, at an exact pace; main() has the time in between.
 // Model:    a copper winding on one heat capacity, ten levels of error, and the ceiling of eq 4.23, all in
-// whole numbers: the same program
-//           on a Cortex-M0, which has no floating-point unit, and on an M4F.
+//           whole numbers: the same program on a Cortex-M0, which has no floating-point unit, and on an M4F.
 // Notation: a tick is 256 us; error in units of 360/16384 degree; power parameter 0 .. 255.
 #include <thermopower/thermopower.hpp>
 

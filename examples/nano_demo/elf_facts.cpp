@@ -26,7 +26,8 @@ class OpenElf {
     }
     if (header.e_machine != EM_AVR) {
       close();
-      throw std::runtime_error(path + ": an ELF file, but not for AVR (machine " + std::to_string(header.e_machine) + ")");
+      throw std::runtime_error(path + ": an ELF file, but not for AVR (machine " +
+                               std::to_string(header.e_machine) + ")");
     }
   }
   OpenElf(const OpenElf&) = delete;
@@ -51,7 +52,8 @@ void read_symbols(Elf* elf, Elf_Scn* section, const GElf_Shdr& header, ElfFacts&
     if (gelf_getsym(data, static_cast<int>(index), &symbol) == nullptr) continue;
     const char* name = elf_strptr(elf, header.sh_link, symbol.st_name);
     if (name != nullptr && *name != '\0')
-      facts.symbols[name] = {static_cast<std::uint32_t>(symbol.st_value), static_cast<std::uint32_t>(symbol.st_size)};
+      facts.symbols[name] = {static_cast<std::uint32_t>(symbol.st_value),
+                             static_cast<std::uint32_t>(symbol.st_size)};
   }
 }
 

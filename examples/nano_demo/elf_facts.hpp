@@ -16,8 +16,8 @@ struct Symbol {
 
 /// What a program for the ATmega328P occupies, from its ELF file.
 struct ElfFacts {
-  std::uint32_t flash_bytes = 0;         ///< Code, tables, and the initial values of variables.
-  std::uint32_t static_ram_bytes = 0;    ///< Variables, initialised or not.
+  std::uint32_t flash_bytes = 0;       ///< Code, tables, and the initial values of variables.
+  std::uint32_t static_ram_bytes = 0;  ///< Variables, initialised or not.
   std::map<std::string, Symbol> symbols;
 
   /// @throws std::runtime_error naming the file and what is wrong with it

@@ -19,7 +19,9 @@ struct Panel {
   double low, high;  // of the quantity
 
   double at_time(double time_s) const { return x + panel_width * time_s / Story::end_s(); }
-  double at(double value) const { return y + height * (1 - (std::clamp(value, low, high) - low) / (high - low)); }
+  double at(double value) const {
+    return y + height * (1 - (std::clamp(value, low, high) - low) / (high - low));
+  }
 };
 
 std::string number(double value) {
@@ -29,22 +31,24 @@ std::string number(double value) {
 }
 
 std::string text(double x, double y, const std::string& css, const std::string& content) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" class=\"" + css + "\">" + content + "</text>\n";
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" class=\"" + css + "\">" + content +
+         "</text>\n";
 }
 
 std::string line(double x1, double y1, double x2, double y2, const std::string& css) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" + number(y2) + "\" class=\"" + css +
-         "\"/>\n";
+  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
+         number(y2) + "\" class=\"" + css + "\"/>\n";
 }
 
 std::string box(double x, double y, double box_width, double box_height, const std::string& css) {
-  return "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(box_width) + "\" height=\"" + number(box_height) +
-         "\" class=\"" + css + "\"/>\n";
+  return "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(box_width) +
+         "\" height=\"" + number(box_height) + "\" class=\"" + css + "\"/>\n";
 }
 
-// Where the picture has fewer columns than there are points, each column keeps its first, least, greatest and last: no peak is lost.
-std::string curve(const Panel& panel, const std::vector<Point>& points, const std::function<double(const Point&)>& value, bool is_stepped,
-                  const std::string& css) {
+// Where the picture has fewer columns than there are points, each column keeps its first, least, greatest and
+// last: no peak is lost.
+std::string curve(const Panel& panel, const std::vector<Point>& points,
+                  const std::function<double(const Point&)>& value, bool is_stepped, const std::string& css) {
   std::string path;
   double last_y = 0;
   std::string waiting;  // the last point of a flat stretch, which its first point already stands for
@@ -84,7 +88,8 @@ std::string frame(const Panel& panel, const std::vector<double>& ticks, bool has
   std::string svg;
   for (std::size_t index = 0; index < Story::phases().size(); index += 2) {
     const Phase& phase = Story::phases()[index];
-    svg += box(panel.at_time(phase.from_s), panel.y, panel.at_time(phase.to_s) - panel.at_time(phase.from_s), panel.height, "band");
+    svg += box(panel.at_time(phase.from_s), panel.y, panel.at_time(phase.to_s) - panel.at_time(phase.from_s),
+               panel.height, "band");
   }
   for (const double tick : ticks) {
     svg += line(panel.x, panel.at(tick), panel.x + panel_width, panel.at(tick), "grid");
@@ -94,25 +99,33 @@ std::string frame(const Panel& panel, const std::vector<double>& ticks, bool has
   }
   svg += box(panel.x, panel.y, panel_width, panel.height, "frame");
   for (double time_s = 0; has_times && time_s <= Story::end_s(); time_s += 10)
-    svg += text(panel.at_time(time_s), panel.y + panel.height + 17, "tick middle", std::to_string(int(time_s)));
+    svg +=
+        text(panel.at_time(time_s), panel.y + panel.height + 17, "tick middle", std::to_string(int(time_s)));
   return svg;
 }
 
 const char* css_of(thermopower::LimitReason reason) {
   switch (reason) {
-    case thermopower::LimitReason::none: return "granted";
-    case thermopower::LimitReason::safety_temperature: return "safety";
-    case thermopower::LimitReason::over_temperature: return "over";
-    case thermopower::LimitReason::recovering: return "recovering";
-    default: return "fault";
+    case thermopower::LimitReason::none:
+      return "granted";
+    case thermopower::LimitReason::safety_temperature:
+      return "safety";
+    case thermopower::LimitReason::over_temperature:
+      return "over";
+    case thermopower::LimitReason::recovering:
+      return "recovering";
+    default:
+      return "fault";
   }
 }
 
 // From the gravest, which lies at the bottom of the strip, to the mildest.
-constexpr thermopower::LimitReason by_gravity[] = {thermopower::LimitReason::over_temperature, thermopower::LimitReason::safety_temperature,
-                                                   thermopower::LimitReason::recovering, thermopower::LimitReason::none};
+constexpr thermopower::LimitReason by_gravity[] = {
+    thermopower::LimitReason::over_temperature, thermopower::LimitReason::safety_temperature,
+    thermopower::LimitReason::recovering, thermopower::LimitReason::none};
 
-// The limiter alternates faster than a picture can show: each column is divided by how often each reason was given in it.
+// The limiter alternates faster than a picture can show: each column is divided by how often each reason was
+// given in it.
 std::string strip(const Panel& panel, const std::vector<Point>& points, std::size_t axis) {
   constexpr double column_s = 0.5;
   std::string svg = box(panel.x, panel.y, panel_width, panel.height, "fault");
@@ -120,11 +133,13 @@ std::string strip(const Panel& panel, const std::vector<Point>& points, std::siz
     const double from_s = std::floor(points[index].time_s / column_s) * column_s;
     std::size_t end = index;
     while (end < points.size() && points[end].time_s < from_s + column_s) ++end;
-    const double x = panel.at_time(from_s), column_width = panel.at_time(std::min(from_s + column_s, Story::end_s())) - x;
+    const double x = panel.at_time(from_s),
+                 column_width = panel.at_time(std::min(from_s + column_s, Story::end_s())) - x;
     double bottom = panel.y + panel.height;
     for (const thermopower::LimitReason reason : by_gravity) {
-      const auto given = std::count_if(points.begin() + std::ptrdiff_t(index), points.begin() + std::ptrdiff_t(end),
-                                       [&](const Point& point) { return point.axes[axis].reason == reason; });
+      const auto given =
+          std::count_if(points.begin() + std::ptrdiff_t(index), points.begin() + std::ptrdiff_t(end),
+                        [&](const Point& point) { return point.axes[axis].reason == reason; });
       const double part = panel.height * double(given) / double(end - index);
       if (given > 0) svg += box(x, bottom - part, column_width, part, css_of(reason));
       bottom -= part;
@@ -135,22 +150,30 @@ std::string strip(const Panel& panel, const std::vector<Point>& points, std::siz
 }
 
 constexpr const char* style =
-    "<style>text{font-family:'Helvetica Neue',Helvetica,Arial,sans-serif;fill:#222}.title{font-size:19px;font-weight:600}"
-    ".sub{font-size:12.5px;fill:#555}.axis{font-size:15px;font-weight:600}.tick{font-size:11.5px;fill:#555}.end{text-anchor:end}"
-    ".middle{text-anchor:middle}.label{font-size:12.5px}.frame{fill:none;stroke:#888}.grid{stroke:#e2e2e2}.band{fill:#f5f6f8}"
-    ".error{fill:none;stroke:#4a5568;stroke-width:1.1}.demand{fill:none;stroke:#7f8fa9;stroke-width:1.1;stroke-dasharray:3 2}"
+    "<style>text{font-family:'Helvetica "
+    "Neue',Helvetica,Arial,sans-serif;fill:#222}.title{font-size:19px;font-weight:600}"
+    ".sub{font-size:12.5px;fill:#555}.axis{font-size:15px;font-weight:600}.tick{font-size:11.5px;fill:#555}."
+    "end{text-anchor:end}"
+    ".middle{text-anchor:middle}.label{font-size:12.5px}.frame{fill:none;stroke:#888}.grid{stroke:#e2e2e2}."
+    "band{fill:#f5f6f8}"
+    ".error{fill:none;stroke:#4a5568;stroke-width:1.1}.demand{fill:none;stroke:#7f8fa9;stroke-width:1.1;"
+    "stroke-dasharray:3 2}"
     ".power{fill:none;stroke:#1f5fa8;stroke-width:1.5}.estimate{fill:none;stroke:#c4441c;stroke-width:2}"
-    ".true{fill:none;stroke:#222;stroke-width:1.3;stroke-dasharray:5 3}.limit{stroke:#a3123a;stroke-width:1.2;stroke-dasharray:2 3}"
-    ".granted{fill:#d9e6dc}.safety{fill:#f0a432}.over{fill:#a3123a}.recovering{fill:#5aa0d0}.fault{fill:#444}.granted,.safety,.over,.recovering{shape-rendering:crispEdges}</style>\n";
+    ".true{fill:none;stroke:#222;stroke-width:1.3;stroke-dasharray:5 "
+    "3}.limit{stroke:#a3123a;stroke-width:1.2;stroke-dasharray:2 3}"
+    ".granted{fill:#d9e6dc}.safety{fill:#f0a432}.over{fill:#a3123a}.recovering{fill:#5aa0d0}.fault{fill:#444}"
+    ".granted,.safety,.over,.recovering{shape-rendering:crispEdges}</style>\n";
 
 }  // namespace
 
 std::string Trace::svg() const {
   const std::string size = " width=\"" + number(width) + "\" height=\"" + number(height) + "\"";
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + size + " viewBox=\"0 0 " + number(width) + " " + number(height) + "\">\n";
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + size + " viewBox=\"0 0 " + number(width) +
+                    " " + number(height) + "\">\n";
   svg += style;
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
-  svg += text(left, 32, "title", "nano_gimbal on a simulated ATmega328P, talking to an emulated SimpleBGC board");
+  svg += text(left, 32, "title",
+              "nano_gimbal on a simulated ATmega328P, talking to an emulated SimpleBGC board");
   std::string phases = "Phases (shaded alternately): ";
   for (const Phase& phase : Story::phases()) {
     if (&phase != &Story::phases().front()) phases += ", ";
@@ -173,28 +196,38 @@ std::string Trace::svg() const {
 
     const Panel error = {x, top, 110, -2.5, 2.5};
     svg += frame(error, {-2, -1, 0, 1, 2}, is_first, false);
-    svg += curve(error, points, [axis](const Point& point) { return point.axes[axis].error_deg; }, false, "error");
-    if (axis == 2) svg += text(error.x + panel_width - 6, error.y + error.height - 8, "tick end", "off the scale: to 180 and back");
+    svg += curve(
+        error, points, [axis](const Point& point) { return point.axes[axis].error_deg; }, false, "error");
+    if (axis == 2)
+      svg += text(error.x + panel_width - 6, error.y + error.height - 8, "tick end",
+                  "off the scale: to 180 and back");
 
     const Panel power = {x, top + 136, 130, 0, 260};
     svg += frame(power, {0, 50, 100, 150, 200, 250}, is_first, false);
-    svg += curve(power, points, [axis](const Point& point) { return double(point.axes[axis].demand); }, true, "demand");
-    svg += curve(power, points, [axis](const Point& point) { return double(point.axes[axis].power); }, true, "power");
+    svg += curve(
+        power, points, [axis](const Point& point) { return double(point.axes[axis].demand); }, true,
+        "demand");
+    svg += curve(
+        power, points, [axis](const Point& point) { return double(point.axes[axis].power); }, true, "power");
 
     const Panel warmth = {x, top + 292, 170, coldest_C, hottest_C};
     std::vector<double> ticks;
     for (double tick = coldest_C; tick <= hottest_C; tick += 5) ticks.push_back(tick);
     svg += frame(warmth, ticks, is_first, false);
     svg += line(x, warmth.at(60), x + panel_width, warmth.at(60), "limit");
-    svg += curve(warmth, points, [axis](const Point& point) { return point.axes[axis].true_C; }, false, "true");
-    svg += curve(warmth, points, [axis](const Point& point) { return point.axes[axis].estimate_C; }, false, "estimate");
+    svg += curve(
+        warmth, points, [axis](const Point& point) { return point.axes[axis].true_C; }, false, "true");
+    svg += curve(
+        warmth, points, [axis](const Point& point) { return point.axes[axis].estimate_C; }, false,
+        "estimate");
 
     const Panel reason = {x, top + 488, 26, 0, 1};
     svg += frame(reason, {}, false, true) + strip(reason, points, axis);
     svg += text(x + panel_width / 2, reason.y + 62, "label middle", "time / s");
   }
   const auto vertical = [&](double y, const std::string& label) {
-    svg += "<text transform=\"translate(26 " + number(y) + ") rotate(-90)\" class=\"label middle\">" + label + "</text>\n";
+    svg += "<text transform=\"translate(26 " + number(y) + ") rotate(-90)\" class=\"label middle\">" + label +
+           "</text>\n";
   };
   vertical(top + 55, "error / deg");
   vertical(top + 201, "POWER / count");
@@ -204,7 +237,8 @@ std::string Trace::svg() const {
   double x = left;
   double y = height - 60;
   const auto key = [&](const std::string& css, bool is_area, const std::string& label, double length) {
-    svg += is_area ? box(x, y - 10, 18, 12, css) : "<path d=\"M" + number(x) + " " + number(y - 4) + "h22\" class=\"" + css + "\"/>\n";
+    svg += is_area ? box(x, y - 10, 18, 12, css)
+                   : "<path d=\"M" + number(x) + " " + number(y - 4) + "h22\" class=\"" + css + "\"/>\n";
     svg += text(x + 27, y, "label", label);
     x += length;
   };

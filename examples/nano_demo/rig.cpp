@@ -10,13 +10,15 @@ namespace {
 
 namespace sbgc = thermopower::sbgc;
 
-// Members of the core's HardwareSerial, counted from the object's start (arduino-core-avr 1.8, 64-byte buffers).
+// Members of the core's HardwareSerial, counted from the object's start (arduino-core-avr 1.8, 64-byte
+// buffers).
 constexpr std::uint32_t serial_size = 157;
 constexpr std::uint16_t receive_head = 25, receive_tail = 26, transmit_head = 27;
 constexpr std::uint8_t buffer_mask = 63;
 constexpr std::uint8_t command_frame_bytes = 36;
 
-std::uint64_t cycles_of_us(double us) { return static_cast<std::uint64_t>(std::ceil(us * cycles_per_us)); }  // never short of it
+// Never short of it.
+std::uint64_t cycles_of_us(double us) { return static_cast<std::uint64_t>(std::ceil(us * cycles_per_us)); }
 double us_of_cycles(std::uint64_t cycle) { return static_cast<double>(cycle) / cycles_per_us; }
 
 }  // namespace
@@ -99,7 +101,8 @@ void Rig::deliver(double until_us) {
   }
 }
 
-// From the last byte of an answer to the command's last byte in the transmit buffer, an instruction at a time.
+// From the last byte of an answer to the command's last byte in the transmit buffer, an instruction at a
+// time.
 void Rig::watch_update() {
   is_watching_ = false;
   const auto head_address = static_cast<std::uint16_t>(serial_address_ + transmit_head);
@@ -117,7 +120,8 @@ void Rig::watch_update() {
 void Rig::run_until(double time_s) {
   const double until_us = time_s * 1e6;
   while (us_of_cycles(chip_.cycle()) < until_us) {
-    // Small portions: what one end sends must not reach the other before its time. The board only speaks when it has parsed.
+    // Small portions: what one end sends must not reach the other before its time. The board only speaks when
+    // it has parsed.
     const double now_us = us_of_cycles(chip_.cycle());
     const double portion_us = std::min({until_us, board_.next_parse_us(), now_us + 100.0});
     chip_.run_until(cycles_of_us(portion_us));

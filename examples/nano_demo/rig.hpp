@@ -6,9 +6,8 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
-
 #include <thermopower/simulation/emulated_board.hpp>
+#include <vector>
 
 #include "simulated_chip.hpp"
 
@@ -18,11 +17,11 @@ namespace nano {
 struct Update {
   thermopower::sbgc::RealtimeFields telemetry;  ///< As the chip received it.
   std::uint64_t last_in_cycle = 0;              ///< Its last byte was received.
-  std::uint64_t first_out_cycle = 0;            ///< The first byte of the chip's command was handed to the transmitter.
-  std::uint64_t queued_cycle = 0;               ///< The whole command was handed over; 0 when that could not be seen.
-  std::uint64_t sent_cycle = 0;                 ///< The command's last byte has left: the board may obey.
-  std::uint8_t power[3] = {0, 0, 0};            ///< POWER commanded.
-  std::uint8_t p_gain[3] = {0, 0, 0};           ///< P commanded.
+  std::uint64_t first_out_cycle = 0;  ///< The first byte of the chip's command was handed to the transmitter.
+  std::uint64_t queued_cycle = 0;     ///< The whole command was handed over; 0 when that could not be seen.
+  std::uint64_t sent_cycle = 0;       ///< The command's last byte has left: the board may obey.
+  std::uint8_t power[3] = {0, 0, 0};  ///< POWER commanded.
+  std::uint8_t p_gain[3] = {0, 0, 0};  ///< P commanded.
 
   double time_s() const { return static_cast<double>(first_out_cycle) / (1e6 * cycles_per_us); }
   std::uint64_t response_cycles() const { return first_out_cycle - last_in_cycle; }
@@ -41,7 +40,8 @@ class Rig {
   typedef thermopower::simulation::EmulatedBoard Board;
   typedef thermopower::simulation::BoardTruth Truth;
 
-  /// Advances the world to a time and says what is to be measured there. Called before each look of the board at its input.
+  /// Advances the world to a time and says what is to be measured there. Called before each look of the board
+  /// at its input.
   typedef std::function<Truth(double time_s, Board& board)> World;
 
   /// @throws std::runtime_error when the program cannot be loaded
@@ -52,17 +52,21 @@ class Rig {
   /// Runs to a time since the chip's reset. @throws std::runtime_error when the program crashes
   void run_until(double time_s);
 
-  double time_s() const;                          ///< Since the chip's reset.
-  Board& board() { return board_; }               ///< To make faults, or to count.
-  SimulatedChip& chip() { return chip_; }         ///< To look into.
+  double time_s() const;                   ///< Since the chip's reset.
+  Board& board() { return board_; }        ///< To make faults, or to count.
+  SimulatedChip& chip() { return chip_; }  ///< To look into.
   const std::vector<Update>& updates() const { return updates_; }
   const std::vector<UnaskedCommand>& unasked() const { return unasked_; }
-  std::uint64_t requests() const { return requests_; }                ///< Telemetry requests the chip has sent.
-  std::uint64_t unanswered() const { return unanswered_; }            ///< Whole telemetry frames the chip sent no command for.
-  std::uint64_t under_way() const { return expected_.size() + (current_ ? 1u : 0u); }  ///< Whole telemetry not answered yet.
-  std::uint64_t stray_bytes() const;                                  ///< Bytes sent by the chip that belong to no frame.
-  unsigned fullest_receive_buffer() const { return fullest_; }        ///< Bytes waiting in the core's 64-byte buffer (63 fit).
-  bool sees_core_buffers() const { return serial_address_ != 0; }     ///< Is the core's Serial object where it is expected?
+  std::uint64_t requests() const { return requests_; }  ///< Telemetry requests the chip has sent.
+  /// Whole telemetry frames the chip sent no command for.
+  std::uint64_t unanswered() const { return unanswered_; }
+  /// Whole telemetry not answered yet.
+  std::uint64_t under_way() const { return expected_.size() + (current_ ? 1u : 0u); }
+  std::uint64_t stray_bytes() const;  ///< Bytes sent by the chip that belong to no frame.
+  /// Bytes waiting in the core's 64-byte buffer (63 fit).
+  unsigned fullest_receive_buffer() const { return fullest_; }
+  /// Is the core's Serial object where it is expected?
+  bool sees_core_buffers() const { return serial_address_ != 0; }
 
  private:
   void hear(std::uint64_t cycle, std::uint8_t byte);

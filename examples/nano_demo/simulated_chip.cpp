@@ -30,8 +30,8 @@ struct SimulatedChip::Simulation {
   avr_t* avr = nullptr;
   avr_uart_t* uart = nullptr;
   SimulatedChip* owner = nullptr;
-  std::deque<Arrival> arrivals;     // not yet on the pin
-  std::deque<std::uint64_t> seen;   // given to simavr, not yet reported as received
+  std::deque<Arrival> arrivals;    // not yet on the pin
+  std::deque<std::uint64_t> seen;  // given to simavr, not yet reported as received
   bool is_arrival_timed = false;
   std::uint64_t overruns = 0;
 
@@ -42,7 +42,8 @@ struct SimulatedChip::Simulation {
     }
   }
 
-  // simavr makes a byte visible one byte time after it was given, so it is given that long before its stop bit ends.
+  // simavr makes a byte visible one byte time after it was given, so it is given that long before its stop
+  // bit ends.
   static avr_cycle_count_t arrive(avr_t* avr, avr_cycle_count_t, void* self_pointer) {
     auto& self = *static_cast<Simulation*>(self_pointer);
     while (!self.arrivals.empty() && self.arrivals.front().end_cycle <= avr->cycle + cycles_per_byte) {
@@ -85,7 +86,8 @@ SimulatedChip::SimulatedChip(const std::string& elf_path) : simulation_(std::mak
   avr_global_logger_set(log_nothing);
   elf_firmware_t firmware;
   std::memset(&firmware, 0, sizeof firmware);
-  if (elf_read_firmware(elf_path.c_str(), &firmware) != 0) throw std::runtime_error(elf_path + ": simavr cannot load this program");
+  if (elf_read_firmware(elf_path.c_str(), &firmware) != 0)
+    throw std::runtime_error(elf_path + ": simavr cannot load this program");
   self.avr = avr_make_mcu_by_name("atmega328p");
   if (self.avr == nullptr) throw std::runtime_error("this libsimavr knows no atmega328p");
   avr_init(self.avr);
@@ -98,7 +100,8 @@ SimulatedChip::SimulatedChip(const std::string& elf_path) : simulation_(std::mak
   if (self.uart == nullptr) throw std::runtime_error("this libsimavr's atmega328p has no serial port");
   std::uint32_t no_flags = 0;
   avr_ioctl(self.avr, AVR_IOCTL_UART_SET_FLAGS('0'), &no_flags);
-  avr_irq_register_notify(avr_io_getirq(self.avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), Simulation::transmit, &self);
+  avr_irq_register_notify(avr_io_getirq(self.avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT),
+                          Simulation::transmit, &self);
   const std::uint32_t first_free = 0x100 + self.elf.static_ram_bytes;
   std::memset(self.avr->data + first_free, paint, self.avr->ramend + 1u - first_free);
   self.owner = this;
@@ -106,7 +109,9 @@ SimulatedChip::SimulatedChip(const std::string& elf_path) : simulation_(std::mak
 
 SimulatedChip::~SimulatedChip() = default;
 SimulatedChip::SimulatedChip(SimulatedChip&& other) noexcept
-    : on_transmit(std::move(other.on_transmit)), on_received(std::move(other.on_received)), simulation_(std::move(other.simulation_)) {
+    : on_transmit(std::move(other.on_transmit)),
+      on_received(std::move(other.on_received)),
+      simulation_(std::move(other.simulation_)) {
   simulation_->owner = this;
 }
 SimulatedChip& SimulatedChip::operator=(SimulatedChip&& other) noexcept {
@@ -120,12 +125,13 @@ SimulatedChip& SimulatedChip::operator=(SimulatedChip&& other) noexcept {
 bool SimulatedChip::run_until_or_stop(std::uint64_t cycle) {
   Simulation& self = *simulation_;
   self.avr->run_cycle_limit = 1u << 20;
-  if (cycle > self.avr->cycle) avr_cycle_timer_register(self.avr, cycle - self.avr->cycle, Simulation::pause, &self);
+  if (cycle > self.avr->cycle)
+    avr_cycle_timer_register(self.avr, cycle - self.avr->cycle, Simulation::pause, &self);
   while (self.avr->cycle < cycle) {
     self.run_once();
     if (self.avr->state == cpu_Crashed)
-      throw std::runtime_error(self.path + ": the program crashed at program address " + std::to_string(self.avr->pc) + ", cycle " +
-                               std::to_string(self.avr->cycle));
+      throw std::runtime_error(self.path + ": the program crashed at program address " +
+                               std::to_string(self.avr->pc) + ", cycle " + std::to_string(self.avr->cycle));
     if (self.avr->state == cpu_Done) return false;
   }
   return true;
@@ -133,7 +139,8 @@ bool SimulatedChip::run_until_or_stop(std::uint64_t cycle) {
 
 void SimulatedChip::run_until(std::uint64_t cycle) {
   if (!run_until_or_stop(cycle))
-    throw std::runtime_error(simulation_->path + ": the program stopped itself at cycle " + std::to_string(this->cycle()));
+    throw std::runtime_error(simulation_->path + ": the program stopped itself at cycle " +
+                             std::to_string(this->cycle()));
 }
 
 void SimulatedChip::run_instruction() {
@@ -154,7 +161,9 @@ void SimulatedChip::receive(std::uint64_t end_cycle, std::uint8_t byte) {
 
 std::uint64_t SimulatedChip::cycle() const { return simulation_->avr->cycle; }
 std::uint8_t SimulatedChip::data(std::uint16_t address) const { return simulation_->avr->data[address]; }
-void SimulatedChip::set_data(std::uint16_t address, std::uint8_t value) { simulation_->avr->data[address] = value; }
+void SimulatedChip::set_data(std::uint16_t address, std::uint8_t value) {
+  simulation_->avr->data[address] = value;
+}
 const ElfFacts& SimulatedChip::elf() const { return simulation_->elf; }
 std::uint64_t SimulatedChip::bytes_overrun() const { return simulation_->overruns; }
 

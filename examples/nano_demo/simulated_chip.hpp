@@ -13,10 +13,11 @@ namespace nano {
 
 constexpr double cycles_per_us = 16.0;  ///< 16 MHz.
 
-/// An ATmega328P at 16 MHz running a program, cycle by cycle (libsimavr), with its serial port at its real pace.
+/// An ATmega328P at 16 MHz running a program, cycle by cycle (libsimavr), with its serial port at its real
+/// pace.
 ///
-/// The port's own bytes take 10 bits at 117 647 baud (1360 cycles), which is what the core makes of 115200. Received bytes come when
-/// the other end says.
+/// The port's own bytes take 10 bits at 117 647 baud (1360 cycles), which is what the core makes of 115200.
+/// Received bytes come when the other end says.
 class SimulatedChip {
  public:
   static constexpr std::uint32_t cycles_per_byte = 1360;  ///< 10 bits of 136 cycles.
@@ -27,9 +28,11 @@ class SimulatedChip {
   SimulatedChip(SimulatedChip&&) noexcept;
   SimulatedChip& operator=(SimulatedChip&&) noexcept;
 
-  /// Runs to a cycle (a few more, to the end of an instruction). @throws std::runtime_error when the program crashes or stops
+  /// Runs to a cycle (a few more, to the end of an instruction). @throws std::runtime_error when the program
+  /// crashes or stops
   void run_until(std::uint64_t cycle);
-  /// As run_until(), but returns false instead when the program has stopped with interrupts off (its way to say it is done).
+  /// As run_until(), but returns false instead when the program has stopped with interrupts off (its way to
+  /// say it is done).
   bool run_until_or_stop(std::uint64_t cycle);
   /// Runs one instruction.
   void run_instruction();
@@ -41,13 +44,15 @@ class SimulatedChip {
   /// Called when a received byte becomes visible to the program.
   std::function<void(std::uint64_t cycle)> on_received;
 
-  std::uint64_t cycle() const;                              ///< Cycles since reset.
-  std::uint8_t data(std::uint16_t address) const;           ///< A byte of the data space: registers, I/O, RAM.
-  void set_data(std::uint16_t address, std::uint8_t value);  ///< Overwrites a byte of the data space, to start from a rare state.
-  const ElfFacts& elf() const;                              ///< The program's size and symbols.
-  /// Deepest stack so far: RAM above the variables is painted at reset, and what is no longer painted was stack.
+  std::uint64_t cycle() const;                     ///< Cycles since reset.
+  std::uint8_t data(std::uint16_t address) const;  ///< A byte of the data space: registers, I/O, RAM.
+  void set_data(std::uint16_t address,
+                std::uint8_t value);  ///< Overwrites a byte of the data space, to start from a rare state.
+  const ElfFacts& elf() const;        ///< The program's size and symbols.
+  /// Deepest stack so far: RAM above the variables is painted at reset, and what is no longer painted was
+  /// stack.
   std::uint16_t deepest_stack_bytes() const;
-  std::uint64_t bytes_overrun() const;                      ///< Received bytes that the two-byte hardware buffer had no room for.
+  std::uint64_t bytes_overrun() const;  ///< Received bytes that the two-byte hardware buffer had no room for.
 
  private:
   struct Simulation;

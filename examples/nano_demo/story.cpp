@@ -15,12 +15,9 @@ constexpr double air_C = 38.0;  // in the sun
 }  // namespace
 
 const std::vector<Phase>& Story::phases() {
-  static const std::vector<Phase> all = {{"rest", 0, 4},
-                                         {"small motion", 4, 10},
-                                         {"gusts", 10, 17},
-                                         {"push across 180 degrees", 17, 21},
-                                         {"full demand", 21, 46},
-                                         {"recovery", 46, 60}};
+  static const std::vector<Phase> all = {{"rest", 0, 4},          {"small motion", 4, 10},
+                                         {"gusts", 10, 17},       {"push across 180 degrees", 17, 21},
+                                         {"full demand", 21, 46}, {"recovery", 46, 60}};
   return all;
 }
 
@@ -32,19 +29,22 @@ const Phase& Story::phase_at(double time_s) {
 
 template <class Motor>
 Story::Axis Story::axis_of() {
-  const Thermal::Config thermal = {Motor::template heating_law<double>(), Motor::template cooling_law<double>()};
+  const Thermal::Config thermal = {Motor::template heating_law<double>(),
+                                   Motor::template cooling_law<double>()};
   return Axis{Current(Motor::template current_law<double>()), Thermal(thermal, air_C), {}, {}};
 }
 
 Story::Story()
-    : axes_{axis_of<tp::motors::Bgm2606_90t>(), axis_of<tp::motors::Bgm2606_90t>(), axis_of<tp::motors::Bgm5208_200_12>()} {}
+    : axes_{axis_of<tp::motors::Bgm2606_90t>(), axis_of<tp::motors::Bgm2606_90t>(),
+            axis_of<tp::motors::Bgm5208_200_12>()} {}
 
 Rig::Truth Story::advance(double time_s, const Rig::Board& board) {
   Rig::Truth truth;
   Sample sample = {time_s, {}};
   for (int axis = 0; axis < 3; ++axis) {
     Axis& motor = axes_[static_cast<std::size_t>(axis)];
-    const Current::State drawn = motor.current.at_power(double(board.power(axis)), supply_V, motor.thermal.hottest_C());
+    const Current::State drawn =
+        motor.current.at_power(double(board.power(axis)), supply_V, motor.thermal.hottest_C());
     const Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {air_C, 0.0}};
     motor.thermal.step(heat, time_s - last_s_);
     motor.winding.step(drawn.v_rms_V, supply_V, drawn.current_A, time_s - last_s_);

@@ -4,11 +4,10 @@
 
 #include <array>
 #include <string>
-#include <vector>
-
 #include <thermopower/motors/bgm2606_90t.hpp>
 #include <thermopower/motors/bgm5208_200_12.hpp>
 #include <thermopower/thermopower.hpp>
+#include <vector>
 
 #include "rig.hpp"
 
@@ -36,13 +35,17 @@ class Story {
     double time_s;
     std::array<double, 3> motor_C;
   };
-  const std::vector<Sample>& samples() const { return samples_; }        ///< One per look of the board at its input.
-  double winding_J(int axis) const { return axes_[std::size_t(axis)].winding.state().energy_J; }  ///< V_rms I, integrated.
-  double supply_J(int axis) const { return axes_[std::size_t(axis)].supply.state().energy_J; }    ///< V_supply I, integrated.
+  /// One per look of the board at its input.
+  const std::vector<Sample>& samples() const { return samples_; }
+  /// V_rms I, integrated.
+  double winding_J(int axis) const { return axes_[std::size_t(axis)].winding.state().energy_J; }
+  /// V_supply I, integrated.
+  double supply_J(int axis) const { return axes_[std::size_t(axis)].supply.state().energy_J; }
 
  private:
   typedef thermopower::CurrentModel<thermopower::ThesisCurrent<double>> Current;
-  typedef thermopower::ThermalModel<thermopower::ThesisHeating<double>, thermopower::RateCooling<double>, thermopower::LinearizedStep>
+  typedef thermopower::ThermalModel<thermopower::ThesisHeating<double>, thermopower::RateCooling<double>,
+                                    thermopower::LinearizedStep>
       Thermal;
   struct Axis {
     Current current;

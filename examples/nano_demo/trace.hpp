@@ -14,10 +14,10 @@ namespace nano {
 
 /// One axis at one update.
 struct AxisPoint {
-  double error_deg;                ///< Folded to half a turn.
+  double error_deg;  ///< Folded to half a turn.
   std::uint8_t demand, power, p_gain;
-  double estimate_C;               ///< What the chip believes.
-  double true_C;                   ///< What the motor is.
+  double estimate_C;  ///< What the chip believes.
+  double true_C;      ///< What the motor is.
   thermopower::LimitReason reason;
 };
 
@@ -28,8 +28,8 @@ struct Point {
   std::array<AxisPoint, 3> axes;
 };
 
-/// The run as a person wants to see it. The chip's estimates and reasons are those of the same controller, run here on the telemetry
-/// the chip received; `agreeing` says how often its commands are the chip's.
+/// The run as a person wants to see it. The chip's estimates and reasons are those of the same controller,
+/// run here on the telemetry the chip received; `agreeing` says how often its commands are the chip's.
 struct Trace {
   std::vector<Point> points;
   std::size_t agreeing = 0;

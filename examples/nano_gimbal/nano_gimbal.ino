@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear, as the thesis's
-//           program does it: the same decisions from the same telemetry, without its faults (README.md lists both).
-// Model:    per axis the programmed laws: ten levels of error, current and heating as fitted, Euler, a ceiling that moves by one
-//           count per update, a gain cut to a whole count. Supply 13 V. All in whole numbers: tables instead of a float library.
+// Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear,
+//           as the thesis's program does it: the same decisions from the same telemetry, without its faults
+//           (README.md lists both).
+// Model:    per axis the programmed laws: ten levels of error, current and heating as fitted, Euler, a
+//           ceiling that moves by one count per update, a gain cut to a whole count. Supply 13 V. All in
+//           whole numbers: tables instead of a float library.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <thermopower.h>
 
@@ -48,8 +50,8 @@ void receive() {
   }
 }
 
-// A silent board may still listen, so it is told the least power. Before the first answer nothing is stepped: the ceiling must not
-// start from the bottom only because the board takes longer to start than we do.
+// A silent board may still listen, so it is told the least power. Before the first answer nothing is stepped:
+// the ceiling must not start from the bottom only because the board takes longer to start than we do.
 void miss_answer(uint32_t now_us) {
   const tp::LimitReason reason = gimbal.command().reason[0];
   if (reason != tp::LimitReason::no_telemetry_yet) {

@@ -56,16 +56,34 @@ void stop(int status) {
 }  // namespace platform
 
 __attribute__((section(".vectors"), used)) void (*const vectors[16])() = {
-    reinterpret_cast<void (*)()>(&stack_top), reset, fault, fault, fault, fault, fault, nullptr, nullptr, nullptr, nullptr, fault, fault,
-    nullptr, fault, fault};
+    reinterpret_cast<void (*)()>(&stack_top),
+    reset,
+    fault,
+    fault,
+    fault,
+    fault,
+    fault,
+    nullptr,
+    nullptr,
+    nullptr,
+    nullptr,
+    fault,
+    fault,
+    nullptr,
+    fault,
+    fault};
 
 void reset() {
 #if defined(__ARM_FP)
-  *reinterpret_cast<volatile uint32_t*>(0xE000ED88u) |= 0xFu << 20;  // CPACR: the floating-point unit is off after reset
+  *reinterpret_cast<volatile uint32_t*>(0xE000ED88u) |=
+      0xFu << 20;  // CPACR: the floating-point unit is off after reset
   asm volatile("dsb\n isb");
 #endif
-  memcpy(&data_begin, &data_load, static_cast<size_t>(reinterpret_cast<uint8_t*>(&data_end) - reinterpret_cast<uint8_t*>(&data_begin)));
-  memset(&bss_begin, 0, static_cast<size_t>(reinterpret_cast<uint8_t*>(&bss_end) - reinterpret_cast<uint8_t*>(&bss_begin)));
+  memcpy(
+      &data_begin, &data_load,
+      static_cast<size_t>(reinterpret_cast<uint8_t*>(&data_end) - reinterpret_cast<uint8_t*>(&data_begin)));
+  memset(&bss_begin, 0,
+         static_cast<size_t>(reinterpret_cast<uint8_t*>(&bss_end) - reinterpret_cast<uint8_t*>(&bss_begin)));
   for (void (**function)() = init_array_begin; function != init_array_end; ++function) (*function)();
   main();
   platform::stop(1);

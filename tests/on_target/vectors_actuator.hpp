@@ -6,7 +6,8 @@
 
 #include "report.hpp"
 
-/// Input vectors for what the actuator does. Bounds are what single precision with another library's pow, exp and sqrt may cost.
+/// Input vectors for what the actuator does. Bounds are what single precision with another library's pow, exp
+/// and sqrt may cost.
 namespace on_target {
 
 template <class Motor>
@@ -27,7 +28,8 @@ template <class Motor>
 void run_heating(Report& report) {
   for (int16_t tenth_V = 0; tenth_V <= 130; tenth_V = static_cast<int16_t>(tenth_V + 13))
     for (int16_t motor_C = 20; motor_C <= 80; motor_C = static_cast<int16_t>(motor_C + 15)) {
-      const float rise = Motor::heating_law().rise_K_per_J(static_cast<float>(tenth_V) * 0.1f, static_cast<float>(motor_C));
+      const float rise =
+          Motor::heating_law().rise_K_per_J(static_cast<float>(tenth_V) * 0.1f, static_cast<float>(motor_C));
       report.real(rise, 1e-5f * rise);
     }
 }
@@ -46,7 +48,8 @@ void run_thermal(Report& report, const typename Thermal::Config& config, float b
   Thermal model(config, 25.0f);
   for (uint16_t step = 0; step < 200; ++step) {
     const float v_rms_V = static_cast<float>(step % 13u);
-    const typename Thermal::Inputs inputs = {0.8f * v_rms_V, v_rms_V, {20.0f + static_cast<float>(step % 7u), 1.0f}};
+    const typename Thermal::Inputs inputs = {
+        0.8f * v_rms_V, v_rms_V, {20.0f + static_cast<float>(step % 7u), 1.0f}};
     model.step(inputs, 0.02f * static_cast<float>(1u + step % 5u));
     report.real(model.hottest_C(), bound_K);
     report.real(model.hottest_rate_K_per_s(), bound_K);
@@ -71,7 +74,8 @@ inline void run_actuator(Report& report) {
   run_cooling(report, newton);
   run_cooling(report, tp::RateCooling<>::per_minute(0.11f));
   report.section("thermal models: Euler, tangent, exact, two nodes");
-  run_thermal<motors::Bgm2606_90t::AsProgrammed::Thermal>(report, motors::Bgm2606_90t::AsProgrammed::thermal(), 2e-4f);
+  run_thermal<motors::Bgm2606_90t::AsProgrammed::Thermal>(
+      report, motors::Bgm2606_90t::AsProgrammed::thermal(), 2e-4f);
   run_thermal<motors::Bgm5208_200_12::Thermal>(report, motors::Bgm5208_200_12::thermal(), 2e-4f);
   const tp::ThermalModel<>::Config exact = {{30.0f}, {0.05f}};
   run_thermal<tp::ThermalModel<> >(report, exact, 2e-4f);

@@ -6,7 +6,8 @@
 
 #include "report.hpp"
 
-/// Input vectors for what is done about the actuator: powers, gains, ceilings and reasons are the same everywhere, to the count.
+/// Input vectors for what is done about the actuator: powers, gains, ceilings and reasons are the same
+/// everywhere, to the count.
 namespace on_target {
 
 template <class Rule>
@@ -24,16 +25,18 @@ template <class Rule>
 void run_gain(Report& report) {
   const thermopower::GainConfig config = {180.0f, 105.0f};
   const thermopower::GainScheduler<Rule> gain(config);
-  for (uint16_t power = 0; power < 256; power = static_cast<uint16_t>(power + 5)) report.integer(gain.step(static_cast<uint8_t>(power)));
+  for (uint16_t power = 0; power < 256; power = static_cast<uint16_t>(power + 5))
+    report.integer(gain.step(static_cast<uint8_t>(power)));
 }
 
 template <class Rule>
 void run_limiter(Report& report) {
   thermopower::SafetyLimiter<Rule> limiter;
   for (uint16_t step = 0; step < 200; ++step) {
-    const float motor_C = step < 100 ? 30.0f + 0.31f * static_cast<float>(step) : 61.0f - 0.17f * static_cast<float>(step - 100);
-    const typename thermopower::SafetyLimiter<Rule>::Inputs inputs = {static_cast<uint8_t>(25 * (1 + step % 10u)), motor_C,
-                                                                       step < 100 ? 0.52f : -0.03f};
+    const float motor_C = step < 100 ? 30.0f + 0.31f * static_cast<float>(step)
+                                     : 61.0f - 0.17f * static_cast<float>(step - 100);
+    const typename thermopower::SafetyLimiter<Rule>::Inputs inputs = {
+        static_cast<uint8_t>(25 * (1 + step % 10u)), motor_C, step < 100 ? 0.52f : -0.03f};
     const thermopower::LimitedPower granted = limiter.step(inputs, 0.016f);
     report.integer(granted.power);
     report.integer(static_cast<uint8_t>(granted.reason));

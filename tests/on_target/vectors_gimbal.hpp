@@ -20,7 +20,8 @@ void run_gimbal(Report& report, Gimbal& gimbal) {
     inputs.camera_C = cycle < 300 ? 38.0f : 45.0f;
     inputs.frame_C = cycle % 50u == 7u ? 0.0f : 39.0f;
     inputs.supply_V = cycle > 500 && cycle < 510 ? 2.0f : 12.6f;
-    const typename Gimbal::Command& command = cycle % 211u == 200u ? gimbal.step_silent(0.6f) : gimbal.step(inputs, 0.04f);
+    const typename Gimbal::Command& command =
+        cycle % 211u == 200u ? gimbal.step_silent(0.6f) : gimbal.step(inputs, 0.04f);
     for (uint8_t axis = 0; axis < 3; ++axis) {
       report.integer(command.power[axis]);
       report.integer(command.p_gain[axis]);
@@ -41,9 +42,9 @@ void run_gimbal(Report& report, Gimbal& gimbal) {
   typedef tp::AxisController<tp::motors::Bgm2606_90t::AsProgrammed, PowerLaw, Limiter, Gain> Small;
   typedef tp::AxisController<tp::motors::Bgm5208_200_12::AsProgrammed, PowerLaw, Limiter, Gain> Large;
   report.section("gimbal as programmed");
-  tp::GimbalController<Small, Small, Large> gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
-                                                   Small::Config::with_gain({180.0f, 105.0f}),
-                                                   Large::Config::with_gain({40.0f, 2.0f}));
+  tp::GimbalController<Small, Small, Large> gimbal(
+      tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
+      Small::Config::with_gain({180.0f, 105.0f}), Large::Config::with_gain({40.0f, 2.0f}));
   run_gimbal(report, gimbal);
 }
 
@@ -53,9 +54,9 @@ void run_gimbal(Report& report, Gimbal& gimbal) {
   typedef tp::AxisController<tp::motors::Bgm2606_90t, PowerLaw> Small;
   typedef tp::AxisController<tp::motors::Bgm5208_200_12, PowerLaw> Large;
   report.section("gimbal with the corrected laws");
-  tp::GimbalController<Small, Small, Large> gimbal(tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
-                                                   Small::Config::with_gain({180.0f, 105.0f}),
-                                                   Large::Config::with_gain({40.0f, 2.0f}));
+  tp::GimbalController<Small, Small, Large> gimbal(
+      tp::GimbalConfig::standard(), Small::Config::with_gain({24.0f, 4.0f}),
+      Small::Config::with_gain({180.0f, 105.0f}), Large::Config::with_gain({40.0f, 2.0f}));
   run_gimbal(report, gimbal);
 }
 

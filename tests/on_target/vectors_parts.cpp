@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The same input vectors through every component by itself, on whatever machine this is built for; compare_vectors holds the results
-// against the PC's.
+// The same input vectors through every component by itself, on whatever machine this is built for;
+// compare_vectors holds the results against the PC's.
 #include "vectors_actuator.hpp"
 #include "vectors_control.hpp"
 

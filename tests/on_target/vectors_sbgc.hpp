@@ -36,9 +36,7 @@ template <class Protocol>
   thermopower::SbgcCodec<124, Protocol> codec;
   ByteSink wire = {report};
   codec.send(sbgc::Request(sbgc::command::realtime_data_4), wire);
-  const struct {
-    uint8_t power[3], p_gain[3];
-  } command = {{25, 250, 1}, {22, 106, 40}};
+  const struct { uint8_t power[3], p_gain[3]; } command = {{25, 250, 1}, {22, 106, 40}};
   codec.send(sbgc::power_and_gain(command), wire);
 
   // Telemetry frames in noise; some are damaged. What is found, and what is counted as lost, is the result.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The same input vectors through whole gimbal controllers and the codec, on whatever machine this is built for. Apart from
-// vectors_parts.cpp because both together do not fit the smallest flash.
+// The same input vectors through whole gimbal controllers and the codec, on whatever machine this is built
+// for. Apart from vectors_parts.cpp because both together do not fit the smallest flash.
 #include "vectors_gimbal.hpp"
 #include "vectors_sbgc.hpp"
 

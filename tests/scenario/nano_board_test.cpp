@@ -3,9 +3,8 @@
 
 // The emulated board speaks the real protocol at the real pace.
 #include <limits>
-#include <vector>
-
 #include <thermopower/simulation/emulated_board.hpp>
+#include <vector>
 
 #include "../catch.hpp"
 
@@ -95,9 +94,7 @@ TEST_CASE("what does not fit a field reads as its end, and NaN as 0") {
 TEST_CASE("variables are set, confirmed and reported, in either protocol version") {
   sim::EmulatedBoard board;
   Controller<sbgc::ProtocolV2> controller(board);
-  const struct {
-    std::uint8_t power[3], p_gain[3];
-  } command = {{25, 50, 75}, {22, 100, 36}};
+  const struct { std::uint8_t power[3], p_gain[3]; } command = {{25, 50, 75}, {22, 100, 36}};
   controller.send(sbgc::power_and_gain(command), 100);
   board.step(0, {});
   CHECK(board.power(1) == 150);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The faults of the original that nano_gimbal does not repeat, and its rules for a link, a sensor or a battery that fails. Both Nano
-// programs obey them.
+// The faults of the original that nano_gimbal does not repeat, and its rules for a link, a sensor or a
+// battery that fails. Both Nano programs obey them.
 #include <algorithm>
 #include <cmath>
-
 #include <rig.hpp>
 
 #include "../catch.hpp"
@@ -25,7 +24,8 @@ Rig::Truth steady(double air_C) {
   return truth;
 }
 
-Rig make_rig(const std::string& program, Rig::World world = [](double, Rig::Board&) { return steady(26); }) {
+Rig make_rig(
+    const std::string& program, Rig::World world = [](double, Rig::Board&) { return steady(26); }) {
   return Rig(std::string(NANO_PROGRAMS "/") + program, {}, std::move(world));
 }
 
@@ -109,7 +109,8 @@ TEST_CASE("a missing frame IMU does not halve the air temperature") {
   original::Program<float> program;
   for (const nano::Update& update : rig.updates()) {
     CHECK(is_least(update.power));
-    CHECK(program.update(update.telemetry, static_cast<std::uint32_t>(update.last_in_cycle / 16)).power[0] == 250);
+    CHECK(program.update(update.telemetry, static_cast<std::uint32_t>(update.last_in_cycle / 16)).power[0] ==
+          250);
   }
 }
 
@@ -165,8 +166,9 @@ TEST_CASE("damage on the line costs the damaged answers only") {
 }
 
 TEST_CASE("time does not wrap after 65 ms") {
-  // One answer in three is lost, so that updates lie 75 ms and more apart, and the motor is heated until the limiter acts. The
-  // original's arithmetic with its 16-bit time believes the motor cooler than it is; with true time it agrees with the chip.
+  // One answer in three is lost, so that updates lie 75 ms and more apart, and the motor is heated until the
+  // limiter acts. The original's arithmetic with its 16-bit time believes the motor cooler than it is; with
+  // true time it agrees with the chip.
   Rig rig = make_rig("nano_gimbal.elf", [](double time_s, Rig::Board& board) {
     board.faults.is_silent = std::fmod(time_s, 0.12) > 0.05;
     return steady(30);
@@ -178,8 +180,10 @@ TEST_CASE("time does not wrap after 65 ms") {
   std::uint64_t before = 0;
   for (const nano::Update& update : rig.updates()) {
     const auto micros = static_cast<std::uint32_t>(update.last_in_cycle / 16);
-    agreeing += std::abs(int(true_time.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
-    agreeing_wrapped += std::abs(int(wrapping.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
+    agreeing +=
+        std::abs(int(true_time.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
+    agreeing_wrapped +=
+        std::abs(int(wrapping.update(update.telemetry, micros).power[0]) - int(update.power[0])) <= 2;
     long_cycles += before != 0 && update.first_out_cycle - before > 65536 * 16;
     before = update.first_out_cycle;
   }
@@ -192,7 +196,8 @@ TEST_CASE("time does not wrap after 65 ms") {
 TEST_CASE("time goes on when micros() wraps after 71.6 minutes") {
   const std::string program = GENERATE("nano_gimbal.elf", "gimbal_controller.elf");
   Rig rig = make_rig(program, [](double, Rig::Board&) { return steady(45); });
-  // The core counts overflows of its timer, 1024 us each; micros() wraps at 2^22 of them. Start three seconds before.
+  // The core counts overflows of its timer, 1024 us each; micros() wraps at 2^22 of them. Start three seconds
+  // before.
   rig.run_until(0.002);
   const auto count = rig.chip().elf().symbols.find("timer0_overflow_count");
   REQUIRE(count != rig.chip().elf().symbols.end());

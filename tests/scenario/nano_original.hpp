@@ -7,9 +7,10 @@
 
 #include <thermopower/sbgc/realtime_fields.hpp>
 
-/// What the thesis's program decides, worked out from the formulas in its Appendix 1 and written independently of the library: no
-/// header of actuator/, control/ or motors/ is used here. It also compiles for the original's chip, where its `double` is a float and its
-/// pow is avr-libc's: the results there are the original's to the bit, as far as formulas can tell. Line numbers are the program's.
+/// What the thesis's program decides, worked out from the formulas in its Appendix 1 and written
+/// independently of the library: no header of actuator/, control/ or motors/ is used here. It also compiles
+/// for the original's chip, where its `double` is a float and its pow is avr-libc's: the results there are
+/// the original's to the bit, as far as formulas can tell. Line numbers are the program's.
 namespace original {
 
 struct Decision {
@@ -44,11 +45,13 @@ class Program {
     decision.is_sent = true;
     for (int index = 0; index < 3; ++index) {
       Axis& axis = axes_[index];
-      axis.error_deg = (Real(telemetry.target_angle[index]) - Real(telemetry.imu_angle[index])) / Real(45.5111);
+      axis.error_deg =
+          (Real(telemetry.target_angle[index]) - Real(telemetry.imu_angle[index])) / Real(45.5111);
       limit(axis);
       decision.power[index] = axis.power;
       const Constants& motor = constants(index);
-      decision.p_gain[index] = static_cast<uint8_t>(motor.gain_low - Real(axis.power) / Real(255) * (motor.gain_low - motor.gain_high));
+      decision.p_gain[index] = static_cast<uint8_t>(motor.gain_low - Real(axis.power) / Real(255) *
+                                                                         (motor.gain_low - motor.gain_high));
     }
     return decision;
   }
@@ -61,11 +64,11 @@ class Program {
 
  private:
   struct Constants {
-    Real cooling_per_min;                          // line 30
-    Real slope_V2, slope_V1, slope_V0;             // 32 to 34, mA/K
-    Real base, exponent;                           // 35, 36, mA
-    Real rise_sV, rise_s, rise_oV, rise_o;         // 38 to 41
-    Real gain_low, gain_high;                      // 44, 45
+    Real cooling_per_min;                   // line 30
+    Real slope_V2, slope_V1, slope_V0;      // 32 to 34, mA/K
+    Real base, exponent;                    // 35, 36, mA
+    Real rise_sV, rise_s, rise_oV, rise_o;  // 38 to 41
+    Real gain_low, gain_high;               // 44, 45
   };
   struct Axis {
     Real motor_C = 0;
@@ -78,12 +81,15 @@ class Program {
   };
 
   static const Constants& constants(int index) {
-    static const Constants small = {Real(0.110), Real(-0.0134), Real(0.0156), Real(0.0167), Real(0.1551), Real(3.4591),
-                                    Real(-0.0002), Real(0.0062), Real(0.0255), Real(-0.105), Real(24), Real(4)};
-    static const Constants pitch = {Real(0.110), Real(-0.0134), Real(0.0156), Real(0.0167), Real(0.1551), Real(3.4591),
-                                    Real(-0.0002), Real(0.0062), Real(0.0255), Real(-0.105), Real(180), Real(105)};
-    static const Constants large = {Real(0.05), Real(-0.055), Real(0.6311), Real(-2.497), Real(0.1257), Real(3.4135),
-                                    Real(0), Real(0.2435), Real(0), Real(-0.4952), Real(40), Real(2)};
+    static const Constants small = {Real(0.110),  Real(-0.0134), Real(0.0156),  Real(0.0167),
+                                    Real(0.1551), Real(3.4591),  Real(-0.0002), Real(0.0062),
+                                    Real(0.0255), Real(-0.105),  Real(24),      Real(4)};
+    static const Constants pitch = {Real(0.110),  Real(-0.0134), Real(0.0156),  Real(0.0167),
+                                    Real(0.1551), Real(3.4591),  Real(-0.0002), Real(0.0062),
+                                    Real(0.0255), Real(-0.105),  Real(180),     Real(105)};
+    static const Constants large = {Real(0.05),   Real(-0.055),  Real(0.6311), Real(-2.497),
+                                    Real(0.1257), Real(3.4135),  Real(0),      Real(0.2435),
+                                    Real(0),      Real(-0.4952), Real(40),     Real(2)};
     return index == 0 ? small : (index == 1 ? pitch : large);
   }
 
@@ -97,7 +103,8 @@ class Program {
       const Real slope = motor.slope_V2 * power(volt, Real(2)) + motor.slope_V1 * volt + motor.slope_V0;
       const Real current_mA = axis.motor_C * slope + motor.base * power(volt, motor.exponent);
       const Real positive_mA = current_mA > 0 ? current_mA : Real(0);
-      const Real rise = Real(1) / ((motor.rise_sV * volt + motor.rise_s) * axis.motor_C + (motor.rise_oV * volt + motor.rise_o));
+      const Real rise = Real(1) / ((motor.rise_sV * volt + motor.rise_s) * axis.motor_C +
+                                   (motor.rise_oV * volt + motor.rise_o));
       if (rise > 0) heating_per_min = rise * (positive_mA / Real(1000) * volt);
     }
     const Real cooling_per_min = motor.cooling_per_min * (axis.motor_C - air_C_);

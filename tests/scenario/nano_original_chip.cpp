@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The original's arithmetic on the original's chip: telemetry in by the serial port, decisions out. nano_original_chip.hpp is the other
-// end.
+// The original's arithmetic on the original's chip: telemetry in by the serial port, decisions out.
+// nano_original_chip.hpp is the other end.
 #include <avr/io.h>
 #include <string.h>
 

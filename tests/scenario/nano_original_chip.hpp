@@ -4,14 +4,14 @@
 
 #include <cstdint>
 #include <cstring>
+#include <simulated_chip.hpp>
 #include <string>
 #include <vector>
 
-#include <simulated_chip.hpp>
-
 #include "nano_original.hpp"
 
-/// The original's arithmetic as the original's chip does it: nano_original_chip.cpp in the simulator, asked update by update.
+/// The original's arithmetic as the original's chip does it: nano_original_chip.cpp in the simulator, asked
+/// update by update.
 class OriginalOnItsChip {
  public:
   explicit OriginalOnItsChip(const std::string& elf_path) : chip_(elf_path) {
@@ -35,7 +35,8 @@ class OriginalOnItsChip {
 
     answer_.clear();
     std::uint64_t end_cycle = chip_.cycle() + nano::SimulatedChip::cycles_per_byte;
-    for (const std::uint8_t byte : question) chip_.receive(end_cycle += nano::SimulatedChip::cycles_per_byte + 30, byte);
+    for (const std::uint8_t byte : question)
+      chip_.receive(end_cycle += nano::SimulatedChip::cycles_per_byte + 30, byte);
     while (answer_.size() < 1 + 3 * 6) chip_.run_until(chip_.cycle() + 500);
 
     original::Decision decision;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// compare_vectors <reference program> <command to run on the target...>: integers must be identical, numbers within the reference's
-// bounds. Exit status 0 when they are.
+// compare_vectors <reference program> <command to run on the target...>: integers must be identical, numbers
+// within the reference's bounds. Exit status 0 when they are.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -52,7 +52,8 @@ int main(int count, char** arguments) {
     return 1;
   }
   if (!run(target + "</dev/null", found)) {
-    std::cerr << target << ": failed after " << found.size() << " lines" << (found.empty() ? "" : ", the last: " + found.back()) << '\n';
+    std::cerr << target << ": failed after " << found.size() << " lines"
+              << (found.empty() ? "" : ", the last: " + found.back()) << '\n';
     return 1;
   }
 
@@ -69,7 +70,8 @@ int main(int count, char** arguments) {
     if (reference[0] == 'i') ++integers;
     if (reference[0] == 'f' && got.size() == reference.size() && got[0] == 'f') {
       ++numbers;
-      const double want = number(reference.substr(2, 8)), have = number(got.substr(2, 8)), bound = number(reference.substr(11, 8));
+      const double want = number(reference.substr(2, 8)), have = number(got.substr(2, 8)),
+                   bound = number(reference.substr(11, 8));
       is_right = std::fabs(want - have) <= bound || (std::isnan(want) && std::isnan(have));
       if (is_right && bound > 0 && std::fabs(want - have) / bound > fullest) {
         fullest = std::fabs(want - have) / bound;
@@ -86,7 +88,8 @@ int main(int count, char** arguments) {
     std::cerr << found.size() << " lines here, " << expected.size() << " on the PC\n";
     ++wrong;
   }
-  std::cout << integers << " integers identical, " << numbers << " numbers within their bounds (at most " << std::round(fullest * 100)
-            << " % of one, " << fullest_at << ")" << (wrong != 0 ? ", except those above" : "") << '\n';
+  std::cout << integers << " integers identical, " << numbers << " numbers within their bounds (at most "
+            << std::round(fullest * 100) << " % of one, " << fullest_at << ")"
+            << (wrong != 0 ? ", except those above" : "") << '\n';
   return wrong == 0 ? 0 : 1;
 }

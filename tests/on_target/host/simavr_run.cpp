@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// simavr_run <program.elf>: runs a program for the ATmega328P. What it writes to the serial port goes to the standard output; when it
-// sleeps with interrupts off it is done, and GPIOR0 is the exit status. 3 when it crashes or runs longer than ten simulated minutes.
+// simavr_run <program.elf>: runs a program for the ATmega328P. What it writes to the serial port goes to the
+// standard output; when it sleeps with interrupts off it is done, and GPIOR0 is the exit status. 3 when it
+// crashes or runs longer than ten simulated minutes.
 #include <cstdio>
 #include <exception>
 #include <iostream>
-
 #include <simulated_chip.hpp>
 
 int main(int count, char** arguments) {
