@@ -22,11 +22,10 @@ struct Conclusion {
   std::string reason;                     ///< one sentence in plain words
 };
 
-/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 for a signal
-/// that nobody held out: it may help to fit and to choose, but what is left of its gap cannot be checked.
+/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 without samples.
 inline double level(const Candidate& candidate, std::size_t signal) {
-  if (!(candidate.held_out.samples[signal] > 0.0)) return 0.0;
   const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
+  if (!(samples > 0.0)) return 0.0;
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
@@ -47,7 +46,7 @@ inline bool matters(const Candidate& candidate, const Candidate& than, double to
 inline double left_over(const Candidate& candidate, const Candidate& empty) {
   double worst = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i) {
-    if (!(candidate.held_out.samples[i] > 0.0)) continue;
+    if (!(candidate.train.samples[i] > 0.0)) continue;
     const double excess = std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
     const double whole = std::max(level(empty, i) * level(empty, i) - 1.0, 1e-12);
     if (whole > 0.1) worst = std::max(worst, std::sqrt(excess / whole));
