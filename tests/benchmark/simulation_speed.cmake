@@ -8,6 +8,11 @@ add_executable(simulation_speed simulation_speed.cpp)
 target_link_libraries(simulation_speed PRIVATE thermopower::desktop)
 # For this machine, whatever the build type: a figure for another machine would be of no use.
 target_compile_options(simulation_speed PRIVATE -O3 -march=native)
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(-mprefer-vector-width=512 THERMOPOWER_HAS_VECTOR_WIDTH)
+if(THERMOPOWER_HAS_VECTOR_WIDTH)
+  target_compile_options(simulation_speed PRIVATE -mprefer-vector-width=512)
+endif()
 thermopower_warnings(simulation_speed)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Lanes stay in registers only when the whole run is one function. The warnings are false, from the compiler's own vector headers.

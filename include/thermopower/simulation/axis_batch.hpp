@@ -66,7 +66,8 @@ void for_each_number(AxisCase<To>& to, const AxisCase<From>& from, Assign&& assi
 /// Simulates any number of cases, `lane_count` at a time on every thread. Cases do not see each other, and
 /// the outcome does not depend on the number of threads. A number that is NaN spoils its own case only.
 /// @tparam Real        float or double
-/// @tparam lane_count  a multiple of the vector width; several registers' worth hide the latency of divisions
+/// @tparam lane_count  a multiple of the vector width; four registers' worth (32 doubles or 64 floats with
+///                     AVX-512) hide how long each result takes
 /// @param threads      above 0
 /// @return one outcome per case, in their order
 template <class Real, int lane_count>

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/check.hpp"
+#include "vector_math.hpp"
 
 /// @file joint_friction.hpp
 /// Friction in the bearing of an axis.
@@ -26,15 +26,14 @@ struct JointFriction {
 
   /// Torque against the motion. @param joint_rad_per_s  speed of the camera side relative to the base side
   Number torque_Nm(const Number& joint_rad_per_s) const noexcept {
-    using Math = thermopower::detail::Numeric<Number>;
-    using Real = typename Math::Real;
     const Number square = joint_rad_per_s * joint_rad_per_s;
     const Number stribeck_square = stribeck_rad_per_s * stribeck_rad_per_s;
-    // One division for both quotients.
-    const Number root = Math::square_root(Number(square + creep_rad_per_s * creep_rad_per_s));
+    // One root for both quotients: 1 / (sum sqrt(smooth)) = 1 / sqrt(sum^2 smooth).
+    const Number smooth = square + creep_rad_per_s * creep_rad_per_s;
     const Number sum = square + stribeck_square;
     const Number dry = coulomb_Nm * sum + (breakaway_Nm - coulomb_Nm) * stribeck_square;
-    return joint_rad_per_s * (dry / (sum * root) + viscous_Nm_s_per_rad * Real(1));
+    const Number both = VectorMath<Number>::inverse_root(Number(sum * sum * smooth));
+    return joint_rad_per_s * (dry * both + viscous_Nm_s_per_rad);
   }
 };
 

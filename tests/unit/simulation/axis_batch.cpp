@@ -37,10 +37,14 @@ std::vector<AxisCase<Real>> some_cases(std::size_t count) {
 
 template <class Real>
 double difference(const AxisOutcome<Real>& one, const AxisOutcome<Real>& other) {
-  const auto relative = [](Real a, Real b) { return static_cast<double>(std::fabs(a - b) / std::fmax(std::fabs(b), Real(1e-3))); };
-  return std::fmax(std::fmax(relative(one.error_rms_deg, other.error_rms_deg), relative(one.error_peak_deg, other.error_peak_deg)),
-                   std::fmax(relative(one.energy_J, other.energy_J),
-                             std::fmax(relative(one.winding_C, other.winding_C), relative(one.body_C, other.body_C))));
+  const auto relative = [](Real a, Real b) {
+    return static_cast<double>(std::fabs(a - b) / std::fmax(std::fabs(b), Real(1e-3)));
+  };
+  return std::fmax(
+      std::fmax(relative(one.error_rms_deg, other.error_rms_deg),
+                relative(one.error_peak_deg, other.error_peak_deg)),
+      std::fmax(relative(one.energy_J, other.energy_J),
+                std::fmax(relative(one.winding_C, other.winding_C), relative(one.body_C, other.body_C))));
 }
 
 }  // namespace
@@ -84,7 +88,8 @@ TEST_CASE("Single precision tells the same story") {
   const auto coarse = run_batch<float, 16>(some_cases<float>(48), 5.0);
   for (std::size_t i = 0; i < fine.size(); ++i) {
     INFO("case " << i);
-    CHECK(std::fabs(static_cast<double>(coarse[i].error_rms_deg) - fine[i].error_rms_deg) < 1e-3 + 1e-3 * fine[i].error_rms_deg);
+    CHECK(std::fabs(static_cast<double>(coarse[i].error_rms_deg) - fine[i].error_rms_deg) <
+          1e-3 + 1e-3 * fine[i].error_rms_deg);
     CHECK(static_cast<double>(coarse[i].energy_J) == Approx(fine[i].energy_J).epsilon(1e-4));
     CHECK(std::fabs(static_cast<double>(coarse[i].winding_C) - fine[i].winding_C) < 0.01);
   }

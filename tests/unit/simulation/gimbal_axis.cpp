@@ -33,8 +33,10 @@ Axis::State pushed(double dt_s) {
       inputs.disturbance_Nm = 0.003 * std::sin(31.0 * t_s);
       inputs.base = {0.2 * std::sin(3.0 * t_s), 0.6 * std::cos(3.0 * t_s), -1.8 * std::sin(3.0 * t_s)};
     } else {
-      inputs.base = {inputs.base.angle_rad + dt_s * (inputs.base.rate_rad_per_s + 0.5 * dt_s * inputs.base.accel_rad_per_s2),
-                     inputs.base.rate_rad_per_s + dt_s * inputs.base.accel_rad_per_s2, inputs.base.accel_rad_per_s2};
+      inputs.base = {inputs.base.angle_rad +
+                         dt_s * (inputs.base.rate_rad_per_s + 0.5 * dt_s * inputs.base.accel_rad_per_s2),
+                     inputs.base.rate_rad_per_s + dt_s * inputs.base.accel_rad_per_s2,
+                     inputs.base.accel_rad_per_s2};
     }
     axis.step(inputs, dt_s);
   }
@@ -43,7 +45,8 @@ Axis::State pushed(double dt_s) {
 
 }  // namespace
 
-TEST_CASE("Halving the step shrinks the error by sixteen: the integrator is of fourth order on the whole model") {
+TEST_CASE(
+    "Halving the step shrinks the error by sixteen: the integrator is of fourth order on the whole model") {
   const Axis::State exact = pushed(0.008 / 1024);
   double previous = 0.0;
   for (const double parts : {8.0, 16.0, 32.0, 64.0}) {
@@ -67,7 +70,8 @@ TEST_CASE("Without friction the axis keeps its energy") {
   Axis axis(config, {0.4, 0.0});
   const auto energy = [&] {
     const double angle = axis.state().angle_rad, rate = axis.state().rate_rad_per_s;
-    return 0.5 * config.inertia_kg_m2 * rate * rate - config.imbalance_Nm * std::cos(angle - config.hanging_rad) +
+    return 0.5 * config.inertia_kg_m2 * rate * rate -
+           config.imbalance_Nm * std::cos(angle - config.hanging_rad) +
            0.5 * config.cable_Nm_per_rad * (angle - config.cable_rest_rad) * (angle - config.cable_rest_rad) -
            config.cogging_Nm / config.cogging_per_turn * std::cos(config.cogging_per_turn * angle);
   };
@@ -75,7 +79,8 @@ TEST_CASE("Without friction the axis keeps its energy") {
   double swing = 0.0;
   for (int i = 0; i < 12500; ++i) {
     axis.step({0.0, 0.0, still}, 0.0008);
-    swing = std::fmax(swing, 0.5 * config.inertia_kg_m2 * axis.state().rate_rad_per_s * axis.state().rate_rad_per_s);
+    swing = std::fmax(swing,
+                      0.5 * config.inertia_kg_m2 * axis.state().rate_rad_per_s * axis.state().rate_rad_per_s);
   }
   CHECK(swing > 1e-3);
   CHECK(std::fabs(energy() - before) < 1e-5 * swing);
@@ -104,7 +109,8 @@ TEST_CASE("A moving base drags the camera through friction, cable and cogging on
 TEST_CASE("Friction opposes the motion, peaks near the Stribeck speed and settles at Coulomb plus viscous") {
   const JointFriction<double> friction = {0.0012, 0.0018, 0.15, 0.02, 2e-4};
   CHECK(friction.torque_Nm(0.0) == 0.0);
-  for (const double speed : {0.001, 0.03, 0.5, 20.0}) CHECK(friction.torque_Nm(-speed) == -friction.torque_Nm(speed));
+  for (const double speed : {0.001, 0.03, 0.5, 20.0})
+    CHECK(friction.torque_Nm(-speed) == -friction.torque_Nm(speed));
   CHECK(friction.torque_Nm(0.06) > 1.2 * 0.0012);
   CHECK(friction.torque_Nm(0.06) < 0.0018);
   CHECK(friction.torque_Nm(20.0) == Approx(0.0012 + 2e-4 * 20.0).epsilon(1e-3));

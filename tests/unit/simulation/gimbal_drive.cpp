@@ -12,7 +12,8 @@ using namespace thermopower::simulation;
 
 namespace {
 
-// Largest relative difference from the measured currents, the winding being as much above the body as the plant has it settled.
+// Largest relative difference from the measured currents, the winding being as much above the body as the
+// plant has it settled.
 double worst_current(const AxisPlant<double>::Config& axis, const std::string& table) {
   double worst = 0.0;
   for (const auto& row : thesis_table(table)) {
@@ -20,7 +21,9 @@ double worst_current(const AxisPlant<double>::Config& axis, const std::string& t
     const bool is_settled = std::stod(row.at("t_min")) > 0.0;
     double winding_C = body_C;
     if (is_settled)
-      for (int i = 0; i < 50; ++i) winding_C = body_C + axis.drive.at(power, 13.0, winding_C, body_C).heat_W / axis.body.coupling_W_per_K;
+      for (int i = 0; i < 50; ++i)
+        winding_C =
+            body_C + axis.drive.at(power, 13.0, winding_C, body_C).heat_W / axis.body.coupling_W_per_K;
     const double measured_A = std::stod(row.at("I_mA")) * 1e-3;
     const double supply_A = axis.drive.at(power, 13.0, winding_C, body_C).heat_W / 13.0;
     // Printed to a milliampere.
@@ -50,8 +53,10 @@ TEST_CASE("Torque rises with POWER and falls as winding and magnets get warm") {
   CHECK(drive.at(0.0, 13.0, 25.0, 25.0).available_Nm == 0.0);
   CHECK(drive.at(255.0, 13.0, 25.0, 25.0).available_Nm == Approx(0.045).epsilon(0.01));
   CHECK(drive.at(100.0, 13.0, 25.0, 25.0).available_Nm < drive.at(101.0, 13.0, 25.0, 25.0).available_Nm);
-  const double warm = drive.at(255.0, 13.0, 125.0, 25.0).available_Nm / drive.at(255.0, 13.0, 25.0, 25.0).available_Nm;
+  const double warm =
+      drive.at(255.0, 13.0, 125.0, 25.0).available_Nm / drive.at(255.0, 13.0, 25.0, 25.0).available_Nm;
   CHECK(warm == Approx(1.0 / 1.393));
-  const double magnets = drive.at(255.0, 13.0, 25.0, 75.0).available_Nm / drive.at(255.0, 13.0, 25.0, 25.0).available_Nm;
+  const double magnets =
+      drive.at(255.0, 13.0, 25.0, 75.0).available_Nm / drive.at(255.0, 13.0, 25.0, 25.0).available_Nm;
   CHECK(magnets == Approx(0.94));
 }

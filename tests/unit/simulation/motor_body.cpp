@@ -21,7 +21,8 @@ struct Run {
 };
 
 // The rows of a table cut into runs wherever the time starts again.
-std::vector<Run> runs(const std::string& table, const std::string& motor, const std::string& measured, double air_C) {
+std::vector<Run> runs(const std::string& table, const std::string& motor, const std::string& measured,
+                      double air_C) {
   std::vector<Run> all;
   for (const auto& row : thesis_table(table)) {
     if (row.at("motor") != motor) continue;
@@ -68,11 +69,13 @@ double calculated_K(const std::string& table, const std::string& motor) {
   double worst = 0.0;
   for (const auto& row : thesis_table(table))
     if (row.at("motor") == motor)
-      worst = std::fmax(worst, std::fabs(std::stod(row.at("T_calculated_C")) - std::stod(row.at("T_measured_C"))));
+      worst = std::fmax(worst,
+                        std::fabs(std::stod(row.at("T_calculated_C")) - std::stod(row.at("T_measured_C"))));
   return worst;
 }
 
-TEST_CASE("They are as near to chapter 5, which they were not fitted to, as the thesis's own calculation is") {
+TEST_CASE(
+    "They are as near to chapter 5, which they were not fitted to, as the thesis's own calculation is") {
   // The runs of chapter 5 differ from those of chapter 4 by more than either differs from its model.
   for (const auto& [table, motor, axis] :
        {std::make_tuple("table5_1.csv", "BGM2606-90T", thesis_roll<double>()),

@@ -14,7 +14,8 @@ using namespace thermopower::simulation;
 TEST_CASE("The same run twice gives the same figures") {
   const Scenario scenario = gusts(20.0);
   CorrectedGimbal one = corrected_gimbal(), two = corrected_gimbal();
-  const RigMetrics first = run_rig(RigConfig::thesis(), scenario, one), second = run_rig(RigConfig::thesis(), scenario, two);
+  const RigMetrics first = run_rig(RigConfig::thesis(), scenario, one),
+                   second = run_rig(RigConfig::thesis(), scenario, two);
   CHECK(first.energy_J == second.energy_J);
   CHECK(first.error_rms_deg() == second.error_rms_deg());
 }

@@ -41,7 +41,8 @@ TEST_CASE("Gusts are as strong as they say") {
   for (std::size_t i = 0; i < 3; ++i) {
     double sum = 0.0;
     int count = 0;
-    for (double t_s = 1.0; t_s < 399.0; t_s += 0.05, ++count) sum += windy.axes[i].torque_Nm(t_s) * windy.axes[i].torque_Nm(t_s);
+    for (double t_s = 1.0; t_s < 399.0; t_s += 0.05, ++count)
+      sum += windy.axes[i].torque_Nm(t_s) * windy.axes[i].torque_Nm(t_s);
     CHECK(std::sqrt(sum / count) == Approx(detail::gust_rms_Nm[i]).epsilon(0.15));
   }
 }
