@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  the thesis's chapter 5 shows on a real gimbal that the temperature model, the protection and the power law work; its
-//           gimbal is gone, its power comparison uses two definitions of power, and its yaw errors were never explained.
-// Model:    the simulated rig (two thermal nodes, friction, imbalance, cable, cogging, the board's loop) under the thesis's program.
-// Notation: axes roll, pitch, yaw; temperatures in degC; POWER and P are the board's parameters, 0 .. 255.
+// Problem:  the thesis's chapter 5 shows on a real gimbal that the temperature model, the protection and the
+// power law work; its
+//           gimbal is gone, its power comparison uses two definitions of power, and its yaw errors were never
+//           explained.
+// Model:    the simulated rig (two thermal nodes, friction, imbalance, cable, cogging, the board's loop)
+// under the thesis's program. Notation: axes roll, pitch, yaw; temperatures in degC; POWER and P are the
+// board's parameters, 0 .. 255.
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
@@ -13,9 +16,11 @@
 #include "chapter5.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Re-makes chapter 5 of the thesis on the simulated rig: tables on the terminal, figures as SVG."};
+  CLI::App app{
+      "Re-makes chapter 5 of the thesis on the simulated rig: tables on the terminal, figures as SVG."};
   std::string directory = "chapter5";
-  app.add_option("--out", directory, "Directory for the figures; made when it is missing")->capture_default_str();
+  app.add_option("--out", directory, "Directory for the figures; made when it is missing")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
     std::filesystem::create_directories(directory);

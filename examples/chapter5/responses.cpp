@@ -55,17 +55,19 @@ void chapter5::responses(const std::string& directory) {
   std::printf("\nResponses under the thesis's program (figures 5.12 to 5.16)\n");
   std::printf("  %-36s %12s %12s %12s\n", "figure", "rms / deg", "peak / deg", "mean POWER");
   const auto line = [](const char* name, const AxisMetrics& axis) {
-    std::printf("  %-36s %12.3f %12.2f %12.0f\n", name, axis.error_rms_deg, axis.error_peak_deg, axis.mean_power);
+    std::printf("  %-36s %12.3f %12.2f %12.0f\n", name, axis.error_rms_deg, axis.error_peak_deg,
+                axis.mean_power);
   };
   line("5.12  roll, moving", move.figures.axes[0]);
   line("5.13  pitch, moving", move.figures.axes[1]);
   line("5.14  roll, large disturbances", push.figures.axes[0]);
   line("5.15  pitch, large disturbances", push.figures.axes[1]);
   line("5.16  yaw, moving, disturbed, at rest", yaw.figures.axes[2]);
-  figures::write_small_multiples(directory + "/figures_5_12_to_5_16.svg", "Responses of the axes (figures 5.12 to 5.16)",
-                                 {panel("5.12  roll, moving", move, 0, 20, 32), panel("5.13  pitch, moving", move, 1, 20, 32),
-                                  panel("5.14  roll, large disturbances", push, 0, 5, 40),
-                                  panel("5.15  pitch, large disturbances", push, 1, 5, 40),
-                                  panel("5.16  yaw on a healthy board", yaw, 2, 0, 90)},
-                                 3);
+  figures::write_small_multiples(
+      directory + "/figures_5_12_to_5_16.svg", "Responses of the axes (figures 5.12 to 5.16)",
+      {panel("5.12  roll, moving", move, 0, 20, 32), panel("5.13  pitch, moving", move, 1, 20, 32),
+       panel("5.14  roll, large disturbances", push, 0, 5, 40),
+       panel("5.15  pitch, large disturbances", push, 1, 5, 40),
+       panel("5.16  yaw on a healthy board", yaw, 2, 0, 90)},
+      3);
 }

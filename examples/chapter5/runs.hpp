@@ -21,8 +21,9 @@ inline thermopower::simulation::Scenario disturbed(double duration_s = 60.0) {
   const double peak_Nm[3] = {0.012, 0.03, 0.06};
   for (std::size_t i = 0; i < 3; ++i)
     for (int push = 0; 8.0 + 5.0 * push < duration_s - 4.0; ++push)
-      scenario.axes[i].pushes.push_back({8.0 + 5.0 * push + static_cast<double>(i), 0.15 + 0.05 * (push % 4),
-                                         (push % 2 == 0 ? 1.0 : -1.0) * peak_Nm[i] * (0.5 + 0.25 * (push % 3))});
+      scenario.axes[i].pushes.push_back(
+          {8.0 + 5.0 * push + static_cast<double>(i), 0.15 + 0.05 * (push % 4),
+           (push % 2 == 0 ? 1.0 : -1.0) * peak_Nm[i] * (0.5 + 0.25 * (push % 3))});
   return scenario;
 }
 

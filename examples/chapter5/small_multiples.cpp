@@ -14,16 +14,20 @@ namespace figures {
 
 namespace {
 
-constexpr double panel_width = 330.0, panel_height = 215.0, plot_left = 52.0, plot_top = 30.0, plot_width = 262.0,
-                 plot_height = 140.0, header = 70.0, margin = 14.0;
+constexpr double panel_width = 330.0, panel_height = 215.0, plot_left = 52.0, plot_top = 30.0,
+                 plot_width = 262.0, plot_height = 140.0, header = 70.0, margin = 14.0;
 
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
   }
   return out;
 }
@@ -36,7 +40,8 @@ std::string short_number(double value) {
 
 // A step of 1, 2 or 5 times a power of ten that makes four to eight ticks.
 double tick_step(double span) {
-  const double rough = span / 5.0, decade = std::pow(10.0, std::floor(std::log10(rough))), part = rough / decade;
+  const double rough = span / 5.0, decade = std::pow(10.0, std::floor(std::log10(rough))),
+               part = rough / decade;
   return decade * (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0);
 }
 
@@ -57,7 +62,8 @@ struct Range {
 
 class Drawing {
  public:
-  Drawing(std::ostream& out, const Panel& panel, double left, double top) : out_(out), panel_(panel), left_(left), top_(top) {
+  Drawing(std::ostream& out, const Panel& panel, double left, double top)
+      : out_(out), panel_(panel), left_(left), top_(top) {
     for (const Series& series : panel.series) {
       for (const double value : series.x) x_.take(value);
       for (const double value : series.y) y_.take(value);
@@ -70,19 +76,21 @@ class Drawing {
   }
 
   void draw(int number) {
-    out_ << "<g transform='translate(" << left_ << ',' << top_ << ")'>\n<text x='" << plot_left << "' y='18' class='t'>"
-         << escaped(panel_.title) << "</text>\n<clipPath id='c" << number << "'><rect x='" << plot_left - 4 << "' y='" << plot_top - 4
-         << "' width='" << plot_width + 8 << "' height='" << plot_height + 8 << "'/></clipPath>\n";
+    out_ << "<g transform='translate(" << left_ << ',' << top_ << ")'>\n<text x='" << plot_left
+         << "' y='18' class='t'>" << escaped(panel_.title) << "</text>\n<clipPath id='c" << number
+         << "'><rect x='" << plot_left - 4 << "' y='" << plot_top - 4 << "' width='" << plot_width + 8
+         << "' height='" << plot_height + 8 << "'/></clipPath>\n";
     ticks();
     if (panel_.limit != 0.0)
-      out_ << "<line class='m' x1='" << plot_left << "' x2='" << plot_left + plot_width << "' y1='" << at_y(panel_.limit) << "' y2='"
-           << at_y(panel_.limit) << "'/>\n";
+      out_ << "<line class='m' x1='" << plot_left << "' x2='" << plot_left + plot_width << "' y1='"
+           << at_y(panel_.limit) << "' y2='" << at_y(panel_.limit) << "'/>\n";
     out_ << "<g clip-path='url(#c" << number << ")'>\n";
     for (const Series& series : panel_.series) one(series);
     out_ << "</g>\n<text class='l' text-anchor='middle' x='" << plot_left + 0.5 * plot_width << "' y='"
-         << plot_top + plot_height + 30 << "'>" << escaped(panel_.x_label) << "</text>\n<text class='l' text-anchor='middle' "
-         << "transform='translate(13," << plot_top + 0.5 * plot_height << ") rotate(-90)'>" << escaped(panel_.y_label)
-         << "</text>\n</g>\n";
+         << plot_top + plot_height + 30 << "'>" << escaped(panel_.x_label)
+         << "</text>\n<text class='l' text-anchor='middle' "
+         << "transform='translate(13," << plot_top + 0.5 * plot_height << ") rotate(-90)'>"
+         << escaped(panel_.y_label) << "</text>\n</g>\n";
   }
 
  private:
@@ -92,12 +100,12 @@ class Drawing {
   void ticks() {
     const double x_step = tick_step(x_.to - x_.from), y_step = tick_step(y_.to - y_.from);
     for (double y = std::ceil(y_.from / y_step) * y_step; y <= y_.to + 1e-9 * y_step; y += y_step)
-      out_ << "<line class='g' x1='" << plot_left << "' x2='" << plot_left + plot_width << "' y1='" << at_y(y) << "' y2='" << at_y(y)
-           << "'/><text class='n' text-anchor='end' x='" << plot_left - 5 << "' y='" << at_y(y) + 3.5 << "'>" << short_number(y)
-           << "</text>\n";
+      out_ << "<line class='g' x1='" << plot_left << "' x2='" << plot_left + plot_width << "' y1='" << at_y(y)
+           << "' y2='" << at_y(y) << "'/><text class='n' text-anchor='end' x='" << plot_left - 5 << "' y='"
+           << at_y(y) + 3.5 << "'>" << short_number(y) << "</text>\n";
     for (double x = std::ceil(x_.from / x_step) * x_step; x <= x_.to + 1e-9 * x_step; x += x_step)
-      out_ << "<text class='n' text-anchor='middle' x='" << at_x(x) << "' y='" << plot_top + plot_height + 14 << "'>"
-           << short_number(x) << "</text>\n";
+      out_ << "<text class='n' text-anchor='middle' x='" << at_x(x) << "' y='" << plot_top + plot_height + 14
+           << "'>" << short_number(x) << "</text>\n";
   }
 
   void one(const Series& series) {
@@ -105,7 +113,8 @@ class Drawing {
     if (series.mark == Mark::dots) {
       for (std::size_t i = 0; i < count; ++i)
         if (std::isfinite(series.y[i]))
-          out_ << "<circle cx='" << at_x(series.x[i]) << "' cy='" << at_y(series.y[i]) << "' r='3' fill='" << series.colour << "'/>\n";
+          out_ << "<circle cx='" << at_x(series.x[i]) << "' cy='" << at_y(series.y[i]) << "' r='3' fill='"
+               << series.colour << "'/>\n";
       return;
     }
     out_ << "<path fill='none' stroke='" << series.colour << "' stroke-width='1.3'"
@@ -143,15 +152,16 @@ void legend(std::ostream& out, const std::vector<Panel>& panels) {
   std::vector<const Series*> entries;
   for (const Panel& panel : panels)
     for (const Series& series : panel.series)
-      if (std::none_of(entries.begin(), entries.end(), [&](const Series* other) { return other->name == series.name; }))
+      if (std::none_of(entries.begin(), entries.end(),
+                       [&](const Series* other) { return other->name == series.name; }))
         entries.push_back(&series);
   double x = margin + 6.0;
   for (const Series* entry : entries) {
     if (entry->mark == Mark::dots)
       out << "<circle cx='" << x + 10 << "' cy='52' r='3' fill='" << entry->colour << "'/>";
     else
-      out << "<line x1='" << x << "' x2='" << x + 20 << "' y1='52' y2='52' stroke='" << entry->colour << "' stroke-width='2'"
-          << (entry->mark == Mark::dashed ? " stroke-dasharray='5 3'" : "") << "/>";
+      out << "<line x1='" << x << "' x2='" << x + 20 << "' y1='52' y2='52' stroke='" << entry->colour
+          << "' stroke-width='2'" << (entry->mark == Mark::dashed ? " stroke-dasharray='5 3'" : "") << "/>";
     out << "<text class='l' x='" << x + 25 << "' y='56'>" << escaped(entry->name) << "</text>\n";
     x += 45.0 + 6.1 * static_cast<double>(entry->name.size());
   }
@@ -159,14 +169,20 @@ void legend(std::ostream& out, const std::vector<Panel>& panels) {
 
 }  // namespace
 
-void write_small_multiples(const std::string& path, const std::string& title, const std::vector<Panel>& panels, int columns) {
+void write_small_multiples(const std::string& path, const std::string& title,
+                           const std::vector<Panel>& panels, int columns) {
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
   const double width = 2 * margin + columns * panel_width, height = header + rows * panel_height + margin;
   std::ostringstream out;
-  out << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height << "' viewBox='0 0 " << width << ' '
-      << height << "' font-family='Helvetica,Arial,sans-serif'>\n<style>.t{font-size:12.5px;font-weight:bold;fill:#1f2933}"
-      << ".l{font-size:11px;fill:#3e4c59}.n{font-size:10px;fill:#616e7c}.g{stroke:#e4e7eb}.m{stroke:#c92a2a;stroke-dasharray:2 3}"
-      << "</style>\n<rect width='100%' height='100%' fill='white'/>\n<text x='" << margin + 6 << "' y='30' font-size='16' "
+  out << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height
+      << "' viewBox='0 0 " << width << ' ' << height
+      << "' "
+         "font-family='Helvetica,Arial,sans-serif'>\n<style>.t{font-size:12.5px;font-weight:bold;fill:#"
+         "1f2933}"
+      << ".l{font-size:11px;fill:#3e4c59}.n{font-size:10px;fill:#616e7c}.g{stroke:#e4e7eb}.m{stroke:#c92a2a;"
+         "stroke-dasharray:2 3}"
+      << "</style>\n<rect width='100%' height='100%' fill='white'/>\n<text x='" << margin + 6
+      << "' y='30' font-size='16' "
       << "font-weight='bold' fill='#1f2933'>" << escaped(title) << "</text>\n";
   legend(out, panels);
   for (std::size_t i = 0; i < panels.size(); ++i)

@@ -19,9 +19,9 @@ using figures::Panel;
 
 struct Experiment {
   const char* title;
-  bool is_large;                    // BGM5208-200-12
-  double power;                     // 0: cooling
-  std::vector<double> measured_C;   // Tables 5.1 to 5.3, one value a minute
+  bool is_large;                   // BGM5208-200-12
+  double power;                    // 0: cooling
+  std::vector<double> measured_C;  // Tables 5.1 to 5.3, one value a minute
 };
 
 const std::vector<Experiment> experiments = {
@@ -44,8 +44,10 @@ std::vector<double> believed(const Experiment& experiment, std::size_t seconds) 
   std::vector<double> all;
   for (std::size_t i = 0; i <= seconds; ++i) {
     all.push_back(static_cast<double>(thermal.hottest_C()));
-    const auto drawn = current.at_power(static_cast<float>(experiment.power), static_cast<float>(supply_V), thermal.hottest_C());
-    thermal.step({drawn.winding_power_W, drawn.v_rms_V, {static_cast<float>(air_C), 0.0f}}, static_cast<float>(step_s));
+    const auto drawn = current.at_power(static_cast<float>(experiment.power), static_cast<float>(supply_V),
+                                        thermal.hottest_C());
+    thermal.step({drawn.winding_power_W, drawn.v_rms_V, {static_cast<float>(air_C), 0.0f}},
+                 static_cast<float>(step_s));
   }
   return all;
 }
@@ -56,7 +58,8 @@ std::vector<double> simulated(const Experiment& experiment, std::size_t seconds)
   std::vector<double> all;
   for (std::size_t i = 0; i <= seconds; ++i) {
     all.push_back(body.state().body_C);
-    body.step(axis.drive.at(experiment.power, supply_V, body.state().winding_C, body.state().body_C).heat_W, {air_C, 0.0}, step_s);
+    body.step(axis.drive.at(experiment.power, supply_V, body.state().winding_C, body.state().body_C).heat_W,
+              {air_C, 0.0}, step_s);
   }
   return all;
 }
@@ -77,20 +80,25 @@ void chapter5::temperatures(const std::string& directory) {
   for (const Experiment& experiment : experiments) {
     const std::size_t seconds = 60 * (experiment.measured_C.size() - 1);
     const std::vector<double> rig = simulated(experiment, seconds);
-    const std::vector<double> programmed = experiment.is_large ? believed<motors::Bgm5208_200_12::AsProgrammed>(experiment, seconds)
-                                                               : believed<motors::Bgm2606_90t::AsProgrammed>(experiment, seconds);
-    const std::vector<double> corrected = experiment.is_large ? believed<motors::Bgm5208_200_12>(experiment, seconds)
-                                                              : believed<motors::Bgm2606_90t>(experiment, seconds);
-    std::printf("  %-34s %8.1f %12.1f %12.1f\n", experiment.title, worst(rig, experiment), worst(programmed, experiment),
-                worst(corrected, experiment));
+    const std::vector<double> programmed =
+        experiment.is_large ? believed<motors::Bgm5208_200_12::AsProgrammed>(experiment, seconds)
+                            : believed<motors::Bgm2606_90t::AsProgrammed>(experiment, seconds);
+    const std::vector<double> corrected = experiment.is_large
+                                              ? believed<motors::Bgm5208_200_12>(experiment, seconds)
+                                              : believed<motors::Bgm2606_90t>(experiment, seconds);
+    std::printf("  %-34s %8.1f %12.1f %12.1f\n", experiment.title, worst(rig, experiment),
+                worst(programmed, experiment), worst(corrected, experiment));
     std::vector<double> minutes, marks;
     for (std::size_t i = 0; i <= seconds; ++i) minutes.push_back(static_cast<double>(i) / 60.0);
     for (std::size_t i = 0; i < experiment.measured_C.size(); ++i) marks.push_back(static_cast<double>(i));
-    panels.push_back({experiment.title, "time / min", "motor / degC",
+    panels.push_back({experiment.title,
+                      "time / min",
+                      "motor / degC",
                       {{"rig", Palette::truth, Mark::line, minutes, rig},
                        {"model as programmed", Palette::thesis, Mark::dashed, minutes, programmed},
                        {"corrected model", Palette::ours, Mark::dashed, minutes, corrected},
                        {"measured in the thesis", "#c92a2a", Mark::dots, marks, experiment.measured_C}}});
   }
-  figures::write_small_multiples(directory + "/figures_5_1_to_5_8.svg", "Cooling and heating (figures 5.1 to 5.8)", panels, 3);
+  figures::write_small_multiples(directory + "/figures_5_1_to_5_8.svg",
+                                 "Cooling and heating (figures 5.1 to 5.8)", panels, 3);
 }

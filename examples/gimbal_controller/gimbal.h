@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The controller itself, apart from the loop that feeds it: what runs on the chip can be run on a PC as it is.
+// The controller itself, apart from the loop that feeds it: what runs on the chip can be run on a PC as it
+// is.
 #pragma once
 
 #include <thermopower/thermopower.hpp>
@@ -15,7 +16,8 @@ typedef thermopower::GimbalController<Small, Small, Large> Gimbal;
 
 // A three-cell battery is empty at 9 V; your rig's supply, limits and gains go here.
 inline Gimbal new_gimbal() {
-  const thermopower::GimbalConfig config = {13.0f, 9.0f, 0.5f, thermopower::AirTemperature::Config::standard()};
+  const thermopower::GimbalConfig config = {13.0f, 9.0f, 0.5f,
+                                            thermopower::AirTemperature::Config::standard()};
   return Gimbal(config, Small::Config::with_gain({24.0f, 4.0f}), Small::Config::with_gain({180.0f, 105.0f}),
                 Large::Config::with_gain({40.0f, 2.0f}));
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear. The rig is that of
-//           nano_gimbal; the laws are the corrected ones. Start from this one.
-// Model:    per axis the measured current and heating laws, fitted again, stepped without regard to the cycle time; ten levels of
-//           error that noise does not toggle; a ceiling that moves at a rate per second; a gain to the nearest count. Supply 13 V.
+// Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear.
+//           The rig is that of nano_gimbal; the laws are the corrected ones. Start from this one.
+// Model:    per axis the measured current and heating laws, fitted again, stepped without regard to the cycle
+//           time; ten levels of error that noise does not toggle; a ceiling that moves at a rate per second; a
+//           gain to the nearest count. Supply 13 V.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <thermopower.h>
 
@@ -14,7 +15,7 @@ namespace tp = thermopower;
 namespace sbgc = thermopower::sbgc;
 
 const uint32_t request_interval_us = 10000;
-const uint32_t answer_timeout_us = 50000;  // a board answers within 24 ms, its 8 ms pause between commands included
+const uint32_t answer_timeout_us = 50000;  // a board answers within 24 ms, its 8 ms between looks included
 
 Gimbal gimbal = new_gimbal();
 tp::SbgcCodec<> codec;
@@ -50,8 +51,8 @@ void receive() {
 }
 
 // A silent board may still listen: it is told what holds for half a second, and then the least power. Before
-// the first answer nothing is stepped: the ceiling must not start from the bottom only because the board takes
-// longer to start than we do.
+// the first answer nothing is stepped: the ceiling must not start from the bottom only because the board
+// takes longer to start than we do.
 void miss_answer() {
   is_waiting = false;
   if (has_telemetry)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  which way to choose POWER points the camera best for the least energy, and keeps every motor below its limit?
-// Model:    the simulated rig of the thesis's gimbal, richer than what any of the controllers believes; energy at the supply.
-// Notation: error is that of the line of sight (root of the sum of the axes' squares); blur by eq 2.1 to 2.3; body is the warmest
+// Problem:  which way to choose POWER points the camera best for the least energy, and keeps every motor
+// below its limit? Model:    the simulated rig of the thesis's gimbal, richer than what any of the
+// controllers believes; energy at the supply. Notation: error is that of the line of sight (root of the sum
+// of the axes' squares); blur by eq 2.1 to 2.3; body is the warmest
 //           motor body, whose bracket bears 60 degC.
 #include <thermopower/desktop.hpp>
 
@@ -27,8 +28,9 @@ using figures::Palette;
 
 // What a run left behind, averaged over the draws.
 struct Row {
-  double energy_J = 0, rms_deg = 0, peak_deg = 0, blur_px = 0, blurred = 0, body_C = -1e9, winding_C = -1e9, over_s = 0, limiting_s = 0;
-  std::vector<double> minutes, body_curve_C;   // of the first draw
+  double energy_J = 0, rms_deg = 0, peak_deg = 0, blur_px = 0, blurred = 0, body_C = -1e9, winding_C = -1e9,
+         over_s = 0, limiting_s = 0;
+  std::vector<double> minutes, body_curve_C;  // of the first draw
 };
 
 struct Policy {
@@ -43,22 +45,28 @@ Policy policy(const char* name, const char* colour, Make make) {
             auto controller = make(scenario);
             Row row;
             long count = 0;
-            const RigMetrics figures = run_rig(RigConfig::thesis(), scenario, controller, [&](const RigSample& sample) {
-              if (count++ % 30 != 0) return;
-              row.minutes.push_back(sample.t_s / 60.0);
-              double hottest_C = -1e9;
-              for (std::size_t i = 0; i < 3; ++i) hottest_C = std::max(hottest_C, sample.rig.plant(i).temperatures().body_C);
-              row.body_curve_C.push_back(hottest_C);
-            });
-            row.energy_J = figures.energy_J, row.rms_deg = figures.error_rms_deg(), row.peak_deg = figures.error_peak_deg();
-            row.blur_px = figures.blur_rms_px(), row.body_C = figures.peak_body_C(), row.winding_C = figures.peak_winding_C();
-            for (const AxisMetrics& axis : figures.axes) row.blurred = std::max(row.blurred, axis.blurred_share);
+            const RigMetrics figures =
+                run_rig(RigConfig::thesis(), scenario, controller, [&](const RigSample& sample) {
+                  if (count++ % 30 != 0) return;
+                  row.minutes.push_back(sample.t_s / 60.0);
+                  double hottest_C = -1e9;
+                  for (std::size_t i = 0; i < 3; ++i)
+                    hottest_C = std::max(hottest_C, sample.rig.plant(i).temperatures().body_C);
+                  row.body_curve_C.push_back(hottest_C);
+                });
+            row.energy_J = figures.energy_J, row.rms_deg = figures.error_rms_deg(),
+            row.peak_deg = figures.error_peak_deg();
+            row.blur_px = figures.blur_rms_px(), row.body_C = figures.peak_body_C(),
+            row.winding_C = figures.peak_winding_C();
+            for (const AxisMetrics& axis : figures.axes)
+              row.blurred = std::max(row.blurred, axis.blurred_share);
             row.over_s = figures.over_limit_s(), row.limiting_s = figures.limiting_s();
             return row;
           }};
 }
 
-// Ours knows from a stored state and the time off how warm each motor is, to 3 K; the others assume what they assume.
+// Ours knows from a stored state and the time off how warm each motor is, to 3 K; the others assume what they
+// assume.
 AdaptiveGimbal ours(const Scenario& scenario) {
   std::array<float, 3> started_C;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -71,9 +79,12 @@ AdaptiveGimbal ours(const Scenario& scenario) {
 // Constant power at the stiffness of ours, to show what the gain alone does.
 ConstantPower stiff_constant(const Scenario&) {
   std::array<std::uint8_t, 3> gains{};
-  gains[0] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0).gain).step(standard_power);
-  gains[1] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1).gain).step(standard_power);
-  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2).gain).step(standard_power);
+  gains[0] =
+      EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0).gain).step(standard_power);
+  gains[1] =
+      EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1).gain).step(standard_power);
+  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2).gain)
+                 .step(standard_power);
   return ConstantPower({standard_power, standard_power, standard_power}, gains);
 }
 
@@ -88,7 +99,7 @@ std::vector<Policy> policies() {
 
 // Where one is not at least as good as another: in words.
 void judge(const char* own_name, const Row& ours, const Row& other, const char* name) {
-  const double count_deg = 360.0 / 16384.0;   // what telemetry can tell apart
+  const double count_deg = 360.0 / 16384.0;  // what telemetry can tell apart
   std::string worse;
   if (ours.energy_J > other.energy_J) worse += " energy";
   if (ours.rms_deg > other.rms_deg + count_deg) worse += " rms";
@@ -106,25 +117,33 @@ Row average(const std::vector<Row>& rows) {
   const double share = 1.0 / static_cast<double>(rows.size());
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const Row& row = rows[i];
-    mean.energy_J += row.energy_J, mean.rms_deg += row.rms_deg, mean.blur_px += row.blur_px, mean.blurred += row.blurred;
+    mean.energy_J += row.energy_J, mean.rms_deg += row.rms_deg, mean.blur_px += row.blur_px,
+        mean.blurred += row.blurred;
     mean.limiting_s += row.limiting_s, mean.over_s = std::max(mean.over_s, row.over_s);
     mean.peak_deg = std::max(mean.peak_deg, row.peak_deg), mean.body_C = std::max(mean.body_C, row.body_C);
     mean.winding_C = std::max(mean.winding_C, row.winding_C);
   }
-  mean.energy_J *= share, mean.rms_deg *= share, mean.blur_px *= share, mean.blurred *= share, mean.limiting_s *= share;
+  mean.energy_J *= share, mean.rms_deg *= share, mean.blur_px *= share, mean.blurred *= share,
+      mean.limiting_s *= share;
   return mean;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Compares ways to choose POWER on the simulated rig: a table on the terminal, pictures as SVG."};
+  CLI::App app{
+      "Compares ways to choose POWER on the simulated rig: a table on the terminal, pictures as SVG."};
   std::string directory = "rig_comparison";
   double duration_s = 300.0;
   unsigned draws = 3;
-  app.add_option("--out", directory, "Directory for the pictures; made when it is missing")->capture_default_str();
-  app.add_option("--duration", duration_s, "Length of each run in seconds")->capture_default_str()->check(CLI::Range(20.0, 36000.0));
-  app.add_option("--draws", draws, "Runs of each scenario with other winds and pushes, averaged")->capture_default_str()->check(CLI::Range(1u, 1000u));
+  app.add_option("--out", directory, "Directory for the pictures; made when it is missing")
+      ->capture_default_str();
+  app.add_option("--duration", duration_s, "Length of each run in seconds")
+      ->capture_default_str()
+      ->check(CLI::Range(20.0, 36000.0));
+  app.add_option("--draws", draws, "Runs of each scenario with other winds and pushes, averaged")
+      ->capture_default_str()
+      ->check(CLI::Range(1u, 1000u));
   CLI11_PARSE(app, argc, argv);
   try {
     std::filesystem::create_directories(directory);
@@ -132,12 +151,14 @@ int main(int argc, char** argv) {
     std::vector<figures::Panel> trade, warmth;
     std::vector<std::vector<Scenario>> drawn;
     for (unsigned draw = 0; draw < draws; ++draw) drawn.push_back(standard_scenarios(duration_s, draw));
-    std::printf("%u draws of %g s each; energy of all motors at the supply; limit of the bodies 60 degC, of the windings 120 degC\n", draws,
-                duration_s);
+    std::printf(
+        "%u draws of %g s each; energy of all motors at the supply; limit of the bodies 60 degC, of the "
+        "windings 120 degC\n",
+        draws, duration_s);
     for (std::size_t index = 0; index < drawn.front().size(); ++index) {
       const std::string& name = drawn.front()[index].name;
-      std::printf("\n%s\n  %-16s %9s %9s %9s %9s %9s %8s %9s %8s %9s\n", name.c_str(), "policy", "energy/J", "rms/deg", "peak/deg",
-                  "blur/px", ">0.5 px", "body/C", "winding/C", "over/s", "limited/s");
+      std::printf("\n%s\n  %-16s %9s %9s %9s %9s %9s %8s %9s %8s %9s\n", name.c_str(), "policy", "energy/J",
+                  "rms/deg", "peak/deg", "blur/px", ">0.5 px", "body/C", "winding/C", "over/s", "limited/s");
       figures::Panel panel = {name, "energy / J", "error rms / deg", {}, 0.0, 0.0, 0.0, 0.0, 0.0};
       figures::Panel curves = {name, "time / min", "warmest body / degC", {}, 0.0, 0.0, 60.0, 0.0, 0.0};
       std::vector<Row> outcome;
@@ -146,13 +167,15 @@ int main(int argc, char** argv) {
         for (const auto& scenarios : drawn) rows.push_back(one.run(scenarios[index]));
         outcome.push_back(average(rows));
         const Row& row = outcome.back();
-        std::printf("  %-16s %9.1f %9.3f %9.2f %9.3f %8.1f%% %8.1f %9.1f %8.1f %9.1f\n", one.name, row.energy_J, row.rms_deg, row.peak_deg,
-                    row.blur_px, 100.0 * row.blurred, row.body_C, row.winding_C, row.over_s, row.limiting_s);
+        std::printf("  %-16s %9.1f %9.3f %9.2f %9.3f %8.1f%% %8.1f %9.1f %8.1f %9.1f\n", one.name,
+                    row.energy_J, row.rms_deg, row.peak_deg, row.blur_px, 100.0 * row.blurred, row.body_C,
+                    row.winding_C, row.over_s, row.limiting_s);
         panel.series.push_back({one.name, one.colour, figures::Mark::dots, {row.energy_J}, {row.rms_deg}});
         curves.series.push_back({one.name, one.colour, figures::Mark::line, row.minutes, row.body_curve_C});
       }
       for (std::size_t own : {all.size() - 1, all.size() - 2})
-        for (std::size_t i = 0; i + 2 < all.size(); ++i) judge(all[own].name, outcome[own], outcome[i], all[i].name);
+        for (std::size_t i = 0; i + 2 < all.size(); ++i)
+          judge(all[own].name, outcome[own], outcome[i], all[i].name);
       for (const Row& row : outcome) {
         panel.x_to = std::fmax(panel.x_to, 1.08 * row.energy_J);
         panel.y_to = std::fmax(std::fmax(panel.y_to, 0.05), 1.1 * row.rms_deg);
@@ -160,8 +183,10 @@ int main(int argc, char** argv) {
       trade.push_back(panel);
       warmth.push_back(curves);
     }
-    figures::write_small_multiples(directory + "/error_and_energy.svg", "Pointing error against energy: lower left is better", trade, 3);
-    figures::write_small_multiples(directory + "/temperatures.svg", "Warmest motor body, limit 60 degC", warmth, 3);
+    figures::write_small_multiples(directory + "/error_and_energy.svg",
+                                   "Pointing error against energy: lower left is better", trade, 3);
+    figures::write_small_multiples(directory + "/temperatures.svg", "Warmest motor body, limit 60 degC",
+                                   warmth, 3);
   } catch (const std::exception& error) {
     std::cerr << "rig_comparison: " << error.what() << '\n';
     return 3;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The controllers that firmware runs, on the rig: called directly, and through an emulated board that speaks the protocol in bytes.
+// The controllers that firmware runs, on the rig: called directly, and through an emulated board that speaks
+// the protocol in bytes.
 #include <thermopower/simulation/rig_policies.hpp>
 #include <thermopower/simulation/rig_world.hpp>
 #include <thermopower/simulation/scenarios.hpp>
@@ -37,7 +38,8 @@ TEST_CASE("From the same telemetry the controller decides the same, through byte
                   for (std::uint8_t i = 0; i < 3; ++i) inputs.error_deg[i] = telemetry.error_deg(i);
                   inputs.camera_C = telemetry.imu_C(), inputs.frame_C = telemetry.frame_imu_C();
                   inputs.supply_V = telemetry.battery_V();
-                  const auto& expected = direct.step(inputs, static_cast<float>((t_s * 1e6 - last_s * 1e6) * 1e-6));
+                  const auto& expected =
+                      direct.step(inputs, static_cast<float>((t_s * 1e6 - last_s * 1e6) * 1e-6));
                   last_s = t_s;
                   ++updates;
                   for (int i = 0; i < 3; ++i) {
@@ -51,8 +53,8 @@ TEST_CASE("From the same telemetry the controller decides the same, through byte
 }
 
 TEST_CASE("In closed loop, bytes cost no more than their delay") {
-  // An answer is 20 ms old when the command that it caused is obeyed; constant power does not care, the stepped law hunts a little
-  // otherwise.
+  // An answer is 20 ms old when the command that it caused is obeyed; constant power does not care, the
+  // stepped law hunts a little otherwise.
   for (const Scenario& scenario : {rest(40.0), motion(40.0), gusts(40.0), weak_battery(40.0)}) {
     INFO(scenario.name);
     ConstantPower same = constant_power(), sent_same = constant_power();
@@ -86,9 +88,11 @@ TEST_CASE("A board that falls silent leaves the motors with the least power") {
   ThesisGimbal gimbal = thesis_gimbal();
   EmulatedBoard board;
   bool was_cut = false;
-  run_rig_bytes(RigConfig::thesis(), scenario, board, gimbal, [&](double t_s, const sbgc::RealtimeData&, const GimbalCommand<3>&) {
-    if (t_s > 5.0) board.faults.is_silent = true;
-  });
-  was_cut = board.power(0) == least_power() && board.power(1) == least_power() && board.power(2) == least_power();
+  run_rig_bytes(RigConfig::thesis(), scenario, board, gimbal,
+                [&](double t_s, const sbgc::RealtimeData&, const GimbalCommand<3>&) {
+                  if (t_s > 5.0) board.faults.is_silent = true;
+                });
+  was_cut =
+      board.power(0) == least_power() && board.power(1) == least_power() && board.power(2) == least_power();
   CHECK(was_cut);
 }

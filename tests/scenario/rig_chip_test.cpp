@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The rig driven by the firmware itself: the ATmega328P program in a simulated chip against the same controller
-// compiled for the PC, from the one header that defines it for both.
+// The rig driven by the firmware itself: the ATmega328P program in a simulated chip against the same
+// controller compiled for the PC, from the one header that defines it for both.
 #include <rig.hpp>
 
 #include "../../examples/gimbal_controller/gimbal.h"
@@ -29,20 +29,21 @@ TEST_CASE("The chip's program and the PC's controller get the same out of the ri
 
     Gimbal gimbal = new_gimbal();
     EmulatedBoard board;
-    // The board looks at its input every 8 ms, so a PC that answers at once would be heard one look earlier, and
-    // control every 16 ms instead of every 24.
+    // The board looks at its input every 8 ms, so a PC that answers at once would be heard one look earlier,
+    // and control every 16 ms instead of every 24.
     REQUIRE(!chip.updates().empty());
     ByteLoop loop;
     loop.compute_us = static_cast<double>(chip.updates().front().response_cycles()) / nano::cycles_per_us;
-    const RigMetrics on_pc = run_rig_bytes(RigConfig::thesis(), scenario, board, gimbal,
-                                           [](double, const sbgc::RealtimeData&, const GimbalCommand<3>&) {}, loop);
+    const RigMetrics on_pc = run_rig_bytes(
+        RigConfig::thesis(), scenario, board, gimbal,
+        [](double, const sbgc::RealtimeData&, const GimbalCommand<3>&) {}, loop);
     CHECK(chip.unanswered() == 0);
     CHECK(on_chip.energy_J == Approx(on_pc.energy_J).epsilon(0.10));
     CHECK(on_chip.error_rms_deg() == Approx(on_pc.error_rms_deg()).epsilon(0.15).margin(0.01));
     CHECK(on_chip.peak_body_C() == Approx(on_pc.peak_body_C()).margin(0.5));
 
-    // Decision by decision, from what the chip heard: the PC's controller, stepped at the chip's times, answers
-    // the same.
+    // Decision by decision, from what the chip heard: the PC's controller, stepped at the chip's times,
+    // answers the same.
     Gimbal same = new_gimbal();
     double last_s = 0.0;
     long agreeing = 0;
