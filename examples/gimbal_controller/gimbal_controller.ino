@@ -4,8 +4,8 @@
 // Problem:  a gimbal's motors get as much power as their position errors ask for and their temperatures bear.
 //           The rig is that of nano_gimbal; the laws are the corrected ones. Start from this one.
 // Model:    per axis the measured current and heating laws, fitted again, stepped without regard to the cycle
-//           time; ten levels of error that noise does not toggle; a ceiling that moves at a rate per second; a
-//           gain to the nearest count. Supply 13 V.
+//           time; ten levels of error that noise does not toggle; a ceiling that moves at a rate per second;
+//           a gain to the nearest count. Supply 13 V.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <thermopower.h>
 
