@@ -29,7 +29,7 @@ template <int... node>
 constexpr uint16_t ReciprocalTable<Indices<node...> >::values[33];
 
 /// 2^31 / divisor within 0.018 % + 1. @param divisor  2^15 .. 2^16 - 1
-inline uint16_t reciprocal(uint16_t divisor) noexcept {
+[[gnu::always_inline]] inline uint16_t reciprocal(uint16_t divisor) noexcept {
   typedef ReciprocalTable<MakeIndices<33>::Type> Table;
   const uint8_t high = static_cast<uint8_t>(divisor >> 8);
   uint8_t share = static_cast<uint8_t>(static_cast<uint8_t>(divisor) >> 2);
@@ -43,12 +43,18 @@ inline uint16_t reciprocal(uint16_t divisor) noexcept {
 }
 
 /// 2^(15 + exponent) dividend factor / divisor, saturated at `fixed_most_heating()`; 0 where the divisor is
-/// not positive. Each loop takes at most fifteen rounds.
+/// not positive. No loop takes more than seven rounds.
 /// @param dividend  0 .. 32767  @param exponent  -8 .. 8
-inline int32_t quotient(uint16_t dividend, uint8_t factor, int8_t exponent, int16_t divisor) noexcept {
+[[gnu::always_inline]] inline int32_t quotient(uint16_t dividend, uint8_t factor, int8_t exponent,
+                                               int16_t divisor) noexcept {
   if (divisor <= 0) return 0;
   uint16_t normal = static_cast<uint16_t>(divisor);
   int8_t excess = static_cast<int8_t>(8 - exponent);
+  // Whole bytes first: what takes longest is what is near to a pole.
+  if (normal < 0x100u) {
+    normal = static_cast<uint16_t>(normal << 8);
+    excess = static_cast<int8_t>(excess - 8);
+  }
   while ((normal & 0x8000u) == 0) {
     normal = static_cast<uint16_t>(normal << 1);
     --excess;
@@ -57,14 +63,20 @@ inline int32_t quotient(uint16_t dividend, uint8_t factor, int8_t exponent, int1
   if (excess >= 8) {
     result >>= 8;
     excess = static_cast<int8_t>(excess - 8);
+  } else if (excess <= -8) {
+    if (static_cast<uint16_t>(result >> 16) >= fixed_most_heating() >> 24) return fixed_most_heating();
+    result <<= 8;
+    excess = static_cast<int8_t>(excess + 8);
   }
   for (; excess > 0; --excess) result >>= 1;
-  for (; excess < 0; ++excess) {
-    if (result >= static_cast<uint32_t>(fixed_most_heating())) return fixed_most_heating();
+  // Every bit that has passed through the highest byte tells whether it has grown too large.
+  uint8_t passed = static_cast<uint8_t>(result >> 24);
+  for (uint8_t left = static_cast<uint8_t>(-excess); left != 0; --left) {
     result <<= 1;
+    passed = static_cast<uint8_t>(passed | static_cast<uint8_t>(result >> 24));
   }
-  return result < static_cast<uint32_t>(fixed_most_heating()) ? static_cast<int32_t>(result)
-                                                              : fixed_most_heating();
+  constexpr uint8_t too_large = static_cast<uint8_t>(0x100u - (fixed_most_heating() >> 24));
+  return (passed & too_large) != 0 ? fixed_most_heating() : static_cast<int32_t>(result);
 }
 
 }  // namespace detail

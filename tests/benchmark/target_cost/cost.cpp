@@ -90,7 +90,8 @@ uint32_t beyond_empty(uint32_t cost) { return cost > empty_cost ? cost - empty_c
 
 }  // namespace
 
-void row(const char* symbol, counter::Operation operation, counter::Operation set_up) {
+void row(const char* symbol, counter::Operation operation, counter::Operation set_up, Search search,
+         uint16_t search_rounds) {
   uint16_t stack = 0;
   uint32_t worst = 0;
   for (uint16_t round = 0; round < counter::corners + counter::rounds; ++round) {
@@ -105,6 +106,11 @@ void row(const char* symbol, counter::Operation operation, counter::Operation se
     set_up();
     const uint16_t used = stack_of(operation);
     if (used > stack) stack = used;
+  }
+  for (uint16_t round = 0; round < search_rounds; ++round) {
+    search(round);
+    const uint32_t cost = counter::once(operation, set_up);
+    if (cost > worst) worst = cost;
   }
   if (operation == cost_nothing) {
     empty_cost = costs[0];

@@ -51,10 +51,16 @@ struct Telemetry {
   float battery_V() const { return static_cast<float>(given.battery_cV) * 0.01f; }
 };
 
+/// Inputs for an operation whose worst case is not at a corner: everything else is left as it was.
+typedef void (*Search)(uint16_t round);
+
 /// Prints `symbol|median|worst|stack`: time of a call and stack below the caller's, both beyond those of
 /// an empty function.
 /// @param set_up  called before each measured call, not measured
-void row(const char* symbol, counter::Operation operation, counter::Operation set_up);
+/// @param search         inputs to look for a worse case in, or null
+/// @param search_rounds  how many
+void row(const char* symbol, counter::Operation operation, counter::Operation set_up, Search search = nullptr,
+         uint16_t search_rounds = 0);
 
 extern "C" void cost_nothing();
 
@@ -64,6 +70,10 @@ extern "C" void cost_nothing();
 #define thermopower_cost_after(operation, set_up) cost::row(#operation, operation, set_up)
 /// Measures an operation that needs nothing before.
 #define thermopower_cost(operation) cost::row(#operation, operation, cost::cost_nothing)
+
+/// Measures an operation, and looks for its worst case in inputs of its own.
+#define thermopower_cost_searched(operation, set_up, search, rounds) \
+  cost::row(#operation, operation, set_up, search, rounds)
 
 /// Measures the operations of a file.
 extern "C" void measure_all();

@@ -20,6 +20,13 @@ extern "C" void fixed_thermal_set() {
 extern "C" void fixed_heating() {
   sink = static_cast<uint32_t>(tp::FixedHeating<tp::FixedThesisMotor<Small> >::rate(given.level, given.warm));
 }
+// Every level at every temperature, to a quarter of a kelvin: near the pole of a law a division takes
+// longest.
+static void search_heating(uint16_t round) {
+  const uint32_t at = static_cast<uint32_t>(round) * (235520u / counter::searches + 1u);
+  given.level = static_cast<uint8_t>(at);
+  given.warm = static_cast<tp::FixedCelsius>(-6400 + static_cast<int16_t>(at % 920u) * 32);
+}
 extern "C" void fixed_thermal() { sink = static_cast<uint32_t>(thermal().step(given.air, given.ticks)); }
 extern "C" void fixed_levels() {
   static tp::FixedLevels<> law;
@@ -51,7 +58,7 @@ extern "C" void fixed_air() {
 }
 
 extern "C" void measure_all() {
-  thermopower_cost(fixed_heating);
+  thermopower_cost_searched(fixed_heating, cost_nothing, search_heating, counter::searches);
   thermopower_cost_after(fixed_thermal, fixed_thermal_set);
   thermopower_cost(fixed_levels);
   thermopower_cost(fixed_hysteresis);

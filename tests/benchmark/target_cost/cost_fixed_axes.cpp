@@ -34,6 +34,15 @@ extern "C" void fixed_axis_whole() {
   fixed_axis_step();
   axis().prepare();
 }
+// Every level of the power law at every temperature at which it is granted.
+static void search_axis(uint16_t round) {
+  const uint32_t at = static_cast<uint32_t>(round) * (47u * 14080u / counter::searches + 1u);
+  given.error_units = static_cast<uint16_t>(at % 47u);
+  given.warm = static_cast<tp::FixedCelsius>(-6400 + static_cast<int16_t>(at % 14080u));
+  given.air = static_cast<tp::FixedCelsius>(given.warm - 128);
+  given.fault = tp::LimitReason::none;
+  given.ticks = 0;
+}
 extern "C" void fixed_gimbal_step() {
   const Telemetry telemetry = Telemetry();
   small_sink = gimbal().step(telemetry, given.ticks).power[2];
@@ -75,7 +84,7 @@ static void same_after_a_thousand() {
 
 extern "C" void measure_all() {
   thermopower_cost_after(fixed_axis_step, fixed_axis_set);
-  thermopower_cost_after(fixed_axis_whole, fixed_axis_set);
+  thermopower_cost_searched(fixed_axis_whole, fixed_axis_set, search_axis, counter::searches);
   thermopower_cost_after(fixed_gimbal_step, fixed_gimbal_prepare);
   thermopower_cost_after(fixed_gimbal_prepare, fixed_gimbal_step);
   thermopower_cost(fixed_gimbal_whole);

@@ -20,6 +20,7 @@ const uint16_t rounds = 61;   ///< Ordinary rounds.
 
 #if defined(__AVR__)
 const uint32_t resolution = 0;
+const uint16_t searches = 60000;  ///< Rounds of a search for the worst case.
 inline void start() {
   TCCR1A = 0;
   TCCR1B = 1 << CS10;
@@ -36,8 +37,9 @@ inline void start() {
 #else
 const uint32_t calls = 64;
 const uint32_t resolution = 2;
+const uint16_t searches = 2000;  ///< Each is many calls here.
 #if defined(__ARM_FP)
-const uint32_t halves = 80;  // MPS2: 25 MHz
+const uint32_t halves = 80;      // MPS2: 25 MHz
 #else
 const uint32_t halves = 125;  // micro:bit: 16 MHz
 #endif
