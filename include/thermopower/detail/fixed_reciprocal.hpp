@@ -43,7 +43,7 @@ constexpr uint16_t ReciprocalTable<Indices<node...> >::values[33];
 }
 
 /// 2^(15 + exponent) dividend factor / divisor, saturated at `fixed_most_heating()`; 0 where the divisor is
-/// not positive. No loop takes more than seven rounds.
+/// not positive. No loop takes more than eight rounds.
 /// @param dividend  0 .. 32767  @param exponent  -8 .. 8
 [[gnu::always_inline]] inline int32_t quotient(uint16_t dividend, uint8_t factor, int8_t exponent,
                                                int16_t divisor) noexcept {
