@@ -65,6 +65,15 @@ Policy policy(const char* name, const char* colour, Make make) {
           }};
 }
 
+// What ours is made of; a part can be left out, to see what it is for.
+AdaptiveTuning tuning;
+
+void leave_out(const std::string& part) {
+  if (part == "reserve") tuning.reserve_power = {1, 1, 1};
+  if (part == "easing") tuning.ease_from_deg = 1000.0f;
+  if (part == "stiffness") tuning.stiffness = 1.0f;
+}
+
 // Ours knows from a stored state and the time off how warm each motor is, to 3 K; the others assume what they
 // assume.
 AdaptiveGimbal ours(const Scenario& scenario) {
@@ -73,17 +82,17 @@ AdaptiveGimbal ours(const Scenario& scenario) {
     const double winding_C = scenario.axes[i].winding_C;
     started_C[i] = static_cast<float>((std::isnan(winding_C) ? scenario.air_C : winding_C) + 3.0);
   }
-  return AdaptiveGimbal(started_C);
+  return AdaptiveGimbal(started_C, tuning);
 }
 
 // Constant power at the stiffness of ours, to show what the gain alone does.
 ConstantPower stiff_constant(const Scenario&) {
   std::array<std::uint8_t, 3> gains{};
-  gains[0] =
-      EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0).gain).step(standard_power);
-  gains[1] =
-      EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1).gain).step(standard_power);
-  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2).gain)
+  gains[0] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0, tuning).gain)
+                 .step(standard_power);
+  gains[1] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1, tuning).gain)
+                 .step(standard_power);
+  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2, tuning).gain)
                  .step(standard_power);
   return ConstantPower({standard_power, standard_power, standard_power}, gains);
 }
@@ -93,7 +102,10 @@ std::vector<Policy> policies() {
           policy("constant, stiff", "#343a40", stiff_constant),
           policy("thesis", Palette::thesis, [](const Scenario&) { return thesis_gimbal(); }),
           policy("corrected", Palette::corrected, [](const Scenario&) { return corrected_gimbal(); }),
-          policy("ours, not told", "#66d9e8", [](const Scenario&) { return AdaptiveGimbal(); }),
+          policy("ours, not told", "#66d9e8",
+                 [](const Scenario&) {
+                   return AdaptiveGimbal({60.0f, 60.0f, 60.0f}, tuning);
+                 }),
           policy("ours", Palette::ours, ours)};
 }
 
@@ -135,7 +147,8 @@ int main(int argc, char** argv) {
       "Compares ways to choose POWER on the simulated rig: a table on the terminal, pictures as SVG."};
   std::string directory = "rig_comparison";
   double duration_s = 300.0;
-  unsigned draws = 3;
+  unsigned draws = 3, first_draw = 0;
+  std::string without;
   app.add_option("--out", directory, "Directory for the pictures; made when it is missing")
       ->capture_default_str();
   app.add_option("--duration", duration_s, "Length of each run in seconds")
@@ -144,13 +157,19 @@ int main(int argc, char** argv) {
   app.add_option("--draws", draws, "Runs of each scenario with other winds and pushes, averaged")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1000u));
+  app.add_option("--first-draw", first_draw, "The first of them; ours was tuned on 100 to 107")
+      ->capture_default_str();
+  app.add_option("--without", without, "Leaves a part of ours out")
+      ->check(CLI::IsMember({"reserve", "easing", "stiffness"}));
   CLI11_PARSE(app, argc, argv);
+  leave_out(without);
   try {
     std::filesystem::create_directories(directory);
     const std::vector<Policy> all = policies();
     std::vector<figures::Panel> trade, warmth;
     std::vector<std::vector<Scenario>> drawn;
-    for (unsigned draw = 0; draw < draws; ++draw) drawn.push_back(standard_scenarios(duration_s, draw));
+    for (unsigned draw = 0; draw < draws; ++draw)
+      drawn.push_back(standard_scenarios(duration_s, first_draw + draw));
     std::printf(
         "%u draws of %g s each; energy of all motors at the supply; limit of the bodies 60 degC, of the "
         "windings 120 degC\n",
