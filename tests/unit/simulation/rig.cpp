@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
+#include <thermopower/simulation/rig_ours.hpp>
 #include <thermopower/simulation/rig_policies.hpp>
 #include <thermopower/simulation/scenarios.hpp>
 
@@ -99,4 +100,25 @@ TEST_CASE("Blur follows eq 2.1 to 2.3") {
   CHECK(optics.sampling_m() == Approx(0.0171875));
   CHECK(optics.blur_px(optics.sharp_mps()) == Approx(0.5));
   CHECK(optics.blur_of_rate_px(1.0) == Approx(M_PI / 180.0 * 0.005 * 0.016 / 5.5e-6));
+}
+
+TEST_CASE("Our law points better for less energy than constant power and the thesis's program") {
+  // A draw that neither its tuning nor the documentation's tables use.
+  const std::vector<Scenario> scenarios = standard_scenarios(30.0, 50);
+  for (const Scenario& scenario : {scenarios[1], scenarios[2], scenarios[5]}) {
+    INFO(scenario.name);
+    const float warm_C = static_cast<float>(scenario.air_C + 3.0);
+    AdaptiveGimbal ours({warm_C, warm_C, warm_C});
+    ConstantPower constant = constant_power();
+    ThesisGimbal thesis = thesis_gimbal();
+    const RigMetrics own = run_rig(RigConfig::thesis(), scenario, ours);
+    for (const RigMetrics& other :
+         {run_rig(RigConfig::thesis(), scenario, constant), run_rig(RigConfig::thesis(), scenario, thesis)}) {
+      CHECK(own.energy_J < other.energy_J);
+      CHECK(own.error_rms_deg() < other.error_rms_deg());
+      CHECK(own.error_peak_deg() < other.error_peak_deg());
+      CHECK(own.blur_rms_px() < other.blur_rms_px());
+    }
+    CHECK(own.over_limit_s() == 0.0);
+  }
 }
