@@ -89,6 +89,7 @@ public:
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
+    free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, &candidate.fit.starts);
     candidate.fitted = true;
     return candidate;
@@ -99,6 +100,7 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     const bool same = candidate.fit.starts.size() == problem_.segments.size();
     candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
+    if (options.iterations > 2) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, &candidate.fit.starts);
   }
 
@@ -178,6 +180,23 @@ public:
   }
 
 private:
+  /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there, and
+  /// begins once more from the standard value.
+  static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+    Eigen::VectorXd again = candidate.fit.at;
+    bool trapped = false;
+    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+      const Coordinate& one = candidate.list[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      if (!one.standard || again[at] > one.lower + 1e-9) continue;
+      again[at] = *one.standard;
+      trapped = true;
+    }
+    if (!trapped) return;
+    FitResult freed = fitter.minimise(again, options, &candidate.fit.starts);
+    if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
+  }
+
   std::vector<Eigen::VectorXd> start_points(const Candidate& candidate, const Candidate* near) const {
     Eigen::VectorXd base(static_cast<Eigen::Index>(candidate.list.size()));
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {

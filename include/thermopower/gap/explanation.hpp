@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Coordinate {
   double start = 0.0;        ///< where a fit begins, in the fit's coordinate
   double prior_sd = 0.0;     ///< of a Gaussian around 0; 0: none
   bool logarithmic = false;  ///< value = exp(coordinate)
+  std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than their slack.
@@ -95,7 +97,8 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
     for (const Parameter& parameter : entry->info.parameters) {
       const auto to = [&](double value) { return parameter.logarithmic ? std::log(value) : value; };
       list.push_back({entry->info.id + "." + parameter.name, parameter.unit, to(parameter.lower),
-                      to(parameter.upper), to(parameter.starts.front()), 0.0, parameter.logarithmic});
+                      to(parameter.upper), to(parameter.starts.front()), 0.0, parameter.logarithmic, {}});
+      if (parameter.standard) list.back().standard = to(*parameter.standard);
     }
   return list;
 }
