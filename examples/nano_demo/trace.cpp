@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #include "trace.hpp"
 
+#include "recorded_telemetry.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -20,18 +22,8 @@ typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTrun
 typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2>> Yaw;
 typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
 
-/// Telemetry as the gimbal reads it.
-struct Telemetry {
-  const tp::sbgc::RealtimeFields& fields;
-  std::int16_t target_angle(std::uint8_t axis) const { return fields.target_angle[axis]; }
-  std::int16_t imu_angle(std::uint8_t axis) const { return fields.imu_angle[axis]; }
-  std::int8_t imu_C() const { return fields.imu_C; }
-  std::int8_t frame_imu_C() const { return fields.frame_imu_C; }
-  std::uint16_t battery_cV() const { return fields.battery_cV; }
-};
-
 template <class Axis>
-AxisPoint point_of(const Axis& axis, const Telemetry& telemetry, std::uint8_t index, double true_C) {
+AxisPoint point_of(const Axis& axis, const RecordedTelemetry& telemetry, std::uint8_t index, double true_C) {
   const std::int16_t error =
       tp::position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
   const std::uint8_t demand = tp::FixedLevels<>().step(static_cast<std::uint16_t>(std::abs(int(error))));
@@ -48,7 +40,7 @@ Trace Trace::of(const Rig& rig, const Story& story) {
   Trace trace;
   std::size_t sample = 0;
   for (const Update& update : rig.updates()) {
-    const Telemetry telemetry = {update.telemetry};
+    const RecordedTelemetry telemetry = {update.telemetry};
     const auto now_us =
         static_cast<std::uint32_t>(update.last_in_cycle / static_cast<std::uint64_t>(cycles_per_us));
     const Gimbal::Command& command = gimbal.step(telemetry, clock.elapsed(now_us));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <recorded_telemetry.hpp>
 #include <rig.hpp>
 #include <thermopower/thermopower.hpp>
 
@@ -36,15 +37,6 @@ typedef tp::FixedGimbalController<Axis<tp::motors::Bgm2606_90t, 24, 4>,
                                   Axis<tp::motors::Bgm5208_200_12, 40, 2>>
     Gimbal;
 
-struct Telemetry {
-  const tp::sbgc::RealtimeFields& fields;
-  std::int16_t target_angle(std::uint8_t axis) const { return fields.target_angle[axis]; }
-  std::int16_t imu_angle(std::uint8_t axis) const { return fields.imu_angle[axis]; }
-  std::int8_t imu_C() const { return fields.imu_C; }
-  std::int8_t frame_imu_C() const { return fields.frame_imu_C; }
-  std::uint16_t battery_cV() const { return fields.battery_cV; }
-};
-
 }  // namespace
 
 TEST_CASE("the bare-metal program polls, decides as its controller does here, and loses no byte") {
@@ -62,7 +54,7 @@ TEST_CASE("the bare-metal program polls, decides as its controller does here, an
   long agreeing = 0;
   std::uint64_t slowest = 0;
   for (const nano::Update& update : rig.updates()) {
-    const Telemetry telemetry = {update.telemetry};
+    const nano::RecordedTelemetry telemetry = {update.telemetry};
     const auto& expected =
         gimbal.step(telemetry, clock.elapsed(static_cast<std::uint32_t>(update.last_in_cycle / 16)));
     gimbal.prepare();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <recorded_telemetry.hpp>
 #include <rig.hpp>
 #include <set>
 #include <thermopower/thermopower.hpp>
@@ -164,7 +165,7 @@ typedef tp::FixedGimbalController<
 class OnThisComputer {
  public:
   original::Decision update(const tp::sbgc::RealtimeFields& fields, std::uint32_t micros) {
-    const Telemetry telemetry = {fields};
+    const nano::RecordedTelemetry telemetry = {fields};
     const Gimbal::Command& command = gimbal_.step(telemetry, clock_.elapsed(micros));
     gimbal_.prepare();
     original::Decision decision;
@@ -175,14 +176,6 @@ class OnThisComputer {
   }
 
  private:
-  struct Telemetry {
-    const tp::sbgc::RealtimeFields& fields;
-    std::int16_t target_angle(std::uint8_t axis) const { return fields.target_angle[axis]; }
-    std::int16_t imu_angle(std::uint8_t axis) const { return fields.imu_angle[axis]; }
-    std::int8_t imu_C() const { return fields.imu_C; }
-    std::int8_t frame_imu_C() const { return fields.frame_imu_C; }
-    std::uint16_t battery_cV() const { return fields.battery_cV; }
-  };
   Gimbal gimbal_;
   tp::FixedClock clock_;
 };

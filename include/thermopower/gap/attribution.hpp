@@ -36,7 +36,6 @@ struct Candidate {
   double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;  ///< a cause ended on the bounds of its range, and is none
-  bool fitted = false;   ///< false: only listed, the fit is not to be read
 };
 
 /// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
@@ -91,7 +90,6 @@ public:
     }
     free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, &candidate.fit.starts);
-    candidate.fitted = true;
     return candidate;
   }
 

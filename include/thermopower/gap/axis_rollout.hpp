@@ -10,9 +10,6 @@
 
 namespace thermopower::gap {
 
-/// Radians per degree.
-inline constexpr double rad_per_deg = 0.017453292519943295;
-
 /// Simulates angle and rate of one axis over the rows of a window.
 template <class Scalar>
 class AxisRollout {

@@ -135,15 +135,16 @@ private:
     }
   }
 
-  /// One Runge-Kutta step; `bend` is how far the acceleration strays from a straight line, as a rate.
+  /// One Runge-Kutta step from `from`, where the slope is `k1`; `bend` is how far the acceleration strays
+  /// from a straight line, as a rate.
   template <bool compliant>
   AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
-                                const Scalar& drive_Nm, int direction, double& bend) const {
+                                const Scalar& drive_Nm, int direction, const Slope& k1,
+                                double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
-    Slope k1, k2, k3, k4;
+    Slope k2, k3, k4;
     AxisState<Scalar> point = from;
-    slope<compliant>(from, t_s, drive_Nm, direction, k1);
     move<compliant>(from, k1, half_s, point);
     slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k2);
     move<compliant>(from, k2, half_s, point);
@@ -153,10 +154,10 @@ private:
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
     // A transition of friction between the second and the third slope shows in their difference only.
     if (soft_) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
-    const auto mean = [](Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
-      a += d;
-      a += 2.0 * (b + c);
-      a *= 1.0 / 6.0;
+    const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, Scalar& d) {
+      d += a;
+      d += 2.0 * (b + c);
+      d *= 1.0 / 6.0;
     };
     mean(k1.angle, k2.angle, k3.angle, k4.angle);
     mean(k1.rate, k2.rate, k3.rate, k4.rate);
@@ -164,7 +165,7 @@ private:
       mean(k1.twist, k2.twist, k3.twist, k4.twist);
       mean(k1.twist_rate, k2.twist_rate, k3.twist_rate, k4.twist_rate);
     }
-    move<compliant>(from, k1, h_s, point);
+    move<compliant>(from, k4, h_s, point);
     return point;
   }
 
@@ -184,11 +185,15 @@ private:
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const Scalar& drive_Nm, int depth) const {
     const double bend_limit_rad_per_s = soft_ ? 1e-4 : 5e-4;
     const bool dry = !instance_.axis.empty() && !soft_;
-    if (soft_ && creep<compliant>(state, t_s, left_s, drive_Nm, depth)) return;
     for (int event = 0; event < 12; ++event) {
       const int direction = dry ? direction_of<compliant>(state, t_s, drive_Nm) : 1;
+      Slope start;
+      Scalar stiffness = constant<Scalar>(0.0);
+      slope<compliant>(state, t_s, drive_Nm, direction, start, &stiffness);
+      if (soft_ && creep<compliant>(state, t_s, left_s, drive_Nm, depth, start, stiffness)) return;
       double bend = 0.0;
-      const AxisState<Scalar> reached = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, direction, bend);
+      const AxisState<Scalar> reached =
+          runge_kutta<compliant>(state, t_s, left_s, drive_Nm, direction, start, bend);
       if (bend > bend_limit_rad_per_s && depth > 0) {
         const Scalar half_s = left_s * 0.5;
         smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
@@ -203,11 +208,13 @@ private:
       const double before = value_of(state.rate_rad_per_s), after = value_of(reached.rate_rad_per_s);
       if (before == 0.0) {  // would start and turn back at once: it stays
         state.rate_rad_per_s = constant<Scalar>(0.0);
-        state = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, 0, bend);
+        slope<compliant>(state, t_s, drive_Nm, 0, start);
+        state = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, 0, start, bend);
         return;
       }
       Scalar cut_s = left_s * (before / (before - after));
-      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, bend);
+      AxisState<Scalar> at_cut =
+          runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
       Slope there;
       slope<compliant>(at_cut, t_s, drive_Nm, direction, there);
       if (value_of(there.rate) * direction < 0.0) {
@@ -215,7 +222,7 @@ private:
         const double corrected = value_of(cut_s) - value_of(correction_s);
         if (corrected > 0.0 && corrected < value_of(left_s)) {
           cut_s -= correction_s;
-          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, bend);
+          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
         }
       }
       at_cut.rate_rad_per_s = constant<Scalar>(0.0);
@@ -227,15 +234,15 @@ private:
   }
 
   /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
-  /// exactly; what the linearisation missed is the error. @return false: not stiff here, nothing was done
+  /// exactly; what the linearisation missed is the error.
+  /// @param now, stiffness  what `slope` says of the start
+  /// @return false: not stiff here, nothing was done
   template <bool compliant>
-  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth) const {
+  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth,
+             const Slope& now, const Scalar& stiffness) const {
     constexpr double error_limit_rad_per_s = 1e-4;
     using std::exp;
-    Slope now;
-    Scalar decay = constant<Scalar>(0.0);
-    slope<compliant>(state, t_s, drive_Nm, 1, now, &decay);
-    decay *= h_s * per_near_inertia_;
+    const Scalar decay = stiffness * (h_s * per_near_inertia_);
     if (!(value_of(decay) > 0.3)) return false;
     const double h = value_of(h_s);
     const Scalar phi_1 = (1.0 - exp(Scalar(-decay))) / decay, phi_2 = (1.0 - phi_1) / decay;

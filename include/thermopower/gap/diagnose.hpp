@@ -197,12 +197,9 @@ private:
     const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
     for (std::size_t i = 0; i < signal_count; ++i) {
       if (residuals[i].empty()) continue;
-      double quantum = 0.0;
-      for (const Inputs& one : train_inputs_)
-        if (one.judged(static_cast<Signal>(i)))
-          quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
-      const double rounding =
-          problem.segments.front().inputs->repeats.size() > 0 ? 0.0 : quantum / std::sqrt(12.0);
+      const double rounding = problem.segments.front().inputs->repeats.size() > 0
+                                  ? 0.0
+                                  : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / std::sqrt(12.0);
       problem.sigma[i] = std::max({white_sd(residuals[i], gaps[i]) * problem.sigma[i], rounding, 1e-9});
     }
   }
@@ -263,7 +260,8 @@ private:
     const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous;
     const Weight weight = correlation_of(chosen, problem);
     rank(result_, candidates, conclusion, problem, weight);
-    if (named) name_causes(result_, candidates, conclusion, model_, problem, weight);
+    const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
+    if (named) name_causes(result_, candidates, conclusion, model_, fitted, weight);
 
     Explanation all;
     const std::vector<CalibratedConstant> constants = model_.calibrated();
@@ -273,10 +271,9 @@ private:
     const Candidate recalibrated = attribution.fit(all, {}, &candidates.front());
     result_.recalibrated =
         augmented(model_, recalibrated.explanation, recalibrated.list, recalibrated.fit.at);
-    if (named) result_.augmented = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
+    if (named) result_.augmented = fitted;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
-    score(result_, model_, full, held_out_inputs_,
-          augmented(model_, chosen.explanation, chosen.list, chosen.fit.at), options_, catalogue_);
+    score(result_, model_, full, held_out_inputs_, fitted, options_, catalogue_);
     if (named) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)

@@ -317,4 +317,11 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   return choice;
 }
 
+/// A submodel's problem with its candidate directions.
+struct Judged {
+  Problem problem;
+  std::vector<Block> blocks;
+  double floor = 0.0;  ///< sum of squares that noise leaves
+};
+
 }  // namespace thermopower::gap::detail

@@ -4,6 +4,8 @@
 
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/localise_axis.hpp>
+#include <thermopower/gap/localise_current.hpp>
+#include <thermopower/gap/localise_thermal.hpp>
 
 /// @file localise_quantity.hpp
 /// The missing quantity itself: watts, newton metres, volts, read off the recording and ordered by what orders them.

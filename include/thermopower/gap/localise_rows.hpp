@@ -182,4 +182,49 @@ inline double half_power_period(const Eigen::VectorXd& residual, double interval
   return 0.0;
 }
 
+constexpr Eigen::Index localisation_rows = 8000;
+
+/// Averages `stride` rows at a time inside each run, so that a million rows cost what ten thousand do.
+class Thinning {
+public:
+  Thinning(const std::vector<RunSpan>& runs, const Eigen::VectorXd& measured, Eigen::Index most) {
+    Eigen::Index rows = 0;
+    for (const RunSpan& run : runs) rows += run.size();
+    stride_ = std::max<Eigen::Index>(1, (rows + most - 1) / most);
+    for (const RunSpan& run : runs) {
+      for (Eigen::Index i = run.begin; i < run.end; i += stride_) {
+        std::vector<Eigen::Index> list;
+        for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k) {
+          if (std::isfinite(measured[k])) list.push_back(k);
+        }
+        if (!list.empty()) rows_.push_back(std::move(list));
+      }
+    }
+  }
+
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  Eigen::Index stride() const { return stride_; }
+
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
+    Eigen::MatrixXd out(rows(), full.cols());
+    for (Eigen::Index i = 0; i < rows(); ++i) {
+      const auto& list = rows_[static_cast<std::size_t>(i)];
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(full.cols());
+      for (const Eigen::Index k : list) sum += full.row(k);
+      out.row(i) = sum / static_cast<double>(list.size());
+    }
+    return out;
+  }
+
+  Eigen::VectorXi folds(int count) const {
+    Eigen::VectorXi fold(rows());
+    for (Eigen::Index i = 0; i < rows(); ++i) fold[i] = static_cast<int>(i * count / std::max<Eigen::Index>(1, rows()));
+    return fold;
+  }
+
+private:
+  Eigen::Index stride_ = 1;
+  std::vector<std::vector<Eigen::Index>> rows_;
+};
+
 }  // namespace thermopower::gap::detail

@@ -14,6 +14,9 @@
 
 namespace thermopower::gap {
 
+/// Radians per degree.
+inline constexpr double rad_per_deg = 0.017453292519943295;
+
 /// Thrown where the input of a diagnosis cannot be used; `what()` names the recording, column, field or
 /// parameter and what was expected there.
 class InvalidInput : public std::invalid_argument {

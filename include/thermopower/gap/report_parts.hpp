@@ -89,9 +89,9 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
   }
 }
 
-/// The chosen causes with their parameters, and the alternatives.
+/// The chosen causes with their parameters, and the alternatives. `fitted` is the model with them.
 inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates,
-                        const Conclusion& conclusion, const Model& model, const FitProblem&,
+                        const Conclusion& conclusion, const Model& model, const Model& fitted,
                         const Weight& weight) {
   const Candidate& chosen = candidates[conclusion.chosen];
   const std::vector<ParameterEstimate> all = estimates(chosen, model, weight);
@@ -112,12 +112,19 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   }
   for (std::size_t index : conclusion.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
-  const Model fitted = augmented(model, chosen.explanation, chosen.list, chosen.fit.at);
   for (const CalibratedConstant& constant : model.calibrated())
     if (constant.fields.size() == 1) {
       const std::string name = constant.block + "." + constant.fields.front();
       result.constants.push_back({constant.id, model.get(name), fitted.get(name)});
     }
+}
+
+/// The coarsest quantum of a signal among recordings; 0 where none has it.
+inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal) {
+  double quantum = 0.0;
+  for (const Inputs& one : inputs)
+    if (one.judged(signal)) quantum = std::max(quantum, quantum_of(one.of(signal)));
+  return quantum;
 }
 
 /// Noise of every signal: the white part of a simulation's errors, at least that of rounding.
@@ -127,11 +134,8 @@ inline std::array<double, signal_count> noise_of(const Errors& errors, const std
     std::vector<bool> gaps(errors.of[i].size(), false);
     for (std::size_t k = 1; k < gaps.size(); ++k)
       gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
-    double quantum = 0.0;
-    for (const Inputs& one : inputs)
-      if (one.judged(static_cast<Signal>(i)))
-        quantum = std::max(quantum, quantum_of(one.of(static_cast<Signal>(i))));
-    sigma[i] = std::max(white_sd(errors.of[i], gaps), quantum / std::sqrt(12.0));
+    sigma[i] = std::max(white_sd(errors.of[i], gaps),
+                        coarsest_quantum(inputs, static_cast<Signal>(i)) / std::sqrt(12.0));
   }
   return sigma;
 }
@@ -142,8 +146,9 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
                   const Catalogue& catalogue) {
   const Errors before = errors_of(model, segments, catalogue);
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
-  const Errors after = errors_of(result.augmented, segments, catalogue);
   const Errors best = errors_of(fitted, segments, catalogue);
+  // The augmented model is the fitted one where there is a cause, else the model as configured.
+  const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
       noise_floor(fitted, segments, noise_of(best, inputs), catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {

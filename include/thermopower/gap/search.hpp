@@ -76,6 +76,13 @@ public:
   }
 
 private:
+  /// A set worth fitting.
+  struct Promise {
+    double cost;            ///< after one linear step
+    const Candidate* near;  ///< the fit of a part of it
+    Explanation together;
+  };
+
   static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
     std::vector<std::size_t> order;
     for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
@@ -107,11 +114,6 @@ private:
     for (std::size_t index : by_fitness(candidates, 0))
       if (static_cast<int>(candidates[index].explanation.size()) == size - 1 && seeds.size() < 5)
         seeds.push_back(&candidates[index]);
-    struct Promise {
-      double cost;
-      const Candidate* near;
-      Explanation together;
-    };
     std::vector<Promise> promises;
     for (const Candidate* near : seeds)
       for (const Explanation& single : singles)
@@ -129,23 +131,30 @@ private:
       std::sort(ids.begin(), ids.end());
       if (kept.size() < 14 && seen.insert(ids).second) kept.push_back(std::move(one));
     }
-    std::vector<Candidate> joined(kept.size());
+    add_fitted(candidates, kept);
+  }
+
+  /// Fits sets from the fits of their parts and takes them among the candidates.
+  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
+    if (sets.empty()) return;
+    std::vector<Candidate> found(sets.size());
     FitOptions options;
     options.iterations = 12;
     options.relative_decrease = 1e-3;
-    in_parallel(kept.size(), threads_,
-                [&](std::size_t i) { joined[i] = coarse_.fit(kept[i].together, options, kept[i].near); });
+    in_parallel(sets.size(), threads_,
+                [&](std::size_t i) { found[i] = coarse_.fit(sets[i].together, options, sets[i].near); });
     const std::size_t first = candidates.size();
-    for (Candidate& one : joined) candidates.push_back(std::move(one));
+    for (Candidate& one : found) candidates.push_back(std::move(one));
     refine(candidates, first, 5);
   }
 
   /// Adds the best set again with one member after another exchanged for its relatives, the causes of the same
   /// submodel: of two that do the same beside a third, only one may have been tried.
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
-    const Explanation leader = best(candidates).explanation;
+    const Candidate& near = best(candidates);
+    const Explanation& leader = near.explanation;
     if (leader.size() < 2) return;
-    std::vector<Explanation> tries;
+    std::vector<Promise> tries;
     for (std::size_t member = 0; member < leader.effects.size(); ++member)
       for (const Explanation& single : singles) {
         if (single.effects.empty() || leader.includes(single) ||
@@ -156,18 +165,9 @@ private:
         bool known = false;
         for (const Candidate& one : candidates)
           known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
-        if (!known) tries.push_back(std::move(other));
+        if (!known) tries.push_back({0.0, &near, std::move(other)});
       }
-    std::vector<Candidate> found(tries.size());
-    const Candidate near = best(candidates);
-    FitOptions options;
-    options.iterations = 12;
-    options.relative_decrease = 1e-3;
-    in_parallel(tries.size(), threads_,
-                [&](std::size_t i) { found[i] = coarse_.fit(tries[i], options, &near); });
-    const std::size_t first = candidates.size();
-    for (Candidate& one : found) candidates.push_back(std::move(one));
-    if (!tries.empty()) refine(candidates, first, 5);
+    add_fitted(candidates, tries);
   }
 
   const Attribution& coarse_;
