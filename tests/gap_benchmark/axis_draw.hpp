@@ -56,6 +56,10 @@ inline AxisSetup draw_axis(const std::vector<std::string>& wanted, Random& rando
   s.missing_cells = random.chance(0.12);
   for (const char* decoy : {"packet_counter", "board_C", "battery_pct", "humidity_pct"})
     if (random.chance(0.12)) s.decoys.push_back(decoy);
+  // Half of the bearings are greased. The simulation under test knows nothing of dry friction, so it is not told.
+  const bool rubs = wants("coulomb_friction") || wants("asymmetric_friction") || wants("stribeck_friction") ||
+                    wants("load_friction");
+  if (rubs && random.chance(0.5)) c.model[film_dps] = c.plant[film_dps] = random.log_uniform(0.3, 3.0);
   s.plant = c.plant;
   return s;
 }

@@ -20,6 +20,7 @@ enum AxisParameter : int {
   stick_ratio,
   stribeck_dps,
   load_share,
+  film_dps,
   // drive
   deadband_A,
   delay_s,
@@ -85,12 +86,14 @@ struct AxisState {
   double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, turned = 0.0, warm = 0.0;
 };
 
-/// An axis with dry friction, as physics: it slides, or it sticks and holds still. Classical Runge-Kutta at a
-/// quarter of a millisecond inside each phase; the moment at which it comes to rest is located, not stepped
-/// over, and a delayed command switches at its own instant.
+/// An axis with dry friction, as physics: it slides, or it sticks and holds still; or, where it is greased, it
+/// creeps on a film that carries all of the friction from `film_dps` on. Classical Runge-Kutta at a quarter of
+/// a millisecond, or less where the film is stiff, inside each phase; the moment at which it comes to rest is
+/// located, not stepped over, and a delayed command switches at its own instant.
 class AxisPlant {
 public:
-  explicit AxisPlant(const AxisParameters& parameters, double step_scale = 1.0) : p_(parameters) {
+  explicit AxisPlant(const AxisParameters& parameters, double step_scale = 1.0)
+      : p_(parameters), step_scale_(step_scale) {
     step_s_ = 0.25e-3 * step_scale;
     if (p_[far_share] > 0.0) {
       const double omega = 6.283185307179586 * p_[spring_Hz];
@@ -99,7 +102,9 @@ public:
       damper_ = 2.0 * p_[spring_damping] * reduced * omega;
       step_s_ = std::min(step_s_, 0.1 / omega);
     }
-    dry_ = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0;
+    const bool rubs = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0;
+    creeps_ = rubs && p_[film_dps] > 0.0;
+    dry_ = rubs && !creeps_;
   }
 
   double delay() const { return p_[delay_s]; }
@@ -149,7 +154,15 @@ public:
   void advance(AxisState& x, const AxisInput& u, double duration_s) const {
     if (duration_s <= 0.0) return;
     const Held held{motor_torque(u), u.hidden_Nm, u.hidden_wear};
-    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / step_s_ - 1e-9)));
+    double step_s = step_s_;
+    if (creeps_) {
+      const double film = p_[film_dps] / degrees_per_radian, near = p_[inertia] * (1.0 - p_[far_share]);
+      AxisState still = x;
+      still.rate = 0.0;
+      const double most = std::max(friction(still, held, 1.0), friction(still, held, -1.0));
+      if (most > 0.0) step_s = std::min(step_s, 0.04 * step_scale_ * film * near / most);
+    }
+    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / step_s - 1e-9)));
     const double h = duration_s / steps;
     for (int i = 0; i < steps; ++i) {
       double left_s = h;
@@ -210,8 +223,8 @@ private:
   using Rates = std::array<double, 6>;
 
   AxisParameters p_;
-  double step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0;
-  bool dry_ = false;
+  double step_scale_ = 1.0, step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0;
+  bool dry_ = false, creeps_ = false;
 
   double friction(const AxisState& x, const Held& held, double way) const {
     double torque = p_[coulomb_Nm] * (1.0 + way * p_[asymmetry]);
@@ -255,7 +268,7 @@ private:
     double torque = held.motor_Nm + held.hidden_Nm;
     double b = p_[viscous];
     if (p_[warming_share] > 0.0) b *= 1.0 - p_[warming_share] * x.warm;
-    if (dry_ || p_[coulomb_Nm] > 0.0) torque -= b * x.rate;
+    if (dry_ || creeps_) torque -= b * x.rate;
     else torque -= b * held.wear * x.rate;
     if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
       torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) +
@@ -274,6 +287,10 @@ private:
     if (!stuck) {
       double torque = without_friction(x, held);
       if (dry_) torque -= way * friction(x, held, way);
+      if (creeps_) {
+        const double carried = std::clamp(x.rate * degrees_per_radian / p_[film_dps], -1.0, 1.0);
+        torque -= carried * friction(x, held, carried > 0.0 ? 1.0 : -1.0);
+      }
       d[0] = x.rate;
       d[1] = torque / near;
     }

@@ -125,6 +125,9 @@ TEST_CASE("a rigid axis follows the exponential of the textbook, and dry frictio
   u.drive_A = 0.9 * 2e-3 / 0.15;                 // not enough to break away
   AxisPlant(p).advance(x, u, 1.0);
   CHECK(x.rate == 0.0);
+  p[film_dps] = 1.0;  // creeps at the rate at which the film carries that much
+  AxisPlant(p).advance(x, u, 1.0);
+  CHECK(agree(x.rate * degrees_per_radian, 0.9, 1e-9));
 }
 
 TEST_CASE("a delayed command switches at its own instant") {

@@ -179,15 +179,16 @@ public:
 
 private:
   /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there, and
-  /// begins once more from the standard value.
+  /// begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit that
+  /// ended shortly before it begins once more there.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
     Eigen::VectorXd again = candidate.fit.at;
     bool trapped = false;
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {
       const Coordinate& one = candidate.list[i];
       const auto at = static_cast<Eigen::Index>(i);
-      if (!one.standard || again[at] > one.lower + 1e-9) continue;
-      again[at] = *one.standard;
+      if (!one.standard || again[at] > *one.standard) continue;
+      again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
       trapped = true;
     }
     if (!trapped) return;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/actuator/duty.hpp>
+#include <thermopower/gap/exchange_step.hpp>
 #include <thermopower/gap/inputs.hpp>
 #include <thermopower/gap/instance.hpp>
 
@@ -23,7 +24,8 @@ struct BenchState {
 /// Simulates current and temperature of one motor, run by run.
 ///
 /// Inputs are held over each interval. The coupled equations are integrated with the midpoint rule where an
-/// interval is short against every time constant and with sub-steps of the classical Runge-Kutta rule else.
+/// interval is short against every time constant and with sub-steps of the classical Runge-Kutta rule else;
+/// two nodes whose exchange is fast against the interval, with an exponential rule that solves it exactly.
 template <class Scalar>
 class BenchRollout {
 public:
@@ -209,19 +211,19 @@ private:
     return std::sqrt(std::clamp(inputs_.power_param[row], 0.0, 255.0) / 255.0);
   }
 
+  /// What a joule warms the whole motor by; of the polynomial law just above its least voltage.
+  Scalar storage_K_per_J(const BenchState<Scalar>& state) const {
+    if (instance_.lumped) return 1.0 / instance_.heat_capacity.heat_capacity_J_per_K;
+    return instance_.heating_law.rise_K_per_J(instance_.heating_law.minimum_V_rms + 1.0, state.winding_C);
+  }
+
   /// Fastest decay rate of the linear part, 1/s.
   double fastest_per_s(const BenchState<Scalar>& state) const {
     const auto& shape = instance_.thermal_structure;
-    double base = 0.0, rise_K_per_J = 0.0;
     if (!instance_.lumped && !instance_.thesis_thermal) return 0.0;
-    if (instance_.lumped) {
-      rise_K_per_J = 1.0 / value_of(instance_.heat_capacity.heat_capacity_J_per_K);
-      base = value_of(instance_.conductance_W_per_K) * rise_K_per_J;
-    } else {
-      const Scalar volt = instance_.heating_law.minimum_V_rms + 1.0;
-      rise_K_per_J = value_of(instance_.heating_law.rise_K_per_J(volt, state.winding_C));
-      base = value_of(instance_.cooling_per_s);
-    }
+    const double rise_K_per_J = value_of(storage_K_per_J(state));
+    const double base = instance_.lumped ? value_of(instance_.conductance_W_per_K) * rise_K_per_J
+                                         : value_of(instance_.cooling_per_s);
     double fastest = 2.0 * base;
     if (shape.two_nodes) {
       const double share = value_of(shape.winding_share);
@@ -237,8 +239,13 @@ private:
   }
 
   void step(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
-    coupling_W_per_K_ = instance_.thermal_structure.coupling_W_per_K;
+    const auto& shape = instance_.thermal_structure;
+    coupling_W_per_K_ = shape.coupling_W_per_K;
     double stiffness = dt_s * fastest_per_s(state);
+    if (shape.two_nodes && !shape.lagged && stiffness > 0.6) {
+      exchange(row, t_s, dt_s, state);
+      return;
+    }
     constexpr double stiffest = 25.0;
     if (stiffness > stiffest) {
       // Nodes that are one within a twentieth of an interval look like one: a slower exchange shows the same.
@@ -263,6 +270,50 @@ private:
                        (k1.surface + 2.0 * (k2.surface + k3.surface) + k4.surface) * (1.0 / 6.0),
                        (k1.charge + 2.0 * (k2.charge + k3.charge) + k4.charge) * (1.0 / 6.0)};
       settle(state, moved(state, mean, h_s), h_s);
+    }
+  }
+
+  /// An interval of two nodes with a fast exchange, in steps that are cut until what the linear part does not
+  /// know (the resistance that follows the temperature, losses that are not proportional) moves them little.
+  void exchange(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
+    constexpr double enough_K = 0.02;
+    const double shortest_s = dt_s / 1024.0;
+    const auto& shape = instance_.thermal_structure;
+    const Scalar share = shape.winding_share, rest = 1.0 - shape.winding_share;
+    const Scalar rise_K_per_J = storage_K_per_J(state);
+    const Scalar flow_per_s = coupling_W_per_K_ * rise_K_per_J;
+    const Scalar loss_per_s = instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J)
+                                               : instance_.cooling_per_s;
+    ExchangeStep<Scalar> linear(flow_per_s / share, flow_per_s / rest, loss_per_s / rest);
+    using Pair = typename ExchangeStep<Scalar>::Pair;
+    double done_s = 0.0, h_s = dt_s;
+    Slope first = slope(row, t_s, state);
+    linear.set_length(h_s);
+    for (;;) {
+      const Pair moved = linear.moved({first.winding, first.surface});
+      BenchState<Scalar> reached = state;
+      reached.winding_C += moved.winding;
+      reached.surface_C += moved.surface;
+      reached.charge_Ah += first.charge * h_s;
+      const Slope last = slope(row, t_s + done_s + h_s, reached);
+      const Pair known = linear.exchanged(moved);
+      const Pair correction = linear.corrected({last.winding - first.winding - known.winding,
+                                                last.surface - first.surface - known.surface});
+      const double moved_K = std::abs(value_of(correction.winding)) + std::abs(value_of(correction.surface));
+      if (moved_K > enough_K && h_s > shortest_s) {
+        h_s *= 0.5;
+        linear.set_length(h_s);
+        continue;
+      }
+      reached.winding_C += correction.winding;
+      reached.surface_C += correction.surface;
+      reached.charge_Ah += (last.charge - first.charge) * (0.5 * h_s);
+      state = reached;
+      done_s += h_s;
+      if (!(done_s < dt_s)) return;
+      const double next_s = std::min(moved_K < 0.25 * enough_K ? 2.0 * h_s : h_s, dt_s - done_s);
+      if (next_s != h_s) linear.set_length(h_s = next_s);
+      first = slope(row, t_s + done_s, state);
     }
   }
 

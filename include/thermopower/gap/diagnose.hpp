@@ -70,18 +70,32 @@ private:
     std::vector<Candidate> candidates;
   };
 
-  /// Whether the model, its constants within their slack, scores what the noise allows on the held-out data in
-  /// full. The search looks at averages of many rows: what shows there may be too small for anybody to care.
-  bool holds(const Attempt& attempt) const {
-    constexpr double relevant = 1.2;
+  /// Whether the model, its constants within their slack, scores what the noise allows on the data in full. The
+  /// search looks at averages of many rows: what shows there may be too small for anybody to care. And training
+  /// data over a narrow range leave constants open that the held-out data ask for: what fits both will do.
+  bool holds(const Attempt& attempt) {
     const Candidate& empty = attempt.candidates.front();
     if (worst_level(empty) > 8.0) return false;
-    const Model calibrated = augmented(model_, empty.explanation, empty.list, empty.fit.at);
-    const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
+    if (holds(augmented(model_, empty.explanation, empty.list, empty.fit.at), held_out_inputs_, attempt.problem))
+      return true;
+    std::vector<Inputs> all = train_inputs_;
+    all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
+    FitProblem together = problem_of(all, 2500, 4000, fit_horizon_s());
+    together.sigma = attempt.problem.sigma;
+    const Candidate fitted = Attribution(together, slack_, options_.threads).fit({}, {}, &empty);
+    const Model calibrated = augmented(model_, fitted.explanation, fitted.list, fitted.fit.at);
+    return holds(calibrated, held_out_inputs_, attempt.problem) &&
+           holds(calibrated, train_inputs_, attempt.problem);
+  }
+
+  /// Whether a model scores what the noise allows on some data.
+  bool holds(const Model& calibrated, const std::vector<Inputs>& inputs, const FitProblem& problem) const {
+    constexpr double relevant = 1.2;
+    const std::vector<Segment> full = cut(inputs, options_.horizon_s);
     const Errors errors = errors_of(calibrated, full, catalogue_);
-    std::array<double, signal_count> sigma = noise_of(errors, held_out_inputs_);
-    if (attempt.problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
-      for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], attempt.problem.sigma[i]);
+    std::array<double, signal_count> sigma = noise_of(errors, inputs);
+    if (problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
+      for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], problem.sigma[i]);
     const std::array<double, signal_count> floor = noise_floor(calibrated, full, sigma, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > relevant * floor[i]) return false;
@@ -148,7 +162,7 @@ private:
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
           300, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
-      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share, model_) : one);
+      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share, model_, catalogue_) : one);
     }
     FitProblem problem;
     problem.model = &model_;
@@ -209,6 +223,7 @@ private:
     FitProblem& problem = attempt.problem = problem_of(train_inputs_, 2500, 4000, horizon_s);
     FitProblem check = problem_of(held_out_inputs_, 2000, 3000, horizon_s);
     FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, std::min(0.5, options_.horizon_s));
+    coarse_problem.segments = thinned_runs(coarse_problem.segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
     const Attribution coarse(coarse_problem, slack_, options_.threads),
         fine(problem, slack_, options_.threads);

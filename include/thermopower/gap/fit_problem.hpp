@@ -203,27 +203,30 @@ public:
   }
 };
 
-/// Cuts recordings into segments: the bench by run (from its first measured temperature), the axis by
-/// windows.
-inline std::vector<Segment> cut(const std::vector<Inputs>& recordings, double horizon_s) {
-  std::vector<Segment> segments;
-  for (const Inputs& inputs : recordings) {
-    for (const RunSpan& run : inputs.runs) {
-      if (inputs.bench()) {
-        Eigen::Index begin = run.begin;
-        if (inputs.judged(Signal::motor_C))
-          while (begin < run.end && !std::isfinite(inputs.of(Signal::motor_C)[begin])) ++begin;
-        if (begin + 1 < run.end) segments.push_back({&inputs, run, begin, run.end, false, false});
-      }
-      if (inputs.axis()) {
-        const std::vector<Eigen::Index> starts = window_starts(inputs, run, horizon_s);
-        for (std::size_t i = 0; i < starts.size(); ++i) {
-          const Eigen::Index end = i + 1 < starts.size() ? starts[i + 1] : run.end;
-          if (starts[i] + 1 < end) segments.push_back({&inputs, run, starts[i], end, true, i > 0});
-        }
+/// Cuts a recording into segments: the bench by run (from its first measured temperature), the axis by
+/// windows. They refer to `inputs`, which must outlive them.
+inline void cut(const Inputs& inputs, double horizon_s, std::vector<Segment>& segments) {
+  for (const RunSpan& run : inputs.runs) {
+    if (inputs.bench()) {
+      Eigen::Index begin = run.begin;
+      if (inputs.judged(Signal::motor_C))
+        while (begin < run.end && !std::isfinite(inputs.of(Signal::motor_C)[begin])) ++begin;
+      if (begin + 1 < run.end) segments.push_back({&inputs, run, begin, run.end, false, false});
+    }
+    if (inputs.axis()) {
+      const std::vector<Eigen::Index> starts = window_starts(inputs, run, horizon_s);
+      for (std::size_t i = 0; i < starts.size(); ++i) {
+        const Eigen::Index end = i + 1 < starts.size() ? starts[i + 1] : run.end;
+        if (starts[i] + 1 < end) segments.push_back({&inputs, run, starts[i], end, true, i > 0});
       }
     }
   }
+}
+
+/// Cuts all recordings.
+inline std::vector<Segment> cut(const std::vector<Inputs>& recordings, double horizon_s) {
+  std::vector<Segment> segments;
+  for (const Inputs& inputs : recordings) cut(inputs, horizon_s, segments);
   return segments;
 }
 

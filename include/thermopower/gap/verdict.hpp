@@ -22,13 +22,6 @@ struct Conclusion {
   std::string reason;                     ///< one sentence in plain words
 };
 
-/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 without samples.
-inline double level(const Candidate& candidate, std::size_t signal) {
-  const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
-  if (!(samples > 0.0)) return 0.0;
-  return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
-}
-
 /// Whether a candidate shrinks some signal's score by more than the tolerance and none of its signals grows
 /// by more, on held-out data.
 inline bool matters(const Candidate& candidate, const Candidate& than, double tolerance) {
