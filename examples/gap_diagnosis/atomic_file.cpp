@@ -56,7 +56,8 @@ void write_all(int descriptor, const std::string& contents, const std::string& p
   }
 }
 
-// mkstemp makes files private; an output should have the rights any new file gets, or those of the file it replaces.
+// mkstemp makes files private; an output should have the rights any new file gets, or those of the file it
+// replaces.
 mode_t rights_for(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) == 0) return status.st_mode & 0777;
@@ -80,7 +81,9 @@ void OutputFiles::expect(const std::string& path) {
   unlink(probe.name.c_str());
 }
 
-void OutputFiles::put(const std::string& path, std::string contents) { files_.emplace_back(path, std::move(contents)); }
+void OutputFiles::put(const std::string& path, std::string contents) {
+  files_.emplace_back(path, std::move(contents));
+}
 
 void OutputFiles::commit() {
   std::vector<std::pair<std::string, std::string>> pending;  // temporary, target
@@ -91,7 +94,8 @@ void OutputFiles::commit() {
       pending.emplace_back(temporary.name, resolve(path));
       try {
         write_all(temporary.descriptor, contents, path);
-        if (fchmod(temporary.descriptor, rights_for(path)) != 0 || fsync(temporary.descriptor) != 0) fail(path, errno);
+        if (fchmod(temporary.descriptor, rights_for(path)) != 0 || fsync(temporary.descriptor) != 0)
+          fail(path, errno);
       } catch (...) {
         close(temporary.descriptor);
         throw;
@@ -99,7 +103,8 @@ void OutputFiles::commit() {
       if (close(temporary.descriptor) != 0) fail(path, errno);
     }
     while (!pending.empty()) {
-      if (std::rename(pending.front().first.c_str(), pending.front().second.c_str()) != 0) fail(pending.front().second, errno);
+      if (std::rename(pending.front().first.c_str(), pending.front().second.c_str()) != 0)
+        fail(pending.front().second, errno);
       pending.erase(pending.begin());
     }
   } catch (...) {

@@ -17,11 +17,13 @@ public:
 
 /// @brief The output files of one run of a program: all appear complete, or none does.
 ///
-/// Each file is written under a temporary name in its own directory and renamed over the target once every one of them is complete
-/// on disk. Until then an older file of that name stays as it was. Special files (a pipe, /dev/stdout) are written straight through.
+/// Each file is written under a temporary name in its own directory and renamed over the target once every
+/// one of them is complete on disk. Until then an older file of that name stays as it was. Special files (a
+/// pipe, /dev/stdout) are written straight through.
 class OutputFiles {
 public:
-  /// @brief Announces a file and finds out at once whether it can be written, so that a long computation is not lost at its end.
+  /// @brief Announces a file and finds out at once whether it can be written, so that a long computation is
+  /// not lost at its end.
   /// @throws OutputError when its directory is missing or not writable, or the path names a directory
   void expect(const std::string& path);
 

@@ -24,11 +24,13 @@
 namespace thermopower::gap::files {
 namespace {
 
-constexpr std::size_t longest_field = 4096;  // no number, label or column name is longer; a lost quote would swallow the file
+constexpr std::size_t longest_field =
+    4096;  // no number, label or column name is longer; a lost quote would swallow the file
 constexpr std::size_t most_columns = 4096;
 
 bool is_missing(const char* text, std::size_t size) {
-  return size == 0 || (size == 3 && (text[0] | 0x20) == 'n' && (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
+  return size == 0 ||
+         (size == 3 && (text[0] | 0x20) == 'n' && (text[1] | 0x20) == 'a' && (text[2] | 0x20) == 'n');
 }
 
 enum class NumberFault { none, not_a_number, not_finite };
@@ -81,9 +83,10 @@ public:
     rethrow();
     if (taken != size) fail_parse();
     if (csv_.entry_pos > longest_field) {
-      fail(line_ + lines_in_row_, column_name(), csv_.quoted
-               ? "the quote that opens this field is not closed within " + std::to_string(longest_field) + " bytes; expected a closing '\"'"
-               : "field of more than " + std::to_string(longest_field) + " bytes; expected a number");
+      fail(line_ + lines_in_row_, column_name(),
+           csv_.quoted ? "the quote that opens this field is not closed within " +
+                             std::to_string(longest_field) + " bytes; expected a closing '\"'"
+                       : "field of more than " + std::to_string(longest_field) + " bytes; expected a number");
     }
   }
 
@@ -92,7 +95,9 @@ public:
     at_end_ = true;
     if (csv_fini(&csv_, &Parser::on_field, &Parser::on_row, this) != 0) {
       rethrow();
-      fail(line_ + lines_in_row_, column_name(), "the quote that opens this field is never closed; expected a closing '\"' before the end of the file");
+      fail(
+          line_ + lines_in_row_, column_name(),
+          "the quote that opens this field is never closed; expected a closing '\"' before the end of the file");
     }
     rethrow();
     if (header_.empty()) fail(0, {}, "the file is empty; expected a header row with 't_s' and data rows");
@@ -119,8 +124,11 @@ private:
   }
 
   void reject_other_encodings(const char* bytes, std::size_t size) const {
-    const auto starts = [&](const char* mark, std::size_t n) { return size >= n && std::memcmp(bytes, mark, n) == 0; };
-    if (starts("\xff\xfe", 2) || starts("\xfe\xff", 2)) fail(1, {}, "UTF-16 text; expected UTF-8 (save the file as 'CSV UTF-8')");
+    const auto starts = [&](const char* mark, std::size_t n) {
+      return size >= n && std::memcmp(bytes, mark, n) == 0;
+    };
+    if (starts("\xff\xfe", 2) || starts("\xfe\xff", 2))
+      fail(1, {}, "UTF-16 text; expected UTF-8 (save the file as 'CSV UTF-8')");
     if (starts("PK\x03\x04", 4)) fail(1, {}, "a ZIP archive (a spreadsheet?); expected CSV text");
     if (starts("\x1f\x8b", 2)) fail(1, {}, "a gzip file; expected CSV text (unpack it first)");
   }
@@ -154,7 +162,8 @@ private:
   }
   [[noreturn]] void fail_parse() {
     if (csv_error(&csv_) == CSV_EPARSE) {
-      fail(line_ + lines_in_row_, column_name(), "a quote inside a field; expected quotes only around a whole field, doubled inside it");
+      fail(line_ + lines_in_row_, column_name(),
+           "a quote inside a field; expected quotes only around a whole field, doubled inside it");
     }
     throw std::bad_alloc();
   }
@@ -171,10 +180,14 @@ private:
   }
 
   void take_name(const char* text, std::size_t size) {
-    if (std::memchr(text, 0, size) != nullptr) fail(1, {}, "a byte 0x00 in the header row; expected CSV text");
-    if (size > longest_field || field_ >= most_columns) fail(1, {}, "a header row of this size; expected at most 4096 names");
+    if (std::memchr(text, 0, size) != nullptr)
+      fail(1, {}, "a byte 0x00 in the header row; expected CSV text");
+    if (size > longest_field || field_ >= most_columns)
+      fail(1, {}, "a header row of this size; expected at most 4096 names");
     if (size == 0) {
-      fail(1, {}, "the name of column number " + std::to_string(field_ + 1) + " is empty; expected a name for each column");
+      fail(1, {},
+           "the name of column number " + std::to_string(field_ + 1) +
+               " is empty; expected a name for each column");
     }
     const std::string name(text, size);
     if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
@@ -199,14 +212,17 @@ private:
       for (const auto& name : header_) {
         if (found.size() < 120) found += (found.empty() ? "" : ", ") + excerpt(name);
       }
-      const bool other_separator = header_.size() == 1 && header_[0].find_first_of(";\t|") != std::string::npos;
-      fail(1, {}, "no column 't_s' (time in seconds) in the header row; found " + found +
-                      (other_separator ? "; expected columns separated by commas" : ""));
+      const bool other_separator =
+          header_.size() == 1 && header_[0].find_first_of(";\t|") != std::string::npos;
+      fail(1, {},
+           "no column 't_s' (time in seconds) in the header row; found " + found +
+               (other_separator ? "; expected columns separated by commas" : ""));
     }
   }
 
   void take_value(const char* text, std::size_t size) {
-    if (field_ >= targets_.size()) return;  // counted, and refused at the end of the row, where the count is known
+    if (field_ >= targets_.size())
+      return;  // counted, and refused at the end of the row, where the count is known
     Target& target = targets_[field_];
     if (target.kind == Kind::run) {
       label_.assign(text, std::min(size, longest_field));
@@ -217,24 +233,30 @@ private:
     if (!is_missing(text, size)) {
       const NumberFault fault = parse_number(text, size, value);
       if (fault == NumberFault::not_a_number) {
-        if (target.kind == Kind::undecided && !target.must_be_number && std::memchr(text, 0, size) == nullptr) {
+        if (target.kind == Kind::undecided && !target.must_be_number &&
+            std::memchr(text, 0, size) == nullptr) {
           target.kind = Kind::text;
           target.values = {};
           return;
         }
         fail(line_ + lines_in_row_, header_[field_],
-             excerpt(text, size) + " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
+             excerpt(text, size) +
+                 " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
       }
       if (fault == NumberFault::not_finite) {
-        fail(line_ + lines_in_row_, header_[field_], excerpt(text, size) + " is not finite; expected a finite number, or an empty cell or "
-                                                                          "nan for a missing sample");
+        fail(line_ + lines_in_row_, header_[field_],
+             excerpt(text, size) +
+                 " is not finite; expected a finite number, or an empty cell or "
+                 "nan for a missing sample");
       }
       target.kind = Kind::number;
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
-        fail(line_ + lines_in_row_, header_[field_], excerpt(text, size) + " is outside its range; expected 0..255");
+        fail(line_ + lines_in_row_, header_[field_],
+             excerpt(text, size) + " is outside its range; expected 0..255");
       }
     } else if (field_ == time_) {
-      fail(line_ + lines_in_row_, header_[field_], "time is missing; expected a time in seconds in every row");
+      fail(line_ + lines_in_row_, header_[field_],
+           "time is missing; expected a time in seconds in every row");
     }
     target.values.push_back(value);
   }
@@ -263,7 +285,8 @@ private:
       const std::string expected = "expected " + std::to_string(header_.size()) + " as in the header row";
       const bool cut_off = at_end_ && terminator == -1 && field_ < header_.size();
       fail(line_, field_ < header_.size() ? header_[field_] : std::string(),
-           cut_off ? "the file ends inside this row, after " + count + "; " + expected + " (was the file cut off?)"
+           cut_off ? "the file ends inside this row, after " + count + "; " + expected +
+                         " (was the file cut off?)"
                    : count + " in this row; " + expected);
     }
     const std::vector<double>& time = targets_[time_].values;
@@ -274,9 +297,10 @@ private:
       table_.run_labels.push_back(label_);
       table_.line_of_run.push_back(line_);
     } else if (!(time[row] > time[row - 1])) {
-      fail(line_, "t_s", "time " + shortest(time[row]) + " s follows " + shortest(time[row - 1]) +
-                             " s; expected strictly increasing time inside a run" +
-                             (run_ == none ? " (a column 'run' separates independent runs)" : ""));
+      fail(line_, "t_s",
+           "time " + shortest(time[row]) + " s follows " + shortest(time[row - 1]) +
+               " s; expected strictly increasing time inside a run" +
+               (run_ == none ? " (a column 'run' separates independent runs)" : ""));
     }
     ++table_.rows;
   }
@@ -314,16 +338,19 @@ private:
 
 }  // namespace
 
-CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size, const std::vector<std::string>& numeric) {
+CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
+                   const std::vector<std::string>& numeric) {
   Parser parser(name, numeric);
-  constexpr std::size_t block = 65536;  // bounded, so that a runaway field is noticed before it fills the memory
+  constexpr std::size_t block =
+      65536;  // bounded, so that a runaway field is noticed before it fills the memory
   for (std::size_t at = 0; at < size; at += block) parser.feed(bytes + at, std::min(block, size - at));
   return parser.finish();
 }
 
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric) {
   std::error_code status;
-  if (std::filesystem::is_directory(path, status)) throw InputError(path + ": is a directory; expected a CSV file");
+  if (std::filesystem::is_directory(path, status))
+    throw InputError(path + ": is a directory; expected a CSV file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
   Parser parser(path, numeric);

@@ -11,16 +11,18 @@
 
 namespace thermopower::gap::files {
 
-Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train, const std::vector<Recording>& held_out,
-                        const Options& options) {
+Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train,
+                        const std::vector<Recording>& held_out, const Options& options) {
   return diagnose(model, train, held_out, options, standard_catalogue());
 }
 
-std::vector<SimulatedColumn> run_simulation(const Model& model, const Recording& recording, double horizon_s) {
+std::vector<SimulatedColumn> run_simulation(const Model& model, const Recording& recording,
+                                            double horizon_s) {
   SimulationOptions options;
   options.horizon_s = horizon_s;
   std::vector<SimulatedColumn> list;
-  for (auto& one : simulate(model, recording, options, standard_catalogue())) list.push_back({one.signal, std::move(one.values)});
+  for (auto& one : simulate(model, recording, options, standard_catalogue()))
+    list.push_back({one.signal, std::move(one.values)});
   return list;
 }
 

@@ -12,9 +12,10 @@
 
 namespace thermopower::gap::files {
 
-/// @brief The diagnosis with the standard catalogue, compiled once: the templates behind it take a compiler minutes.
-Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train, const std::vector<Recording>& held_out,
-                        const Options& options);
+/// @brief The diagnosis with the standard catalogue, compiled once: the templates behind it take a compiler
+/// minutes.
+Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train,
+                        const std::vector<Recording>& held_out, const Options& options);
 
 /// @brief One simulated signal, a value per row; NaN where it could not be simulated.
 struct SimulatedColumn {

@@ -9,15 +9,15 @@ namespace thermopower::gap::files {
 
 /// @brief Unreadable or invalid input: the program ends with exit status 3 and this text on stderr.
 ///
-/// The text has the form compilers use, so that editors can jump to it: `file:line: column 'name': what is wrong; what was expected`.
-/// Parts that do not apply are left out (a missing file has no line).
+/// The text has the form compilers use, so that editors can jump to it: `file:line: column 'name': what is
+/// wrong; what was expected`. Parts that do not apply are left out (a missing file has no line).
 class InputError : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// @brief Puts `text` in single quotes for an error message: control characters and broken UTF-8 become `\xNN`, and what is
-/// longer than `limit` bytes is cut and its length told. Safe for any bytes.
+/// @brief Puts `text` in single quotes for an error message: control characters and broken UTF-8 become
+/// `\xNN`, and what is longer than `limit` bytes is cut and its length told. Safe for any bytes.
 inline std::string excerpt(const char* text, std::size_t size, std::size_t limit = 40) {
   static const char* const digits = "0123456789abcdef";
   std::string out = "'";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 //
-// thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the gap shrinks with it.
+// thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the
+// gap shrinks with it.
 
 #include "atomic_file.hpp"
 #include "engine.hpp"
@@ -98,7 +99,8 @@ private:
   std::thread thread_;
 };
 
-std::vector<gap::Recording> read_all(const std::vector<std::string>& paths, std::vector<gap::Finding>& findings) {
+std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
+                                     std::vector<gap::Finding>& findings) {
   std::vector<gap::Recording> list;
   for (const auto& path : paths) {
     files::RecordingFile file = files::read_recording(path);
@@ -113,20 +115,24 @@ void refuse_overlaps(const Arguments& arguments) {
   std::vector<std::string> taken = arguments.recordings;
   taken.insert(taken.end(), arguments.held_out.begin(), arguments.held_out.end());
   taken.push_back(arguments.model);
-  for (const auto* output : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented, &arguments.header}) {
+  for (const auto* output : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
+                             &arguments.header}) {
     if (output->empty()) continue;
     for (const auto& other : taken) {
       std::error_code error;
-      const bool special = std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
+      const bool special =
+          std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
       if (!special && (*output == other || std::filesystem::equivalent(*output, other, error))) {
-        throw UsageError("'" + *output + "' is named twice; an output must not be an input or another output");
+        throw UsageError("'" + *output +
+                         "' is named twice; an output must not be an input or another output");
       }
     }
     taken.push_back(*output);
   }
 }
 
-// The catalogue's list and the engine's `without` are two things; a misspelt id would silently remove nothing.
+// The catalogue's list and the engine's `without` are two things; a misspelt id would silently remove
+// nothing.
 void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalogue) {
   for (const auto& id : ids) {
     if (id.rfind("calibration.", 0) == 0 || catalogue.find(id) != nullptr) continue;
@@ -139,7 +145,8 @@ int diagnose(const Arguments& arguments) {
   refuse_overlaps(arguments);
   check_ids(arguments.without, catalogue);
   files::OutputFiles outputs;
-  for (const auto* path : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented, &arguments.header}) {
+  for (const auto* path : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
+                           &arguments.header}) {
     if (!path->empty()) outputs.expect(*path);
   }
   gap::Diagnosis diagnosis;
@@ -154,7 +161,8 @@ int diagnose(const Arguments& arguments) {
     options.horizon_s = arguments.horizon_s;
     options.tolerance = arguments.tolerance;
     options.without = arguments.without;
-    options.threads = arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+    options.threads =
+        arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
     options.seed = arguments.seed;
     if (held_out.empty()) {
       for (auto& recording : recordings) {
@@ -168,13 +176,16 @@ int diagnose(const Arguments& arguments) {
     diagnosis.findings.insert(diagnosis.findings.begin(), findings.begin(), findings.end());
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
-    if (!arguments.html.empty()) outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
+    if (!arguments.html.empty())
+      outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
                   files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
     }
     if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
-    if (!arguments.header.empty()) outputs.put(arguments.header, files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
+    if (!arguments.header.empty())
+      outputs.put(arguments.header,
+                  files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
     outputs.commit();
   }
   std::fputs(files::summary(diagnosis).c_str(), stdout);
@@ -191,7 +202,8 @@ int predict(const Arguments& arguments) {
   const std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
   gap::Model bare = augmented;
   bare.effects.clear();
-  outputs.put(arguments.predictions, files::predictions_csv(bare, augmented, recordings, arguments.horizon_s));
+  outputs.put(arguments.predictions,
+              files::predictions_csv(bare, augmented, recordings, arguments.horizon_s));
   outputs.commit();
   return made;
 }
@@ -203,35 +215,54 @@ std::string version() {
 }
 
 int run(int count, char** values) {
-  CLI::App app("Says where a simulated actuator and the real one part, which effect is missing, and how far the gap shrinks with it.",
-               "thermopower-gap");
+  CLI::App app(
+      "Says where a simulated actuator and the real one part, which effect is missing, and how far the gap shrinks with it.",
+      "thermopower-gap");
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
-  app.footer("Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data for any statement.");
+  app.footer(
+      "Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data for any statement.");
   Arguments arguments;
 
   CLI::App* const diagnosing = app.add_subcommand("diagnose", "find the missing effect");
   diagnosing->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
-  diagnosing->add_option("--recording", arguments.recordings, "a recording to find and fit on (CSV); may be repeated")->required();
-  diagnosing->add_option("--heldout", arguments.held_out, "a recording to judge on; without it the last 30 % of each recording");
+  diagnosing
+      ->add_option("--recording", arguments.recordings,
+                   "a recording to find and fit on (CSV); may be repeated")
+      ->required();
+  diagnosing->add_option("--heldout", arguments.held_out,
+                         "a recording to judge on; without it the last 30 % of each recording");
   diagnosing->add_option("--report", arguments.report, "write the report for machines (JSON)");
   diagnosing->add_option("--html", arguments.html, "write the report for people (one HTML page)");
   diagnosing->add_option("--predictions", arguments.predictions, "write held-out predictions (CSV)");
   diagnosing->add_option("--augmented", arguments.augmented, "write the model with what was found (JSON)");
   diagnosing->add_option("--header", arguments.header, "write the same as a C++11 header for firmware");
-  diagnosing->add_option("--without", arguments.without, "remove an effect from the catalogue; may be repeated");
-  diagnosing->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(CLI::PositiveNumber)->capture_default_str();
-  diagnosing->add_option("--tolerance", arguments.tolerance, "relative shrinkage of the gap below which nobody cares")
-      ->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  diagnosing->add_option("--threads", arguments.threads, "worker threads; 0: one per core. The result does not depend on it")
-      ->check(CLI::Range(0u, 256u))->capture_default_str();
+  diagnosing->add_option("--without", arguments.without,
+                         "remove an effect from the catalogue; may be repeated");
+  diagnosing->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  diagnosing
+      ->add_option("--tolerance", arguments.tolerance,
+                   "relative shrinkage of the gap below which nobody cares")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  diagnosing
+      ->add_option("--threads", arguments.threads,
+                   "worker threads; 0: one per core. The result does not depend on it")
+      ->check(CLI::Range(0u, 256u))
+      ->capture_default_str();
   diagnosing->add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
 
   CLI::App* const predicting = app.add_subcommand("predict", "simulate a recording with a model");
   predicting->add_option("--model", arguments.model, "a model, with effects or without (JSON)")->required();
-  predicting->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")->required();
-  predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")->required();
-  predicting->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(CLI::PositiveNumber)->capture_default_str();
+  predicting->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")
+      ->required();
+  predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")
+      ->required();
+  predicting->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
 

@@ -54,7 +54,9 @@ public:
 
   Model read(const std::string& text) {
     const Json root = parse(text);
-    if (!root.is_object()) fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" + format_id + "\"");
+    if (!root.is_object())
+      fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" +
+                   format_id + "\"");
     only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "effects"});
     if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
     if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
@@ -97,14 +99,16 @@ private:
     const auto watch = [&](int, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::object_start) keys.emplace_back();
       if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
-      if (event == Json::parse_event_t::key && !keys.empty() && !keys.back().insert(value.get<std::string>()).second && twice.empty()) {
+      if (event == Json::parse_event_t::key && !keys.empty() &&
+          !keys.back().insert(value.get<std::string>()).second && twice.empty()) {
         twice = value.get<std::string>();
       }
       return true;
     };
     try {
       Json root = Json::parse(text, watch);
-      if (!twice.empty()) fail("", "key " + excerpt(twice) + " appears twice in one object; expected it once");
+      if (!twice.empty())
+        fail("", "key " + excerpt(twice) + " appears twice in one object; expected it once");
       return root;
     } catch (const Json::parse_error& error) {
       std::string what = error.what();
@@ -145,17 +149,21 @@ private:
     const Json& value = block[key];
     if (!value.is_number()) fail(here, "is " + shown(value) + "; expected " + expected);
     const double x = value.get<double>();
-    const bool fine = std::isfinite(x) && (allowed == Allowed::any || (allowed == Allowed::positive && x > 0.0) ||
-                                           (allowed == Allowed::not_negative && x >= 0.0) || (allowed == Allowed::not_zero && x != 0.0));
+    const bool fine =
+        std::isfinite(x) &&
+        (allowed == Allowed::any || (allowed == Allowed::positive && x > 0.0) ||
+         (allowed == Allowed::not_negative && x >= 0.0) || (allowed == Allowed::not_zero && x != 0.0));
     if (!fine) fail(here, "is " + shown(value) + "; expected " + expected);
     return x;
   }
 
-  double number_or(const Json& block, const std::string& pointer, const char* key, Allowed allowed, double otherwise) const {
+  double number_or(const Json& block, const std::string& pointer, const char* key, Allowed allowed,
+                   double otherwise) const {
     return block.contains(key) ? number(block, pointer, key, allowed) : otherwise;
   }
 
-  std::string law(const Json& block, const std::string& pointer, std::initializer_list<const char*> laws) const {
+  std::string law(const Json& block, const std::string& pointer,
+                  std::initializer_list<const char*> laws) const {
     std::string expected;
     for (const char* name : laws) expected += (expected.empty() ? "\"" : " or \"") + std::string(name) + "\"";
     if (!block.contains("law")) fail(pointer + "/law", "is missing; expected " + expected);
@@ -185,14 +193,17 @@ private:
       model.current = ohmic;
       return;
     }
-    only(block, here, {"law", "slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K", "base_mA", "exponent", "minimum_V_rms"});
+    only(block, here,
+         {"law", "slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K", "base_mA", "exponent",
+          "minimum_V_rms"});
     ThesisCurrentModel thesis;
     thesis.slope_V2_mA_per_K = number(block, here, "slope_V2_mA_per_K", Allowed::any);
     thesis.slope_V1_mA_per_K = number(block, here, "slope_V1_mA_per_K", Allowed::any);
     thesis.slope_V0_mA_per_K = number(block, here, "slope_V0_mA_per_K", Allowed::any);
     thesis.base_mA = number(block, here, "base_mA", Allowed::any);
     thesis.exponent = number(block, here, "exponent", Allowed::any);
-    thesis.minimum_V_rms = number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    thesis.minimum_V_rms =
+        number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
     model.current = thesis;
   }
 
@@ -207,14 +218,17 @@ private:
       model.thermal = lumped;
       return;
     }
-    only(block, here, {"law", "cooling_per_min", "rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0", "minimum_V_rms"});
+    only(block, here,
+         {"law", "cooling_per_min", "rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0",
+          "minimum_V_rms"});
     ThesisThermalModel thesis;
     thesis.cooling_per_min = number(block, here, "cooling_per_min", Allowed::positive);
     thesis.rinv_slope_V1 = number(block, here, "rinv_slope_V1", Allowed::any);
     thesis.rinv_slope_V0 = number(block, here, "rinv_slope_V0", Allowed::any);
     thesis.rinv_offset_V1 = number(block, here, "rinv_offset_V1", Allowed::any);
     thesis.rinv_offset_V0 = number(block, here, "rinv_offset_V0", Allowed::any);
-    thesis.minimum_V_rms = number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    thesis.minimum_V_rms =
+        number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
     model.thermal = thesis;
   }
 
@@ -235,8 +249,10 @@ private:
     for (const auto& item : block.items()) {
       const std::string here = below("/effects", item.key());
       const auto& list = catalogue_.list();
-      const auto info = std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
-      if (info == list.end()) fail(here, "no such effect in the catalogue; expected an id that 'thermopower-gap effects' lists");
+      const auto info =
+          std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
+      if (info == list.end())
+        fail(here, "no such effect in the catalogue; expected an id that 'thermopower-gap effects' lists");
       object(item.value(), here);
       std::vector<std::string> names;
       for (const auto& parameter : info->parameters) names.push_back(parameter.name);
@@ -247,8 +263,9 @@ private:
         const double value =
             left_out ? *parameter.standard : number(item.value(), here, parameter.name.c_str(), Allowed::any);
         if (!(value >= parameter.lower && value <= parameter.upper)) {
-          fail(below(here, parameter.name), "is " + number_text(value) + "; expected " + number_text(parameter.lower) + " to " +
-                                                number_text(parameter.upper) + (parameter.unit == "1" ? "" : " " + parameter.unit));
+          fail(below(here, parameter.name),
+               "is " + number_text(value) + "; expected " + number_text(parameter.lower) + " to " +
+                   number_text(parameter.upper) + (parameter.unit == "1" ? "" : " " + parameter.unit));
         }
         parameters[parameter.name] = value;
       }
@@ -267,13 +284,15 @@ Model parse_model(const std::string& name, const std::string& text, const Catalo
 
 Model read_model(const std::string& path, const Catalogue& catalogue) {
   std::error_code status;
-  if (std::filesystem::is_directory(path, status)) throw InputError(path + ": is a directory; expected a model file (JSON)");
+  if (std::filesystem::is_directory(path, status))
+    throw InputError(path + ": is a directory; expected a model file (JSON)");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
   std::string text(largest_file + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file.get()));
   if (std::ferror(file.get())) throw InputError(path + ": cannot be read: " + std::strerror(errno));
-  if (text.size() > largest_file) throw InputError(path + ": larger than 1 MiB; expected a model file (JSON)");
+  if (text.size() > largest_file)
+    throw InputError(path + ": larger than 1 MiB; expected a model file (JSON)");
   if (text.empty()) throw InputError(path + ": the file is empty; expected a model file (JSON)");
   return parse_model(path, text, catalogue);
 }

@@ -9,11 +9,13 @@
 
 namespace thermopower::gap::files {
 
-/// @brief Reads a model file ("thermopower-model/1"). Strict: a key that nobody would read, a key that appears twice, a wrong type and
-/// a constant outside its range are errors, named by their JSON pointer (`/current/resistance_ohm`); syntax errors by line and column.
+/// @brief Reads a model file ("thermopower-model/1"). Strict: a key that nobody would read, a key that
+/// appears twice, a wrong type and a constant outside its range are errors, named by their JSON pointer
+/// (`/current/resistance_ohm`); syntax errors by line and column.
 ///
-/// May be left out: `name`, whole blocks, `tempco_per_K` (0) and `reference_C` (25) of the ohmic law, `minimum_V_rms` (1) of the
-/// thesis laws. Effects must be in the catalogue, with all their parameters, inside the parameters' bounds.
+/// May be left out: `name`, whole blocks, `tempco_per_K` (0) and `reference_C` (25) of the ohmic law,
+/// `minimum_V_rms` (1) of the thesis laws. Effects must be in the catalogue, with all their parameters,
+/// inside the parameters' bounds.
 /// @throws InputError
 Model read_model(const std::string& path, const Catalogue& catalogue);
 

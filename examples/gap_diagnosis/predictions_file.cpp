@@ -38,7 +38,8 @@ const Eigen::VectorXd* find(const std::vector<SimulatedColumn>& signals, const s
 
 }  // namespace
 
-std::string predictions_csv(const Model& baseline, const Model& augmented, const std::vector<Recording>& recordings, double horizon_s) {
+std::string predictions_csv(const Model& baseline, const Model& augmented,
+                            const std::vector<Recording>& recordings, double horizon_s) {
   std::vector<std::vector<SimulatedColumn>> before, after;
   std::vector<std::string> signals;  // of all recordings, in order of appearance: one header fits all rows
   std::size_t runs = 0;
@@ -48,7 +49,8 @@ std::string predictions_csv(const Model& baseline, const Model& augmented, const
     runs += recording.spans().size();
     for (const auto* simulated : {&before.back(), &after.back()}) {
       for (const auto& one : *simulated) {
-        if (std::find(signals.begin(), signals.end(), one.signal) == signals.end()) signals.push_back(one.signal);
+        if (std::find(signals.begin(), signals.end(), one.signal) == signals.end())
+          signals.push_back(one.signal);
       }
     }
   }

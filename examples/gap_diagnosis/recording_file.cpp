@@ -10,8 +10,9 @@
 namespace thermopower::gap::files {
 
 const std::vector<std::string>& known_columns() {
-  static const std::vector<std::string> names = {"t_s",         "power_param", "drive_A",   "supply_V", "ambient_C", "airspeed_mps",
-                                                 "neighbour_C", "rate_dps",    "current_A", "motor_C",  "angle_deg"};
+  static const std::vector<std::string> names = {"t_s",       "power_param",  "drive_A",     "supply_V",
+                                                 "ambient_C", "airspeed_mps", "neighbour_C", "rate_dps",
+                                                 "current_A", "motor_C",      "angle_deg"};
   return names;
 }
 
@@ -31,20 +32,27 @@ RecordingFile to_recording(CsvTable table) {
   }
   for (std::size_t i = 0; i < table.run_begin.size(); ++i) {
     const std::size_t end = i + 1 < table.run_begin.size() ? table.run_begin[i + 1] : table.rows;
-    recording.runs.push_back({static_cast<Eigen::Index>(table.run_begin[i]), static_cast<Eigen::Index>(end), table.run_labels[i]});
+    recording.runs.push_back(
+        {static_cast<Eigen::Index>(table.run_begin[i]), static_cast<Eigen::Index>(end), table.run_labels[i]});
   }
   for (const auto& name : table.ignored_text) {
     file.findings.push_back({"text_column_ignored", Severity::note, table.file, name,
                              "holds text and is no run label; it is not used"});
   }
   if (!table.ends_with_line_break) {
-    file.findings.push_back({"no_final_line_break", Severity::note, table.file, {},
-                             "the last line has no line break; all its fields are there, but if the file was cut off inside the last "
-                             "number nobody can tell"});
+    file.findings.push_back(
+        {"no_final_line_break",
+         Severity::note,
+         table.file,
+         {},
+         "the last line has no line break; all its fields are there, but if the file was cut off inside the last "
+         "number nobody can tell"});
   }
   return file;
 }
 
-RecordingFile read_recording(const std::string& path) { return to_recording(read_csv(path, known_columns())); }
+RecordingFile read_recording(const std::string& path) {
+  return to_recording(read_csv(path, known_columns()));
+}
 
 }  // namespace thermopower::gap::files

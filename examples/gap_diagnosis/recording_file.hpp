@@ -15,7 +15,8 @@ namespace thermopower::gap::files {
 /// @brief Columns whose meaning is fixed and which must be numeric; any other numeric column is a covariate.
 const std::vector<std::string>& known_columns();
 
-/// @brief A recording and what was noticed while reading it (columns left out, a file that may have been cut off).
+/// @brief A recording and what was noticed while reading it (columns left out, a file that may have been cut
+/// off).
 struct RecordingFile {
   Recording recording;
   std::vector<Finding> findings;

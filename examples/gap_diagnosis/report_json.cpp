@@ -21,9 +21,12 @@ Json interval(const Interval& ci) { return Json::array({number(ci.low), number(c
 
 const char* name_of(Severity severity) {
   switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
   }
   return "note";
 }
@@ -41,7 +44,9 @@ Json location(const Location& where) {
   Json object = {{"signal", where.signal}, {"submodel", where.submodel}, {"share", number(where.share)}};
   object["regime"] = nullptr;
   if (where.regime) {
-    object["regime"] = {{"variable", where.regime->variable}, {"from", number(where.regime->from)}, {"to", number(where.regime->to)}};
+    object["regime"] = {{"variable", where.regime->variable},
+                        {"from", number(where.regime->from)},
+                        {"to", number(where.regime->to)}};
   }
   object["evidence"] = where.evidence;
   return object;
@@ -60,7 +65,8 @@ Json score(const GapScore& gap) {
 
 Json ranked(const RankedExplanation& one) {
   Json confusable = Json::array();
-  for (const auto& other : one.confusable) confusable.push_back({{"effects", other.effects}, {"cosine", number(other.cosine)}});
+  for (const auto& other : one.confusable)
+    confusable.push_back({{"effects", other.effects}, {"cosine", number(other.cosine)}});
   return {{"effects", one.effects},
           {"probability", number(one.probability)},
           {"held_out_ratio", number(one.held_out_ratio)},
@@ -81,8 +87,9 @@ std::string report_json(const Diagnosis& diagnosis) {
   for (const auto& where : diagnosis.where) root["where"].push_back(location(where));
   root["cause"] = Json::array();
   for (const auto& cause : diagnosis.cause) {
-    root["cause"].push_back(
-        {{"effect", cause.effect}, {"probability", number(cause.probability)}, {"parameters", parameters(cause.parameters)}});
+    root["cause"].push_back({{"effect", cause.effect},
+                             {"probability", number(cause.probability)},
+                             {"parameters", parameters(cause.parameters)}});
   }
   root["alternatives"] = diagnosis.alternatives;
   root["gap"] = Json::object();
@@ -101,7 +108,8 @@ std::string report_json(const Diagnosis& diagnosis) {
   }
   root["constants"] = Json::object();
   for (const auto& constant : diagnosis.constants) {
-    root["constants"][constant.name] = {{"configured", number(constant.configured)}, {"fitted", number(constant.fitted)}};
+    root["constants"][constant.name] = {{"configured", number(constant.configured)},
+                                        {"fitted", number(constant.fitted)}};
   }
   root["ranking"] = Json::array();
   for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));

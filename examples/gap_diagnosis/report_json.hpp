@@ -10,8 +10,8 @@ namespace thermopower::gap::files {
 
 /// @brief The report for machines ("thermopower-gap-report/1", docs/reference/gap-report.md).
 ///
-/// Keys in a fixed order, numbers that read back bit by bit, NaN and infinities as null, no time stamp and no duration: the same
-/// diagnosis gives the same bytes.
+/// Keys in a fixed order, numbers that read back bit by bit, NaN and infinities as null, no time stamp and no
+/// duration: the same diagnosis gives the same bytes.
 std::string report_json(const Diagnosis& diagnosis);
 
 }  // namespace thermopower::gap::files

@@ -4,7 +4,8 @@
 
 namespace thermopower::gap::files {
 
-// Colours after Okabe and Ito, which people with any of the common colour deficiencies can tell apart; curves differ in dash, too.
+// Colours after Okabe and Ito, which people with any of the common colour deficiencies can tell apart; curves
+// differ in dash, too.
 inline constexpr const char* report_style = R"css(
 :root{--paper:#fdfdfb;--ink:#1c1e21;--soft:#62676d;--faint:#e4e4df;--card:#f4f4ef;--shade:#f3e7c4;
 --measured:#8a8f95;--baseline:#d55e00;--augmented:#0072b2;--recalibrated:#7b5aa6;--good:#00795c;--doubt:#9a6700;--bad:#b3261e;color-scheme:light dark}

@@ -54,15 +54,22 @@ std::string percent(double share) {
   return text;
 }
 
-std::string with_unit(const std::string& number, const std::string& unit) { return unit == "1" || unit.empty() ? number : number + " " + unit; }
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit == "1" || unit.empty() ? number : number + " " + unit;
+}
 
 const char* headline(Verdict verdict) {
   switch (verdict) {
-    case Verdict::no_gap: return "NO GAP";
-    case Verdict::explained: return "EXPLAINED";
-    case Verdict::ambiguous: return "AMBIGUOUS";
-    case Verdict::unexplained: return "UNEXPLAINED";
-    case Verdict::insufficient: return "TOO LITTLE DATA";
+    case Verdict::no_gap:
+      return "NO GAP";
+    case Verdict::explained:
+      return "EXPLAINED";
+    case Verdict::ambiguous:
+      return "AMBIGUOUS";
+    case Verdict::unexplained:
+      return "UNEXPLAINED";
+    case Verdict::insufficient:
+      return "TOO LITTLE DATA";
   }
   return "";
 }
@@ -70,15 +77,17 @@ const char* headline(Verdict verdict) {
 std::string gap_table(const Diagnosis& diagnosis) {
   if (diagnosis.gap.empty()) return {};
   char row[200];
-  std::snprintf(row, sizeof row, "\n  %-20s%14s%14s%14s%14s   %s\n", "RMSE, held out", "as configured", "recalibrated", "with effect",
-                "noise floor", "shrunk by [95 %]");
+  std::snprintf(row, sizeof row, "\n  %-20s%14s%14s%14s%14s   %s\n", "RMSE, held out", "as configured",
+                "recalibrated", "with effect", "noise floor", "shrunk by [95 %]");
   std::string out = row;
   for (const auto& gap : diagnosis.gap) {
     std::string shrunk = diagnosis.cause.empty()
                              ? "-"
-                             : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " + readable(100.0 * gap.ci95.high, 3) + "]";
-    std::snprintf(row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (gap.signal + " / " + gap.unit).c_str(), readable(gap.before).c_str(),
-                  readable(gap.recalibrated).c_str(), diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(),
+                             : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " +
+                                   readable(100.0 * gap.ci95.high, 3) + "]";
+    std::snprintf(row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (gap.signal + " / " + gap.unit).c_str(),
+                  readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
+                  diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(),
                   readable(gap.noise_floor).c_str());
     out += row + shrunk + "\n";
   }
@@ -94,7 +103,8 @@ std::string summary(const Diagnosis& diagnosis) {
   for (const auto& where : diagnosis.where) {
     std::string text = where.signal + ", " + where.submodel + " (" + percent(where.share) + " of the gap)";
     if (where.regime) {
-      text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " + readable(where.regime->to);
+      text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +
+              readable(where.regime->to);
     }
     out += line(first ? "where" : "", text);
     first = false;
@@ -104,8 +114,8 @@ std::string summary(const Diagnosis& diagnosis) {
     std::string text = cause.effect + " (" + percent(cause.probability) + ")";
     for (const auto& parameter : cause.parameters) {
       text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
-              with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) + ", " +
-              readable(parameter.ci95.high) + "]";
+              with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
+              ", " + readable(parameter.ci95.high) + "]";
     }
     out += line(first ? "which" : "", text);
     first = false;
@@ -114,7 +124,8 @@ std::string summary(const Diagnosis& diagnosis) {
   for (const auto& one : diagnosis.alternatives) others += (others.empty() ? "" : "; ") + joined(one);
   if (!others.empty()) out += line("or", others + " (this recording cannot tell them apart)");
   out += gap_table(diagnosis);
-  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty() || !diagnosis.findings.empty()) out += "\n";
+  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty() || !diagnosis.findings.empty())
+    out += "\n";
   if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
   for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
   std::vector<std::string> told;  // the same fault in several recordings is told once
@@ -122,14 +133,16 @@ std::string summary(const Diagnosis& diagnosis) {
     if (finding.severity == Severity::note) continue;
     if (std::find(told.begin(), told.end(), finding.column + finding.message) != told.end()) continue;
     told.push_back(finding.column + finding.message);
-    out += line("data", finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) + ": " + finding.message);
+    out += line("data", finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) +
+                            ": " + finding.message);
   }
   return out;
 }
 
 std::string one_sentence(const Diagnosis& diagnosis) {
   std::string out = std::string("verdict ") + to_string(diagnosis.verdict);
-  for (const auto& cause : diagnosis.cause) out += (&cause == &diagnosis.cause.front() ? ", " : " + ") + cause.effect;
+  for (const auto& cause : diagnosis.cause)
+    out += (&cause == &diagnosis.cause.front() ? ", " : " + ") + cause.effect;
   return out;
 }
 
@@ -142,8 +155,10 @@ std::string catalogue_text(const std::vector<EffectInfo>& effects) {
     bool first = true;
     for (const auto& parameter : effect.parameters) {
       out += std::string(first ? "    parameters  " : "                ") + parameter.name + " in " +
-             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " + readable(parameter.upper) +
-             (parameter.standard ? ", " + readable(*parameter.standard) + " where left out" : std::string()) + "\n";
+             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " +
+             readable(parameter.upper) +
+             (parameter.standard ? ", " + readable(*parameter.standard) + " where left out" : std::string()) +
+             "\n";
       first = false;
     }
     std::string needs;
@@ -151,9 +166,10 @@ std::string catalogue_text(const std::vector<EffectInfo>& effects) {
     if (!needs.empty()) out += "    needs       " + wrapped(needs, 16) + "\n";
     out += "\n";
   }
-  out += "calibration.<constant>\n    a constant of the model itself is off by more than its slack: resistance, tempco, base, slope,\n"
-         "    heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant; as a factor on the\n"
-         "    configured value.\n";
+  out +=
+      "calibration.<constant>\n    a constant of the model itself is off by more than its slack: resistance, tempco, base, slope,\n"
+      "    heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant; as a factor on the\n"
+      "    configured value.\n";
   return out;
 }
 

@@ -10,8 +10,8 @@
 
 namespace thermopower::gap::files {
 
-/// @brief What a person reads in ten seconds: the verdict, where, which and how sure, what it cannot be told apart from, how far the
-/// gap shrinks, and the next experiment. Plain text of at most 100 columns.
+/// @brief What a person reads in ten seconds: the verdict, where, which and how sure, what it cannot be told
+/// apart from, how far the gap shrinks, and the next experiment. Plain text of at most 100 columns.
 std::string summary(const Diagnosis& diagnosis);
 
 /// @brief Verdict and causes in one line, for places with room for no more.

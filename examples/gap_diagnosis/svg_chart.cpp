@@ -112,32 +112,36 @@ private:
     if (!(chart_.shade_to > chart_.shade_from)) return;
     const double from = std::max(px(chart_.shade_from), left_), to = std::min(px(chart_.shade_to), right_);
     if (to - from < 1.0) return;
-    out += "<rect class=\"shade\" x=\"" + at(from) + "\" y=\"" + at(top_) + "\" width=\"" + at(to - from) + "\" height=\"" +
-           at(bottom_ - top_) + "\"/>\n";
+    out += "<rect class=\"shade\" x=\"" + at(from) + "\" y=\"" + at(top_) + "\" width=\"" + at(to - from) +
+           "\" height=\"" + at(bottom_ - top_) + "\"/>\n";
   }
 
   void grid(std::string& out) const {
     const double y_step = tick_step(y_.to - y_.from, 5);
     for (double y = std::ceil(y_.from / y_step) * y_step; y <= y_.to + 1e-9 * y_step; y += y_step) {
-      out += "<line class=\"grid\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(py(y)) + "\" y2=\"" + at(py(y)) +
-             "\"/><text class=\"tick\" text-anchor=\"end\" x=\"" + at(left_ - 8) + "\" y=\"" + at(py(y) + 4) + "\">" +
-             tick_text(y, y_step) + "</text>\n";
+      out += "<line class=\"grid\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(py(y)) +
+             "\" y2=\"" + at(py(y)) + "\"/><text class=\"tick\" text-anchor=\"end\" x=\"" + at(left_ - 8) +
+             "\" y=\"" + at(py(y) + 4) + "\">" + tick_text(y, y_step) + "</text>\n";
     }
     const double x_step = tick_step(x_.to - x_.from, 8);
     for (double x = std::ceil(x_.from / x_step) * x_step; x <= x_.to + 1e-9 * x_step; x += x_step) {
-      out += "<line class=\"mark\" x1=\"" + at(px(x)) + "\" x2=\"" + at(px(x)) + "\" y1=\"" + at(bottom_) + "\" y2=\"" + at(bottom_ + 5) +
-             "\"/><text class=\"tick\" text-anchor=\"middle\" x=\"" + at(px(x)) + "\" y=\"" + at(bottom_ + 19) + "\">" +
-             tick_text(x, x_step) + "</text>\n";
+      out += "<line class=\"mark\" x1=\"" + at(px(x)) + "\" x2=\"" + at(px(x)) + "\" y1=\"" + at(bottom_) +
+             "\" y2=\"" + at(bottom_ + 5) + "\"/><text class=\"tick\" text-anchor=\"middle\" x=\"" +
+             at(px(x)) + "\" y=\"" + at(bottom_ + 19) + "\">" + tick_text(x, x_step) + "</text>\n";
     }
     if (chart_.zero_line) {
-      out += "<line class=\"axis\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(py(0.0)) + "\" y2=\"" + at(py(0.0)) + "\"/>\n";
+      out += "<line class=\"axis\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(py(0.0)) +
+             "\" y2=\"" + at(py(0.0)) + "\"/>\n";
     }
-    out += "<line class=\"axis\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(bottom_) + "\" y2=\"" + at(bottom_) + "\"/>\n";
-    out += "<text class=\"label\" text-anchor=\"end\" x=\"" + at(right_) + "\" y=\"" + at(bottom_ + 36) + "\">" + escaped(chart_.x_label) +
-           "</text>\n<text class=\"label\" x=\"2\" y=\"13\">" + escaped(chart_.y_label) + "</text>\n";
+    out += "<line class=\"axis\" x1=\"" + at(left_) + "\" x2=\"" + at(right_) + "\" y1=\"" + at(bottom_) +
+           "\" y2=\"" + at(bottom_) + "\"/>\n";
+    out += "<text class=\"label\" text-anchor=\"end\" x=\"" + at(right_) + "\" y=\"" + at(bottom_ + 36) +
+           "\">" + escaped(chart_.x_label) + "</text>\n<text class=\"label\" x=\"2\" y=\"13\">" +
+           escaped(chart_.y_label) + "</text>\n";
   }
 
-  // Per pixel column the first, least, greatest and last value: the drawn line cannot be told from the full one.
+  // Per pixel column the first, least, greatest and last value: the drawn line cannot be told from the full
+  // one.
   void line(std::string& out, const Series& series) const {
     const std::size_t n = std::min(series.x.size(), series.y.size());
     const int columns = static_cast<int>(right_ - left_) / 2;
@@ -187,8 +191,8 @@ private:
     out += "<g class=\"bars " + series.role + "\">";
     for (std::size_t i = 0; i < series.x.size() && i < series.low.size() && i < series.high.size(); ++i) {
       if (!std::isfinite(series.low[i]) || !std::isfinite(series.high[i])) continue;
-      out += "<line x1=\"" + at(px(series.x[i])) + "\" x2=\"" + at(px(series.x[i])) + "\" y1=\"" + at(py(series.low[i])) + "\" y2=\"" +
-             at(py(series.high[i])) + "\"/>";
+      out += "<line x1=\"" + at(px(series.x[i])) + "\" x2=\"" + at(px(series.x[i])) + "\" y1=\"" +
+             at(py(series.low[i])) + "\" y2=\"" + at(py(series.high[i])) + "\"/>";
     }
     out += "</g>\n";
   }
@@ -201,9 +205,11 @@ private:
       out += "<text class=\"key\" x=\"" + at(x) + "\" y=\"13\">" + escaped(series->label) + "</text>";
       x -= 28.0;
       if (series->style == Series::Style::line) {
-        out += "<line class=\"curve " + series->role + "\" x1=\"" + at(x) + "\" x2=\"" + at(x + 22) + "\" y1=\"9\" y2=\"9\"/>\n";
+        out += "<line class=\"curve " + series->role + "\" x1=\"" + at(x) + "\" x2=\"" + at(x + 22) +
+               "\" y1=\"9\" y2=\"9\"/>\n";
       } else {
-        out += "<g class=\"dots " + series->role + "\"><circle cx=\"" + at(x + 14) + "\" cy=\"9\" r=\"3.2\"/></g>\n";
+        out += "<g class=\"dots " + series->role + "\"><circle cx=\"" + at(x + 14) +
+               "\" cy=\"9\" r=\"3.2\"/></g>\n";
       }
       x -= 16.0;
     }
@@ -223,7 +229,11 @@ std::string escaped(const std::string& text) {
   out.reserve(text.size() + 16);
   for (std::size_t i = 0; i < text.size();) {
     const unsigned char byte = static_cast<unsigned char>(text[i]);
-    std::size_t length = byte < 0x80 ? 1 : byte >= 0xc2 && byte < 0xe0 ? 2 : byte >= 0xe0 && byte < 0xf0 ? 3 : byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
+    std::size_t length = byte < 0x80                   ? 1
+                         : byte >= 0xc2 && byte < 0xe0 ? 2
+                         : byte >= 0xe0 && byte < 0xf0 ? 3
+                         : byte >= 0xf0 && byte < 0xf5 ? 4
+                                                       : 0;
     for (std::size_t k = 1; k < length; ++k) {
       if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) length = 0;
     }
@@ -257,7 +267,8 @@ std::string readable(double value, int digits) {
   if (size != 0.0 && (size < 1e-3 || size >= 1e5)) {
     std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
   } else {
-    const int decimals = size == 0.0 ? 0 : std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+    const int decimals =
+        size == 0.0 ? 0 : std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
     std::snprintf(text, sizeof text, "%.*f", decimals, value);
   }
   return text;

@@ -22,26 +22,30 @@ struct Series {
 
 /// @brief A picture: axes with units, curves, and a shaded range.
 struct Chart {
-  std::string title;        ///< what it shows, one phrase
-  std::string x_label;      ///< with unit: "time / s"
-  std::string y_label;      ///< with unit: "motor temperature / degC"
+  std::string title;    ///< what it shows, one phrase
+  std::string x_label;  ///< with unit: "time / s"
+  std::string y_label;  ///< with unit: "motor temperature / degC"
   std::vector<Series> series;
-  double shade_from = 0.0;  ///< range of x that is shaded (where the gap lies); none if `shade_to` is not larger
-  double shade_to = 0.0;    ///< upper end of that range
-  bool zero_line = false;   ///< draws y = 0, for quantities whose ideal is none
-  int width = 860;          ///< in CSS pixels; the picture scales with the page
-  int height = 300;         ///< in CSS pixels
+  double shade_from =
+      0.0;  ///< range of x that is shaded (where the gap lies); none if `shade_to` is not larger
+  double shade_to = 0.0;   ///< upper end of that range
+  bool zero_line = false;  ///< draws y = 0, for quantities whose ideal is none
+  int width = 860;         ///< in CSS pixels; the picture scales with the page
+  int height = 300;        ///< in CSS pixels
 };
 
-/// @brief The chart as one `<svg>` element. Colours come from CSS classes of the page, so that it follows light and dark.
+/// @brief The chart as one `<svg>` element. Colours come from CSS classes of the page, so that it follows
+/// light and dark.
 ///
-/// Lines keep at most about 1500 points: per column of the picture the first, least, greatest and last value, so that no peak is lost.
+/// Lines keep at most about 1500 points: per column of the picture the first, least, greatest and last value,
+/// so that no peak is lost.
 std::string to_svg(const Chart& chart);
 
 /// @brief Text with `& < > "` escaped and bytes that are no UTF-8 replaced, for HTML and SVG.
 std::string escaped(const std::string& text);
 
-/// @brief A number for people: `digits` significant digits, no exponent between 0.001 and 99999, a dash for NaN.
+/// @brief A number for people: `digits` significant digits, no exponent between 0.001 and 99999, a dash for
+/// NaN.
 std::string readable(double value, int digits = 3);
 
 }  // namespace thermopower::gap::files

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each length is generated in place,
-// written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one least-squares fit of the same residuals,
-// with the same derivatives, by this library and by Ceres.
+// Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each
+// length is generated in place as a motor in one run, as a motor in runs of 3000 rows, and as a moving axis;
+// written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
+// least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
 #include "engine.hpp"
 #include "recording_file.hpp"
@@ -33,7 +34,9 @@ using namespace thermopower::gap;
 
 namespace {
 
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 long peak_MB() {
   rusage usage{};
@@ -50,20 +53,27 @@ Model motor() {
   return model;
 }
 
-/// A motor that radiates, under power steps, logged at 10 Hz with noise, a 0.1 degC quantum and columns that mean nothing.
-Recording motor_recording(Eigen::Index rows) {
+/// A motor that radiates, under power steps, logged at 10 Hz with noise, a 0.1 degC quantum and columns that
+/// mean nothing. Every run of `run_rows` begins cold.
+Recording motor_recording(Eigen::Index rows, Eigen::Index run_rows) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
   Recording r;
   r.name = "generated";
   r.t_s.resize(rows);
-  Eigen::VectorXd power(rows), current(rows), motor_C(rows), ambient(rows), supply(rows), airspeed(rows), neighbour(rows);
+  Eigen::VectorXd power(rows), current(rows), motor_C(rows), ambient(rows), supply(rows), airspeed(rows),
+      neighbour(rows);
   double temperature = 24.0, level = 200.0;
   const double interval = 0.1;
   for (Eigen::Index i = 0; i < rows; ++i) {
-    if (i % 2500 == 0) level = random() % 4 == 0 ? 0.0 : 25.0 * static_cast<double>(1 + random() % 10);
+    if (i % run_rows == 0) {
+      temperature = 24.0;
+      r.runs.push_back({i, std::min(rows, i + run_rows), "r" + std::to_string(i / run_rows)});
+    }
+    if (i % 500 == 0) level = random() % 4 == 0 ? 0.0 : 25.0 * static_cast<double>(1 + random() % 10);
     const double air = 23.0 + std::sin(1e-4 * static_cast<double>(i));
-    const double v = 12.0 * std::sqrt(level / 255.0), ohm = 8.0 * (1.0 + 0.00393 * (temperature - 25.0)), amps = v / ohm;
+    const double v = 12.0 * std::sqrt(level / 255.0), ohm = 8.0 * (1.0 + 0.00393 * (temperature - 25.0)),
+                 amps = v / ohm;
     r.t_s[i] = interval * static_cast<double>(i);
     power[i] = level;
     current[i] = std::round(1e3 * (amps + 0.003 * noise(random))) / 1e3;
@@ -86,21 +96,64 @@ Recording motor_recording(Eigen::Index rows) {
   return r;
 }
 
+Model axis() {
+  Model model;
+  model.name = "generated axis";
+  model.axis = RigidAxisModel{1e-3, 2e-3, 0.1};
+  return model;
+}
+
+/// An axis with dry friction, driven by a few frequencies, logged at 100 Hz with noise.
+Recording axis_recording(Eigen::Index rows) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise;
+  Recording r;
+  r.name = "generated";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows), motor_C(rows);
+  double angle_rad = 0.0, rate_rad_per_s = 0.0;
+  const double interval = 0.01, degrees = 57.29577951308232;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t_s = r.t_s[i] = interval * static_cast<double>(i);
+    drive[i] = 0.1 * (std::sin(1.1 * t_s) + std::sin(2.9 * t_s + 1.0) + std::sin(7.3 * t_s + 2.0)) -
+               0.05 * angle_rad;
+    drive[i] = std::round(1e5 * drive[i]) / 1e5;
+    angle[i] = angle_rad * degrees + 0.02 * noise(random);
+    rate[i] = rate_rad_per_s * degrees + 0.15 * noise(random);
+    motor_C[i] = 30.0 + 5.0 * std::sin(1e-3 * t_s);
+    for (int step = 0; step < 50; ++step) {
+      const double torque = 0.1 * drive[i] - 2e-3 * rate_rad_per_s - 4e-3 * std::tanh(rate_rad_per_s / 0.01);
+      rate_rad_per_s += interval / 50.0 * torque / 1e-3;
+      angle_rad += interval / 50.0 * rate_rad_per_s;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  r.set("motor_C", motor_C);
+  return r;
+}
+
 void write_csv(const Recording& r, const std::string& path) {
   std::FILE* const file = std::fopen(path.c_str(), "w");
   if (file == nullptr) std::exit(1);
-  std::fputs("t_s", file);
+  std::fputs(r.runs.size() > 1 ? "run,t_s" : "t_s", file);
   for (const auto& column : r.columns) std::fprintf(file, ",%s", column.name.c_str());
+  std::size_t run = 0;
   for (Eigen::Index i = 0; i < r.rows(); ++i) {
-    std::fprintf(file, "\n%.10g", r.t_s[i]);
+    if (run + 1 < r.runs.size() && i == r.runs[run].end) ++run;
+    std::fputc('\n', file);
+    if (r.runs.size() > 1) std::fprintf(file, "%s,", r.runs[run].label.c_str());
+    std::fprintf(file, "%.10g", r.t_s[i]);
     for (const auto& column : r.columns) std::fprintf(file, ",%.6g", column.values[i]);
   }
   std::fputs("\n", file);
   std::fclose(file);
 }
 
-/// One length, in a process of its own so that its peak memory is its own.
-void measure(const std::string& path, Eigen::Index rows, unsigned threads) {
+/// One recording, in a process of its own so that its peak memory is its own.
+void measure(const char* what, const Model& model, const std::string& path, Eigen::Index rows,
+             unsigned threads) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child != 0) {
@@ -114,9 +167,11 @@ void measure(const std::string& path, Eigen::Index rows, unsigned threads) {
   recording = Recording();
   Options options;
   options.threads = threads;
-  const Diagnosis diagnosis = files::run_diagnosis(motor(), {train}, {held_out}, options);
+  const Diagnosis diagnosis = files::run_diagnosis(model, {train}, {held_out}, options);
   const double end = now_s();
-  std::printf("%9td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(), read - begin);
+  std::printf("%-13s %8td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", what,
+              static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(),
+              read - begin);
   for (const auto& stage : diagnosis.timings) std::printf(", %s %.2f", stage.stage.c_str(), stage.seconds);
   std::printf(" (%s", to_string(diagnosis.verdict));
   for (const auto& cause : diagnosis.cause) std::printf(" %s", cause.effect.c_str());
@@ -126,10 +181,12 @@ void measure(const std::string& path, Eigen::Index rows, unsigned threads) {
 }
 
 #ifdef THERMOPOWER_HAS_CERES
-/// The residuals of a fit problem and their derivatives, as Ceres asks for them: explanation's coordinates, then the start.
+/// The residuals of a fit problem and their derivatives, as Ceres asks for them: explanation's coordinates,
+/// then the start.
 class SameResiduals : public ceres::CostFunction {
 public:
-  SameResiduals(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list, int count)
+  SameResiduals(const FitProblem& problem, const Explanation& explanation,
+                const std::vector<Coordinate>& list, int count)
       : problem_(problem), explanation_(explanation), list_(list) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(list.size()));
     mutable_parameter_block_sizes()->push_back(2);
@@ -140,12 +197,16 @@ public:
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(parameters[0], n);
     const std::vector<Start> starts{Start(parameters[1][0], parameters[1][1])};
-    problem_.evaluate(explanation_, list_, at, starts, jacobians != nullptr, [&](std::size_t, const FitProblem::Residuals& r) {
-      Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = r.value;
-      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      if (jacobians != nullptr && jacobians[0] != nullptr) Eigen::Map<RowMajor>(jacobians[0], num_residuals(), n) = r.jacobian.leftCols(n);
-      if (jacobians != nullptr && jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], num_residuals(), 2) = r.jacobian.rightCols(2);
-    });
+    problem_.evaluate(explanation_, list_, at, starts, jacobians != nullptr,
+                      [&](std::size_t, const FitProblem::Residuals& r) {
+                        Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = r.value;
+                        using RowMajor =
+                            Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+                        if (jacobians != nullptr && jacobians[0] != nullptr)
+                          Eigen::Map<RowMajor>(jacobians[0], num_residuals(), n) = r.jacobian.leftCols(n);
+                        if (jacobians != nullptr && jacobians[1] != nullptr)
+                          Eigen::Map<RowMajor>(jacobians[1], num_residuals(), 2) = r.jacobian.rightCols(2);
+                      });
     return true;
   }
 
@@ -158,7 +219,7 @@ private:
 
 void compare_solvers() {
   const Model model = motor();
-  const Inputs inputs = prepare(model, motor_recording(20000));
+  const Inputs inputs = prepare(model, motor_recording(20000, 20000));
   FitProblem problem;
   problem.model = &model;
   problem.catalogue = &standard_catalogue();
@@ -179,14 +240,17 @@ void compare_solvers() {
   Fitter fitter(problem, explanation, list);
   const FitResult ours = fitter.minimise(from);
   const double ours_s = now_s() - begin;
-  std::printf("\none fit, %td residuals, %zu coordinates and a start:\n  ours   %.3f s, %d iterations, chi^2 %.3f, radiation %.4g m^2\n",
-              static_cast<std::ptrdiff_t>(ours.samples), list.size(), ours_s, ours.iterations, ours.chi2, ours.at[ours.at.size() - 1]);
+  std::printf("\none fit, %td residuals, %zu coordinates and a start:\n",
+              static_cast<std::ptrdiff_t>(ours.samples), list.size());
+  std::printf("  ours   %.3f s, %d iterations, chi^2 %.3f, radiation %.4g m^2\n", ours_s, ours.iterations,
+              ours.chi2, ours.at[ours.at.size() - 1]);
 #ifdef THERMOPOWER_HAS_CERES
   begin = now_s();
   std::vector<double> at(from.data(), from.data() + from.size());
   double start[2] = {0.0, 0.0};
   ceres::Problem same;
-  same.AddResidualBlock(new SameResiduals(problem, explanation, list, static_cast<int>(ours.samples)), nullptr, at.data(), start);
+  same.AddResidualBlock(new SameResiduals(problem, explanation, list, static_cast<int>(ours.samples)),
+                        nullptr, at.data(), start);
   const Start weight = problem.start_weight(segment);
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(from.size(), from.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -195,7 +259,8 @@ void compare_solvers() {
     same.SetParameterLowerBound(at.data(), static_cast<int>(i), list[i].lower);
     same.SetParameterUpperBound(at.data(), static_cast<int>(i), list[i].upper);
   }
-  same.AddResidualBlock(new ceres::NormalPrior(prior, Eigen::VectorXd::Zero(from.size())), nullptr, at.data());
+  same.AddResidualBlock(new ceres::NormalPrior(prior, Eigen::VectorXd::Zero(from.size())), nullptr,
+                        at.data());
   Eigen::MatrixXd start_prior = weight.asDiagonal();
   same.AddResidualBlock(new ceres::NormalPrior(start_prior, Eigen::VectorXd::Zero(2)), nullptr, start);
   ceres::Solver::Options options;
@@ -207,10 +272,12 @@ void compare_solvers() {
   const double theirs_s = now_s() - begin;
   const std::vector<Start> starts{Start(start[0], start[1])};
   double chi2 = 0.0;
-  problem.evaluate(explanation, list, Eigen::Map<const Eigen::VectorXd>(at.data(), from.size()), starts, false,
+  problem.evaluate(explanation, list, Eigen::Map<const Eigen::VectorXd>(at.data(), from.size()), starts,
+                   false,
                    [&](std::size_t, const FitProblem::Residuals& r) { chi2 += r.value.squaredNorm(); });
-  std::printf("  Ceres  %.3f s, %zu iterations, chi^2 %.3f, radiation %.4g m^2\n  Ceres takes %.2f times as long\n", theirs_s, summary.iterations.size(), chi2,
-              at.back(), theirs_s / ours_s);
+  std::printf("  Ceres  %.3f s, %zu iterations, chi^2 %.3f, radiation %.4g m^2\n", theirs_s,
+              summary.iterations.size(), chi2, at.back());
+  std::printf("  Ceres takes %.2f times as long\n", theirs_s / ours_s);
 #else
   std::printf("  Ceres  not found, not compared\n");
 #endif
@@ -223,9 +290,14 @@ int main(int count, char** values) {
   for (int i = 1; i < count; ++i) lengths.push_back(std::atol(values[i]));
   if (lengths.empty()) lengths = {100000, 1000000};
   const std::string path = (std::filesystem::temp_directory_path() / "thermopower_gap_speed.csv").string();
+  const auto both = [&](const char* what, const Model& model, const Recording& recording) {
+    write_csv(recording, path);
+    for (const unsigned threads : {1u, 2u}) measure(what, model, path, recording.rows(), threads);
+  };
   for (const Eigen::Index rows : lengths) {
-    write_csv(motor_recording(rows), path);
-    for (const unsigned threads : {1u, 2u}) measure(path, rows, threads);
+    both("motor", motor(), motor_recording(rows, rows));
+    both("motor in runs", motor(), motor_recording(rows, 3000));
+    both("axis", axis(), axis_recording(rows));
   }
   std::filesystem::remove(path);
   compare_solvers();

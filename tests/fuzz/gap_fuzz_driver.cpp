@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Runs a fuzz target of the gap diagnosis on mutated inputs, for builds without libFuzzer: <target> [seconds] [seed]
+// Runs a fuzz target of the gap diagnosis on mutated inputs, for builds without libFuzzer: <target> [seconds]
+// [seed]
 
 #include <algorithm>
 #include <chrono>
@@ -22,21 +23,34 @@ std::vector<std::string> fuzz_pieces();
 int main(int count, char** values) {
   const double seconds = count > 1 ? std::atof(values[1]) : 4.0;
   std::mt19937 random(count > 2 ? static_cast<unsigned>(std::strtoul(values[2], nullptr, 10)) : 1u);
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % std::max<std::size_t>(n, 1); };
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(random()) % std::max<std::size_t>(n, 1);
+  };
   const std::vector<std::string> seeds = fuzz_seeds(), pieces = fuzz_pieces();
   const auto start = std::chrono::steady_clock::now();
   unsigned long runs = 0;
   // A fixed number of inputs at least, so that a slow machine checks something too.
-  while (runs < 500 || std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
+  while (runs < 500 ||
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
     std::string input = seeds[below(seeds.size())];
     for (std::size_t changes = below(6); changes > 0; --changes) {
       const std::size_t at = below(input.size() + 1);
       switch (below(5)) {
-        case 0: input.insert(at, pieces[below(pieces.size())]); break;
-        case 1: input.erase(at, below(12)); break;
-        case 2: if (at < input.size()) input[at] = static_cast<char>(random()); break;
-        case 3: input.resize(at); break;
-        default: input.insert(at, input.substr(below(input.size()), below(40))); break;
+        case 0:
+          input.insert(at, pieces[below(pieces.size())]);
+          break;
+        case 1:
+          input.erase(at, below(12));
+          break;
+        case 2:
+          if (at < input.size()) input[at] = static_cast<char>(random());
+          break;
+        case 3:
+          input.resize(at);
+          break;
+        default:
+          input.insert(at, input.substr(below(input.size()), below(40)));
+          break;
       }
     }
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());

@@ -33,9 +33,9 @@ struct Candidate {
   FitResult fit;                 ///< on training data, in the coordinates of `list`
   SignalSums train;              ///< residuals of the fit where it was fitted
   SignalSums held_out;           ///< and where it was not; empty until somebody looks
-  double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
-  double probability = 0.0;  ///< among the candidates weighed together, 0..1
-  bool on_bounds = false;  ///< a cause ended on the bounds of its range, and is none
+  double deviance = 0.0;         ///< twice the negative log evidence, without the shared constant
+  double probability = 0.0;      ///< among the candidates weighed together, 0..1
+  bool on_bounds = false;        ///< a cause ended on the bounds of its range, and is none
 };
 
 /// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
@@ -178,9 +178,9 @@ public:
   }
 
 private:
-  /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there, and
-  /// begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit that
-  /// ended shortly before it begins once more there.
+  /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
+  /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
+  /// that ended shortly before it begins once more there.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
     Eigen::VectorXd again = candidate.fit.at;
     bool trapped = false;

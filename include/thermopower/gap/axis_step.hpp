@@ -20,11 +20,12 @@ struct AxisState {
 /// Integrates the axis under a constant drive, with dry friction.
 ///
 /// Where the equations are smooth the classical Runge-Kutta rule integrates them, halving its step where the
-/// acceleration bends. Friction that turns over within a transition is smooth but stiff near standstill: there
-/// the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length. Friction
-/// without a transition goes by events: at a zero crossing of the rate the step is cut; the axis sticks while
-/// friction holds the other torques, else it leaves with friction reversed. With an automatic-differentiation
-/// scalar the cut's position is differentiated too, so derivatives are exact through reversals.
+/// acceleration bends. Friction that turns over within a transition is smooth but stiff near standstill:
+/// there the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length.
+/// Friction without a transition goes by events: at a zero crossing of the rate the step is cut; the axis
+/// sticks while friction holds the other torques, else it leaves with friction reversed. With an
+/// automatic-differentiation scalar the cut's position is differentiated too, so derivatives are exact
+/// through reversals.
 template <class Scalar>
 class AxisStep {
 public:
@@ -99,8 +100,8 @@ private:
 
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
   template <bool compliant>
-  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction,
-             Slope& rate, Scalar* stiffness = nullptr) const {
+  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction, Slope& rate,
+             Scalar* stiffness = nullptr) const {
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
     } else {
@@ -139,8 +140,7 @@ private:
   /// from a straight line, as a rate.
   template <bool compliant>
   AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
-                                const Scalar& drive_Nm, int direction, const Slope& k1,
-                                double& bend) const {
+                                const Scalar& drive_Nm, int direction, const Slope& k1, double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
     Slope k2, k3, k4;
@@ -213,8 +213,7 @@ private:
         return;
       }
       Scalar cut_s = left_s * (before / (before - after));
-      AxisState<Scalar> at_cut =
-          runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
+      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
       Slope there;
       slope<compliant>(at_cut, t_s, drive_Nm, direction, there);
       if (value_of(there.rate) * direction < 0.0) {

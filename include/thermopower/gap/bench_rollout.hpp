@@ -282,8 +282,8 @@ private:
     const Scalar share = shape.winding_share, rest = 1.0 - shape.winding_share;
     const Scalar rise_K_per_J = storage_K_per_J(state);
     const Scalar flow_per_s = coupling_W_per_K_ * rise_K_per_J;
-    const Scalar loss_per_s = instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J)
-                                               : instance_.cooling_per_s;
+    const Scalar loss_per_s =
+        instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J) : instance_.cooling_per_s;
     ExchangeStep<Scalar> linear(flow_per_s / share, flow_per_s / rest, loss_per_s / rest);
     using Pair = typename ExchangeStep<Scalar>::Pair;
     double done_s = 0.0, h_s = dt_s;
@@ -297,8 +297,8 @@ private:
       reached.charge_Ah += first.charge * h_s;
       const Slope last = slope(row, t_s + done_s + h_s, reached);
       const Pair known = linear.exchanged(moved);
-      const Pair correction = linear.corrected({last.winding - first.winding - known.winding,
-                                                last.surface - first.surface - known.surface});
+      const Pair correction = linear.corrected(
+          {last.winding - first.winding - known.winding, last.surface - first.surface - known.surface});
       const double moved_K = std::abs(value_of(correction.winding)) + std::abs(value_of(correction.surface));
       if (moved_K > enough_K && h_s > shortest_s) {
         h_s *= 0.5;

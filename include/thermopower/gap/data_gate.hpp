@@ -9,8 +9,9 @@
 
 namespace thermopower::gap {
 
-/// What is suspicious about a recording before any physics of the effects. Findings never change a number of the diagnosis; they
-/// tell its reader what to mend first. In a fixed order: stamps, then channel by channel, then channels against each other.
+/// What is suspicious about a recording before any physics of the effects. Findings never change a number of
+/// the diagnosis; they tell its reader what to mend first. In a fixed order: stamps, then channel by channel,
+/// then channels against each other.
 ///
 /// | code | what |
 /// | --- | --- |
@@ -22,10 +23,12 @@ namespace thermopower::gap {
 /// | `wrapped_channel` | jumps by a turn, or by 65536 steps |
 /// | `outliers` | isolated spikes |
 /// | `quantum` | steps that limit what any model can score |
-/// | `wrong_unit`, `wrong_sign` | kelvin, milliamperes, radians, millivolts, a duty of 0..1; a channel upside down |
+/// | `wrong_unit`, `wrong_sign` | kelvin, milliamperes, radians, millivolts, a duty of 0..1; a channel upside
+/// down |
 /// | `clock_shift` | an input stamped by another clock than the output |
 ///
-/// @param recording with at least one row; need not satisfy Recording::validate(), so that broken stamps can be described: then
+/// @param recording with at least one row; need not satisfy Recording::validate(), so that broken stamps can
+///   be described: then
 ///        only stamps are looked at
 /// @param model the simulation under test, for what a channel should look like
 inline std::vector<Finding> check_data(const Recording& recording, const Model& model) {

@@ -70,13 +70,15 @@ private:
     std::vector<Candidate> candidates;
   };
 
-  /// Whether the model, its constants within their slack, scores what the noise allows on the data in full. The
-  /// search looks at averages of many rows: what shows there may be too small for anybody to care. And training
-  /// data over a narrow range leave constants open that the held-out data ask for: what fits both will do.
+  /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
+  /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
+  /// training data over a narrow range leave constants open that the held-out data ask for: what fits both
+  /// will do.
   bool holds(const Attempt& attempt) {
     const Candidate& empty = attempt.candidates.front();
     if (worst_level(empty) > 8.0) return false;
-    if (holds(augmented(model_, empty.explanation, empty.list, empty.fit.at), held_out_inputs_, attempt.problem))
+    if (holds(augmented(model_, empty.explanation, empty.list, empty.fit.at), held_out_inputs_,
+              attempt.problem))
       return true;
     std::vector<Inputs> all = train_inputs_;
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());

@@ -115,21 +115,21 @@ struct SignalSeries {
 
 /// The missing physical quantity itself (watts, newton metres, volts) against the variable that orders it.
 struct MissingQuantity {
-  std::string signal;    ///< the signal it was inferred from
-  std::string quantity;  ///< `missing heat`, `missing torque`, `missing voltage`, ...
-  std::string unit;      ///< W, N m, V, ...
-  std::string variable;  ///< abscissa, such as `rise_K` or `rate_rad_per_s`
+  std::string signal;         ///< the signal it was inferred from
+  std::string quantity;       ///< `missing heat`, `missing torque`, `missing voltage`, ...
+  std::string unit;           ///< W, N m, V, ...
+  std::string variable;       ///< abscissa, such as `rise_K` or `rate_rad_per_s`
   std::string variable_unit;  ///< unit of the abscissa
-  Eigen::VectorXd x;       ///< abscissa of the binned samples
-  Eigen::VectorXd value;   ///< missing quantity there
-  Eigen::VectorXd spread;  ///< its standard error
-  Eigen::VectorXd effect;  ///< what the chosen causes supply there; empty where there are none
+  Eigen::VectorXd x;          ///< abscissa of the binned samples
+  Eigen::VectorXd value;      ///< missing quantity there
+  Eigen::VectorXd spread;     ///< its standard error
+  Eigen::VectorXd effect;     ///< what the chosen causes supply there; empty where there are none
 };
 
 /// How alike two explanations look to this recording.
 struct Likeness {
   std::vector<std::string> effects;  ///< ids of the other explanation
-  double cosine = 0.0;  ///< of the signatures, whitened and freed of the baseline's constants
+  double cosine = 0.0;               ///< of the signatures, whitened and freed of the baseline's constants
 };
 
 /// One explanation that was weighed.
@@ -148,7 +148,7 @@ struct RankedExplanation {
 
 /// A constant of the baseline as configured and as the explanation moved it (within its slack).
 struct MovedConstant {
-  std::string name;  ///< id as in `calibration.<id>`
+  std::string name;         ///< id as in `calibration.<id>`
   double configured = 0.0;  ///< as the model file has it, first field where several scale together
   double fitted = 0.0;      ///< as the explanation has it; its ratio to `configured` is that of all fields
 };
@@ -170,8 +170,8 @@ struct Diagnosis {
   std::string next_experiment;                         ///< what to record next to tell more; may be empty
   double none_of_these = 0.0;                          ///< probability of a cause outside the catalogue
 
-  std::vector<std::string> not_judged;  ///< one sentence for each signal or block that lacks a column
-  std::vector<Finding> findings;        ///< data gate
+  std::vector<std::string> not_judged;     ///< one sentence for each signal or block that lacks a column
+  std::vector<Finding> findings;           ///< data gate
   std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
   std::vector<MovedConstant> constants;    ///< every constant that can be off, moved or not
   std::vector<SignalSeries> series;        ///< curves of every judged signal over the held-out recordings

@@ -80,9 +80,7 @@ public:
   friend Dual operator*(Dual a, double b) { return a *= b; }
   friend Dual operator/(Dual a, double b) { return a /= b; }
   friend Dual operator+(double a, Dual b) { return b += a; }
-  friend Dual operator-(double a, const Dual& b) {
-    return chain(b, a - b.value_, -1.0);
-  }
+  friend Dual operator-(double a, const Dual& b) { return chain(b, a - b.value_, -1.0); }
   friend Dual operator*(double a, Dual b) { return b *= a; }
   friend Dual operator/(double a, const Dual& b) {
     return chain(b, a / b.value_, -a / (b.value_ * b.value_));

@@ -18,6 +18,8 @@ struct Parameter {
   bool logarithmic = false;  ///< positive and known by order of magnitude only: fitted as its logarithm
   std::string starts_relative_to = {};  ///< a column: the starts are fractions of its largest magnitude
   std::optional<double> standard = {};  ///< its value where a model leaves it out; none: it must be given
+  /// At its bounds the effect is another one: a fit that ends there explains nothing.
+  bool degenerate_at_bounds = false;
 };
 
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.

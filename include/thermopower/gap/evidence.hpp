@@ -26,8 +26,9 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
   return weight;
 }
 
-/// Whether some cause ended with all it has on the bounds of its range: then it is no explanation, but stands
-/// for one that the catalogue lacks. (A transition of friction does not count: at its bound friction sticks.)
+/// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
+/// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
+/// friction does not count: at its bound friction sticks.)
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
   if (at_bound.size() < candidate.list.size()) return false;
@@ -36,23 +37,26 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model) {
   std::size_t at = model.calibrated().size();
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;
-    for (const Parameter& parameter : entry->info.parameters)
+    for (const Parameter& parameter : entry->info.parameters) {
+      if (at_bound[at] && parameter.degenerate_at_bounds) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
+    }
     if (all) return true;
   }
   return false;
 }
 
-/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 without samples.
+/// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 without
+/// samples.
 inline double level(const Candidate& candidate, std::size_t signal) {
   const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
   if (!(samples > 0.0)) return 0.0;
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
-/// Whether a candidate scores as well as another where it matters: no signal worse by more than half a percent
-/// on held-out data, nor by two percent overall. With many rows a smaller difference can still be significant;
-/// it then tells of the small errors that every model has, not of the cause.
+/// Whether a candidate scores as well as another where it matters: no signal worse by more than half a
+/// percent on held-out data, nor by two percent overall. With many rows a smaller difference can still be
+/// significant; it then tells of the small errors that every model has, not of the cause.
 inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (candidate.held_out.samples[i] > 0.0 &&

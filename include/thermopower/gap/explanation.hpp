@@ -14,20 +14,20 @@ namespace thermopower::gap {
 
 /// One coordinate of a fit.
 struct Coordinate {
-  std::string name;  ///< `calibration.<id>` or `<effect>.<parameter>`
-  std::string unit;          ///< of the value; "1" for the factor on a constant
-  double lower = 0.0;        ///< bound, in the fit's coordinate
-  double upper = 0.0;        ///< bound, in the fit's coordinate
-  double start = 0.0;        ///< where a fit begins, in the fit's coordinate
-  double prior_sd = 0.0;     ///< of a Gaussian around 0; 0: none
-  bool logarithmic = false;  ///< value = exp(coordinate)
+  std::string name;                     ///< `calibration.<id>` or `<effect>.<parameter>`
+  std::string unit;                     ///< of the value; "1" for the factor on a constant
+  double lower = 0.0;                   ///< bound, in the fit's coordinate
+  double upper = 0.0;                   ///< bound, in the fit's coordinate
+  double start = 0.0;                   ///< where a fit begins, in the fit's coordinate
+  double prior_sd = 0.0;                ///< of a Gaussian around 0; 0: none
+  bool logarithmic = false;             ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than their slack.
 struct Explanation {
   std::vector<const CatalogueEntry*> effects;  ///< not owned: the catalogue must outlive it
-  std::vector<int> released;  ///< indices into Model::calibrated()
+  std::vector<int> released;                   ///< indices into Model::calibrated()
 
   /// How many causes it has.
   std::size_t size() const { return effects.size() + released.size(); }
@@ -96,8 +96,14 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   for (const CatalogueEntry* entry : explanation.effects)
     for (const Parameter& parameter : entry->info.parameters) {
       const auto to = [&](double value) { return parameter.logarithmic ? std::log(value) : value; };
-      list.push_back({entry->info.id + "." + parameter.name, parameter.unit, to(parameter.lower),
-                      to(parameter.upper), to(parameter.starts.front()), 0.0, parameter.logarithmic, {}});
+      list.push_back({entry->info.id + "." + parameter.name,
+                      parameter.unit,
+                      to(parameter.lower),
+                      to(parameter.upper),
+                      to(parameter.starts.front()),
+                      0.0,
+                      parameter.logarithmic,
+                      {}});
       if (parameter.standard) list.back().standard = to(*parameter.standard);
     }
   return list;

@@ -25,7 +25,7 @@ struct FitResult {
   Eigen::MatrixXd information;  ///< inverse covariance of the coordinates, starts projected out
   Eigen::Index samples = 0;     ///< residuals that counted
   int iterations = 0;           ///< steps taken; fewer than allowed: converged
-  std::vector<bool> at_bound;  ///< by coordinate
+  std::vector<bool> at_bound;   ///< by coordinate
 };
 
 /// Gauss-Newton with Levenberg damping inside bounds.
@@ -194,7 +194,8 @@ private:
       }
       free = inside;
     }
-    // What is known by its order of magnitude moves by a factor of 3 at most: far away the linear view is blind.
+    // What is known by its order of magnitude moves by a factor of 3 at most: far away the linear view is
+    // blind.
     for (Eigen::Index i = 0; i < n; ++i)
       if (list_[static_cast<std::size_t>(i)].logarithmic) change[i] = std::clamp(change[i], -1.1, 1.1);
     FitResult to;

@@ -20,9 +20,9 @@ struct Segment {
   RunSpan run;                     ///< the run they belong to
   Eigen::Index begin = 0;          ///< first row
   Eigen::Index end = 0;            ///< row after the last
-  bool axis = false;        ///< moving axis, else motor on the bench
-  bool carries_on = false;  ///< states that nobody measures come from the segment before
-  bool warm_up = false;     ///< only brings such states about: its samples do not count
+  bool axis = false;               ///< moving axis, else motor on the bench
+  bool carries_on = false;         ///< states that nobody measures come from the segment before
+  bool warm_up = false;            ///< only brings such states about: its samples do not count
 };
 
 /// Unknown start of a segment; a fit estimates it along with the parameters. Of an axis: angle in deg, rate
@@ -32,9 +32,9 @@ using Start = Eigen::Vector2d;
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
 struct FitProblem {
-  const Model* model = nullptr;          ///< the baseline, not owned
-  const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
-  std::vector<Segment> segments;         ///< simulated one after the other
+  const Model* model = nullptr;                        ///< the baseline, not owned
+  const Catalogue* catalogue = nullptr;                ///< that knows the model's own effects, not owned
+  std::vector<Segment> segments;                       ///< simulated one after the other
   std::array<double, signal_count> sigma{1, 1, 1, 1};  ///< noise of each signal
 
   /// Residuals of one segment in units of the noise, with their derivatives.

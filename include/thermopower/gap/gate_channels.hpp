@@ -75,13 +75,17 @@ inline void check_stamps(FindingList& list) {
     }
   }
   if (repeated > 0) {
-    list.add("repeated_stamps", Severity::error, "t_s", std::to_string(repeated) + " stamps repeat the one before, first at " + short_number(r.t_s[first_repeated]) + " s");
+    list.add("repeated_stamps", Severity::error, "t_s",
+             std::to_string(repeated) + " stamps repeat the one before, first at " +
+                 short_number(r.t_s[first_repeated]) + " s");
   }
   if (backward > 0) {
     const double jump = r.t_s[first_backward] - r.t_s[first_backward - 1];
-    const bool wrap = std::fabs(std::fabs(jump) - 65.536) < 1.0 || std::fabs(std::fabs(jump) - 65536.0) < 700.0;
+    const bool wrap =
+        std::fabs(std::fabs(jump) - 65.536) < 1.0 || std::fabs(std::fabs(jump) - 65536.0) < 700.0;
     list.add("decreasing_stamps", Severity::error, "t_s",
-             std::to_string(backward) + " stamps go back, first by " + short_number(-jump) + " s at " + short_number(r.t_s[first_backward - 1]) + " s" +
+             std::to_string(backward) + " stamps go back, first by " + short_number(-jump) + " s at " +
+                 short_number(r.t_s[first_backward - 1]) + " s" +
                  (wrap ? ": a 16-bit counter that wraps?" : ""));
   }
   if (steps.size() < 3) return;
@@ -90,10 +94,13 @@ inline void check_stamps(FindingList& list) {
   const double shortest = steps[steps.size() / 50], longest = steps[steps.size() - 1 - steps.size() / 50];
   if (longest > 1.3 * usual || shortest < 0.7 * usual) {
     list.add("irregular_stamps", Severity::note, "t_s",
-             "the interval varies from " + short_number(shortest) + " to " + short_number(longest) + " s around " + short_number(usual) + " s");
+             "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
+                 " s around " + short_number(usual) + " s");
   }
   if (steps.back() > 10.0 * usual && steps.back() > 3.0 * longest) {
-    list.add("gap_in_stamps", Severity::warning, "t_s", "a pause of " + short_number(steps.back()) + " s where the usual interval is " + short_number(usual) + " s");
+    list.add("gap_in_stamps", Severity::warning, "t_s",
+             "a pause of " + short_number(steps.back()) + " s where the usual interval is " +
+                 short_number(usual) + " s");
   }
 }
 
@@ -114,7 +121,8 @@ inline void check_frozen(FindingList& list, const Column& column, const std::vec
     }
   }
   if (stretches.size() == 1 && longest > 20) {
-    list.add("constant_channel", Severity::note, column.name, "holds " + short_number(column.values[0]) + " throughout");
+    list.add("constant_channel", Severity::note, column.name,
+             "holds " + short_number(column.values[0]) + " throughout");
     return;
   }
   if (longest < 30 || static_cast<double>(longest) < 0.05 * static_cast<double>(r.rows())) return;
@@ -122,9 +130,12 @@ inline void check_frozen(FindingList& list, const Column& column, const std::vec
   if (column.values[at] == 0.0) return;  // at rest, nothing is what a good sensor reads
   for (const auto& name : inputs) {      // a channel may rest while its cause rests
     const Eigen::VectorXd* input = r.find(name);
-    if (input == nullptr || !(input->segment(at, longest).maxCoeff() > input->segment(at, longest).minCoeff())) continue;
+    if (input == nullptr ||
+        !(input->segment(at, longest).maxCoeff() > input->segment(at, longest).minCoeff()))
+      continue;
     list.add("frozen_channel", Severity::warning, column.name,
-             "repeats " + short_number(column.values[at]) + " for " + std::to_string(longest) + " rows from " + short_number(r.t_s[at]) + " s while " + name + " changes");
+             "repeats " + short_number(column.values[at]) + " for " + std::to_string(longest) +
+                 " rows from " + short_number(r.t_s[at]) + " s while " + name + " changes");
     return;
   }
 }
@@ -158,9 +169,11 @@ inline void check_saturated(FindingList& list, const Column& column) {
       }
       if (x == next) ++at_next;
     }
-    if (second && extreme != 0.0 && at_extreme >= 20 && at_extreme * 100 >= v.size() && at_extreme > 8 * at_next && 2 * in_rows > at_extreme) {
+    if (second && extreme != 0.0 && at_extreme >= 20 && at_extreme * 100 >= v.size() &&
+        at_extreme > 8 * at_next && 2 * in_rows > at_extreme) {
       list.add("saturated_channel", Severity::warning, column.name,
-               std::to_string(at_extreme) + " samples stand at its " + (top ? "largest" : "least") + " value " + short_number(top ? extreme : -extreme) + " and hardly any near it");
+               std::to_string(at_extreme) + " samples stand at its " + (top ? "largest" : "least") +
+                   " value " + short_number(top ? extreme : -extreme) + " and hardly any near it");
     }
   }
 }
@@ -190,10 +203,12 @@ inline void check_wraps(FindingList& list, const Column& column) {
   }
   if (turns > 0) {
     list.add("wrapped_channel", Severity::warning, column.name,
-             "jumps by a full turn " + std::to_string(turns) + " times, first at " + short_number(r.t_s[first]) + " s; expected an angle that does not wrap");
+             "jumps by a full turn " + std::to_string(turns) + " times, first at " +
+                 short_number(r.t_s[first]) + " s; expected an angle that does not wrap");
   } else if (words > 0) {
     list.add("wrapped_channel", Severity::warning, column.name,
-             "jumps by 65536 of its steps " + std::to_string(words) + " times, first at " + short_number(r.t_s[first]) + " s: a 16-bit counter that wraps");
+             "jumps by 65536 of its steps " + std::to_string(words) + " times, first at " +
+                 short_number(r.t_s[first]) + " s: a 16-bit counter that wraps");
   }
 }
 
@@ -213,7 +228,8 @@ inline void check_spikes(FindingList& list, const Column& column) {
   Eigen::Index spikes = 0, first = -1;
   for (const RunSpan& run : r.spans()) {
     for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
-      const double before = column.values[i] - column.values[i - 1], after = column.values[i + 1] - column.values[i];
+      const double before = column.values[i] - column.values[i - 1],
+                   after = column.values[i + 1] - column.values[i];
       // Out and back: an edge of the input goes one way only.
       if (before * after < 0.0 && std::min(std::fabs(before), std::fabs(after)) > 6.0 * high) {
         if (spikes++ == 0) first = i;
@@ -221,7 +237,9 @@ inline void check_spikes(FindingList& list, const Column& column) {
     }
   }
   if (spikes > 0 && 200 * spikes < column.values.size()) {
-    list.add("outliers", Severity::warning, column.name, std::to_string(spikes) + " isolated spikes, first at " + short_number(r.t_s[first]) + " s (" + short_number(column.values[first]) + ")");
+    list.add("outliers", Severity::warning, column.name,
+             std::to_string(spikes) + " isolated spikes, first at " + short_number(r.t_s[first]) + " s (" +
+                 short_number(column.values[first]) + ")");
   }
 }
 
@@ -234,11 +252,14 @@ inline void check_channel(FindingList& list, const Column& column) {
   }
   if (present < rows) {
     char text[80];
-    std::snprintf(text, sizeof text, "%td of %td samples are missing (%.1f %%)", static_cast<std::ptrdiff_t>(rows - present), static_cast<std::ptrdiff_t>(rows),
+    std::snprintf(text, sizeof text, "%td of %td samples are missing (%.1f %%)",
+                  static_cast<std::ptrdiff_t>(rows - present), static_cast<std::ptrdiff_t>(rows),
                   100.0 * static_cast<double>(rows - present) / static_cast<double>(rows));
-    list.add("missing_samples", 5 * (rows - present) > rows ? Severity::warning : Severity::note, column.name, text);
+    list.add("missing_samples", 5 * (rows - present) > rows ? Severity::warning : Severity::note, column.name,
+             text);
   }
-  const bool output = column.name == "motor_C" || column.name == "current_A" || column.name == "rate_dps" || column.name == "angle_deg";
+  const bool output = column.name == "motor_C" || column.name == "current_A" || column.name == "rate_dps" ||
+                      column.name == "angle_deg";
   if (!output) return;
   check_frozen(list, column, {"power_param", "drive_A"});
   if (column.name != "motor_C") check_saturated(list, column);
@@ -251,7 +272,9 @@ inline void check_channel(FindingList& list, const Column& column) {
     if (std::isfinite(step)) steps.push_back(step);
   }
   if (quantum > 0.0 && median_of(steps) < 1.5 * quantum && quantum > 1e-6) {
-    list.add("quantum", Severity::note, column.name, "comes in steps of " + short_number(quantum) + ": no model can be told to be better than " + short_number(quantum / std::sqrt(12.0)));
+    list.add("quantum", Severity::note, column.name,
+             "comes in steps of " + short_number(quantum) + ": no model can be told to be better than " +
+                 short_number(quantum / std::sqrt(12.0)));
   }
 }
 

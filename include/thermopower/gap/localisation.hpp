@@ -10,7 +10,8 @@ namespace thermopower::gap {
 
 /// What a localisation may be told.
 struct LocalisationOptions {
-  double slack = 0.04;  ///< how far the baseline's constants may be off without that being a gap, as a fraction
+  /// How far the baseline's constants may be off without that being a gap, as a fraction.
+  double slack = 0.04;
 };
 
 /// Where simulation and recordings part, and the missing quantity itself.
@@ -21,18 +22,24 @@ struct Localisation {
 
 /// Finds where a model and recordings part, from residuals alone: it knows no effect.
 ///
-/// Each submodel is judged on its measured inputs (the current given the measured temperature and supply, the temperature given
-/// the heat, the axis given the measured motion), so that a fault upstream is not blamed on what is downstream. A submodel is accused
-/// when freedom in *its* equation, without any formula, predicts stretches of the recording that the fit has not seen, the
-/// baseline's constants moving within their slack. Where no freedom helps, the fault is still placed, by what orders it best.
+/// Each submodel is judged on its measured inputs (the current given the measured temperature and supply, the
+/// temperature given the heat, the axis given the measured motion), so that a fault upstream is not blamed on
+/// what is downstream. A submodel is accused when freedom in *its* equation, without any formula, predicts
+/// stretches of the recording that the fit has not seen, the baseline's constants moving within their slack.
+/// Where no freedom helps, the fault is still placed, by what orders it best.
 ///
-/// Recordings that lack input columns of the longest one are left out. A fault in a signal that is not recorded cannot be seen.
+/// Recordings that lack input columns of the longest one are left out. A fault in a signal that is not
+/// recorded cannot be seen.
 /// @throws InvalidInput where a recording is invalid
-Localisation localise(const Model& model, const std::vector<Recording>& recordings, const LocalisationOptions& options = {});
+Localisation localise(const Model& model, const std::vector<Recording>& recordings,
+                      const LocalisationOptions& options = {});
 
-/// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented simulation were the truth.
-/// @param simulated the recordings with their outputs replaced by the augmented model's simulation, in the same order
-void draw_effect(const Model& baseline, const std::vector<Recording>& simulated, std::vector<MissingQuantity>& quantities);
+/// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented
+/// simulation were the truth.
+/// @param simulated the recordings with their outputs replaced by the augmented model's simulation, in the
+///   same order
+void draw_effect(const Model& baseline, const std::vector<Recording>& simulated,
+                 std::vector<MissingQuantity>& quantities);
 
 namespace detail {
 
@@ -48,7 +55,8 @@ inline Recording joined(const std::vector<Recording>& recordings) {
   Eigen::Index rows = 0;
   for (const Recording& one : recordings) {
     bool same = true;
-    for (const Column& column : longest->columns) same = same && (one.has(column.name) || !longest->has(column.name));
+    for (const Column& column : longest->columns)
+      same = same && (one.has(column.name) || !longest->has(column.name));
     if (!same) continue;
     parts.push_back(&one);
     rows += one.rows();
@@ -104,7 +112,9 @@ struct Verdicts {
   double left() const { return choice.best.unseen_total / judged.floor; }
   double before() const { return choice.none.unseen_total / judged.floor; }
   bool gap() const { return choice.none.seen_total > 1.5 * judged.floor && before() > 2.0; }
-  double explained() const { return std::min(1.0, (choice.none.unseen_total - choice.best.unseen_total) / excess); }
+  double explained() const {
+    return std::min(1.0, (choice.none.unseen_total - choice.best.unseen_total) / excess);
+  }
 };
 
 inline std::string percent_text(double share) {
@@ -113,13 +123,16 @@ inline std::string percent_text(double share) {
   return text;
 }
 
-inline std::string evidence_text(const std::string& given, const std::string& words, double share, const Observed& o) {
+inline std::string evidence_text(const std::string& given, const std::string& words, double share,
+                                 const Observed& o) {
   const Ordered ordered = strongest_axis(o);
-  std::string text = given + ", " + words + " explains " + percent_text(share) + " of the excess on stretches that the fit has not seen.";
+  std::string text = given + ", " + words + " explains " + percent_text(share) +
+                     " of the excess on stretches that the fit has not seen.";
   char more[200];
   if (ordered.ratio > ordered.chance) {
-    std::snprintf(more, sizeof more, " The %s follows %s most (correlation ratio %.2f, by chance up to %.2f).", o.quantity.c_str(),
-                  ordered.axis.c_str(), ordered.ratio, ordered.chance);
+    std::snprintf(more, sizeof more,
+                  " The %s follows %s most (correlation ratio %.2f, by chance up to %.2f).",
+                  o.quantity.c_str(), ordered.axis.c_str(), ordered.ratio, ordered.chance);
     text += more;
   }
   const double period = half_power_period(o.value, o.interval_s);
@@ -130,8 +143,9 @@ inline std::string evidence_text(const std::string& given, const std::string& wo
   return text;
 }
 
-inline void report(Localisation& out, const std::string& signal, const std::string& submodel, double share, const std::string& variable,
-                   const std::string& given, const std::string& words, const Observed& observed) {
+inline void report(Localisation& out, const std::string& signal, const std::string& submodel, double share,
+                   const std::string& variable, const std::string& given, const std::string& words,
+                   const Observed& observed) {
   Location location;
   location.signal = signal;
   location.submodel = submodel;
@@ -141,7 +155,8 @@ inline void report(Localisation& out, const std::string& signal, const std::stri
   if (axis != nullptr) location.regime = regime_of(observed, *axis);
   location.evidence = evidence_text(given, words, location.share, observed);
   out.where.push_back(std::move(location));
-  if (axis == nullptr || (share < 0.15 && !out.quantities.empty())) return;  // a picture of a trace shows nothing
+  if (axis == nullptr || (share < 0.15 && !out.quantities.empty()))
+    return;  // a picture of a trace shows nothing
   MissingQuantity quantity = binned(observed, *axis, equal_count_edges(axis->values, 28));
   quantity.signal = signal;
   for (const MissingQuantity& one : out.quantities) {
@@ -171,7 +186,8 @@ inline void localise_axis(const Model& model, const Recording& recording, double
           torque = std::move(corrected);
         }
       }
-      report(out, signal, submodel, instruments.explained(), block.variable, "With angle and rate held against each other", block.words, observed);
+      report(out, signal, submodel, instruments.explained(), block.variable,
+             "With angle and rate held against each other", block.words, observed);
     }
   }
   if (!torque.gap() || (torque.explained() < 0.3 && torque.before() < 15.0)) return;
@@ -180,29 +196,34 @@ inline void localise_axis(const Model& model, const Recording& recording, double
   if (torque.left() > 15.0 && torque.choice.best.seen_total > 0.03 * torque.choice.none.seen_total) {
     const UnnamedTorque unnamed = judge.unnamed(torque.judged);
     if (unnamed.left < 0.5 * torque.choice.best.seen_total) {
-      report(out, signal, unnamed.submodel, 1.0 - unnamed.left / torque.choice.none.seen_total, unnamed.variable,
-             "Given the measured motion and command", unnamed.words, observed);
+      report(out, signal, unnamed.submodel, 1.0 - unnamed.left / torque.choice.none.seen_total,
+             unnamed.variable, "Given the measured motion and command", unnamed.words, observed);
       return;
     }
   }
   if (torque.any() && torque.explained() > 0.3) {
     for (std::size_t k = 0; k < torque.worth.size(); ++k) {
       const Block& block = torque.judged.blocks[torque.choice.best.blocks[k]];
-      report(out, signal, block.submodel, torque.worth[k], block.variable, "Given the measured motion and command", block.words, observed);
+      report(out, signal, block.submodel, torque.worth[k], block.variable,
+             "Given the measured motion and command", block.words, observed);
     }
     return;
   }
   const std::string axis = strongest_axis(observed).axis;
-  const std::string submodel = axis == "rate_dps" ? "mechanical.friction" : axis == "angle_deg" || axis == "t_s" ? "mechanical.load"
-                               : axis == "acceleration_rad_per_s2" ? "mechanical.structure" : "mechanical.drive";
-  report(out, signal, submodel, torque.any() ? torque.explained() : 0.0, axis, "Given the measured motion and command",
-         "no smooth freedom in one submodel helps much, the best", observed);
+  const std::string submodel = axis == "rate_dps"                     ? "mechanical.friction"
+                               : axis == "angle_deg" || axis == "t_s" ? "mechanical.load"
+                               : axis == "acceleration_rad_per_s2"    ? "mechanical.structure"
+                                                                      : "mechanical.drive";
+  report(out, signal, submodel, torque.any() ? torque.explained() : 0.0, axis,
+         "Given the measured motion and command", "no smooth freedom in one submodel helps much, the best",
+         observed);
 }
 
 inline void localise_bench(const Model& model, const Recording& recording, double slack, Localisation& out) {
   const BenchRows rows = bench_rows(model, recording);
   std::optional<Verdicts> current;
-  if (model.has_current() && rows.has_power && rows.has_current) current.emplace(judge_current(model, rows, slack));
+  if (model.has_current() && rows.has_power && rows.has_current)
+    current.emplace(judge_current(model, rows, slack));
   const bool current_gap = current && current->gap();
 
   double offset_A = 0.0;
@@ -221,7 +242,8 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   };
   std::vector<Heated> heated;
   if (model.has_thermal() && rows.has_temperature) {
-    for (const HeatSource source : {HeatSource::law, HeatSource::measured_current, HeatSource::electrical_power}) {
+    for (const HeatSource source :
+         {HeatSource::law, HeatSource::measured_current, HeatSource::electrical_power}) {
       Eigen::VectorXd heat = heat_of(model, rows, source, offset_A);
       if (heat.size() == 0) continue;
       // Where law and measurement agree there is one heat, and the law's carries no noise.
@@ -233,13 +255,15 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   const Heated* best = nullptr;
   for (const Heated& one : heated) {
     const auto cost = [](const Heated& h) {
-      return h.verdicts.choice.best.unseen_total * (1.0 + 0.5 * static_cast<double>(h.verdicts.choice.best.blocks.size()));
+      return h.verdicts.choice.best.unseen_total *
+             (1.0 + 0.5 * static_cast<double>(h.verdicts.choice.best.blocks.size()));
     };
     if (best == nullptr || cost(one) < cost(*best)) best = &one;
   }
-  const bool thermometer = best != nullptr && best->verdicts.gap() && best->verdicts.any() &&
-                           best->verdicts.judged.blocks[best->verdicts.choice.best.blocks[0]].submodel == "sensing.temperature" &&
-                           best->verdicts.explained() > 0.5;
+  const bool thermometer =
+      best != nullptr && best->verdicts.gap() && best->verdicts.any() &&
+      best->verdicts.judged.blocks[best->verdicts.choice.best.blocks[0]].submodel == "sensing.temperature" &&
+      best->verdicts.explained() > 0.5;
   if (current_gap) {
     const std::string given = "Given the measured temperature and supply";
     bool placed = false;
@@ -252,7 +276,8 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
           continue;
         }
         std::string submodel = block.submodel;
-        // One factor on the current is the sensor's if the heat follows the law all the same, and the motor's if it does not.
+        // One factor on the current is the sensor's if the heat follows the law all the same, and the motor's
+        // if it does not.
         if (submodel == "electrical.scale") {
           submodel = best != nullptr && best->source == HeatSource::law ? "sensing.current" : "electrical";
         }
@@ -274,10 +299,13 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
   if (v.left() > 8.0 && v.explained() < 0.99 && v.choice.best.seen_total > 0.03 * v.choice.none.seen_total) {
     auto [submodel, left] = judge.unnamed(v.judged);
     if (left < 0.5 * v.choice.best.seen_total) {
-      if (submodel != "thermal.storage") submodel = scatters_with_rise(observed) ? "thermal.loss" : "thermal.heating";
+      if (submodel != "thermal.storage")
+        submodel = scatters_with_rise(observed) ? "thermal.loss" : "thermal.heating";
       const double share = std::min(1.0, std::max(0.0, 1.0 - left / v.choice.none.seen_total));
       report(out, "motor_C", submodel, share, submodel == "thermal.storage" ? "motor_C" : "", given,
-             submodel == "thermal.storage" ? "a heat capacity with a peak at some temperature" : "nothing recorded orders it; a course of its own in time", observed);
+             submodel == "thermal.storage" ? "a heat capacity with a peak at some temperature"
+                                           : "nothing recorded orders it; a course of its own in time",
+             observed);
       return;
     }
   }
@@ -285,29 +313,36 @@ inline void localise_bench(const Model& model, const Recording& recording, doubl
     const Block& block = v.judged.blocks[v.choice.best.blocks[k]];
     report(out, "motor_C", block.submodel, v.worth[k], block.variable, given, block.words, observed);
   }
-  if (v.worth.empty()) report(out, "motor_C", "thermal.heating", 0.0, "", given, "no freedom in one submodel helps; the best", observed);
+  if (v.worth.empty())
+    report(out, "motor_C", "thermal.heating", 0.0, "", given, "no freedom in one submodel helps; the best",
+           observed);
 }
 
 }  // namespace detail
 
-inline Localisation localise(const Model& model, const std::vector<Recording>& recordings, const LocalisationOptions& options) {
+inline Localisation localise(const Model& model, const std::vector<Recording>& recordings,
+                             const LocalisationOptions& options) {
   Localisation out;
   for (const Recording& one : recordings) {
     if (const auto problem = one.validate()) throw InvalidInput("recording '" + one.name + "': " + *problem);
   }
   const Recording recording = detail::joined(recordings);
   if (recording.rows() < 30) return out;
-  if (model.has_axis() && recording.has("drive_A") && (recording.has("rate_dps") || recording.has("angle_deg"))) {
+  if (model.has_axis() && recording.has("drive_A") &&
+      (recording.has("rate_dps") || recording.has("angle_deg"))) {
     detail::localise_axis(model, recording, options.slack, out);
   }
   if (model.has_current() || model.has_thermal()) {
-    if (recording.has("motor_C") || recording.has("current_A")) detail::localise_bench(model, recording, options.slack, out);
+    if (recording.has("motor_C") || recording.has("current_A"))
+      detail::localise_bench(model, recording, options.slack, out);
   }
-  std::stable_sort(out.where.begin(), out.where.end(), [](const Location& a, const Location& b) { return a.share > b.share; });
+  std::stable_sort(out.where.begin(), out.where.end(),
+                   [](const Location& a, const Location& b) { return a.share > b.share; });
   return out;
 }
 
-inline void draw_effect(const Model& baseline, const std::vector<Recording>& simulated, std::vector<MissingQuantity>& quantities) {
+inline void draw_effect(const Model& baseline, const std::vector<Recording>& simulated,
+                        std::vector<MissingQuantity>& quantities) {
   const Recording recording = detail::joined(simulated);
   if (recording.rows() < 30) return;
   for (MissingQuantity& q : quantities) {
@@ -323,7 +358,8 @@ inline void draw_effect(const Model& baseline, const std::vector<Recording>& sim
       if (heat.size() == 0) continue;
       observed = detail::observe_heat(rows, detail::ThermalJudge(baseline, rows, heat));
     } else if (baseline.has_current()) {
-      observed = detail::observe_current(detail::bench_rows(baseline, recording), q.quantity == "missing current");
+      observed =
+          detail::observe_current(detail::bench_rows(baseline, recording), q.quantity == "missing current");
     }
     const detail::OrderingAxis* axis = observed.find(q.variable);
     if (axis == nullptr || q.x.size() < 2) continue;

@@ -6,8 +6,8 @@
 #include <thermopower/gap/noise.hpp>
 
 /// @file localise_bumps.hpp
-/// What a moving axis recorded, and integrals of it against smooth bumps (the weak form): no noisy signal is ever
-/// differentiated, the derivative goes to the bump.
+/// What a moving axis recorded, and integrals of it against smooth bumps (the weak form): no noisy signal is
+/// ever differentiated, the derivative goes to the bump.
 
 namespace thermopower::gap::detail {
 
@@ -32,7 +32,8 @@ inline Recording stretches(const Recording& recording, Eigen::Index most) {
   Recording out;
   out.name = recording.name;
   out.t_s.resize(length * parts);
-  for (const Column& column : recording.columns) out.columns.push_back({column.name, Eigen::VectorXd(length * parts)});
+  for (const Column& column : recording.columns)
+    out.columns.push_back({column.name, Eigen::VectorXd(length * parts)});
   for (Eigen::Index p = 0; p < parts; ++p) {
     const Eigen::Index begin = p * (recording.rows() - length) / (parts - 1), to = p * length;
     out.t_s.segment(to, length) = recording.t_s.segment(begin, length);
@@ -58,7 +59,8 @@ inline AxisRows axis_rows(const Recording& full) {
     for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) steps.push_back(a.t_s[i + 1] - a.t_s[i]);
   }
   if (!steps.empty()) {
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                     steps.end());
     a.interval_s = steps[steps.size() / 2];
   }
   a.drive_A = held(recording.find("drive_A"), a.runs, n, 0.0);
@@ -77,17 +79,21 @@ inline AxisRows axis_rows(const Recording& full) {
     a.raw_rate = Eigen::VectorXd::Constant(n, missing);
     for (const RunSpan& run : a.runs) {
       for (Eigen::Index i = run.begin + 2; i + 2 < run.end; ++i) {
-        a.raw_rate[i] = (2.0 * (a.raw_angle[i + 2] - a.raw_angle[i - 2]) + (a.raw_angle[i + 1] - a.raw_angle[i - 1])) /
-                        (2.0 * (a.t_s[i + 2] - a.t_s[i - 2]) + (a.t_s[i + 1] - a.t_s[i - 1]));
+        a.raw_rate[i] =
+            (2.0 * (a.raw_angle[i + 2] - a.raw_angle[i - 2]) + (a.raw_angle[i + 1] - a.raw_angle[i - 1])) /
+            (2.0 * (a.t_s[i + 2] - a.t_s[i - 2]) + (a.t_s[i + 1] - a.t_s[i - 1]));
       }
     }
     a.rate = held(&a.raw_rate, a.runs, n, 0.0);
   }
-  a.rate_noise = a.has_rate ? noise_of(a.raw_rate, a.runs) : noise_of(a.raw_angle, a.runs) / (3.2 * a.interval_s);
+  a.rate_noise =
+      a.has_rate ? noise_of(a.raw_rate, a.runs) : noise_of(a.raw_angle, a.runs) / (3.2 * a.interval_s);
   if (a.has_angle) a.angle_noise = noise_of(a.raw_angle, a.runs);
   if (recording.has("motor_C")) a.motor_C = held(recording.find("motor_C"), a.runs, n, 25.0);
   for (const Column& column : recording.columns) {
-    if (column.name == "drive_A" || column.name == "rate_dps" || column.name == "angle_deg" || column.name == "motor_C") continue;
+    if (column.name == "drive_A" || column.name == "rate_dps" || column.name == "angle_deg" ||
+        column.name == "motor_C")
+      continue;
     if (!recording.has(column.name)) continue;
     Column copy{column.name, held(&column.values, a.runs, n, 0.0)};
     if (copy.values.maxCoeff() > copy.values.minCoeff()) a.covariates.push_back(std::move(copy));
@@ -120,7 +126,8 @@ public:
         if (!whole) continue;
         list_.push_back(one);
         for (Eigen::Index k = one.begin; k < one.end; ++k) {
-          const double from = k == one.begin ? a_.t_s[k] : a_.t_s[k - 1], to = k + 1 == one.end ? a_.t_s[k] : a_.t_s[k + 1];
+          const double from = k == one.begin ? a_.t_s[k] : a_.t_s[k - 1],
+                       to = k + 1 == one.end ? a_.t_s[k] : a_.t_s[k + 1];
           bump_.push_back(0.5 * (area(one, to) - area(one, from)));
           slope_.push_back(mean_before(one, k) - mean_before(one, k + 1));
         }
@@ -132,23 +139,21 @@ public:
   const std::vector<One>& list() const { return list_; }
 
   /// Integral of the bump times values that are straight between their samples, each interval at its mean.
-  Eigen::VectorXd integral(const Eigen::VectorXd& values) const {
-    return sum(bump_, values);
-  }
+  Eigen::VectorXd integral(const Eigen::VectorXd& values) const { return sum(bump_, values); }
 
   /// Integral of the bump times the derivative of sampled values.
-  Eigen::VectorXd derivative(const Eigen::VectorXd& values) const {
-    return sum(slope_, values);
-  }
+  Eigen::VectorXd derivative(const Eigen::VectorXd& values) const { return sum(slope_, values); }
 
-  /// Integral of the bump times values that are held over the interval that starts at their row, `delay_s` later.
+  /// Integral of the bump times values that are held over the interval that starts at their row, `delay_s`
+  /// later.
   Eigen::VectorXd held_integral(const Eigen::VectorXd& values, double delay_s = 0.0) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
     for (Eigen::Index r = 0; r < size(); ++r) {
       const One& one = list_[static_cast<std::size_t>(r)];
       const RunSpan& run = run_of(one.begin);
       for (Eigen::Index k = one.end - 1; k >= run.begin; --k) {
-        const double from = a_.t_s[k] + delay_s, to = (k + 1 < run.end ? a_.t_s[k + 1] : a_.t_s[k] + a_.interval_s) + delay_s;
+        const double from = a_.t_s[k] + delay_s,
+                     to = (k + 1 < run.end ? a_.t_s[k + 1] : a_.t_s[k] + a_.interval_s) + delay_s;
         if (to <= one.middle - one.half) break;
         out[r] += values[k] * (area(one, to) - area(one, from));
       }
@@ -161,13 +166,15 @@ public:
     double sum = 0.0;
     if (list_.empty()) return 1.0;
     const One& one = list_[list_.size() / 2];
-    for (Eigen::Index k = 0; k < one.end - one.begin; ++k) sum += std::pow(slope_[one.weights + static_cast<std::size_t>(k)], 2.0);
+    for (Eigen::Index k = 0; k < one.end - one.begin; ++k)
+      sum += std::pow(slope_[one.weights + static_cast<std::size_t>(k)], 2.0);
     return std::sqrt(sum);
   }
 
 private:
-  // Mean of the bump over the interval that ends at a row. Differences of such means integrate the bump times the derivative of a
-  // signal that is straight between its samples without error: as a rate is while the torque is held.
+  // Mean of the bump over the interval that ends at a row. Differences of such means integrate the bump times
+  // the derivative of a signal that is straight between its samples without error: as a rate is while the
+  // torque is held.
   double mean_before(const One& one, Eigen::Index k) const {
     if (k == one.begin || k == one.end) return 0.0;
     return (area(one, a_.t_s[k]) - area(one, a_.t_s[k - 1])) / (a_.t_s[k] - a_.t_s[k - 1]);

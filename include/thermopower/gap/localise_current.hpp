@@ -36,11 +36,13 @@ inline Judged judge_current(const Model& model, const BenchRows& b, double slack
   }
   const double sigma = noise_of(b.current_A - law, b.runs);
   j.floor = sigma * sigma * static_cast<double>(thin.rows()) / static_cast<double>(thin.stride());
-  const auto add = [&](const char* submodel, const std::string& variable, const std::string& words, const Eigen::MatrixXd& columns) {
+  const auto add = [&](const char* submodel, const std::string& variable, const std::string& words,
+                       const Eigen::MatrixXd& columns) {
     j.blocks.push_back({submodel, variable, words, thin(columns)});
   };
   const Eigen::VectorXd on = (b.v_rms_V.array() > 0.0).cast<double>();
-  add("sensing.current", "", "the same offset at every current, none included", Eigen::VectorXd::Ones(law.size()));
+  add("sensing.current", "", "the same offset at every current, none included",
+      Eigen::VectorXd::Ones(law.size()));
   add("electrical.scale", "v_rms_V", "the same factor at every voltage", law);
   const Eigen::VectorXd warm = (b.winding_C.array() - 25.0) / 10.0;
   Eigen::MatrixXd columns(law.size(), 2);
@@ -70,7 +72,8 @@ inline Judged judge_current(const Model& model, const BenchRows& b, double slack
   sag.col(2) = law.cwiseProduct(charge);
   add("electrical", "v_rms_V", "a supply that gives way under load and with the charge drawn", sag);
   for (const Column& column : b.covariates) {
-    const Eigen::VectorXd z = column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
+    const Eigen::VectorXd z =
+        column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
     const double scale = std::max(z.cwiseAbs().maxCoeff(), 1e-12);
     Eigen::MatrixXd voltage(law.size(), 2), factor(law.size(), 2);
     voltage.col(0) = law;

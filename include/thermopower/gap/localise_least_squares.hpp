@@ -12,34 +12,37 @@
 #include <vector>
 
 /// @file localise_least_squares.hpp
-/// Which block of regressors explains a residual? Bounded least squares, judged on stretches that the fit has not seen.
+/// Which block of regressors explains a residual? Bounded least squares, judged on stretches that the fit has
+/// not seen.
 
 namespace thermopower::gap::detail {
 
-/// Regressors that share a coefficient range each: a direction in which a submodel may be wrong, with no formula attached.
+/// Regressors that share a coefficient range each: a direction in which a submodel may be wrong, with no
+/// formula attached.
 struct Block {
-  std::string submodel;             ///< whom it accuses
-  std::string variable;             ///< what orders the missing quantity: a column, a derived name, or empty
-  std::string words;                ///< "a loss that depends on the rise", for the evidence
-  Eigen::MatrixXd columns;          ///< rows x directions
-  double lower = -std::numeric_limits<double>::infinity();  ///< of every coefficient: a bank of relaxations has none below 0
-  double upper = std::numeric_limits<double>::infinity();   ///< of every coefficient
-  int penalty = 0;                  ///< directions that a scan tried to find these, counted as parameters
+  std::string submodel;     ///< whom it accuses
+  std::string variable;     ///< what orders the missing quantity: a column, a derived name, or empty
+  std::string words;        ///< "a loss that depends on the rise", for the evidence
+  Eigen::MatrixXd columns;  ///< rows x directions
+  double lower = -std::numeric_limits<
+      double>::infinity();  ///< of every coefficient: a bank of relaxations has none below 0
+  double upper = std::numeric_limits<double>::infinity();  ///< of every coefficient
+  int penalty = 0;  ///< directions that a scan tried to find these, counted as parameters
 };
 
 /// A residual, what re-calibration within slack may take from it, and the stretches it is cross-validated on.
 struct Problem {
-  Eigen::VectorXd y;          ///< residual, one per row, in units of one common noise
-  Eigen::MatrixXd nuisance;   ///< rows x constants, each as the effect of moving that constant by 100 %
-  double slack = 0.04;        ///< bound of every nuisance coefficient
-  Eigen::MatrixXd free;       ///< rows x unbounded nuisances (initial states); may have no column
-  Eigen::VectorXi fold;       ///< stretch of each row, 0..folds-1
-  int folds = 8;              ///< number of stretches
+  Eigen::VectorXd y;         ///< residual, one per row, in units of one common noise
+  Eigen::MatrixXd nuisance;  ///< rows x constants, each as the effect of moving that constant by 100 %
+  double slack = 0.04;       ///< bound of every nuisance coefficient
+  Eigen::MatrixXd free;      ///< rows x unbounded nuisances (initial states); may have no column
+  Eigen::VectorXi fold;      ///< stretch of each row, 0..folds-1
+  int folds = 8;             ///< number of stretches
 };
 
 /// Minimises b'Gb - 2 c'b within bounds by an active set. G must be symmetric and positive definite.
-inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment, const Eigen::VectorXd& lower,
-                                     const Eigen::VectorXd& upper) {
+inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment,
+                                     const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
   const Eigen::Index n = moment.size();
   std::vector<int> state(static_cast<std::size_t>(n), 0);  // -1 at lower, 0 free, +1 at upper
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
@@ -97,13 +100,17 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
   return x;
 }
 
-/// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a scan.
+/// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a
+/// scan.
 inline double quick_fit(const Problem& problem, const Eigen::MatrixXd& columns) {
-  const Eigen::Index bounded = problem.nuisance.cols(), width = bounded + problem.free.cols() + columns.cols();
+  const Eigen::Index bounded = problem.nuisance.cols(),
+                     width = bounded + problem.free.cols() + columns.cols();
   Eigen::MatrixXd x(problem.y.size(), width);
   x << problem.nuisance, problem.free, columns;
-  const Eigen::VectorXd scale = x.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
-  const Eigen::MatrixXd gram = scale.asDiagonal() * (x.transpose() * x) * scale.asDiagonal() + 1e-8 * Eigen::MatrixXd::Identity(width, width);
+  const Eigen::VectorXd scale =
+      x.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+  const Eigen::MatrixXd gram = scale.asDiagonal() * (x.transpose() * x) * scale.asDiagonal() +
+                               1e-8 * Eigen::MatrixXd::Identity(width, width);
   const Eigen::VectorXd moment = scale.asDiagonal() * (x.transpose() * problem.y);
   Eigen::VectorXd upper = Eigen::VectorXd::Constant(width, std::numeric_limits<double>::infinity());
   for (Eigen::Index k = 0; k < bounded; ++k) upper[k] = scale[k] > 0.0 ? problem.slack / scale[k] : 0.0;
@@ -121,8 +128,8 @@ struct BlockFit {
   Eigen::VectorXd coefficients;     ///< nuisance, free, then the blocks' columns
 };
 
-/// A problem and its blocks as one Gram matrix per stretch: any set of blocks is then fitted and cross-validated without touching a
-/// row again.
+/// A problem and its blocks as one Gram matrix per stretch: any set of blocks is then fitted and
+/// cross-validated without touching a row again.
 class BlockFitter {
 public:
   BlockFitter(const Problem& problem, const std::vector<Block>& blocks) : problem_(problem), blocks_(blocks) {
@@ -136,7 +143,8 @@ public:
     Eigen::MatrixXd x(rows, width);
     x.leftCols(problem.nuisance.cols()) = problem.nuisance;
     x.middleCols(problem.nuisance.cols(), problem.free.cols()) = problem.free;
-    for (std::size_t i = 0; i < blocks.size(); ++i) x.middleCols(begin_[i], blocks[i].columns.cols()) = blocks[i].columns;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      x.middleCols(begin_[i], blocks[i].columns.cols()) = blocks[i].columns;
     scale_.resize(width);
     for (Eigen::Index j = 0; j < width; ++j) {
       const double norm = x.col(j).norm();
@@ -182,7 +190,8 @@ public:
     }
     const Eigen::Index width = static_cast<Eigen::Index>(index.size());
     const double unbounded = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd lower = Eigen::VectorXd::Constant(width, -unbounded), upper = Eigen::VectorXd::Constant(width, unbounded);
+    Eigen::VectorXd lower = Eigen::VectorXd::Constant(width, -unbounded),
+                    upper = Eigen::VectorXd::Constant(width, unbounded);
     lower.head(problem_.nuisance.cols()).setConstant(-problem_.slack);
     upper.head(problem_.nuisance.cols()).setConstant(problem_.slack);
     Eigen::Index at = own_;
@@ -202,7 +211,8 @@ public:
     const auto part = [&](const Eigen::MatrixXd& full) {
       Eigen::MatrixXd out(width, width);
       for (Eigen::Index r = 0; r < width; ++r) {
-        for (Eigen::Index c = 0; c < width; ++c) out(r, c) = full(index[static_cast<std::size_t>(r)], index[static_cast<std::size_t>(c)]);
+        for (Eigen::Index c = 0; c < width; ++c)
+          out(r, c) = full(index[static_cast<std::size_t>(r)], index[static_cast<std::size_t>(c)]);
       }
       return out;
     };
@@ -217,7 +227,8 @@ public:
     double squares = 0.0;
     for (const double square : square_) squares += square;
     const Eigen::VectorXd solution = bounded_solve(all + ridge, all_moment, lower, upper);
-    result.seen_total = std::max(0.0, squares - 2.0 * solution.dot(all_moment) + solution.dot(all * solution));
+    result.seen_total =
+        std::max(0.0, squares - 2.0 * solution.dot(all_moment) + solution.dot(all * solution));
     result.coefficients = solution.cwiseProduct(scale);
     result.unseen.assign(square_.size(), 0.0);
     for (std::size_t f = 0; f < square_.size(); ++f) {
@@ -266,7 +277,8 @@ struct Choice {
   BlockFit best;  ///< what was chosen; equal to `none` where nothing is needed
 };
 
-/// Of all single blocks and all pairs, the fewest directions that leave no clearly more on unseen stretches than the best.
+/// Of all single blocks and all pairs, the fewest directions that leave no clearly more on unseen stretches
+/// than the best.
 ///
 /// @param floor sum of squares that noise alone would leave: a fit that reaches it needs no more
 /// @param pairs whether two blocks may act at once
@@ -274,7 +286,8 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   Choice choice;
   choice.none = fitter.fit({});
   choice.best = choice.none;
-  // Stretches that bind a nuisance make prediction of the unseen worse than what was seen: either may say that nothing is missing.
+  // Stretches that bind a nuisance make prediction of the unseen worse than what was seen: either may say
+  // that nothing is missing.
   if (choice.none.seen_total <= 1.15 * floor && choice.none.unseen_total <= 4.0 * floor) return choice;
   std::vector<BlockFit> singles;
   std::size_t least = 0;
@@ -289,7 +302,8 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
       if (fits[i].directions >= fits[pick].directions) continue;
       const double more = fits[i].unseen_total - fits[best].unseen_total;
       const bool as_good = more <= 0.35 * fits[best].unseen_total + 0.15 * floor;
-      const bool all_but_a_trace = more <= 0.003 * (choice.none.unseen_total - floor) && fits[i].unseen_total < 12.0 * floor;
+      const bool all_but_a_trace =
+          more <= 0.003 * (choice.none.unseen_total - floor) && fits[i].unseen_total < 12.0 * floor;
       if (as_good || all_but_a_trace) pick = i;
     }
     return pick;
@@ -308,7 +322,8 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   }
   // A second block must matter: next to the first, and next to all there was to explain.
   const double gained = doubles.empty() ? 0.0 : singles[least].unseen_total - doubles[best].unseen_total;
-  if (gained < 0.6 * singles[least].unseen_total || gained < 0.004 * (choice.none.unseen_total - floor)) return choice;
+  if (gained < 0.6 * singles[least].unseen_total || gained < 0.004 * (choice.none.unseen_total - floor))
+    return choice;
   choice.best = doubles[simplest(doubles, best)];
   // The one of the two that explains more alone comes first.
   auto& order = choice.best.blocks;

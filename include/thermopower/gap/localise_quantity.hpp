@@ -8,7 +8,8 @@
 #include <thermopower/gap/localise_thermal.hpp>
 
 /// @file localise_quantity.hpp
-/// The missing quantity itself: watts, newton metres, volts, read off the recording and ordered by what orders them.
+/// The missing quantity itself: watts, newton metres, volts, read off the recording and ordered by what
+/// orders them.
 
 namespace thermopower::gap::detail {
 
@@ -35,7 +36,9 @@ struct Observed {
 };
 
 inline std::string unit_of_column(const std::string& name) {
-  const auto ends = [&](const std::string& tail) { return name.size() > tail.size() && name.compare(name.size() - tail.size(), tail.size(), tail) == 0; };
+  const auto ends = [&](const std::string& tail) {
+    return name.size() > tail.size() && name.compare(name.size() - tail.size(), tail.size(), tail) == 0;
+  };
   if (ends("_C")) return "degC";
   if (ends("_mps")) return "m/s";
   if (ends("_dps")) return "deg/s";
@@ -47,7 +50,13 @@ inline std::string unit_of_column(const std::string& name) {
 
 /// Missing voltage: what would have to be added to V_rms for the law to give the measured current.
 inline Observed observe_current(const BenchRows& b, bool as_current) {
-  Observed o{"current_A", as_current ? "missing current" : "missing voltage", as_current ? "A" : "V", {}, {}, b.interval_s, 0.0};
+  Observed o{"current_A",
+             as_current ? "missing current" : "missing voltage",
+             as_current ? "A" : "V",
+             {},
+             {},
+             b.interval_s,
+             0.0};
   const Thinning thin(b.runs, b.current_A, 4000);
   Eigen::VectorXd value(b.t_s.size());
   for (Eigen::Index i = 0; i < value.size(); ++i) {
@@ -56,12 +65,17 @@ inline Observed observe_current(const BenchRows& b, bool as_current) {
   }
   o.value = thin(value);
   o.interval_s *= static_cast<double>(thin.stride());
-  o.axes = {{"v_rms_V", "V", thin(b.v_rms_V)}, {"motor_C", "degC", thin(b.winding_C)}, {"law_A", "A", thin(b.law_A)}, {"t_s", "s", thin(b.t_s)}};
-  for (const Column& column : b.covariates) o.axes.push_back({column.name, unit_of_column(column.name), thin(column.values)});
+  o.axes = {{"v_rms_V", "V", thin(b.v_rms_V)},
+            {"motor_C", "degC", thin(b.winding_C)},
+            {"law_A", "A", thin(b.law_A)},
+            {"t_s", "s", thin(b.t_s)}};
+  for (const Column& column : b.covariates)
+    o.axes.push_back({column.name, unit_of_column(column.name), thin(column.values)});
   return o;
 }
 
-/// Missing heat: C dT/dt + G (T - Ta) - P, averaged over stretches long enough that the thermometer's noise is small in it.
+/// Missing heat: C dT/dt + G (T - Ta) - P, averaged over stretches long enough that the thermometer's noise
+/// is small in it.
 inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
   Observed o{"motor_C", "missing heat", "W", {}, {}, b.interval_s, 0.0};
   AxisRows frame;  // only its times and runs are used
@@ -89,12 +103,14 @@ inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
             {"dT_dt", "K/s", slope},
             {"v_rms_V", "V", bumps.held_integral(b.v_rms_V)},
             {"t_s", "s", bumps.integral(b.t_s)}};
-  for (const Column& column : b.covariates) o.axes.push_back({column.name, unit_of_column(column.name), bumps.integral(column.values)});
+  for (const Column& column : b.covariates)
+    o.axes.push_back({column.name, unit_of_column(column.name), bumps.integral(column.values)});
   return o;
 }
 
-/// Whether a missing heat scatters in proportion to the rise, as a conductance of its own course would make it, rather than alike
-/// at every rise: the likelier of two normal laws, after what is constant, or in proportion to rise or heat, has been taken off.
+/// Whether a missing heat scatters in proportion to the rise, as a conductance of its own course would make
+/// it, rather than alike at every rise: the likelier of two normal laws, after what is constant, or in
+/// proportion to rise or heat, has been taken off.
 inline bool scatters_with_rise(const Observed& o) {
   const Eigen::Index n = o.value.size();
   const OrderingAxis *rise = o.find("rise_K"), *heat = o.find("heat_W");
@@ -103,10 +119,12 @@ inline bool scatters_with_rise(const Observed& o) {
   x << Eigen::VectorXd::Ones(n), rise->values, heat->values;
   const Eigen::VectorXd left = o.value - x * x.colPivHouseholderQr().solve(o.value);
   const double noise = o.noise * o.noise, all = left.squaredNorm() / static_cast<double>(n);
-  const double scatter = std::max(all - noise, 1e-6 * all), typical = rise->values.squaredNorm() / static_cast<double>(n);
+  const double scatter = std::max(all - noise, 1e-6 * all),
+               typical = rise->values.squaredNorm() / static_cast<double>(n);
   double alike = 0.0, with_rise = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double one = scatter + noise, other = scatter * std::max(std::pow(rise->values[i], 2.0) / typical, 1e-4) + noise;
+    const double one = scatter + noise,
+                 other = scatter * std::max(std::pow(rise->values[i], 2.0) / typical, 1e-4) + noise;
     alike += std::log(one) + left[i] * left[i] / one;
     with_rise += std::log(other) + left[i] * left[i] / other;
   }
@@ -119,10 +137,12 @@ inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
   const Bumps bumps(a, a.raw_rate, 6, 4000);
   const Eigen::VectorXd acceleration = bumps.derivative(a.rate);
   const Eigen::VectorXd drive = bumps.held_integral(a.drive_A);
-  o.value = axis.inertia_kgm2 * acceleration + axis.viscous_Nms_per_rad * bumps.integral(a.rate) - axis.torque_constant_Nm_per_A * drive;
+  o.value = axis.inertia_kgm2 * acceleration + axis.viscous_Nms_per_rad * bumps.integral(a.rate) -
+            axis.torque_constant_Nm_per_A * drive;
   o.interval_s *= 6;
   Eigen::VectorXd centre(drive.size());
-  for (Eigen::Index i = 0; i < drive.size(); ++i) centre[i] = bumps.list()[static_cast<std::size_t>(i)].middle;
+  for (Eigen::Index i = 0; i < drive.size(); ++i)
+    centre[i] = bumps.list()[static_cast<std::size_t>(i)].middle;
   o.axes = {{"rate_dps", "deg/s", bumps.integral(a.rate) / rad_per_deg},
             {"drive_A", "A", drive},
             {"drive_A_per_s", "A/s", bumps.derivative(a.drive_A)},
@@ -130,7 +150,8 @@ inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
             {"t_s", "s", centre}};
   if (a.has_angle) o.axes.push_back({"angle_deg", "deg", bumps.integral(a.angle) / rad_per_deg});
   if (a.motor_C.size() > 0) o.axes.push_back({"motor_C", "degC", bumps.integral(a.motor_C)});
-  for (const Column& column : a.covariates) o.axes.push_back({column.name, unit_of_column(column.name), bumps.integral(column.values)});
+  for (const Column& column : a.covariates)
+    o.axes.push_back({column.name, unit_of_column(column.name), bumps.integral(column.values)});
   return o;
 }
 
@@ -141,7 +162,9 @@ inline Observed observe_instruments(const AxisRows& a) {
   const Eigen::VectorXd rate = bumps.integral(a.rate);
   o.value = (bumps.derivative(a.angle) - rate) / rad_per_deg;
   o.interval_s *= 16;
-  o.axes = {{"rate_dps", "deg/s", rate / rad_per_deg}, {"angle_deg", "deg", bumps.integral(a.angle) / rad_per_deg}, {"t_s", "s", bumps.integral(a.t_s)}};
+  o.axes = {{"rate_dps", "deg/s", rate / rad_per_deg},
+            {"angle_deg", "deg", bumps.integral(a.angle) / rad_per_deg},
+            {"t_s", "s", bumps.integral(a.t_s)}};
   return o;
 }
 
@@ -157,8 +180,11 @@ inline MissingQuantity binned(const Observed& o, const OrderingAxis& axis, const
   std::vector<double> n(bins, 0.0), x(bins, 0.0), y(bins, 0.0), yy(bins, 0.0);
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
     const double at = axis.values[i], v = o.value[i];
-    if (bins == 0 || !std::isfinite(at) || !std::isfinite(v) || at < edges.front() || at > edges.back()) continue;
-    const std::size_t k = static_cast<std::size_t>(std::upper_bound(edges.begin() + 1, edges.end() - 1, at) - edges.begin()) - 1;
+    if (bins == 0 || !std::isfinite(at) || !std::isfinite(v) || at < edges.front() || at > edges.back())
+      continue;
+    const std::size_t k =
+        static_cast<std::size_t>(std::upper_bound(edges.begin() + 1, edges.end() - 1, at) - edges.begin()) -
+        1;
     n[k] += 1.0;
     x[k] += at;
     y[k] += v;
@@ -171,14 +197,18 @@ inline MissingQuantity binned(const Observed& o, const OrderingAxis& axis, const
     qy.push_back(y[k] / n[k]);
     qs.push_back(std::sqrt(std::max(0.0, yy[k] / n[k] - qy.back() * qy.back()) / n[k]));
   }
-  const auto vector = [](const std::vector<double>& list) { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(list.data(), static_cast<Eigen::Index>(list.size()))); };
+  const auto vector = [](const std::vector<double>& list) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(list.data(), static_cast<Eigen::Index>(list.size())));
+  };
   q.x = vector(qx);
   q.value = vector(qy);
   q.spread = vector(qs);
   return q;
 }
 
-/// The contiguous range of the axis in which the missing quantity is largest: around the largest bin, while above half of it.
+/// The contiguous range of the axis in which the missing quantity is largest: around the largest bin, while
+/// above half of it.
 inline std::optional<Regime> regime_of(const Observed& o, const OrderingAxis& axis) {
   const std::vector<double> edges = equal_count_edges(axis.values, 10);
   const MissingQuantity q = binned(o, axis, edges);
@@ -186,11 +216,15 @@ inline std::optional<Regime> regime_of(const Observed& o, const OrderingAxis& ax
   Eigen::Index top = 0;
   const double most = q.value.cwiseAbs().maxCoeff(&top);
   Eigen::Index from = top, to = top;
-  while (from > 0 && q.value[from - 1] * q.value[top] > 0.0 && std::fabs(q.value[from - 1]) > 0.5 * most) --from;
-  while (to + 1 < q.x.size() && q.value[to + 1] * q.value[top] > 0.0 && std::fabs(q.value[to + 1]) > 0.5 * most) ++to;
+  while (from > 0 && q.value[from - 1] * q.value[top] > 0.0 && std::fabs(q.value[from - 1]) > 0.5 * most)
+    --from;
+  while (to + 1 < q.x.size() && q.value[to + 1] * q.value[top] > 0.0 &&
+         std::fabs(q.value[to + 1]) > 0.5 * most)
+    ++to;
   const auto below = std::upper_bound(edges.begin(), edges.end(), q.x[from]);
   const auto above = std::upper_bound(edges.begin(), edges.end(), q.x[to]);
-  return Regime{axis.name, below == edges.begin() ? edges.front() : *(below - 1), above == edges.end() ? edges.back() : *above};
+  return Regime{axis.name, below == edges.begin() ? edges.front() : *(below - 1),
+                above == edges.end() ? edges.back() : *above};
 }
 
 /// Which axis orders the quantity most, and what the best of all axes reaches by chance.

@@ -17,7 +17,8 @@
 namespace thermopower::gap::detail {
 
 /// Missing values take the last one before them (the next one at the beginning); all missing: `otherwise`.
-inline Eigen::VectorXd held(const Eigen::VectorXd* values, const std::vector<RunSpan>& runs, Eigen::Index rows, double otherwise) {
+inline Eigen::VectorXd held(const Eigen::VectorXd* values, const std::vector<RunSpan>& runs,
+                            Eigen::Index rows, double otherwise) {
   if (values == nullptr) return Eigen::VectorXd::Constant(rows, otherwise);
   Eigen::VectorXd out = *values;
   for (const RunSpan& run : runs) {
@@ -39,15 +40,16 @@ inline Eigen::VectorXd held(const Eigen::VectorXd* values, const std::vector<Run
   return out;
 }
 
-/// Standard deviation of the noise on a smooth signal: from second or fourth differences, whichever see less of the signal, and no
-/// less than the quantum allows.
+/// Standard deviation of the noise on a smooth signal: from second or fourth differences, whichever see less
+/// of the signal, and no less than the quantum allows.
 inline double noise_of(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   std::vector<double> second, fourth;
   double quantum = 0.0;
   for (const RunSpan& run : runs) {
     for (Eigen::Index i = run.begin + 2; i + 2 < run.end; ++i) {
       const double two = values[i - 1] - 2.0 * values[i] + values[i + 1];
-      const double four = values[i - 2] - 4.0 * values[i - 1] + 6.0 * values[i] - 4.0 * values[i + 1] + values[i + 2];
+      const double four =
+          values[i - 2] - 4.0 * values[i - 1] + 6.0 * values[i] - 4.0 * values[i + 1] + values[i + 2];
       if (!std::isfinite(four)) continue;
       second.push_back(two * two / 6.0);
       fourth.push_back(four * four / 70.0);
@@ -56,7 +58,8 @@ inline double noise_of(const Eigen::VectorXd& values, const std::vector<RunSpan>
     }
   }
   if (second.empty()) return 0.0;
-  // A trimmed mean: steps of the input are no noise. The divisor is what the tail takes from a normal sample's variance.
+  // A trimmed mean: steps of the input are no noise. The divisor is what the tail takes from a normal
+  // sample's variance.
   const auto trimmed = [](std::vector<double>& squares) {
     const std::size_t kept = std::max<std::size_t>(1, squares.size() * 95 / 100);
     std::nth_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(kept - 1), squares.end());
@@ -79,7 +82,8 @@ inline std::vector<double> equal_count_edges(const Eigen::VectorXd& values, int 
   if (sorted.empty()) return edges;
   for (int k = 0; k <= count; ++k) {
     const std::size_t at = static_cast<std::size_t>(static_cast<double>(sorted.size() - 1) * k / count);
-    if (edges.empty() || sorted[at] > edges.back() + 1e-12 * std::max(1.0, std::fabs(edges.back()))) edges.push_back(sorted[at]);
+    if (edges.empty() || sorted[at] > edges.back() + 1e-12 * std::max(1.0, std::fabs(edges.back())))
+      edges.push_back(sorted[at]);
   }
   return edges;
 }
@@ -108,7 +112,9 @@ inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, const std::vector<dou
 }
 
 /// Hats on knots at equal counts.
-inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, int count) { return hats(values, equal_count_edges(values, count - 1)); }
+inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, int count) {
+  return hats(values, equal_count_edges(values, count - 1));
+}
 
 /// Hats on evenly spaced knots.
 inline Eigen::MatrixXd even_hats(const Eigen::VectorXd& values, int count) {
@@ -124,7 +130,8 @@ inline Eigen::MatrixXd scaled(const Eigen::MatrixXd& columns, const Eigen::Vecto
 }
 
 /// Share of the variance of `value` that the mean over bins of `variable` explains, 0..1.
-inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::VectorXd& variable, int bins, Eigen::Index shift = 0) {
+inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::VectorXd& variable, int bins,
+                                Eigen::Index shift = 0) {
   const std::vector<double> edges = equal_count_edges(variable, bins);
   if (edges.size() < 3) return 0.0;
   const Eigen::Index bands = static_cast<Eigen::Index>(edges.size());
@@ -149,7 +156,8 @@ inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::Vecto
   return variance > 0.0 ? std::min(1.0, std::max(0.0, between / variance)) : 0.0;
 }
 
-/// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most 2048 block means).
+/// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most
+/// 2048 block means).
 inline double half_power_period(const Eigen::VectorXd& residual, double interval_s) {
   const Eigen::Index block = std::max<Eigen::Index>(1, residual.size() / 1024);
   const Eigen::Index n = residual.size() / block;
@@ -177,7 +185,8 @@ inline double half_power_period(const Eigen::VectorXd& residual, double interval
   double sum = 0.0;
   for (std::size_t k = 0; k < power.size(); ++k) {
     sum += power[k];
-    if (sum >= 0.5 * total) return interval_s * static_cast<double>(block) * static_cast<double>(n) / static_cast<double>(k + 1);
+    if (sum >= 0.5 * total)
+      return interval_s * static_cast<double>(block) * static_cast<double>(n) / static_cast<double>(k + 1);
   }
   return 0.0;
 }
@@ -218,7 +227,8 @@ public:
 
   Eigen::VectorXi folds(int count) const {
     Eigen::VectorXi fold(rows());
-    for (Eigen::Index i = 0; i < rows(); ++i) fold[i] = static_cast<int>(i * count / std::max<Eigen::Index>(1, rows()));
+    for (Eigen::Index i = 0; i < rows(); ++i)
+      fold[i] = static_cast<int>(i * count / std::max<Eigen::Index>(1, rows()));
     return fold;
   }
 

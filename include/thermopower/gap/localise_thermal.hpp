@@ -17,7 +17,8 @@ enum class HeatSource { law, measured_current, electrical_power };
 
 /// Heat into the motor in W by one source; empty where it is not to be had.
 /// @param offset_A what the current sensor reads too much
-inline Eigen::VectorXd heat_of(const Model& model, const BenchRows& b, HeatSource source, double offset_A = 0.0) {
+inline Eigen::VectorXd heat_of(const Model& model, const BenchRows& b, HeatSource source,
+                               double offset_A = 0.0) {
   const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
   const bool polynomial = std::holds_alternative<ThesisThermalModel>(model.thermal);
   const Eigen::Index n = b.t_s.size();
@@ -53,7 +54,8 @@ public:
         relax_[i] = lumped->conductance_W_per_K / lumped->heat_capacity_J_per_K;
       } else if (const auto* thesis = std::get_if<ThesisThermalModel>(&model.thermal)) {
         const double v = b_.v_rms_V[i];
-        const double rinv = (thesis->rinv_slope_V1 * v + thesis->rinv_slope_V0) * b_.winding_C[i] + thesis->rinv_offset_V1 * v + thesis->rinv_offset_V0;
+        const double rinv = (thesis->rinv_slope_V1 * v + thesis->rinv_slope_V0) * b_.winding_C[i] +
+                            thesis->rinv_offset_V1 * v + thesis->rinv_offset_V0;
         capacity_[i] = v > thesis->minimum_V_rms ? 60.0 * std::max(rinv, 1e-3) : 60.0 * 1e3;
         relax_[i] = thesis->cooling_per_min / 60.0;
         if (v <= thesis->minimum_V_rms) heat_[i] = 0.0;
@@ -67,7 +69,9 @@ public:
   }
 
   /// Temperature response to extra watts from a start at 0.
-  Eigen::VectorXd response(const Eigen::VectorXd& watts) const { return filtered(watts.cwiseQuotient(capacity_)); }
+  Eigen::VectorXd response(const Eigen::VectorXd& watts) const {
+    return filtered(watts.cwiseQuotient(capacity_));
+  }
 
   Judged judge(double slack, HeatSource source) const {
     Judged j;
@@ -76,7 +80,8 @@ public:
     j.problem.fold = thin_.folds(j.problem.folds);
     const Eigen::Index n = baseline_.size();
     const Eigen::VectorXd rise = b_.winding_C - b_.ambient_C;
-    // Written with the measured temperature these are exact however far a constant is off: the baseline's filter is linear.
+    // Written with the measured temperature these are exact however far a constant is off: the baseline's
+    // filter is linear.
     const Eigen::VectorXd scale_heat = response(heat_), scale_loss = filtered(-relax_.cwiseProduct(rise));
     const Eigen::VectorXd scale_storage = stored(b_.winding_C);
     Eigen::MatrixXd nuisance(n, source == HeatSource::electrical_power ? 2 : 3);
@@ -99,29 +104,39 @@ public:
     j.floor = sigma * sigma * static_cast<double>(thin_.rows()) / static_cast<double>(thin_.stride());
 
     const double unbounded = std::numeric_limits<double>::infinity();
-    const auto add = [&](const char* submodel, const std::string& variable, const std::string& words, const Eigen::MatrixXd& columns,
-                         double lower) { j.blocks.push_back({submodel, variable, words, thin_(columns), lower, unbounded}); };
+    const auto add = [&](const char* submodel, const std::string& variable, const std::string& words,
+                         const Eigen::MatrixXd& columns, double lower) {
+      j.blocks.push_back({submodel, variable, words, thin_(columns), lower, unbounded});
+    };
     const auto responses = [&](const Eigen::MatrixXd& watts) {
       Eigen::MatrixXd out(watts.rows(), watts.cols());
       for (Eigen::Index k = 0; k < watts.cols(); ++k) out.col(k) = response(watts.col(k));
       return out;
     };
     const Eigen::VectorXd loss = loss_.cwiseProduct(rise);
-    add("sensing.temperature", "rise_K", "a thermometer that shows another rise than the heat makes", scale_heat, -unbounded);
+    add("sensing.temperature", "rise_K", "a thermometer that shows another rise than the heat makes",
+        scale_heat, -unbounded);
     add("thermal.storage", "dT_dt", "another heat capacity", scale_storage, -unbounded);
     add("thermal.loss", "rise_K", "another conductance", scale_loss, -unbounded);
     add("thermal.loss", "rise_K", "a loss that is there without a rise", response(loss_), -unbounded);
-    add("thermal.loss", "rise_K", "a conductance that depends on the rise", responses(scaled(even_hats(rise, 4), loss)), -unbounded);
-    add("thermal.storage", "motor_C", "a heat capacity that depends on the temperature", by_capacity(7), -unbounded);
-    add("thermal.heating", "heat_W", "a heat that is not in proportion to the law's", responses(scaled(even_hats(heat_, 4), heat_)), -unbounded);
+    add("thermal.loss", "rise_K", "a conductance that depends on the rise",
+        responses(scaled(even_hats(rise, 4), loss)), -unbounded);
+    add("thermal.storage", "motor_C", "a heat capacity that depends on the temperature", by_capacity(7),
+        -unbounded);
+    add("thermal.heating", "heat_W", "a heat that is not in proportion to the law's",
+        responses(scaled(even_hats(heat_, 4), heat_)), -unbounded);
     if (b_.has_power && polynomial_) {
       Eigen::VectorXd supply(n);
-      for (Eigen::Index i = 0; i < n; ++i) supply[i] = b_.v_rms_V[i] > 0.0 ? heat_[i] * (b_.supply_V[i] / b_.v_rms_V[i] - 1.0) : 0.0;
-      add("thermal.heating", "v_rms_V", "heat by the power at the supply and not at the motor", response(supply), 0.0);
+      for (Eigen::Index i = 0; i < n; ++i)
+        supply[i] = b_.v_rms_V[i] > 0.0 ? heat_[i] * (b_.supply_V[i] / b_.v_rms_V[i] - 1.0) : 0.0;
+      add("thermal.heating", "v_rms_V", "heat by the power at the supply and not at the motor",
+          response(supply), 0.0);
     }
     Eigen::MatrixXd fast(n, 5);
-    const double shortest = std::max(2.0 * b_.interval_s, 0.004 * time_constant_s_), longest = std::max(0.4 * time_constant_s_, 1.5 * shortest);
-    for (Eigen::Index k = 0; k < 5; ++k) fast.col(k) = lag(heat_, shortest * std::pow(longest / shortest, static_cast<double>(k) / 4.0), true);
+    const double shortest = std::max(2.0 * b_.interval_s, 0.004 * time_constant_s_),
+                 longest = std::max(0.4 * time_constant_s_, 1.5 * shortest);
+    for (Eigen::Index k = 0; k < 5; ++k)
+      fast.col(k) = lag(heat_, shortest * std::pow(longest / shortest, static_cast<double>(k) / 4.0), true);
     add("thermal.storage", "dT_dt", "a part that follows the heat faster than the whole", fast, 0.0);
     Eigen::VectorXd latest;
     double least = unbounded, at = 0.0;
@@ -139,31 +154,36 @@ public:
     std::snprintf(words, sizeof words, "a reading that comes %.3g s after the temperature", at);
     j.blocks.push_back({"sensing.temperature", "dT_dt", words, latest, 0.0, unbounded, 1});
     for (const Column& column : b_.covariates) {
-      const Eigen::VectorXd z = column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
+      const Eigen::VectorXd z =
+          column.name == "rate_dps" ? Eigen::VectorXd(column.values.cwiseAbs()) : column.values;
       const double scale = std::max(z.cwiseAbs().maxCoeff(), 1e-12);
       const Eigen::VectorXd unit = z / scale;
       Eigen::MatrixXd two(n, 2);
       two.col(0) = loss.cwiseProduct(unit);
       two.col(1) = loss.array() * unit.array().sign() * unit.array().abs().sqrt();
-      add("thermal.loss", column.name, "a conductance that changes with " + column.name, responses(two), -unbounded);
+      add("thermal.loss", column.name, "a conductance that changes with " + column.name, responses(two),
+          -unbounded);
       if (column.name.size() > 2 && column.name.compare(column.name.size() - 2, 2, "_C") == 0) {
         add("thermal.heating", column.name, "heat that flows in from " + column.name,
             response(loss_.cwiseProduct(column.values - b_.winding_C)), -unbounded);
       } else {
-        add("thermal.heating", column.name, "heat with the square of " + column.name, response(loss_.cwiseProduct(unit.cwiseProduct(unit))), -unbounded);
+        add("thermal.heating", column.name, "heat with the square of " + column.name,
+            response(loss_.cwiseProduct(unit.cwiseProduct(unit))), -unbounded);
         two.col(0) = loss_.cwiseProduct(unit);
         two.col(1) = loss_.cwiseProduct(unit.cwiseProduct(unit));
-        add("thermal.heating", column.name, "heat that comes with " + column.name, responses(two), -unbounded);
+        add("thermal.heating", column.name, "heat that comes with " + column.name, responses(two),
+            -unbounded);
       }
     }
     return j;
   }
 
-  /// Whom to accuse when no block helps: a heat of its own course in time, a conductance of its own course, or a store at some
-  /// temperature, whichever follows the residual best for its number of directions.
+  /// Whom to accuse when no block helps: a heat of its own course in time, a conductance of its own course,
+  /// or a store at some temperature, whichever follows the residual best for its number of directions.
   /// @return submodel and the sum of squares it leaves, as if it had no more directions than a block
   std::pair<std::string, double> unnamed(const Judged& j) const {
-    const Eigen::Index rows = j.problem.y.size(), knots = std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, rows / 20));
+    const Eigen::Index rows = j.problem.y.size(),
+                       knots = std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, rows / 20));
     const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(b_.t_s.size(), 0.0, 1.0);
     const Eigen::MatrixXd course = even_hats(order, static_cast<int>(knots));
     const Eigen::VectorXd rise = b_.winding_C - b_.ambient_C;
@@ -187,9 +207,12 @@ public:
     return best;
   }
 
-  /// J/K, W and W of each row: what multiplies dT/dt, what the baseline loses at the measured temperature, what it is heated by.
+  /// J/K, W and W of each row: what multiplies dT/dt, what the baseline loses at the measured temperature,
+  /// what it is heated by.
   const Eigen::VectorXd& capacity() const { return capacity_; }
-  Eigen::VectorXd loss_W() const { return capacity_.cwiseProduct(relax_).cwiseProduct(b_.winding_C - b_.ambient_C); }
+  Eigen::VectorXd loss_W() const {
+    return capacity_.cwiseProduct(relax_).cwiseProduct(b_.winding_C - b_.ambient_C);
+  }
   const Eigen::VectorXd& heat() const { return heat_; }
 
 private:
@@ -219,7 +242,8 @@ private:
     return out;
   }
 
-  // Response to the watts that a heat store of content A(T), in units of the heat capacity, takes: lag(A) - A.
+  // Response to the watts that a heat store of content A(T), in units of the heat capacity, takes: lag(A) -
+  // A.
   Eigen::VectorXd stored(const Eigen::VectorXd& content) const {
     Eigen::VectorXd out(content.size());
     for (const RunSpan& run : b_.runs) {

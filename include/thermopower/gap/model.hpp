@@ -67,8 +67,8 @@ using EffectParameters = std::map<std::string, double>;
 
 /// One constant of a model: the block and name it has in the model file, and its value.
 struct NamedConstant {
-  std::string block;  ///< `supply`, `current`, `thermal` or `axis`
-  std::string name;   ///< as in the file, such as `resistance_ohm`
+  std::string block;   ///< `supply`, `current`, `thermal` or `axis`
+  std::string name;    ///< as in the file, such as `resistance_ohm`
   double value = 0.0;  ///< in the unit the name ends in
 };
 
@@ -197,18 +197,24 @@ inline std::vector<CalibratedConstant> Model::calibrated() const {
     if (ohmic->tempco_per_K != 0.0) list.push_back({"tempco", "current", {"tempco_per_K"}});
   } else if (std::holds_alternative<ThesisCurrentModel>(current)) {
     list.push_back({"base", "current", {"base_mA"}});
-    list.push_back({"slope", "current", {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"}, true, false});
+    list.push_back(
+        {"slope", "current", {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"}, true, false});
     for (const char* field : {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"})
-      if (get(std::string("current.") + field) != 0.0) list.push_back({field, "current", {field}, false, true});
+      if (get(std::string("current.") + field) != 0.0)
+        list.push_back({field, "current", {field}, false, true});
   }
   if (std::holds_alternative<LumpedThermalModel>(thermal)) {
     list.push_back({"heat_capacity", "thermal", {"heat_capacity_J_per_K"}});
     list.push_back({"conductance", "thermal", {"conductance_W_per_K"}});
   } else if (std::holds_alternative<ThesisThermalModel>(thermal)) {
-    list.push_back(
-        {"rinv", "thermal", {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"}, true, false});
+    list.push_back({"rinv",
+                    "thermal",
+                    {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"},
+                    true,
+                    false});
     for (const char* field : {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"})
-      if (get(std::string("thermal.") + field) != 0.0) list.push_back({field, "thermal", {field}, false, true});
+      if (get(std::string("thermal.") + field) != 0.0)
+        list.push_back({field, "thermal", {field}, false, true});
     list.push_back({"cooling", "thermal", {"cooling_per_min"}});
   }
   if (axis) {

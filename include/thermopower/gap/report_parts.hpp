@@ -132,8 +132,7 @@ inline std::array<double, signal_count> noise_of(const Errors& errors, const std
   std::array<double, signal_count> sigma{};
   for (std::size_t i = 0; i < signal_count; ++i) {
     std::vector<bool> gaps(errors.of[i].size(), false);
-    for (std::size_t k = 1; k < gaps.size(); ++k)
-      gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
+    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
     sigma[i] = std::max(white_sd(errors.of[i], gaps),
                         coarsest_quantum(inputs, static_cast<Signal>(i)) / std::sqrt(12.0));
   }

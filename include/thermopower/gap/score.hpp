@@ -15,8 +15,8 @@ namespace thermopower::gap {
 
 /// Errors of a free-running simulation against recordings, signal by signal, in the order of the rows.
 struct Errors {
-  std::array<std::vector<double>, signal_count> of;    ///< simulated minus measured
-  std::array<std::vector<int>, signal_count> segment;  ///< which segment each belongs to
+  std::array<std::vector<double>, signal_count> of;         ///< simulated minus measured
+  std::array<std::vector<int>, signal_count> segment;       ///< which segment each belongs to
   std::array<std::vector<double>, signal_count> simulated;  ///< simulated value, in the signal's unit
   std::array<std::vector<Eigen::Index>, signal_count> row;  ///< row in the recording of that segment
 
@@ -142,10 +142,10 @@ private:
 
 /// 95 % interval of 1 - rms(after) / rms(before), for recordings like this one, by a paired block bootstrap.
 ///
-/// Both simulations' squared errors are drawn in the same six long blocks: how much sixths of a recording differ
-/// tells of slow changes that shorter blocks average away. The logarithm of the ratio is what varies evenly;
-/// its deviations are widened as Student's t asks with so few blocks, and by a seventh (0.15) for what no single
-/// recording can show, the difference between two days.
+/// Both simulations' squared errors are drawn in the same six long blocks: how much sixths of a recording
+/// differ tells of slow changes that shorter blocks average away. The logarithm of the ratio is what varies
+/// evenly; its deviations are widened as Student's t asks with so few blocks, and by a seventh (0.15) for
+/// what no single recording can show, the difference between two days.
 /// @return {0, 0} where both are the same or there are no errors
 inline Interval shrinkage_interval(const std::vector<double>& before, const std::vector<double>& after,
                                    unsigned seed) {
@@ -181,7 +181,8 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
   std::sort(ratios.begin(), ratios.end());
   const double middle = half_log(all_after, all_before);
   const auto widened = [&](double quantile) {
-    // 2.571 / 1.960: t with five degrees of freedom against the normal; 6/5: a bootstrap of six is too narrow.
+    // 2.571 / 1.960: t with five degrees of freedom against the normal; 6/5: a bootstrap of six is too
+    // narrow.
     const double student = 2.571 / 1.960 * std::sqrt(6.0 / 5.0), between_days = 0.15;
     const double by = ratios[static_cast<std::size_t>(quantile * (draws - 1))] - middle;
     return middle + std::copysign(std::hypot(student * by, between_days), quantile - 0.5);

@@ -16,8 +16,7 @@ namespace thermopower::gap {
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
 /// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more
-/// of it
-/// (`fine`). Every candidate it returns has its residuals on the fine data.
+/// of it (`fine`). Every candidate it returns has its residuals on the fine data.
 class Search {
 public:
   /// Both attributions must pose the same question to different amounts of data, and outlive this object.
@@ -148,8 +147,8 @@ private:
     refine(candidates, first, 5);
   }
 
-  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the same
-  /// submodel: of two that do the same beside a third, only one may have been tried.
+  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
+  /// same submodel: of two that do the same beside a third, only one may have been tried.
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = best(candidates);
     const Explanation& leader = near.explanation;

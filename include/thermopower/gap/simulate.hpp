@@ -25,12 +25,12 @@ enum class SimulationMode {
 /// How to simulate.
 struct SimulationOptions {
   SimulationMode mode = SimulationMode::free_running;  ///< which signals are fed in
-  double horizon_s = 0.5;  ///< axis only; 0 or infinite: whole runs
+  double horizon_s = 0.5;                              ///< axis only; 0 or infinite: whole runs
 };
 
 /// One simulated signal, a value per row of the recording; NaN where it could not be simulated.
 struct SimulatedSignal {
-  std::string signal;  ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
+  std::string signal;      ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
   Eigen::VectorXd values;  ///< in the signal's unit: A, degC, deg or deg/s
 };
 

@@ -30,16 +30,16 @@ struct ElectricalTerms {
 /// Heat balance of the body: what comes in, what goes out, W.
 template <class Scalar>
 struct ThermalTerms {
-  double t_s = 0.0;           ///< time since the start of the run
-  double airspeed_mps = 0.0;  ///< covariate
-  double neighbour_C = 0.0;   ///< covariate
-  double rate_dps = 0.0;      ///< covariate
+  double t_s = 0.0;                 ///< time since the start of the run
+  double airspeed_mps = 0.0;        ///< covariate
+  double neighbour_C = 0.0;         ///< covariate
+  double rate_dps = 0.0;            ///< covariate
   double measured_ambient_C = 0.0;  ///< as recorded; `ambient_C` starts from it
-  Scalar winding_C;  ///< node that the heat enters
-  Scalar surface_C;  ///< node that loses it; the same where there is one node
-  Scalar current_A;  ///< motor current
-  Scalar supply_V;   ///< supply at the bridge
-  Scalar v_rms_V;    ///< voltage at the motor
+  Scalar winding_C;                 ///< node that the heat enters
+  Scalar surface_C;                 ///< node that loses it; the same where there is one node
+  Scalar current_A;                 ///< motor current
+  Scalar supply_V;                  ///< supply at the bridge
+  Scalar v_rms_V;                   ///< voltage at the motor
   // to change
   Scalar ambient_C;           ///< air temperature that the body feels
   Scalar heat_W;              ///< into the winding node
@@ -73,10 +73,10 @@ inline constexpr double friction_sticks_below_rad_per_s = 5e-4;
 /// Torques on the driven inertia.
 template <class Scalar>
 struct AxisTerms {
-  double t_s;  ///< time since the start of the run
+  double t_s;                    ///< time since the start of the run
   const Scalar& angle_rad;       ///< of the driven inertia
   const Scalar& rate_rad_per_s;  ///< its derivative
-  const Scalar& drive_Nm;  ///< torque of the drive, after its own effects
+  const Scalar& drive_Nm;        ///< torque of the drive, after its own effects
   // to change
   Scalar load_Nm;               ///< added to the drive
   Scalar friction_forward_Nm;   ///< magnitude of dry friction while the rate is positive, >= 0
@@ -98,14 +98,14 @@ struct AxisStructure {
   Scalar far_share;         ///< of the inertia, behind a spring; 0: rigid
   Scalar spring_rad_per_s;  ///< natural frequency of the two inertias against each other
   Scalar spring_damping;    ///< damping ratio of that motion
-  bool delayed = false;      ///< to be set with the delay
-  bool compliant = false;    ///< to be set with the share: there is a far side
+  bool delayed = false;     ///< to be set with the delay
+  bool compliant = false;   ///< to be set with the share: there is a far side
 };
 
 /// What the instruments say of the bench.
 template <class Scalar>
 struct BenchReadings {
-  double t_s = 0.0;  ///< time since the start of the run
+  double t_s = 0.0;                 ///< time since the start of the run
   double measured_ambient_C = 0.0;  ///< as recorded
   // to change
   Scalar current_A;  ///< what the ammeter shows; given as the true current

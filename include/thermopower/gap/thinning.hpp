@@ -155,9 +155,9 @@ private:
 
   /// The rates that stand for those of a block; NaN where they hardly vary.
   struct Rates {
-    double before = missing;   ///< up to the middle
-    double mean = missing;     ///< from the middle on, where the current is observed
-    double after = missing;    ///< from `after_s` on, for half as long as `before`
+    double before = missing;  ///< up to the middle
+    double mean = missing;    ///< from the middle on, where the current is observed
+    double after = missing;   ///< from `after_s` on, for half as long as `before`
     double after_s = missing;
   };
 

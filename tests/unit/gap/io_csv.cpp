@@ -17,7 +17,9 @@ using files::CsvTable;
 
 namespace {
 
-CsvTable parse(const std::string& text) { return files::parse_csv("log.csv", text.data(), text.size(), files::known_columns()); }
+CsvTable parse(const std::string& text) {
+  return files::parse_csv("log.csv", text.data(), text.size(), files::known_columns());
+}
 
 std::string error_of(const std::string& text) {
   try {
@@ -44,7 +46,8 @@ TEST_CASE("numbers of any magnitude survive writing and reading") {
   std::string text = "t_s,x\n";
   std::vector<double> written;
   for (int i = 0; i < 2000; ++i) {
-    const double value = std::ldexp(std::uniform_real_distribution<double>(-1.0, 1.0)(random), static_cast<int>(random() % 600) - 300);
+    const double value = std::ldexp(std::uniform_real_distribution<double>(-1.0, 1.0)(random),
+                                    static_cast<int>(random() % 600) - 300);
     char row[64];
     std::snprintf(row, sizeof row, "%d,%.17g\n", i, value);
     text += row;
@@ -61,10 +64,12 @@ TEST_CASE("empty cells and nan are missing samples") {
   CHECK(table.columns[1].values[3] == 5.0);
 }
 
-TEST_CASE("a byte-order mark, CRLF, blank lines, spaces, quotes and a missing last line break change nothing") {
+TEST_CASE(
+    "a byte-order mark, CRLF, blank lines, spaces, quotes and a missing last line break change nothing") {
   const CsvTable plain = parse("t_s,motor_C\n0,1\n1,2\n");
-  for (const char* text : {"\xef\xbb\xbft_s,motor_C\n0,1\n1,2\n", "t_s,motor_C\r\n0,1\r\n1,2\r\n", "t_s,motor_C\n\n0,1\n\n\n1,2\n",
-                           "t_s, motor_C\n0 , 1\n1,2\n", "\"t_s\",\"motor_C\"\n\"0\",\"1\"\n1,2\n", "t_s,motor_C\n0,1\n1,2"}) {
+  for (const char* text : {"\xef\xbb\xbft_s,motor_C\n0,1\n1,2\n", "t_s,motor_C\r\n0,1\r\n1,2\r\n",
+                           "t_s,motor_C\n\n0,1\n\n\n1,2\n", "t_s, motor_C\n0 , 1\n1,2\n",
+                           "\"t_s\",\"motor_C\"\n\"0\",\"1\"\n1,2\n", "t_s,motor_C\n0,1\n1,2"}) {
     CAPTURE(text);
     const CsvTable table = parse(text);
     REQUIRE(table.rows == 2);
@@ -99,7 +104,8 @@ TEST_CASE("every kind of malformed input is refused with file, line, column and 
   const std::vector<Case> cases = {
       {"", {"log.csv: ", "empty", "expected a header row"}},
       {"t_s,motor_C\n", {"log.csv: ", "only a header row", "at least one data row"}},
-      {"t_s,motor_C\n0,1\n1,2x\n", {"log.csv:3: ", "column 'motor_C'", "'2x' is not a number", "expected a decimal number"}},
+      {"t_s,motor_C\n0,1\n1,2x\n",
+       {"log.csv:3: ", "column 'motor_C'", "'2x' is not a number", "expected a decimal number"}},
       {"t_s,motor_C\n0,1\n1,0x10\n", {"log.csv:3: ", "'0x10' is not a number"}},
       {"t_s,motor_C\n0,1,2\n", {"log.csv:2: ", "3 fields", "expected 2 as in the header row"}},
       {"t_s,motor_C\n0\n1,2\n", {"log.csv:2: ", "column 'motor_C'", "1 field ", "expected 2"}},
@@ -133,9 +139,11 @@ TEST_CASE("every kind of malformed input is refused with file, line, column and 
 
 TEST_CASE("a field without end is refused before it fills the memory") {
   const std::string quoted = "t_s,motor_C\n0,\"" + std::string(1 << 20, 'x');
-  CHECK_THAT(error_of(quoted), ContainsSubstring("log.csv:2: column 'motor_C': the quote that opens this field is not closed"));
+  CHECK_THAT(error_of(quoted),
+             ContainsSubstring("log.csv:2: column 'motor_C': the quote that opens this field is not closed"));
   const std::string plain = "t_s,motor_C\n0," + std::string(1 << 20, '1');
-  CHECK_THAT(error_of(plain), ContainsSubstring("log.csv:2: column 'motor_C': field of more than 4096 bytes"));
+  CHECK_THAT(error_of(plain),
+             ContainsSubstring("log.csv:2: column 'motor_C': field of more than 4096 bytes"));
 }
 
 TEST_CASE("an excerpt of binary junk is readable, short and pure ASCII") {
@@ -146,6 +154,8 @@ TEST_CASE("an excerpt of binary junk is readable, short and pure ASCII") {
 
 TEST_CASE("what is no readable file is told apart") {
   const auto folder = std::filesystem::temp_directory_path();
-  CHECK_THROWS_WITH(files::read_recording(folder.string()), ContainsSubstring("is a directory; expected a CSV file"));
-  CHECK_THROWS_WITH(files::read_recording((folder / "there is no such file").string()), ContainsSubstring("cannot be read: No such file"));
+  CHECK_THROWS_WITH(files::read_recording(folder.string()),
+                    ContainsSubstring("is a directory; expected a CSV file"));
+  CHECK_THROWS_WITH(files::read_recording((folder / "there is no such file").string()),
+                    ContainsSubstring("cannot be read: No such file"));
 }

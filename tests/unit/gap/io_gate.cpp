@@ -80,8 +80,12 @@ TEST_CASE("units and signs are found") {
 
 TEST_CASE("wraps, frozen and saturated channels, holes and spikes are found") {
   Recording r = axis();
-  change(r, "angle_deg", [](double x, Eigen::Index) { return x - 360.0 * std::floor((x + 180.0) / 360.0) - (std::fabs(x) > 1e9 ? 1.0 : 0.0); });
-  change(r, "angle_deg", [](double x, Eigen::Index i) { return i % 700 < 350 ? x : x > 0.0 ? x - 359.0 : x + 359.0; });
+  change(r, "angle_deg", [](double x, Eigen::Index) {
+    return x - 360.0 * std::floor((x + 180.0) / 360.0) - (std::fabs(x) > 1e9 ? 1.0 : 0.0);
+  });
+  change(r, "angle_deg", [](double x, Eigen::Index i) {
+    return i % 700 < 350 ? x : x > 0.0 ? x - 359.0 : x + 359.0;
+  });
   CHECK_THAT(codes(check_data(r, test::axis_model())), ContainsSubstring("wrapped_channel(angle_deg)"));
   r = axis();
   change(r, "rate_dps", [](double x, Eigen::Index) { return std::min(20.0, std::max(-20.0, x)); });

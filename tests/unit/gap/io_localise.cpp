@@ -11,8 +11,12 @@ using namespace thermopower::gap;
 
 namespace {
 
-Localisation bench(const test::BenchFault& fault) { return localise(test::bench_model(), {test::bench_recording(fault, 1500, 3)}); }
-Localisation axis(const test::AxisFault& fault) { return localise(test::axis_model(), {test::axis_recording(fault, 4000, 3)}); }
+Localisation bench(const test::BenchFault& fault) {
+  return localise(test::bench_model(), {test::bench_recording(fault, 1500, 3)});
+}
+Localisation axis(const test::AxisFault& fault) {
+  return localise(test::axis_model(), {test::axis_recording(fault, 4000, 3)});
+}
 
 void check_first(const Localisation& found, const char* signal, const char* submodel) {
   REQUIRE_FALSE(found.where.empty());

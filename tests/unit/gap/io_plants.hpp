@@ -11,7 +11,8 @@
 
 namespace test {
 
-/// Reproducible noise that needs no library: a linear congruential generator, twelve uniforms to a normal number.
+/// Reproducible noise that needs no library: a linear congruential generator, twelve uniforms to a normal
+/// number.
 class Noise {
 public:
   explicit Noise(std::uint64_t seed) : state_(seed * 2862933555777941757ull + 3037000493ull) {}
@@ -51,7 +52,7 @@ struct BenchFault {
   double sensor_gain = 1.0;
   double series_ohm = 0.0;
   double lag_s = 0.0;
-  double motor_scale = 1.0;          ///< of C and G: a small error of the baseline
+  double motor_scale = 1.0;  ///< of C and G: a small error of the baseline
 };
 
 /// A motor under power steps, integrated at a fiftieth of the log's interval.
@@ -77,7 +78,8 @@ inline thermopower::gap::Recording bench_recording(const BenchFault& fault, int 
     for (int k = 0; k < 50; ++k) {
       const double heat = amps() * amps() * 8.0 * (1.0 + 0.00393 * (winding - 25.0)), rise = winding - 23.0;
       const double h = 0.04;
-      winding += h * (heat - conductance * rise - fault.extra_loss_W_per_K2 * rise * std::fabs(rise)) / capacity;
+      winding +=
+          h * (heat - conductance * rise - fault.extra_loss_W_per_K2 * rise * std::fabs(rise)) / capacity;
       if (fault.lag_s > 0.0) sensor += h * (winding - sensor) / fault.lag_s;
     }
   }
@@ -107,7 +109,8 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
   for (int i = 0; i < rows; ++i) {
     const double t = 0.01 * i + static_cast<double>(seed);
     r.t_s[i] = 0.01 * i;
-    drive[i] = 0.1 * std::sin(2.1 * t) + 0.08 * std::sin(5.3 * t + 1.0) + 0.05 * std::sin(11.0 * t) + 0.03 * std::sin(0.7 * t);
+    drive[i] = 0.1 * std::sin(2.1 * t) + 0.08 * std::sin(5.3 * t + 1.0) + 0.05 * std::sin(11.0 * t) +
+               0.03 * std::sin(0.7 * t);
   }
   double theta = 0.0, omega = 0.0;
   for (int i = 0; i < rows; ++i) {

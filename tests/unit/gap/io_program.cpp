@@ -45,7 +45,8 @@ std::string csv(const Recording& r) {
 /// A folder with a model and recordings, gone when the test is over.
 struct Folder {
   fs::path path;
-  explicit Folder(const char* name) : path(fs::temp_directory_path() / (std::string("thermopower_gap_") + name)) {
+  explicit Folder(const char* name)
+      : path(fs::temp_directory_path() / (std::string("thermopower_gap_") + name)) {
     fs::remove_all(path);
     fs::create_directories(path);
   }
@@ -63,20 +64,23 @@ struct Folder {
   };
 
   Result run(const std::string& arguments) const {
-    const std::string command = "cd '" + path.string() + "' && '" THERMOPOWER_GAP_PROGRAM "' " + arguments + " > stdout 2> stderr";
+    const std::string command =
+        "cd '" + path.string() + "' && '" THERMOPOWER_GAP_PROGRAM "' " + arguments + " > stdout 2> stderr";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(path / "stdout"), text_of(path / "stderr")};
   }
 
   std::size_t count() const {
     std::size_t n = 0;
-    for (const auto& entry : fs::directory_iterator(path)) n += entry.path().filename() != "stdout" && entry.path().filename() != "stderr" ? 1 : 0;
+    for (const auto& entry : fs::directory_iterator(path))
+      n += entry.path().filename() != "stdout" && entry.path().filename() != "stderr" ? 1 : 0;
     return n;
   }
 };
 
 const std::string inputs = "--model model.json --recording train.csv --heldout heldout.csv ";
-const std::string outputs = "--report report.json --html report.html --predictions predictions.csv --augmented augmented.json --header motor_model.hpp ";
+const std::string outputs =
+    "--report report.json --html report.html --predictions predictions.csv --augmented augmented.json --header motor_model.hpp ";
 
 }  // namespace
 
@@ -102,11 +106,13 @@ TEST_CASE("a loss that grows with the rise is diagnosed from files to files") {
     CHECK(ohm["ci95"][0].get<double>() < ohm["value"].get<double>());
     CHECK(ohm["value"].get<double>() == Approx(1.5).epsilon(0.25));
     CHECK(report["gap"]["current_A"]["shrunk_by"].get<double>() > 0.8);
-    CHECK(report["gap"]["current_A"]["after"].get<double>() < 1.3 * report["gap"]["current_A"]["noise_floor"].get<double>());
+    CHECK(report["gap"]["current_A"]["after"].get<double>() <
+          1.3 * report["gap"]["current_A"]["noise_floor"].get<double>());
   }
   SECTION("one thread or two, once or twice: the same bytes") {
     std::vector<std::string> before;
-    const std::vector<std::string> names = {"report.json", "report.html", "predictions.csv", "augmented.json", "motor_model.hpp"};
+    const std::vector<std::string> names = {"report.json", "report.html", "predictions.csv", "augmented.json",
+                                            "motor_model.hpp"};
     for (const auto& name : names) before.push_back(text_of(folder.path / name));
     REQUIRE(folder.run("diagnose " + inputs + outputs + "--threads 2").status == 0);
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -115,7 +121,9 @@ TEST_CASE("a loss that grows with the rise is diagnosed from files to files") {
     }
   }
   SECTION("predict gives the augmented predictions again") {
-    REQUIRE(folder.run("predict --model augmented.json --recording heldout.csv --predictions again.csv").status == 0);
+    REQUIRE(
+        folder.run("predict --model augmented.json --recording heldout.csv --predictions again.csv").status ==
+        0);
     std::istringstream one(text_of(folder.path / "predictions.csv")), two(text_of(folder.path / "again.csv"));
     std::string a, b;
     std::getline(one, a);
@@ -136,22 +144,31 @@ TEST_CASE("a loss that grows with the rise is diagnosed from files to files") {
     CHECK(rows == 600);
   }
   SECTION("the header compiles as C++11") {
-    write(folder.path / "use.cpp", "#include \"motor_model.hpp\"\nint main() { return motor_model::Motor::current().current_A(0.0f, 25.0f) == 0.0f ? 0 : 1; }\n");
-    const std::string command = "cd '" + folder.path.string() + "' && c++ -std=c++11 -Wall -Wextra -Werror -I'" THERMOPOWER_INCLUDE "' use.cpp -o use && ./use";
+    write(
+        folder.path / "use.cpp",
+        "#include \"motor_model.hpp\"\nint main() { return motor_model::Motor::current().current_A(0.0f, 25.0f) == 0.0f ? 0 : 1; }\n");
+    const std::string command = "cd '" + folder.path.string() +
+                                "' && c++ -std=c++11 -Wall -Wextra -Werror -I'" THERMOPOWER_INCLUDE
+                                "' use.cpp -o use && ./use";
     CHECK(std::system(command.c_str()) == 0);
     if (std::system("avr-gcc --version > /dev/null 2>&1") == 0) {
-      const std::string avr = "cd '" + folder.path.string() + "' && avr-gcc -std=gnu++11 -mmcu=atmega328p -Os -Wall -Wextra -Werror -I'" THERMOPOWER_INCLUDE "' -c use.cpp -o use.o";
+      const std::string avr =
+          "cd '" + folder.path.string() +
+          "' && avr-gcc -std=gnu++11 -mmcu=atmega328p -Os -Wall -Wextra -Werror -I'" THERMOPOWER_INCLUDE
+          "' -c use.cpp -o use.o";
       CHECK(std::system(avr.c_str()) == 0);
     }
   }
   SECTION("an effect taken from the catalogue is not found") {
-    REQUIRE(folder.run("diagnose " + inputs + "--report without.json --without series_resistance").status == 0);
+    REQUIRE(folder.run("diagnose " + inputs + "--report without.json --without series_resistance").status ==
+            0);
     const auto report = nlohmann::json::parse(text_of(folder.path / "without.json"));
     CHECK_THAT(report["cause"].dump(), !ContainsSubstring("series_resistance"));
     CHECK_THAT(report["alternatives"].dump(), !ContainsSubstring("series_resistance"));
   }
   SECTION("without held-out files the end of the recording is held out") {
-    REQUIRE(folder.run("diagnose --model model.json --recording train.csv --predictions own.csv").status == 0);
+    REQUIRE(folder.run("diagnose --model model.json --recording train.csv --predictions own.csv").status ==
+            0);
     const std::string own = text_of(folder.path / "own.csv");
     const auto rows = static_cast<double>(std::count(own.begin(), own.end(), '\n') - 1);
     CHECK(rows > 900 * 0.2);
@@ -188,7 +205,8 @@ TEST_CASE("exit statuses and messages, and nothing half-written") {
   folder.bench({});
   write(folder.path / "broken.csv", "t_s,motor_C\n0,1\n1,hot\n");
   write(folder.path / "broken.json", "{\"format\": ");
-  write(folder.path / "short.csv", "t_s,power_param,current_A,motor_C,ambient_C\n0,100,0.5,20,20\n2,100,0.5,20,20\n");
+  write(folder.path / "short.csv",
+        "t_s,power_param,current_A,motor_C,ambient_C\n0,100,0.5,20,20\n2,100,0.5,20,20\n");
   const std::size_t files_before = folder.count();
   struct Case {
     std::string arguments;
@@ -203,12 +221,17 @@ TEST_CASE("exit statuses and messages, and nothing half-written") {
       {"diagnose " + inputs + "--without gremlins", 2, "no effect 'gremlins'"},
       {"diagnose " + inputs + "--report x --html x", 2, "named twice"},
       {"diagnose " + inputs + "--report train.csv", 2, "named twice"},
-      {"diagnose --model model.json --recording nowhere.csv --report report.json", 3, "nowhere.csv: cannot be read"},
-      {"diagnose --model nowhere.json --recording train.csv --report report.json", 3, "nowhere.json: cannot be read"},
-      {"diagnose --model model.json --recording broken.csv --report report.json", 3, "broken.csv:3: column 'motor_C': 'hot' is not a number"},
-      {"diagnose --model broken.json --recording train.csv --report report.json", 3, "broken.json:1:12: not JSON"},
+      {"diagnose --model model.json --recording nowhere.csv --report report.json", 3,
+       "nowhere.csv: cannot be read"},
+      {"diagnose --model nowhere.json --recording train.csv --report report.json", 3,
+       "nowhere.json: cannot be read"},
+      {"diagnose --model model.json --recording broken.csv --report report.json", 3,
+       "broken.csv:3: column 'motor_C': 'hot' is not a number"},
+      {"diagnose --model broken.json --recording train.csv --report report.json", 3,
+       "broken.json:1:12: not JSON"},
       {"diagnose --model model.json --recording . --report report.json", 3, "is a directory"},
-      {"diagnose " + inputs + "--report 'no such folder/report.json'", 3, "no such folder/report.json: cannot be written"},
+      {"diagnose " + inputs + "--report 'no such folder/report.json'", 3,
+       "no such folder/report.json: cannot be written"},
       {"predict --model model.json --recording broken.csv --predictions p.csv", 3, "broken.csv:3"},
   };
   for (const auto& one : cases) {
@@ -218,7 +241,8 @@ TEST_CASE("exit statuses and messages, and nothing half-written") {
     CHECK_THAT(result.error, ContainsSubstring(one.part));
     CHECK(folder.count() == files_before);
   }
-  const auto little = folder.run("diagnose --model model.json --recording short.csv --heldout short.csv --report report.json");
+  const auto little = folder.run(
+      "diagnose --model model.json --recording short.csv --heldout short.csv --report report.json");
   CHECK(little.status == 4);
   CHECK(nlohmann::json::parse(text_of(folder.path / "report.json"))["verdict"] == "insufficient");
 }
@@ -227,11 +251,39 @@ TEST_CASE("the catalogue is listed, with every id of the interface") {
   const Folder folder("effects");
   const auto result = folder.run("effects");
   CHECK(result.status == 0);
-  for (const char* id : {"second_thermal_mass", "radiation", "natural_convection", "forced_airflow", "ambient_bias", "neighbour_heating", "motion_heating",
-                         "thermometer_lag", "thermometer_gain", "supply_power_heating", "calibration.", "supply_sag", "series_resistance", "dead_time",
-                         "back_emf", "current_sensor_offset", "current_sensor_gain", "winding_tempco", "coulomb_friction", "asymmetric_friction",
-                         "stribeck_friction", "load_friction", "drive_deadband", "imbalance", "cable_spring", "cogging", "compliance", "actuation_delay",
-                         "torque_saturation", "torque_fade", "angle_scale", "angle_bias_drift", "rate_bias"}) {
+  for (const char* id : {"second_thermal_mass",
+                         "radiation",
+                         "natural_convection",
+                         "forced_airflow",
+                         "ambient_bias",
+                         "neighbour_heating",
+                         "motion_heating",
+                         "thermometer_lag",
+                         "thermometer_gain",
+                         "supply_power_heating",
+                         "calibration.",
+                         "supply_sag",
+                         "series_resistance",
+                         "dead_time",
+                         "back_emf",
+                         "current_sensor_offset",
+                         "current_sensor_gain",
+                         "winding_tempco",
+                         "coulomb_friction",
+                         "asymmetric_friction",
+                         "stribeck_friction",
+                         "load_friction",
+                         "drive_deadband",
+                         "imbalance",
+                         "cable_spring",
+                         "cogging",
+                         "compliance",
+                         "actuation_delay",
+                         "torque_saturation",
+                         "torque_fade",
+                         "angle_scale",
+                         "angle_bias_drift",
+                         "rate_bias"}) {
     CAPTURE(id);
     CHECK_THAT(result.out, ContainsSubstring(id));
   }

@@ -34,7 +34,16 @@ Diagnosis example() {
   d.next_experiment = "heat <hard> & wait";
   d.not_judged = {"angle_deg: not recorded"};
   d.findings.push_back({"quantum", Severity::note, "a.csv", "motor_C", "steps of 0.1"});
-  d.ranking.push_back({{"radiation"}, 0.61, 1.0, 0.0, 0.1, false, false, false, d.cause[0].parameters, {{{"natural_convection"}, 0.97}}});
+  d.ranking.push_back({{"radiation"},
+                       0.61,
+                       1.0,
+                       0.0,
+                       0.1,
+                       false,
+                       false,
+                       false,
+                       d.cause[0].parameters,
+                       {{{"natural_convection"}, 0.97}}});
   d.constants.push_back({"conductance", 0.11, 0.112});
   SignalSeries series;
   series.signal = "motor_C";
@@ -56,12 +65,14 @@ std::string text_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("the JSON report has the keys of its format, in their order, and numbers that read back bit by bit") {
+TEST_CASE(
+    "the JSON report has the keys of its format, in their order, and numbers that read back bit by bit") {
   const std::string text = files::report_json(example());
   const auto json = nlohmann::ordered_json::parse(text);
   std::vector<std::string> keys;
   for (const auto& item : json.items()) keys.push_back(item.key());
-  const std::vector<std::string> first = {"format", "verdict", "where", "cause", "alternatives", "gap", "next_experiment"};
+  const std::vector<std::string> first = {"format",       "verdict", "where",          "cause",
+                                          "alternatives", "gap",     "next_experiment"};
   CHECK(std::vector<std::string>(keys.begin(), keys.begin() + 7) == first);
   CHECK(json["format"] == "thermopower-gap-report/1");
   CHECK(json["verdict"] == "ambiguous");
@@ -72,7 +83,8 @@ TEST_CASE("the JSON report has the keys of its format, in their order, and numbe
   CHECK(json["alternatives"][1] == std::vector<std::string>{"ambient_bias", "series_resistance"});
   CHECK(json["gap"]["motor_C"]["horizon_s"].is_null());
   CHECK(json["gap"]["rate_dps"]["horizon_s"] == 0.5);
-  for (const char* key : {"unit", "before", "recalibrated", "after", "noise_floor", "shrunk_by", "ci95"}) CHECK(json["gap"]["motor_C"].contains(key));
+  for (const char* key : {"unit", "before", "recalibrated", "after", "noise_floor", "shrunk_by", "ci95"})
+    CHECK(json["gap"]["motor_C"].contains(key));
   CHECK(json["not_judged"][0] == "angle_deg: not recorded");
   CHECK(text == files::report_json(example()));
 }
@@ -82,15 +94,18 @@ TEST_CASE("a report survives names that are no UTF-8") {
   d.findings[0].recording = "\xff\xfe<b>.csv";
   CHECK_NOTHROW(nlohmann::json::parse(files::report_json(d)));
   const std::string html = files::report_html(d, "\xff<script>", {});
-  CHECK_THAT(html, !ContainsSubstring("\xff") && !ContainsSubstring("<script") && !ContainsSubstring("<b>.csv"));
+  CHECK_THAT(html,
+             !ContainsSubstring("\xff") && !ContainsSubstring("<script") && !ContainsSubstring("<b>.csv"));
 }
 
 TEST_CASE("the HTML report is one file without external resource or script, under a megabyte") {
   const std::string html = files::report_html(example(), "motor", {});
   CHECK(html.size() < 1000000);
-  for (const char* forbidden : {"http://", "https://", "src=", "<script", "<link", "@import", "url("}) CHECK_THAT(html, !ContainsSubstring(forbidden));
-  for (const char* needed : {"<svg", "prefers-color-scheme:dark", "@media print", "thermal.loss", "radiation", "natural_convection", "steps of 0.1",
-                             "heat &lt;hard&gt; &amp; wait", "angle_deg: not recorded", "noise floor", "\u00b0C"}) {
+  for (const char* forbidden : {"http://", "https://", "src=", "<script", "<link", "@import", "url("})
+    CHECK_THAT(html, !ContainsSubstring(forbidden));
+  for (const char* needed : {"<svg", "prefers-color-scheme:dark", "@media print", "thermal.loss", "radiation",
+                             "natural_convection", "steps of 0.1", "heat &lt;hard&gt; &amp; wait",
+                             "angle_deg: not recorded", "noise floor", "\u00b0C"}) {
     CAPTURE(needed);
     CHECK_THAT(html, ContainsSubstring(needed));
   }
@@ -113,7 +128,8 @@ TEST_CASE("a thinned curve keeps its highest peak") {
 }
 
 TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same") {
-  for (const auto& values : std::vector<std::vector<double>>{{}, {1.0}, {missing, missing}, {1e300, -1e300}, {5.0, 5.0}}) {
+  for (const auto& values :
+       std::vector<std::vector<double>>{{}, {1.0}, {missing, missing}, {1e300, -1e300}, {5.0, 5.0}}) {
     files::Chart chart;
     chart.series.push_back({"x", "measured", files::Series::Style::line, values, values, {}, {}});
     const std::string svg = files::to_svg(chart);
@@ -123,8 +139,9 @@ TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same"
 
 TEST_CASE("the summary says verdict, where, which, what else, how far and what next") {
   const std::string text = files::summary(example());
-  for (const char* part : {"AMBIGUOUS", "motor_C, thermal.loss (83 % of the gap)", "rise_K 12.0 to 40.0", "radiation (61 %)", "natural_convection; ambient_bias + series_resistance",
-                           "4.40", "0.140", "97 % [96.0, 98.0]", "heat <hard> & wait", "angle_deg: not recorded"}) {
+  for (const char* part : {"AMBIGUOUS", "motor_C, thermal.loss (83 % of the gap)", "rise_K 12.0 to 40.0",
+                           "radiation (61 %)", "natural_convection; ambient_bias + series_resistance", "4.40",
+                           "0.140", "97 % [96.0, 98.0]", "heat <hard> & wait", "angle_deg: not recorded"}) {
     CAPTURE(part);
     CHECK_THAT(text, ContainsSubstring(part));
   }
@@ -147,7 +164,8 @@ TEST_CASE("outputs appear together and complete, or not at all") {
   fine.commit();
   CHECK(text_of(folder / "a") == "first");
   CHECK(text_of(folder / "b") == std::string("second\0", 7));
-  CHECK_THROWS_AS(files::OutputFiles().expect((folder / "no such folder" / "b").string()), files::OutputError);
+  CHECK_THROWS_AS(files::OutputFiles().expect((folder / "no such folder" / "b").string()),
+                  files::OutputError);
   CHECK_THROWS_AS(files::OutputFiles().expect(folder.string()), files::OutputError);
   std::filesystem::remove_all(folder);
 }
@@ -161,7 +179,8 @@ TEST_CASE("a header names every effect, with a policy where there is one") {
   model.effects["dead_time"] = {{"duty_lost", 0.02}};
   model.effects["my own/effect"] = {{"a b", 2.0}};
   const std::string header = files::motor_model_header(model, "origin");
-  CHECK_THAT(header, ContainsSubstring("thermopower::NaturalConvection<float>") && ContainsSubstring("0.25f, 20.0f"));
+  CHECK_THAT(header,
+             ContainsSubstring("thermopower::NaturalConvection<float>") && ContainsSubstring("0.25f, 20.0f"));
   CHECK_THAT(header, ContainsSubstring("duty > 0.02f"));
   CHECK_THAT(header, ContainsSubstring("static float my_own_effect_a_b() { return 2.0f; }"));
 }

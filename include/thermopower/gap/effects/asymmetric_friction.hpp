@@ -18,7 +18,14 @@ struct AsymmetricFriction {
             "Dry friction that differs between the two directions.",
             {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false},
              {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01, 0.06}, true, {}, 0.01}},
+             {"transition_rad_per_s",
+              "rad/s",
+              friction_sticks_below_rad_per_s,
+              0.3,
+              {0.01, 0.06},
+              true,
+              {},
+              0.01}},
             {"axis"},
             "slow motion at constant rate in both directions, and standstill"};
   }

@@ -12,14 +12,15 @@ namespace thermopower::gap {
 struct CableSpring {
   /// What it is.
   static EffectInfo info() {
-    return {
-        "cable_spring",
-        "mechanical.load",
-        "torque -= k (theta - centre)",
-        "A cable pulls back towards its rest position.",
-        {{"Nm_per_rad", "N m/rad", 0.0, 1e3, {0.0}, false}, {"centre_rad", "rad", -60.0, 60.0, {0.0}, false}},
-        {"axis", "angle_deg"},
-        "slow motion over the full travel"};
+    return {"cable_spring",
+            "mechanical.load",
+            "torque -= k (theta - centre)",
+            "A cable pulls back towards its rest position.",
+            // From far enough away the pull is a constant torque.
+            {{"Nm_per_rad", "N m/rad", 0.0, 1e3, {0.0}, false},
+             {"centre_rad", "rad", -60.0, 60.0, {0.0}, false, {}, {}, true}},
+            {"axis", "angle_deg"},
+            "slow motion over the full travel"};
   }
 
   /// Adds the spring's torque.

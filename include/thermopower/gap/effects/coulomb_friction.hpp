@@ -17,7 +17,14 @@ struct CoulombFriction {
             "torque -= Nm tanh(w / transition)",
             "Dry friction: a constant torque against the motion, and sticking at rest.",
             {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01, 0.06}, true, {}, 0.01}},
+             {"transition_rad_per_s",
+              "rad/s",
+              friction_sticks_below_rad_per_s,
+              0.3,
+              {0.01, 0.06},
+              true,
+              {},
+              0.01}},
             {"axis"},
             "slow reversals at small torque"};
   }

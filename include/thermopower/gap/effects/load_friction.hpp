@@ -17,7 +17,14 @@ struct LoadFriction {
             "torque -= share |drive torque| tanh(w / transition)",
             "Friction that grows with the torque transmitted (gears, screws).",
             {{"share", "1", 0.0, 0.95, {0.0}, false},
-             {"transition_rad_per_s", "rad/s", friction_sticks_below_rad_per_s, 0.3, {0.01, 0.06}, true, {}, 0.01}},
+             {"transition_rad_per_s",
+              "rad/s",
+              friction_sticks_below_rad_per_s,
+              0.3,
+              {0.01, 0.06},
+              true,
+              {},
+              0.01}},
             {"axis"},
             "fast and slow motion at large and at small torque"};
   }
