@@ -48,11 +48,11 @@ public:
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
-    Attempt attempt = search(fit_horizon_s());
+    Attempt attempt = thorough_search(fit_horizon_s());
     if (train_inputs_.front().axis() && options_.horizon_s < fit_horizon_s() && best_level(attempt) > 1.5) {
       // Over long windows small errors can send the axis into the next dip of a load: short ones forgive
       // that.
-      Attempt shorter = search(options_.horizon_s);
+      Attempt shorter = thorough_search(options_.horizon_s);
       if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
     }
     stage("which");
@@ -67,8 +67,64 @@ private:
   /// A search with windows of one length.
   struct Attempt {
     FitProblem problem;
+    std::vector<Segment> all;  ///< what `problem` has a part of
     std::vector<Candidate> candidates;
   };
+
+  /// Places of the windows of an axis that the best explanation fits worst, as many as were fitted, where they
+  /// tell that something happens outside of what was fitted: a limit that is reached in some of them alone.
+  std::vector<std::size_t> overlooked(const Attempt& attempt) const {
+    constexpr double clearly = 1.5;
+    const std::vector<Segment>& all = attempt.all;
+    const std::vector<Segment>& fitted = attempt.problem.segments;
+    if (all.size() == fitted.size()) return {};
+    // In the short windows of the score, where an unknown start does little.
+    FitProblem whole = attempt.problem;
+    whole.segments.clear();
+    for (const Segment& segment : all)
+      if (whole.segments.empty() || whole.segments.back().inputs != segment.inputs)
+        cut(*segment.inputs, options_.horizon_s, whole.segments);
+    struct Sum {
+      double squares = 0.0, samples = 0.0;
+      double mean() const { return squares / std::max(samples, 1.0); }
+    };
+    std::vector<Sum> of(all.size());
+    std::size_t place = 0;
+    const auto within = [](const Segment& small, const Segment& large) {
+      return small.inputs == large.inputs && small.axis == large.axis && small.begin >= large.begin &&
+             small.begin < large.end;
+    };
+    const Candidate& best = Search::best(attempt.candidates);
+    whole.evaluate(best.explanation, best.list, best.fit.at,
+                   std::vector<Start>(whole.segments.size(), Start::Zero()), false,
+                   [&](std::size_t i, const FitProblem::Residuals& one) {
+                     while (place + 1 < all.size() && !within(whole.segments[i], all[place])) ++place;
+                     of[place].squares += one.value.squaredNorm();
+                     of[place].samples += static_cast<double>(one.value.size());
+                   });
+    Sum total, seen;
+    std::vector<std::size_t> order;
+    std::size_t next = 0;
+    for (place = 0; place < all.size(); ++place) {
+      if (!all[place].axis) continue;
+      order.push_back(place);
+      total.squares += of[place].squares;
+      total.samples += of[place].samples;
+      while (next < fitted.size() && !fitted[next].axis) ++next;
+      if (next == fitted.size() || fitted[next].inputs != all[place].inputs ||
+          fitted[next].begin != all[place].begin)
+        continue;
+      ++next;
+      seen.squares += of[place].squares;
+      seen.samples += of[place].samples;
+    }
+    if (total.mean() < clearly * clearly * seen.mean()) return {};
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t x, std::size_t y) { return of[x].mean() > of[y].mean(); });
+    order.resize(std::min(order.size(), fitted.size()));
+    std::sort(order.begin(), order.end());
+    return order;
+  }
 
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
   /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
@@ -157,9 +213,10 @@ private:
     return true;
   }
 
-  /// The thinned data of a fit.
+  /// The thinned data of a fit. @param all  receives what it is a part of
   FitProblem problem_of(const std::vector<Inputs>& inputs, Eigen::Index bench_rows, Eigen::Index axis_rows,
-                        double horizon_s) {
+                        double horizon_s, const std::vector<std::size_t>& also = {},
+                        std::vector<Segment>* all = nullptr) {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
@@ -169,7 +226,9 @@ private:
     FitProblem problem;
     problem.model = &model_;
     problem.catalogue = &catalogue_;
-    problem.segments = thinned_axis(cut(*thin, horizon_s), axis_rows);
+    std::vector<Segment> segments = cut(*thin, horizon_s);
+    problem.segments = thinned_axis(segments, axis_rows, also);
+    if (all != nullptr) *all = std::move(segments);
     kept_.push_back(std::move(thin));
     return problem;
   }
@@ -220,11 +279,21 @@ private:
     }
   }
 
-  Attempt search(double horizon_s) {
+  /// A search, and another one with what the first overlooked.
+  Attempt thorough_search(double horizon_s) {
+    Attempt attempt = search(horizon_s);
+    const std::vector<std::size_t> worst = overlooked(attempt);
+    return worst.empty() ? attempt : search(horizon_s, worst);
+  }
+
+  Attempt search(double horizon_s, const std::vector<std::size_t>& also = {}) {
     Attempt attempt;
-    FitProblem& problem = attempt.problem = problem_of(train_inputs_, 2500, 4000, horizon_s);
+    FitProblem& problem = attempt.problem =
+        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
     FitProblem check = problem_of(held_out_inputs_, 2000, 3000, horizon_s);
-    FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, std::min(0.5, options_.horizon_s));
+    const double short_s = std::min(0.5, options_.horizon_s);
+    FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, short_s,
+                                           short_s == horizon_s ? also : std::vector<std::size_t>());
     coarse_problem.segments = thinned_runs(coarse_problem.segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
     const Attribution coarse(coarse_problem, slack_, options_.threads),
