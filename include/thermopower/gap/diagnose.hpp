@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data_gate.hpp>
 #include <thermopower/gap/localisation.hpp>
+#include <thermopower/gap/overlooked.hpp>
 #include <thermopower/gap/report_parts.hpp>
 #include <thermopower/gap/score.hpp>
 #include <thermopower/gap/splitting.hpp>
@@ -66,65 +67,15 @@ public:
 private:
   /// A search with windows of one length.
   struct Attempt {
-    FitProblem problem;
-    std::vector<Segment> all;  ///< what `problem` has a part of
+    FitProblem problem, check;            ///< of training and of held-out data
+    std::vector<Segment> all, all_check;  ///< what they have a part of
     std::vector<Candidate> candidates;
   };
 
-  /// Places of the windows of an axis that the best explanation fits worst, as many as were fitted, where they
-  /// tell that something happens outside of what was fitted: a limit that is reached in some of them alone.
-  std::vector<std::size_t> overlooked(const Attempt& attempt) const {
-    constexpr double clearly = 1.5;
-    const std::vector<Segment>& all = attempt.all;
-    const std::vector<Segment>& fitted = attempt.problem.segments;
-    if (all.size() == fitted.size()) return {};
-    // In the short windows of the score, where an unknown start does little.
-    FitProblem whole = attempt.problem;
-    whole.segments.clear();
-    for (const Segment& segment : all)
-      if (whole.segments.empty() || whole.segments.back().inputs != segment.inputs)
-        cut(*segment.inputs, options_.horizon_s, whole.segments);
-    struct Sum {
-      double squares = 0.0, samples = 0.0;
-      double mean() const { return squares / std::max(samples, 1.0); }
-    };
-    std::vector<Sum> of(all.size());
-    std::size_t place = 0;
-    const auto within = [](const Segment& small, const Segment& large) {
-      return small.inputs == large.inputs && small.axis == large.axis && small.begin >= large.begin &&
-             small.begin < large.end;
-    };
-    const Candidate& best = Search::best(attempt.candidates);
-    whole.evaluate(best.explanation, best.list, best.fit.at,
-                   std::vector<Start>(whole.segments.size(), Start::Zero()), false,
-                   [&](std::size_t i, const FitProblem::Residuals& one) {
-                     while (place + 1 < all.size() && !within(whole.segments[i], all[place])) ++place;
-                     of[place].squares += one.value.squaredNorm();
-                     of[place].samples += static_cast<double>(one.value.size());
-                   });
-    Sum total, seen;
-    std::vector<std::size_t> order;
-    std::size_t next = 0;
-    for (place = 0; place < all.size(); ++place) {
-      if (!all[place].axis) continue;
-      order.push_back(place);
-      total.squares += of[place].squares;
-      total.samples += of[place].samples;
-      while (next < fitted.size() && !fitted[next].axis) ++next;
-      if (next == fitted.size() || fitted[next].inputs != all[place].inputs ||
-          fitted[next].begin != all[place].begin)
-        continue;
-      ++next;
-      seen.squares += of[place].squares;
-      seen.samples += of[place].samples;
-    }
-    if (total.mean() < clearly * clearly * seen.mean()) return {};
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t x, std::size_t y) { return of[x].mean() > of[y].mean(); });
-    order.resize(std::min(order.size(), fitted.size()));
-    std::sort(order.begin(), order.end());
-    return order;
-  }
+  /// Places of segments that are fitted, or checked, besides those that are taken anyway.
+  struct Besides {
+    std::vector<std::size_t> train, held_out;
+  };
 
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
   /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
@@ -282,18 +233,21 @@ private:
   /// A search, and another one with what the first overlooked.
   Attempt thorough_search(double horizon_s) {
     Attempt attempt = search(horizon_s);
-    const std::vector<std::size_t> worst = overlooked(attempt);
-    return worst.empty() ? attempt : search(horizon_s, worst);
+    const Candidate& best = Search::best(attempt.candidates);
+    const Besides worst{overlooked(attempt.problem, attempt.all, best, options_.horizon_s),
+                        overlooked(attempt.check, attempt.all_check, best, options_.horizon_s)};
+    return worst.train.empty() && worst.held_out.empty() ? attempt : search(horizon_s, worst);
   }
 
-  Attempt search(double horizon_s, const std::vector<std::size_t>& also = {}) {
+  Attempt search(double horizon_s, const Besides& also = {}) {
     Attempt attempt;
     FitProblem& problem = attempt.problem =
-        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
-    FitProblem check = problem_of(held_out_inputs_, 2000, 3000, horizon_s);
+        problem_of(train_inputs_, 2500, 4000, horizon_s, also.train, &attempt.all);
+    FitProblem& check = attempt.check =
+        problem_of(held_out_inputs_, 2000, 3000, horizon_s, also.held_out, &attempt.all_check);
     const double short_s = std::min(0.5, options_.horizon_s);
     FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, short_s,
-                                           short_s == horizon_s ? also : std::vector<std::size_t>());
+                                           short_s == horizon_s ? also.train : std::vector<std::size_t>());
     coarse_problem.segments = thinned_runs(coarse_problem.segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
     const Attribution coarse(coarse_problem, slack_, options_.threads),

@@ -84,6 +84,27 @@ TEST_CASE(
   CHECK(diagnosis.verdict == Verdict::no_gap);
 }
 
+TEST_CASE("what happens in a few seconds of a long recording is found") {
+  Model truth = axis_model();
+  truth.effects["torque_saturation"] = {{"A", 0.5}};
+  const auto record = [&](std::uint64_t seed, double from_s) {
+    Recording recording = axis_inputs(12000, 0.01, seed);
+    Eigen::VectorXd drive = recording.column("drive_A");
+    for (Eigen::Index row = 0; row < drive.size(); ++row) {
+      const bool hard = recording.t_s[row] > from_s && recording.t_s[row] < from_s + 12.0;
+      drive[row] *= hard ? 3.0 : 0.8;  // the limit is reached there alone
+    }
+    recording.set("drive_A", drive);
+    measure(recording, truth, seed + 1);
+    return recording;
+  };
+  const Diagnosis diagnosis = diagnose(axis_model(), {record(3, 103.0)}, {record(7, 46.0)});
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "torque_saturation");
+  CHECK(diagnosis.cause.front().parameters.front().value == Approx(0.5).epsilon(0.01));
+}
+
 TEST_CASE("the missing effect is named, and held-out data shrinks to the noise") {
   for (const char* id : {"second_thermal_mass", "series_resistance", "coulomb_friction", "imbalance"}) {
     const Diagnosis diagnosis = diagnose_trial(id);
