@@ -98,7 +98,9 @@ TEST_CASE("what happens in a few seconds of a long recording is found") {
     measure(recording, truth, seed + 1);
     return recording;
   };
-  const Diagnosis diagnosis = diagnose(axis_model(), {record(3, 103.0)}, {record(7, 46.0)});
+  Options options;
+  options.effects_at_once = 1;
+  const Diagnosis diagnosis = diagnose(axis_model(), {record(3, 103.0)}, {record(7, 46.0)}, options);
   INFO(diagnosis.reason);
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause.front().effect == "torque_saturation");
