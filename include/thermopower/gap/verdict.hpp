@@ -127,8 +127,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
   // Far above the noise no share is small enough: something with a structure of its own is left.
   doubt = std::max(doubt, 2.0 * (level_left - 6.0));
   result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
-  // Of hundreds of pairs one or the other can pass for a single cause that the catalogue lacks: in the
-  // benchmark of causes left out, one named pair in six.
+  // Of hundreds of pairs one or the other can pass for a single cause that the catalogue lacks.
   constexpr double pair_for_unknown = 0.15;
   if (best.explanation.size() > 1)
     result.none_of_these = 1.0 - (1.0 - result.none_of_these) * (1.0 - pair_for_unknown);
