@@ -7,6 +7,7 @@
 #include <thermopower/gap/overlooked.hpp>
 #include <thermopower/gap/report_parts.hpp>
 #include <thermopower/gap/score.hpp>
+#include <thermopower/gap/segment_choice.hpp>
 #include <thermopower/gap/splitting.hpp>
 #include <thermopower/gap/standard_catalogue.hpp>
 #include <thermopower/gap/thinning.hpp>

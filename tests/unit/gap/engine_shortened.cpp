@@ -7,6 +7,7 @@
 #include "engine_fixture.hpp"
 
 #include <thermopower/gap/evidence.hpp>
+#include <thermopower/gap/segment_choice.hpp>
 #include <thermopower/gap/thinning.hpp>
 
 using namespace engine_fixture;

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/friction_transition.hpp>
 #include <thermopower/gap/terms.hpp>
 
 namespace thermopower::gap {
@@ -18,14 +19,7 @@ struct AsymmetricFriction {
             "Dry friction that differs between the two directions.",
             {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false},
              {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"transition_rad_per_s",
-              "rad/s",
-              friction_sticks_below_rad_per_s,
-              0.3,
-              {0.01, 0.06},
-              true,
-              {},
-              0.01}},
+             friction_transition()},
             {"axis"},
             "slow motion at constant rate in both directions, and standstill"};
   }

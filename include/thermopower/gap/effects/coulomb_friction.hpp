@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/friction_transition.hpp>
 #include <thermopower/gap/terms.hpp>
 
 namespace thermopower::gap {
@@ -16,15 +17,7 @@ struct CoulombFriction {
             "mechanical.friction",
             "torque -= Nm tanh(w / transition)",
             "Dry friction: a constant torque against the motion, and sticking at rest.",
-            {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"transition_rad_per_s",
-              "rad/s",
-              friction_sticks_below_rad_per_s,
-              0.3,
-              {0.01, 0.06},
-              true,
-              {},
-              0.01}},
+            {{"Nm", "N m", 0.0, 1e3, {0.0}, false}, friction_transition()},
             {"axis"},
             "slow reversals at small torque"};
   }

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/friction_transition.hpp>
 #include <thermopower/gap/terms.hpp>
 
 namespace thermopower::gap {
@@ -16,15 +17,7 @@ struct LoadFriction {
             "mechanical.friction",
             "torque -= share |drive torque| tanh(w / transition)",
             "Friction that grows with the torque transmitted (gears, screws).",
-            {{"share", "1", 0.0, 0.95, {0.0}, false},
-             {"transition_rad_per_s",
-              "rad/s",
-              friction_sticks_below_rad_per_s,
-              0.3,
-              {0.01, 0.06},
-              true,
-              {},
-              0.01}},
+            {{"share", "1", 0.0, 0.95, {0.0}, false}, friction_transition()},
             {"axis"},
             "fast and slow motion at large and at small torque"};
   }

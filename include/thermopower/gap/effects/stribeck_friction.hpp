@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/dual.hpp>
 #include <thermopower/gap/effect.hpp>
+#include <thermopower/gap/friction_transition.hpp>
 #include <thermopower/gap/terms.hpp>
 
 namespace thermopower::gap {
@@ -19,14 +20,7 @@ struct StribeckFriction {
             {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
              {"rise_Nm", "N m", 0.0, 1e3, {0.0}, false},
              {"knee_rad_per_s", "rad/s", 0.005, 100.0, {0.1, 0.5, 2.0}, true},
-             {"transition_rad_per_s",
-              "rad/s",
-              friction_sticks_below_rad_per_s,
-              0.3,
-              {0.01, 0.06},
-              true,
-              {},
-              0.01}},
+             friction_transition()},
             {"axis"},
             "very slow motion through standstill in both directions"};
   }
