@@ -5,11 +5,11 @@
 # Doxygen reads the desk's headers through this: every comment on something at the outermost level gets the group of its folder, at its
 # end, so that line numbers stay.
 case $1 in
-  */gap/effects/*) group=gap_effects ;;
-  */gap/catalogue.hpp | */gap/data_gate.hpp | */gap/diagnose.hpp | */gap/diagnosis.hpp | */gap/effect.hpp | */gap/inputs.hpp | \
-    */gap/localisation.hpp | */gap/model.hpp | */gap/options.hpp | */gap/recording.hpp | */gap/simulate.hpp | \
-    */gap/standard_catalogue.hpp | */gap/terms.hpp) group=gap ;;
-  */gap/*) group=gap_engine ;;
+  */plant/effects/*) group=gap_effects ;;
+  */plant/catalogue.hpp | */plant/effect.hpp | */plant/standard_catalogue.hpp | */plant/terms.hpp | \
+    */gap/data/data_gate.hpp | */gap/data/inputs.hpp | */gap/localise/localisation.hpp) group=gap ;;
+  */plant/* | */gap/*/*) group=gap_engine ;;
+  */gap/*) group=gap ;;
   */simulation/*) group=simulation ;;
 esac
 awk -v group="$group" '

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/dual.hpp>
-#include <thermopower/gap/effect.hpp>
-#include <thermopower/gap/terms.hpp>
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
 
 //! [own effect]
 /// Air drag on something that the axis turns: a torque against the motion, with the square of the rate.

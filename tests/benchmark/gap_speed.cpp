@@ -9,10 +9,10 @@
 #include "engine.hpp"
 #include "recording_file.hpp"
 
-#include <thermopower/gap/fit.hpp>
-#include <thermopower/gap/inputs.hpp>
-#include <thermopower/gap/splitting.hpp>
-#include <thermopower/gap/standard_catalogue.hpp>
+#include <thermopower/gap/fit/fitter.hpp>
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
 
 #ifdef THERMOPOWER_HAS_CERES
 #include <ceres/ceres.h>

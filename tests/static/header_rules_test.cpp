@@ -56,7 +56,7 @@ struct Header {
 };
 
 bool is_firmware(const std::string& name) {
-  static const std::regex upstairs("^(simulation|identification|gap)/|^desktop\\.hpp$");
+  static const std::regex upstairs("^(simulation|plant|gap)/|^(desktop|gap)\\.hpp$");
   return !std::regex_search(name, upstairs);
 }
 

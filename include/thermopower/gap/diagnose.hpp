@@ -2,16 +2,16 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data_gate.hpp>
-#include <thermopower/gap/localisation.hpp>
-#include <thermopower/gap/overlooked.hpp>
-#include <thermopower/gap/report_parts.hpp>
-#include <thermopower/gap/score.hpp>
-#include <thermopower/gap/segment_choice.hpp>
-#include <thermopower/gap/splitting.hpp>
-#include <thermopower/gap/standard_catalogue.hpp>
-#include <thermopower/gap/thinning.hpp>
-#include <thermopower/gap/verdict.hpp>
+#include <thermopower/gap/data/data_gate.hpp>
+#include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/gap/fit/overlooked.hpp>
+#include <thermopower/gap/report/parts.hpp>
+#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+#include <thermopower/gap/fit/thinning.hpp>
+#include <thermopower/gap/decide/verdict.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/fit_problem.hpp>
-#include <thermopower/gap/standard_catalogue.hpp>
+#include <thermopower/gap/fit/fit_problem.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
 
 #include <string>
 #include <utility>

@@ -3,7 +3,7 @@
 #include "../../catch.hpp"
 #include "engine_fixture.hpp"
 
-#include <thermopower/gap/attribution.hpp>
+#include <thermopower/gap/fit/attribution.hpp>
 
 #include <set>
 

@@ -6,9 +6,9 @@
 #include "../../catch.hpp"
 #include "engine_fixture.hpp"
 
-#include <thermopower/gap/evidence.hpp>
-#include <thermopower/gap/segment_choice.hpp>
-#include <thermopower/gap/thinning.hpp>
+#include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/fit/thinning.hpp>
 
 using namespace engine_fixture;
 

@@ -5,7 +5,7 @@
 
 #include "io_plants.hpp"
 
-#include <thermopower/gap/data_gate.hpp>
+#include <thermopower/gap/data/data_gate.hpp>
 
 #include <functional>
 

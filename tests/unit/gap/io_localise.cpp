@@ -5,7 +5,7 @@
 
 #include "io_plants.hpp"
 
-#include <thermopower/gap/localisation.hpp>
+#include <thermopower/gap/localise/localisation.hpp>
 
 using namespace thermopower::gap;
 

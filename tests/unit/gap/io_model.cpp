@@ -6,7 +6,7 @@
 #include "input_error.hpp"
 #include "model_file.hpp"
 
-#include <thermopower/gap/standard_catalogue.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
 
 using namespace thermopower::gap;
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/attribution.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
+///
+/// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more
+/// of it (`fine`). Every candidate it returns has its residuals on the fine data.
+class Search {
+public:
+  /// Both attributions must pose the same question to different amounts of data, and outlive this object.
+  Search(const Attribution& coarse, const Attribution& fine, unsigned threads)
+      : coarse_(coarse), fine_(fine), threads_(threads) {}
+
+  /// The empty explanation and every single one, fitted.
+  std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
+    FitOptions quick;
+    quick.iterations = 10;
+    quick.relative_decrease = 1e-3;
+    std::vector<Explanation> all{Explanation{}};
+    all.insert(all.end(), singles.begin(), singles.end());
+    std::vector<Candidate> candidates = coarse_.fit_all(all, quick);
+    refine(candidates, 0, 7);
+    return candidates;
+  }
+
+  /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
+  void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
+                double enough) const {
+    for (int size = 2; size <= largest; ++size) {
+      const Candidate& leader = best(candidates);
+      bool satisfied = true;
+      for (std::size_t i = 0; i < signal_count; ++i) satisfied = satisfied && leader.train.mean(i) <= enough;
+      if (satisfied) break;
+      join(candidates, singles, size);
+      exchange(candidates, singles);
+    }
+  }
+
+  /// Fits the best candidates, and looks at all others, anew: the noise has changed.
+  void renew(std::vector<Candidate>& candidates) const {
+    in_parallel(candidates.size(), threads_, [&](std::size_t i) {
+      candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), &candidates[i].fit.starts);
+    });
+    refine(candidates, candidates.size(), 4);
+  }
+
+  /// The candidate with the least deviance, whatever its size.
+  static const Candidate& best(const std::vector<Candidate>& candidates) {
+    const Candidate* least = &candidates.front();
+    for (const Candidate& one : candidates)
+      if (fitness(one) < fitness(*least)) least = &one;
+    return *least;
+  }
+
+  /// Sum over the signals of samples times the logarithm of the mean square: twice the negative log
+  /// likelihood where the noise of every signal is unknown. No credit is given below the noise.
+  static double fitness(const Candidate& candidate) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (candidate.train.samples[i] > 0.0)
+        sum += candidate.train.samples[i] * std::log(std::max(candidate.train.mean(i), 1e-6));
+    return sum;
+  }
+
+private:
+  /// A set worth fitting.
+  struct Promise {
+    double cost;            ///< after one linear step
+    const Candidate* near;  ///< the fit of a part of it
+    Explanation together;
+  };
+
+  static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return fitness(candidates[a]) < fitness(candidates[b]);
+    });
+    return order;
+  }
+
+  /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end.
+  void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
+    FitOptions look;
+    look.iterations = 1;
+    in_parallel(candidates.size() - first, threads_,
+                [&](std::size_t i) { fine_.polish(candidates[first + i], look); });
+    std::vector<std::size_t> order = by_fitness(candidates, 0);
+    order.resize(std::min(count, order.size()));
+    if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
+    FitOptions finish;
+    finish.iterations = 25;
+    finish.relative_decrease = 1e-6;
+    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], finish); });
+  }
+
+  /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear
+  /// promise, the most promising fitted.
+  void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
+    std::vector<const Candidate*> seeds;
+    for (std::size_t index : by_fitness(candidates, 0))
+      if (static_cast<int>(candidates[index].explanation.size()) == size - 1 && seeds.size() < 5)
+        seeds.push_back(&candidates[index]);
+    std::vector<Promise> promises;
+    for (const Candidate* near : seeds)
+      for (const Explanation& single : singles)
+        if (!near->explanation.includes(single))
+          promises.push_back({0.0, near, near->explanation.with(single)});
+    in_parallel(promises.size(), threads_, [&](std::size_t i) {
+      promises[i].cost = coarse_.promise(*promises[i].near, promises[i].together);
+    });
+    std::stable_sort(promises.begin(), promises.end(),
+                     [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
+    std::set<std::vector<std::string>> seen;
+    std::vector<Promise> kept;
+    for (Promise& one : promises) {
+      std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
+      std::sort(ids.begin(), ids.end());
+      if (kept.size() < 14 && seen.insert(ids).second) kept.push_back(std::move(one));
+    }
+    add_fitted(candidates, kept);
+  }
+
+  /// Fits sets from the fits of their parts and takes them among the candidates.
+  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
+    if (sets.empty()) return;
+    std::vector<Candidate> found(sets.size());
+    FitOptions options;
+    options.iterations = 12;
+    options.relative_decrease = 1e-3;
+    in_parallel(sets.size(), threads_,
+                [&](std::size_t i) { found[i] = coarse_.fit(sets[i].together, options, sets[i].near); });
+    const std::size_t first = candidates.size();
+    for (Candidate& one : found) candidates.push_back(std::move(one));
+    refine(candidates, first, 5);
+  }
+
+  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
+  /// same submodel: of two that do the same beside a third, only one may have been tried.
+  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+    const Candidate& near = best(candidates);
+    const Explanation& leader = near.explanation;
+    if (leader.size() < 2) return;
+    std::vector<Promise> tries;
+    for (std::size_t member = 0; member < leader.effects.size(); ++member)
+      for (const Explanation& single : singles) {
+        if (single.effects.empty() || leader.includes(single) ||
+            single.effects.front()->info.submodel != leader.effects[member]->info.submodel)
+          continue;
+        Explanation other = leader;
+        other.effects[member] = single.effects.front();
+        bool known = false;
+        for (const Candidate& one : candidates)
+          known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
+        if (!known) tries.push_back({0.0, &near, std::move(other)});
+      }
+    add_fitted(candidates, tries);
+  }
+
+  const Attribution& coarse_;
+  const Attribution& fine_;
+  unsigned threads_;
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/fitter.hpp>
+#include <thermopower/gap/data/noise.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// Squared residuals by signal, in units of the noise.
+struct SignalSums {
+  std::array<double, signal_count> squares{};  ///< sum of squares, indexed by Signal
+  std::array<double, signal_count> samples{};  ///< how many were summed, indexed by Signal
+
+  /// Mean square of a signal; 0 without samples.
+  double mean(std::size_t signal) const {
+    return samples[signal] > 0.0 ? squares[signal] / samples[signal] : 0.0;
+  }
+};
+
+/// An explanation with its fit and what speaks for it.
+struct Candidate {
+  Explanation explanation;       ///< the causes it consists of
+  std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
+  FitResult fit;                 ///< on training data, in the coordinates of `list`
+  SignalSums train;              ///< residuals of the fit where it was fitted
+  SignalSums held_out;           ///< and where it was not; empty until somebody looks
+  double deviance = 0.0;         ///< twice the negative log evidence, without the shared constant
+  double probability = 0.0;      ///< among the candidates weighed together, 0..1
+  bool on_bounds = false;        ///< a cause ended on the bounds of its range, and is none
+};
+
+/// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
+/// result does not depend on how many there are.
+template <class Work>
+void in_parallel(std::size_t count, unsigned threads, Work&& work) {
+  if (threads <= 1 || count <= 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> pool;
+  for (unsigned t = 0; t < threads; ++t)
+    pool.emplace_back([&] {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    });
+  for (std::thread& thread : pool) thread.join();
+}
+
+/// Fits explanations to training data.
+class Attribution {
+public:
+  /// @param problem  the training data and the model; must outlive this object
+  /// @param slack    how far constants may move, free or released
+  /// @param threads  for `fit_all`, 1 or more; the result does not depend on it
+  Attribution(const FitProblem& problem, const Slack& slack, unsigned threads)
+      : problem_(problem), slack_(slack), threads_(threads) {}
+
+  /// Fits one explanation from all its starts; `near` is a fit of part of it to begin from.
+  Candidate fit(const Explanation& explanation, const FitOptions& options,
+                const Candidate* near = nullptr) const {
+    Candidate candidate;
+    candidate.explanation = explanation;
+    candidate.list = coordinates(*problem_.model, explanation, slack_);
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
+    std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
+    if (starts.size() > 1) {
+      // The linear guess of every start, then a few steps from the best three, then the best of them.
+      std::vector<std::pair<double, std::size_t>> order;
+      for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({fitter.scan(starts[i]), i});
+      std::sort(order.begin(), order.end());
+      FitOptions few = options;
+      few.iterations = std::min(4, options.iterations);
+      FitResult best;
+      for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
+        FitResult trial = fitter.minimise(starts[order[i].second], few);
+        if (trial.cost < best.cost) best = std::move(trial);
+      }
+      candidate.fit = fitter.minimise(best.at, options, &best.starts);
+    } else {
+      candidate.fit = fitter.minimise(starts.front(), options);
+    }
+    free_from_trap(fitter, candidate, options);
+    candidate.train = sums(candidate, problem_, &candidate.fit.starts);
+    return candidate;
+  }
+
+  /// Goes on from where a fit stopped, possibly on other data.
+  void polish(Candidate& candidate, const FitOptions& options) const {
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
+    const bool same = candidate.fit.starts.size() == problem_.segments.size();
+    candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
+    if (options.iterations > 2) free_from_trap(fitter, candidate, options);
+    candidate.train = sums(candidate, problem_, &candidate.fit.starts);
+  }
+
+  /// What is fitted to.
+  const FitProblem& problem() const { return problem_; }
+
+  /// Fits many explanations.
+  std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
+                                 const FitOptions& options) const {
+    std::vector<Candidate> candidates(explanations.size());
+    in_parallel(explanations.size(), threads_,
+                [&](std::size_t i) { candidates[i] = fit(explanations[i], options); });
+    return candidates;
+  }
+
+  /// How far one linear step from `near` lowers the cost when `added` joins it: the promise of a pair.
+  double promise(const Candidate& near, const Explanation& together) const {
+    Candidate candidate;
+    candidate.explanation = together;
+    candidate.list = coordinates(*problem_.model, together, slack_);
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
+    double best = 1e300;
+    for (const Eigen::VectorXd& start : start_points(candidate, &near))
+      best = std::min(best, fitter.scan(start));
+    return best;
+  }
+
+  /// Squared residuals of a candidate on a problem; with `starts` as given, else each segment's best.
+  static SignalSums sums(const Candidate& candidate, const FitProblem& problem,
+                         const std::vector<Start>* starts) {
+    std::vector<Start> own;
+    if (starts == nullptr) {
+      own = best_starts(candidate, problem);
+      starts = &own;
+    }
+    SignalSums result;
+    problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, *starts, false,
+                     [&](std::size_t, const FitProblem::Residuals& residuals) {
+                       for (Eigen::Index i = 0; i < residuals.value.size(); ++i) {
+                         const auto at =
+                             static_cast<std::size_t>(residuals.signal[static_cast<std::size_t>(i)]);
+                         result.squares[at] += residuals.value[i] * residuals.value[i];
+                         result.samples[at] += 1.0;
+                       }
+                     });
+    return result;
+  }
+
+  /// Residuals of a candidate by signal, in units of the noise; starts as fitted.
+  static std::array<std::vector<double>, signal_count> residuals(
+      const Candidate& candidate, const FitProblem& problem, const std::vector<Start>& starts,
+      std::array<std::vector<bool>, signal_count>* gaps) {
+    std::array<std::vector<double>, signal_count> result;
+    problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, starts, false,
+                     [&](std::size_t, const FitProblem::Residuals& one) {
+                       std::array<bool, signal_count> first{true, true, true, true};
+                       for (Eigen::Index i = 0; i < one.value.size(); ++i) {
+                         const auto at = static_cast<std::size_t>(one.signal[static_cast<std::size_t>(i)]);
+                         result[at].push_back(one.value[i]);
+                         if (gaps != nullptr) (*gaps)[at].push_back(first[at]);
+                         first[at] = false;
+                       }
+                     });
+    return result;
+  }
+
+  /// The starts that fit the segments of a problem best while the parameters stay.
+  static std::vector<Start> best_starts(const Candidate& candidate, const FitProblem& problem) {
+    std::vector<Coordinate> held = candidate.list;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      held[i].lower = held[i].upper = candidate.fit.at[static_cast<Eigen::Index>(i)];
+    }
+    Fitter fitter(problem, candidate.explanation, held);
+    FitOptions options;
+    options.iterations = 4;
+    return fitter.minimise(candidate.fit.at, options).starts;
+  }
+
+private:
+  /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
+  /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
+  /// that ended shortly before it begins once more there.
+  static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+    Eigen::VectorXd again = candidate.fit.at;
+    bool trapped = false;
+    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+      const Coordinate& one = candidate.list[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      if (!one.standard || again[at] > *one.standard) continue;
+      again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
+      trapped = true;
+    }
+    if (!trapped) return;
+    FitResult freed = fitter.minimise(again, options, &candidate.fit.starts);
+    if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
+  }
+
+  std::vector<Eigen::VectorXd> start_points(const Candidate& candidate, const Candidate* near) const {
+    Eigen::VectorXd base(static_cast<Eigen::Index>(candidate.list.size()));
+    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+      const Coordinate& one = candidate.list[i];
+      double value = one.start;
+      if (near != nullptr)
+        for (std::size_t k = 0; k < near->list.size(); ++k)
+          if (near->list[k].name == one.name) value = near->fit.at[static_cast<Eigen::Index>(k)];
+      base[static_cast<Eigen::Index>(i)] = std::clamp(value, one.lower, one.upper);
+    }
+    std::vector<Eigen::VectorXd> points{base};
+    Eigen::Index index = static_cast<Eigen::Index>(problem_.model->calibrated().size());
+    for (const CatalogueEntry* entry : candidate.explanation.effects) {
+      const bool known =
+          near != nullptr && std::find(near->explanation.effects.begin(), near->explanation.effects.end(),
+                                       entry) != near->explanation.effects.end();
+      for (const Parameter& parameter : entry->info.parameters) {
+        if (!known)
+          points = spread(points, index, parameter, candidate.list[static_cast<std::size_t>(index)]);
+        ++index;
+      }
+    }
+    return points;
+  }
+
+  std::vector<Eigen::VectorXd> spread(const std::vector<Eigen::VectorXd>& points, Eigen::Index index,
+                                      const Parameter& parameter, const Coordinate& coordinate) const {
+    std::vector<Eigen::VectorXd> wider;
+    for (const Eigen::VectorXd& point : points)
+      for (double start : parameter.starts) {
+        Eigen::VectorXd one = point;
+        if (!parameter.starts_relative_to.empty()) start *= scale_of(parameter.starts_relative_to);
+        one[index] =
+            std::clamp(parameter.logarithmic ? std::log(start) : start, coordinate.lower, coordinate.upper);
+        wider.push_back(one);
+      }
+    return wider;
+  }
+
+  /// Largest magnitude of an input over the data of the fit.
+  double scale_of(const std::string& column) const {
+    double largest = 0.0;
+    for (const Segment& segment : problem_.segments) {
+      const Inputs& inputs = *segment.inputs;
+      const Eigen::VectorXd* values = column == "drive_A"       ? &inputs.drive_A
+                                      : column == "power_param" ? &inputs.power_param
+                                      : column == "supply_V"    ? &inputs.supply_V
+                                                                : nullptr;
+      if (values != nullptr && values->size() > 0)
+        largest = std::max(largest,
+                           values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
+    }
+    return largest > 0.0 ? largest : 1.0;
+  }
+
+  const FitProblem& problem_;
+  Slack slack_;
+  unsigned threads_;
+};
+
+/// Whether a recording has what an effect needs; the ids of `needs` that are no columns speak of model and
+/// inputs.
+inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
+                          const std::vector<Inputs>& recordings) {
+  bool bench = false, axis = false;
+  for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
+  if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;
+  if (model.effects.count(entry.info.id) > 0) return false;
+  for (const std::string& need : entry.info.needs) {
+    bool met = false;
+    for (const Inputs& inputs : recordings) {
+      const auto judged = [&](Signal signal) { return inputs.judged(signal); };
+      bool here = true;
+      if (need == "current_A") here = judged(Signal::current_A);
+      else if (need == "motor_C")
+        here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
+      else if (need == "power_param") here = inputs.power_param.size() > 0;
+      else if (need == "airspeed_mps") here = inputs.airspeed_mps.size() > 0;
+      else if (need == "neighbour_C") here = inputs.neighbour_C.size() > 0;
+      else if (need == "rate_dps")
+        here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
+      else if (need == "angle_deg") here = judged(Signal::angle_deg);
+      else if (need == "no supply_V") here = inputs.supply_V.size() == 0;
+      else if (need == "thermal") here = model.has_thermal() && judged(Signal::motor_C);
+      else if (need == "current") here = model.has_current();
+      else if (need == "axis") here = model.has_axis() && axis;
+      else if (need == "ohmic current without tempco") {
+        const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current);
+        here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;
+      }
+      met = met || here;
+    }
+    if (!met) return false;
+  }
+  return true;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/fit_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// When a fit stops.
+struct FitOptions {
+  int iterations = 25;              ///< at most so many Gauss-Newton steps
+  double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
+};
+
+/// Where a fit ended.
+struct FitResult {
+  Eigen::VectorXd at;           ///< coordinates
+  std::vector<Start> starts;    ///< of every segment
+  double chi2 = 1e300;          ///< data only
+  double cost = 1e300;          ///< data and priors
+  Eigen::MatrixXd information;  ///< inverse covariance of the coordinates, starts projected out
+  Eigen::Index samples = 0;     ///< residuals that counted
+  int iterations = 0;           ///< steps taken; fewer than allowed: converged
+  std::vector<bool> at_bound;   ///< by coordinate
+};
+
+/// Gauss-Newton with Levenberg damping inside bounds.
+///
+/// The segments' starts are eliminated exactly (Schur complement), so the size of the linear system is the
+/// number of coordinates, whatever the number of windows. A step never leaves the bounds; coordinates whose
+/// gradient pushes against their bound are held there.
+class Fitter {
+public:
+  /// Keeps references to its arguments: they must outlive this object.
+  Fitter(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list)
+      : problem_(problem), explanation_(explanation), list_(list) {}
+
+  /// Minimises from a point.
+  FitResult minimise(const Eigen::VectorXd& from, const FitOptions& options = {},
+                     const std::vector<Start>* starts = nullptr) {
+    FitResult best;
+    best.at = from;
+    best.starts = starts != nullptr ? *starts : std::vector<Start>(problem_.segments.size(), Start::Zero());
+    double damping = 1e-4;
+    int small_steps = 0;
+    for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
+      linearise(best);
+      bool accepted = false;
+      for (int attempt = 0; attempt < 8; ++attempt) {
+        FitResult trial = stepped(best, damping);
+        trial.cost = cost(trial.at, trial.starts, trial.chi2);
+        if (trial.cost < best.cost) {
+          const double decrease = (best.cost - trial.cost) / (best.cost + 1e-300);
+          best.at = trial.at;
+          best.starts = trial.starts;
+          best.cost = trial.cost;
+          best.chi2 = trial.chi2;
+          damping = std::max(damping * 0.2, 1e-9);
+          accepted = true;
+          small_steps = decrease < options.relative_decrease ? small_steps + 1 : 0;
+          break;
+        }
+        damping = std::min(damping * 8.0, 1e12);
+      }
+      if (!accepted || small_steps >= 1) break;
+    }
+    linearise(best);
+    best.information = information_;
+    for (Eigen::Index i = 0; i < best.at.size(); ++i) {
+      const Coordinate& one = list_[static_cast<std::size_t>(i)];
+      const double margin = 1e-3 * (one.upper - one.lower);
+      best.at_bound.push_back(best.at[i] <= one.lower + std::min(margin, 1e-9) ||
+                              best.at[i] >= one.upper - std::min(margin, 1e-9));
+    }
+    best.samples = samples_;
+    return best;
+  }
+
+  /// Cost after one linear step of everything from a point: for choosing where to begin.
+  double scan(const Eigen::VectorXd& at) {
+    FitResult point;
+    point.at = at;
+    point.starts.assign(problem_.segments.size(), Start::Zero());
+    linearise(point);
+    const Eigen::VectorXd change = stepped(point, 1e-3).at - at;
+    return projected_cost_ + 2.0 * gradient_.dot(change) + change.dot(information_ * change);
+  }
+
+private:
+  struct Eliminated {
+    Eigen::Matrix2d inverse;   ///< of the starts' own block
+    Eigen::MatrixXd coupling;  ///< starts by coordinates
+    Eigen::Vector2d gradient;
+  };
+
+  void linearise(FitResult& at) {
+    const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
+    information_.setZero(n, n);
+    gradient_.setZero(n);
+    eliminated_.resize(problem_.segments.size());
+    at.chi2 = 0.0;
+    at.cost = 0.0;
+    samples_ = 0;
+    projected_cost_ = 0.0;
+    problem_.evaluate(explanation_, list_, at.at, at.starts, true,
+                      [&](std::size_t i, const FitProblem::Residuals& residuals) {
+                        samples_ += residuals.value.size();
+                        add_segment(i, residuals, at.starts[i], at.chi2, at.cost);
+                      });
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double sd = list_[static_cast<std::size_t>(i)].prior_sd;
+      if (!(sd > 0.0)) continue;
+      const double weight = 1.0 / (sd * sd);
+      information_(i, i) += weight;
+      gradient_[i] += weight * at.at[i];
+      at.cost += weight * at.at[i] * at.at[i];
+    }
+    at.cost += at.chi2;
+    projected_cost_ += at.cost;
+  }
+
+  void add_segment(std::size_t i, const FitProblem::Residuals& residuals, const Start& start, double& chi2,
+                   double& prior) {
+    const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
+    const auto own = residuals.jacobian.leftCols(n);
+    const auto starts = residuals.jacobian.rightCols(2);
+    const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
+    Eliminated& part = eliminated_[i];
+    Eigen::Matrix2d block = starts.transpose() * starts;
+    block.diagonal() += weight;
+    for (int k = 0; k < 2; ++k)
+      if (!(block(k, k) > 0.0)) block(k, k) = 1.0;
+    part.inverse = block.inverse();
+    part.coupling = starts.transpose() * own;
+    part.gradient = starts.transpose() * residuals.value + (weight.array() * start.array()).matrix();
+    information_.noalias() += own.transpose() * own;
+    information_.noalias() -= part.coupling.transpose() * part.inverse * part.coupling;
+    gradient_.noalias() += own.transpose() * residuals.value;
+    gradient_.noalias() -= part.coupling.transpose() * (part.inverse * part.gradient);
+    chi2 += residuals.value.squaredNorm();
+    prior += (weight.array() * start.array().square()).sum();
+    projected_cost_ -= part.gradient.dot(part.inverse * part.gradient);
+  }
+
+  FitResult stepped(const FitResult& from, double damping) const {
+    const Eigen::Index n = from.at.size();
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Coordinate& one = list_[static_cast<std::size_t>(i)];
+      const bool pushed_down = from.at[i] <= one.lower && gradient_[i] > 0.0;
+      const bool pushed_up = from.at[i] >= one.upper && gradient_[i] < 0.0;
+      if (!pushed_down && !pushed_up && information_(i, i) > 0.0) free.push_back(i);
+    }
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+    // Coordinates that the step would carry over a bound stop there; the others are solved again without
+    // them.
+    for (int round = 0; round < 4 && !free.empty(); ++round) {
+      const Eigen::Index m = static_cast<Eigen::Index>(free.size());
+      Eigen::MatrixXd matrix(m, m);
+      Eigen::VectorXd right(m), scale(m);
+      const Eigen::VectorXd shifted = gradient_ + information_ * change;
+      for (Eigen::Index a = 0; a < m; ++a) scale[a] = std::sqrt(information_(free[a], free[a]));
+      for (Eigen::Index a = 0; a < m; ++a) {
+        right[a] = -shifted[free[a]] / scale[a];
+        for (Eigen::Index b = 0; b < m; ++b)
+          matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
+        matrix(a, a) += damping;
+      }
+      const Eigen::VectorXd solved = matrix.ldlt().solve(right);
+      std::vector<Eigen::Index> inside;
+      bool clipped = false;
+      for (Eigen::Index a = 0; a < m; ++a) {
+        const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
+        const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
+        const double target = from.at[free[a]] + step;
+        if (target < one.lower || target > one.upper) {
+          change[free[a]] = std::clamp(target, one.lower, one.upper) - from.at[free[a]];
+          clipped = true;
+        } else {
+          inside.push_back(free[a]);
+        }
+      }
+      if (!clipped || round == 3) {
+        for (Eigen::Index a = 0; a < m; ++a) {
+          const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
+          const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
+          change[free[a]] = std::clamp(from.at[free[a]] + step, one.lower, one.upper) - from.at[free[a]];
+        }
+        break;
+      }
+      free = inside;
+    }
+    // What is known by its order of magnitude moves by a factor of 3 at most: far away the linear view is
+    // blind.
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (list_[static_cast<std::size_t>(i)].logarithmic) change[i] = std::clamp(change[i], -1.1, 1.1);
+    FitResult to;
+    to.at = from.at + change;
+    to.starts = from.starts;
+    for (std::size_t i = 0; i < to.starts.size(); ++i)
+      to.starts[i] -= eliminated_[i].inverse * (eliminated_[i].gradient + eliminated_[i].coupling * change);
+    return to;
+  }
+
+  double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double& chi2) const {
+    double total = 0.0;
+    chi2 = 0.0;
+    problem_.evaluate(explanation_, list_, at, starts, false,
+                      [&](std::size_t i, const FitProblem::Residuals& residuals) {
+                        chi2 += residuals.value.squaredNorm();
+                        const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
+                        total += (weight.array() * starts[i].array().square()).sum();
+                      });
+    for (std::size_t i = 0; i < list_.size(); ++i)
+      if (list_[i].prior_sd > 0.0) total += std::pow(at[static_cast<Eigen::Index>(i)] / list_[i].prior_sd, 2);
+    return total + chi2;
+  }
+
+  const FitProblem& problem_;
+  const Explanation& explanation_;
+  const std::vector<Coordinate>& list_;
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd gradient_;
+  std::vector<Eliminated> eliminated_;
+  Eigen::Index samples_ = 0;
+  double projected_cost_ = 0.0;
+};
+
+}  // namespace thermopower::gap

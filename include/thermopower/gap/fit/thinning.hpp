@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/fit_problem.hpp>
+#include <thermopower/gap/simulate.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// Shortens a recording of a motor on the bench to about `rows` rows.
+///
+/// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its
+/// samples. Where the power switches within a block, the block is short against every time constant the
+/// baseline knows (`longest_s`), and the order of the powers is forgotten while their durations are kept: up
+/// to three levels, once before the block's centre and once after it. Outputs are means with their number in
+/// `repeats`. A mean is not quite the middle, nor a sorted block the true one: what the baseline's own
+/// simulation loses by being shortened is made up for, so that the mean of its errors stays what it was.
+class BenchThinning {
+public:
+  /// @param full       the recording; must outlive this object
+  /// @param rows       about so many are kept, > 0
+  /// @param longest_s  blocks in which the power switches are no longer than this
+  /// @param baseline   simulates what is lost; must outlive this object
+  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s, const Instance<double>& baseline)
+      : full_(full), longest_s_(longest_s), baseline_(baseline) {
+    block_ = (2 * full.rows() + rows - 1) / rows;
+  }
+
+  /// The shorter recording, or the full one where there is nothing to gain.
+  Inputs run() {
+    if (block_ < 5) return full_;
+    Inputs thin = full_;
+    thin.runs.clear();
+    for (const RunSpan& span : full_.runs) {
+      const Eigen::Index begin = static_cast<Eigen::Index>(rows_.size());
+      for (Eigen::Index row = span.begin; row < span.end;) row = add_block(span, row);
+      thin.runs.push_back({begin, static_cast<Eigen::Index>(rows_.size()), span.label});
+    }
+    if (10 * rows_.size() > 8 * static_cast<std::size_t>(full_.rows())) return full_;
+    const Eigen::Index count = static_cast<Eigen::Index>(rows_.size());
+    thin.t_s.resize(count);
+    thin.repeats.setOnes(count);
+    for (Eigen::Index i = 0; i < count; ++i) thin.t_s[i] = rows_[static_cast<std::size_t>(i)].t_s;
+    gather(full_.power_param, thin.power_param, false);
+    gather(full_.supply_V, thin.supply_V, false);
+    gather(full_.ambient_C, thin.ambient_C, false);
+    gather(full_.airspeed_mps, thin.airspeed_mps, false);
+    gather(full_.neighbour_C, thin.neighbour_C, false);
+    gather(full_.covariate_rate_dps, thin.covariate_rate_dps, true);
+    gather(full_.held_motor_C, thin.held_motor_C, false);
+    gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
+    gather(full_.held_current_A, thin.held_current_A, true);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (std::isfinite(rows_[i].rate_dps))
+        thin.covariate_rate_dps[static_cast<Eigen::Index>(i)] = rows_[i].rate_dps;
+    observe(Signal::motor_C, thin);
+    observe(Signal::current_A, thin);
+    const Simulated whole = simulated(full_), shortened = simulated(thin);
+    make_up_for(Signal::motor_C, whole, shortened, thin);
+    make_up_for(Signal::current_A, whole, shortened, thin);
+    return thin;
+  }
+
+private:
+  /// One row of the result: the rows of the full recording that its inputs and outputs are the means of.
+  struct Row {
+    double t_s = 0.0;
+    std::vector<Eigen::Index> of;                 ///< inputs
+    Eigen::Index motor_begin = 0, motor_end = 0;  ///< motor_C; empty: none
+    bool current = false;                         ///< whether current_A is the mean over `of`
+    double rate_dps = missing;                    ///< where it is not the root mean square over `of`
+  };
+
+  Eigen::Index add_block(const RunSpan& span, Eigen::Index row) {
+    if (row < span.begin + 3) {  // the start is measured there
+      add_uniform(row, row + 1);
+      return row + 1;
+    }
+    const Eigen::Index limit = std::min(span.end, row + block_);
+    Eigen::Index mixed = row + 1;
+    while (mixed < limit && full_.t_s[mixed] - full_.t_s[row] < longest_s_) ++mixed;
+    // Two rows make a block of one power, six one of several.
+    const Eigen::Index same = constant_until(row, span.end);
+    if (3 * (same - row) >= mixed - row) {
+      add_even(row, same);
+      return same;
+    }
+    if (mixed - row < 8) {
+      for (Eigen::Index one = row; one < mixed; ++one) add_uniform(one, one + 1);
+      return mixed;
+    }
+    add_mixed(row, mixed, mixed < span.end ? full_.t_s[mixed] : full_.t_s[mixed - 1]);
+    return mixed;
+  }
+
+  /// Rows of one power in blocks of equal length: no longer than asked for, and short enough that the mean
+  /// temperature is that of the middle.
+  void add_even(Eigen::Index begin, Eigen::Index end) {
+    const Eigen::Index count = end - begin;
+    const double lasts_s = full_.t_s[end - 1] - full_.t_s[begin];
+    const auto by_time = static_cast<Eigen::Index>(std::ceil(lasts_s / (4.0 * longest_s_)));
+    const Eigen::Index parts = std::min(count, std::max((count + block_ - 1) / block_, by_time));
+    if (parts <= 1) {
+      add_uniform(begin, end);
+      return;
+    }
+    for (Eigen::Index part = 0; part < parts; ++part)  // uneven stamps can leave a part too long
+      add_even(begin + count * part / parts, begin + count * (part + 1) / parts);
+  }
+
+  /// The value that makes the heat of a row: its power, or where that is not recorded its current.
+  double level(Eigen::Index row) const {
+    if (full_.power_param.size() > 0) return full_.power_param[row];
+    if (full_.heat == HeatSource::drive) return std::abs(full_.drive_A[row]);
+    return full_.held_current_A.size() > 0 ? full_.held_current_A[row] : 0.0;
+  }
+
+  Eigen::Index constant_until(Eigen::Index row, Eigen::Index limit) const {
+    Eigen::Index end = row + 1;
+    // A measured current is never constant: what is within a twentieth counts as such.
+    const double slack = full_.power_param.size() > 0 ? 0.0 : 0.05 * std::abs(level(row));
+    while (end < limit && std::abs(level(end) - level(row)) <= slack) ++end;
+    return end;
+  }
+
+  /// One row where there is one; else one from the start and one from the middle, which is observed.
+  void add_uniform(Eigen::Index begin, Eigen::Index end) {
+    Row row;
+    for (Eigen::Index one = begin; one < end; ++one) row.of.push_back(one);
+    row.t_s = full_.t_s[begin];
+    Rates rates;
+    if (end - begin > 1) {
+      rates = rates_of(begin, end);
+      row.rate_dps = rates.before;
+      rows_.push_back(row);
+      row.t_s = full_.t_s.segment(begin, end - begin).mean();
+    }
+    Row middle = row;
+    middle.motor_begin = begin;
+    middle.motor_end = end;
+    middle.current = true;
+    middle.rate_dps = rates.mean;
+    rows_.push_back(std::move(middle));
+    if (!std::isfinite(rates.after)) return;
+    row.t_s = rates.after_s;
+    row.rate_dps = rates.after;
+    rows_.push_back(std::move(row));
+  }
+
+  /// The rates that stand for those of a block; NaN where they hardly vary.
+  struct Rates {
+    double before = missing;  ///< up to the middle
+    double mean = missing;    ///< from the middle on, where the current is observed
+    double after = missing;   ///< from `after_s` on, for half as long as `before`
+    double after_s = missing;
+  };
+
+  /// A counter-voltage goes with the mean rate, and a loss with the square: these have both.
+  Rates rates_of(Eigen::Index begin, Eigen::Index end) const {
+    if (full_.covariate_rate_dps.size() == 0) return {};
+    const auto rates = full_.covariate_rate_dps.segment(begin, end - begin).array().abs();
+    const auto stamps = full_.t_s.segment(begin, end - begin);
+    const double mean = rates.mean(), variance = (rates - mean).square().mean();
+    const double rows = static_cast<double>(end - begin), since_s = full_.t_s[begin];
+    const double before_s = stamps.mean() - since_s;
+    const double lasts_s = (full_.t_s[end - 1] - since_s) * rows / (rows - 1.0);
+    if (!(variance > 4e-4 * mean * mean) || !(before_s < 0.6 * lasts_s)) return {};
+    const double below = std::sqrt(variance * lasts_s / (3.0 * before_s));
+    return {std::max(mean - below, 0.0), mean, mean + 2.0 * below, since_s + lasts_s - 0.5 * before_s};
+  }
+
+  void add_mixed(Eigen::Index begin, Eigen::Index end, double until_s) {
+    std::vector<Eigen::Index> order;
+    for (Eigen::Index one = begin; one < end; ++one) order.push_back(one);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Eigen::Index a, Eigen::Index b) { return level(a) < level(b); });
+    // Cut at the two widest steps of the level.
+    std::array<std::size_t, 2> cuts{0, 0};
+    std::array<double, 2> widest{0.0, 0.0};
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      const double step = level(order[i]) - level(order[i - 1]);
+      if (step > widest[0]) {
+        widest[1] = widest[0], cuts[1] = cuts[0];
+        widest[0] = step, cuts[0] = i;
+      } else if (step > widest[1]) {
+        widest[1] = step, cuts[1] = i;
+      }
+    }
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<std::size_t> edges{0, cuts[0], cuts[1], order.size()};
+    const double whole_s = until_s - full_.t_s[begin],
+                 share_s = 0.5 * whole_s / static_cast<double>(order.size());
+    double now_s = full_.t_s[begin];
+    for (int half = 0; half < 2; ++half) {
+      bool first = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (edges[k + 1] == edges[k]) continue;
+        Row row;
+        row.of.assign(order.begin() + static_cast<std::ptrdiff_t>(edges[k]),
+                      order.begin() + static_cast<std::ptrdiff_t>(edges[k + 1]));
+        row.t_s = now_s;
+        if (half == 1 && first) row.motor_begin = begin, row.motor_end = end;
+        row.current = half == 1 &&
+                      level(row.of.back()) - level(row.of.front()) <= 0.02 * std::abs(level(row.of.back()));
+        now_s += share_s * static_cast<double>(row.of.size());
+        first = false;
+        rows_.push_back(std::move(row));
+      }
+    }
+  }
+
+  void gather(const Eigen::VectorXd& from, Eigen::VectorXd& to, bool squared) const {
+    if (from.size() == 0) return;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      double sum = 0.0;
+      const std::vector<Eigen::Index>& of = rows_[i].of;
+      for (Eigen::Index row : of) sum += squared ? from[row] * from[row] : from[row];
+      const double mean = sum / static_cast<double>(of.size());
+      values[static_cast<Eigen::Index>(i)] = of.size() == 1 ? from[of[0]] : squared ? std::sqrt(mean) : mean;
+    }
+    to = std::move(values);
+  }
+
+  void observe(Signal signal, Inputs& thin) const {
+    if (!full_.judged(signal)) return;
+    Eigen::VectorXd& to = thin.measured[static_cast<std::size_t>(signal)];
+    to = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows_.size()), missing);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      double asked = 0.0;
+      for_observed(rows_[i], signal, [&](Eigen::Index) { asked += 1.0; });
+      const Mean mean = mean_of(rows_[i], signal, full_.of(signal));
+      if (mean.count <= 0.0 || 3.0 * mean.count < 2.0 * asked) continue;
+      to[static_cast<Eigen::Index>(i)] = mean.value;
+      // Rows carry one weight for both signals: they have the same number of samples wherever both are
+      // observed, but for mixed blocks, where the temperature's is the larger and the current's counts.
+      thin.repeats[static_cast<Eigen::Index>(i)] = mean.count;
+    }
+  }
+
+  /// Calls `use(row)` for the rows of the full recording that a signal's observation is the mean of.
+  template <class Use>
+  static void for_observed(const Row& row, Signal signal, Use&& use) {
+    if (signal == Signal::motor_C)
+      for (Eigen::Index one = row.motor_begin; one < row.motor_end; ++one) use(one);
+    else if (row.current)
+      for (Eigen::Index one : row.of) use(one);
+  }
+
+  struct Mean {
+    double value = 0.0, count = 0.0;
+  };
+
+  /// Mean of some values over the rows at which the signal was measured.
+  Mean mean_of(const Row& row, Signal signal, const Eigen::VectorXd& values) const {
+    Mean mean;
+    for_observed(row, signal, [&](Eigen::Index one) {
+      if (std::isfinite(full_.of(signal)[one])) mean.value += values[one], mean.count += 1.0;
+    });
+    mean.value /= std::max(mean.count, 1.0);
+    return mean;
+  }
+
+  /// What the baseline gives, indexed by Signal.
+  typedef std::array<Eigen::VectorXd, 2> Simulated;
+
+  Simulated simulated(const Inputs& inputs) const {
+    Simulated result;
+    result.fill(Eigen::VectorXd::Constant(inputs.rows(), missing));
+    std::vector<Segment> segments;
+    cut(inputs, 0.0, segments);
+    detail::simulate_segments<double>(baseline_, segments, SimulationMode::free_running,
+                                      [&](std::size_t, Signal signal, Eigen::Index row, double value) {
+                                        result[static_cast<std::size_t>(signal)][row] = value;
+                                      });
+    return result;
+  }
+
+  void make_up_for(Signal signal, const Simulated& whole, const Simulated& shortened, Inputs& thin) const {
+    if (!full_.judged(signal)) return;
+    const auto at = static_cast<std::size_t>(signal);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Eigen::Index row = static_cast<Eigen::Index>(i);
+      const double lost = shortened[at][row] - mean_of(rows_[i], signal, whole[at]).value;
+      if (std::isfinite(lost)) thin.measured[at][row] += lost;
+    }
+  }
+
+  const Inputs& full_;
+  Eigen::Index block_ = 1;
+  double longest_s_ = 1.0;
+  const Instance<double>& baseline_;
+  std::vector<Row> rows_;
+};
+
+/// Shortens a bench recording; blocks of mixed power stay within a fiftieth of the baseline's time constant.
+inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& model,
+                            const Catalogue& catalogue) {
+  double tau_s = 100.0;
+  if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
+    tau_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
+  else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
+    tau_s = 60.0 / polynomial->cooling_per_min;
+  const Instance<double> baseline(model, {}, {}, catalogue);
+  return BenchThinning(full, rows, 0.02 * tau_s, baseline).run();
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/report/score.hpp>
+#include <thermopower/gap/decide/verdict.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// Values and intervals of an explanation's own parameters. The intervals widen with the residuals' level and
+/// correlation, and are those of the fit's coordinate carried over.
+inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,
+                                                const Weight& weight) {
+  double inflation = 1.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (candidate.train.samples[i] > 0.0)
+      inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
+  const Eigen::MatrixXd covariance =
+      candidate.fit.information.completeOrthogonalDecomposition().pseudoInverse() * inflation;
+  const std::size_t constants = model.calibrated().size();
+  std::vector<ParameterEstimate> list;
+  for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+    const Coordinate& one = candidate.list[i];
+    const bool released =
+        std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
+                  static_cast<int>(i)) != candidate.explanation.released.end();
+    if (i < constants && !released) continue;
+    const Eigen::Index at = static_cast<Eigen::Index>(i);
+    const double value = candidate.fit.at[at], reach = 1.96 * std::sqrt(std::max(covariance(at, at), 0.0));
+    const auto shown = [&](double x) { return one.logarithmic ? std::exp(x) : x; };
+    ParameterEstimate estimate;
+    estimate.name = i < constants ? one.name + ".scale" : one.name;
+    estimate.value = shown(value);
+    estimate.ci95 = {shown(std::max(value - reach, one.lower)), shown(std::min(value + reach, one.upper))};
+    estimate.unit = one.unit;
+    estimate.at_bound = candidate.fit.at_bound[i];
+    list.push_back(std::move(estimate));
+  }
+  return list;
+}
+
+/// Every explanation weighed, likeliest first.
+inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
+                 const FitProblem& problem, const Weight& weight) {
+  std::vector<std::size_t> order(candidates.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return candidates[a].deviance < candidates[b].deviance;
+  });
+  const double least = candidates[order.front()].deviance;
+  std::vector<Eigen::VectorXd> signatures(order.size());
+  const Candidate& empty = candidates.front();
+  const std::size_t compared = std::min<std::size_t>(order.size(), 12);
+  for (std::size_t i = 0; i < compared; ++i) signatures[i] = signature(candidates[order[i]], empty, problem);
+  double whole = 0.0, held = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    whole += empty.train.squares[i], held += empty.held_out.squares[i];
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Candidate& one = candidates[order[i]];
+    RankedExplanation entry;
+    entry.effects = one.explanation.ids(*problem.model);
+    entry.probability = one.probability * (1.0 - conclusion.none_of_these);
+    entry.delta_score = one.deviance - least;
+    double squares = 0.0, samples = 0.0, held_squares = 0.0;
+    for (std::size_t k = 0; k < signal_count; ++k) {
+      squares += one.train.squares[k];
+      samples += one.train.samples[k];
+      held_squares += one.held_out.squares[k];
+    }
+    entry.score = samples > 0.0 ? squares / samples : 0.0;
+    entry.held_out_ratio = held > 0.0 ? std::sqrt(held_squares / held) : 1.0;
+    entry.refused = entry.held_out_ratio > 1.0;
+    entry.absorbed = one.explanation.size() > 0 && squares > 0.99 * whole;
+    entry.at_bound = one.on_bounds;
+    entry.parameters = estimates(one, *problem.model, weight);
+    for (std::size_t k = 0; k < compared; ++k) {
+      if (k == i || i >= compared) continue;
+      const double cosine = likeness(signatures[i], signatures[k]);
+      if (cosine >= 0.9)
+        entry.confusable.push_back({candidates[order[k]].explanation.ids(*problem.model), cosine});
+    }
+    result.ranking.push_back(std::move(entry));
+  }
+}
+
+/// The chosen causes with their parameters, and the alternatives. `fitted` is the model with them.
+inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates,
+                        const Conclusion& conclusion, const Model& model, const Model& fitted,
+                        const Weight& weight) {
+  const Candidate& chosen = candidates[conclusion.chosen];
+  const std::vector<ParameterEstimate> all = estimates(chosen, model, weight);
+  for (const std::string& id : chosen.explanation.ids(model)) {
+    Cause cause;
+    cause.effect = id;
+    for (const Candidate& one : candidates) {
+      const std::vector<std::string> ids = one.explanation.ids(model);
+      if (std::find(ids.begin(), ids.end(), id) != ids.end()) cause.probability += one.probability;
+    }
+    cause.probability *= 1.0 - conclusion.none_of_these;
+    for (ParameterEstimate estimate : all)
+      if (estimate.name.rfind(id + ".", 0) == 0) {
+        estimate.name = estimate.name.substr(id.size() + 1);
+        cause.parameters.push_back(std::move(estimate));
+      }
+    result.cause.push_back(std::move(cause));
+  }
+  for (std::size_t index : conclusion.alternatives)
+    result.alternatives.push_back(candidates[index].explanation.ids(model));
+  for (const CalibratedConstant& constant : model.calibrated())
+    if (constant.fields.size() == 1) {
+      const std::string name = constant.block + "." + constant.fields.front();
+      result.constants.push_back({constant.id, model.get(name), fitted.get(name)});
+    }
+}
+
+/// The coarsest quantum of a signal among recordings; 0 where none has it.
+inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal) {
+  double quantum = 0.0;
+  for (const Inputs& one : inputs)
+    if (one.judged(signal)) quantum = std::max(quantum, quantum_of(one.of(signal)));
+  return quantum;
+}
+
+/// Noise of every signal: the white part of a simulation's errors, at least that of rounding.
+inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Inputs>& inputs) {
+  std::array<double, signal_count> sigma{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    std::vector<bool> gaps(errors.of[i].size(), false);
+    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
+    sigma[i] = std::max(white_sd(errors.of[i], gaps),
+                        coarsest_quantum(inputs, static_cast<Signal>(i)) / std::sqrt(12.0));
+  }
+  return sigma;
+}
+
+/// Scores and curves on held-out data.
+inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
+                  const std::vector<Inputs>& inputs, const Model& fitted, const Options& options,
+                  const Catalogue& catalogue) {
+  const Errors before = errors_of(model, segments, catalogue);
+  const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
+  const Errors best = errors_of(fitted, segments, catalogue);
+  // The augmented model is the fitted one where there is a cause, else the model as configured.
+  const Errors& after = result.cause.empty() ? before : best;
+  const std::array<double, signal_count> floor =
+      noise_floor(fitted, segments, noise_of(best, inputs), catalogue);
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    if (before.of[i].empty()) continue;
+    const Signal signal = static_cast<Signal>(i);
+    GapScore gap;
+    gap.signal = name_of(signal);
+    gap.unit = unit_of(signal);
+    if (i >= 2) gap.horizon_s = options.horizon_s;
+    gap.before = before.rms(signal);
+    gap.recalibrated = recalibrated.rms(signal);
+    gap.after = after.rms(signal);
+    gap.noise_floor = floor[i];
+    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
+    gap.ci95 = shrinkage_interval(before.of[i], after.of[i], options.seed);
+    result.gap.push_back(gap);
+    std::size_t at = 0;
+    for (const Inputs& one : inputs) {
+      if (!one.judged(signal)) continue;
+      SignalSeries series;
+      series.signal = gap.signal;
+      series.unit = gap.unit;
+      series.recording = one.name;
+      series.t_s = one.t_s;
+      series.measured = one.of(signal);
+      series.baseline = series.recalibrated = series.augmented =
+          Eigen::VectorXd::Constant(one.rows(), missing);
+      for (; at < before.of[i].size(); ++at) {
+        const Segment& segment = segments[static_cast<std::size_t>(before.segment[i][at])];
+        if (segment.inputs != &one) break;
+        const Eigen::Index row = before.row[i][at];
+        series.baseline[row] = before.simulated[i][at];
+        series.recalibrated[row] = recalibrated.simulated[i][at];
+        series.augmented[row] = after.simulated[i][at];
+      }
+      result.series.push_back(std::move(series));
+    }
+  }
+}
+
+/// What to record next: the excitation that shows the rival explanations apart.
+inline std::string next_experiment(const Diagnosis& result, const std::vector<Candidate>& candidates,
+                                   const Conclusion& conclusion, const Model& model,
+                                   const Catalogue& catalogue) {
+  const auto advice = [&](const std::string& id) {
+    const CatalogueEntry* entry = catalogue.find(id);
+    return entry != nullptr ? entry->info.experiment
+                            : std::string("steady operation at several levels, and steps");
+  };
+  if (result.verdict == Verdict::ambiguous) {
+    std::string text = "To tell the explanations apart, record: ";
+    std::vector<std::string> said;
+    std::vector<std::size_t> indices{conclusion.chosen};
+    indices.insert(indices.end(), conclusion.alternatives.begin(), conclusion.alternatives.end());
+    for (std::size_t index : indices)
+      for (const std::string& id : candidates[index].explanation.ids(model)) {
+        const std::string one = advice(id) + " (" + id + ")";
+        if (said.size() < 4 && std::find(said.begin(), said.end(), one) == said.end()) said.push_back(one);
+      }
+    for (std::size_t i = 0; i < said.size(); ++i) text += (i > 0 ? "; " : "") + said[i];
+    return text + ".";
+  }
+  if (result.verdict == Verdict::unexplained && !result.where.empty())
+    return "Log more around " + result.where.front().submodel + " (" + result.where.front().signal +
+           "): whatever is switched, touched or moved while it runs, and repeat the same excitation twice.";
+  if (result.verdict == Verdict::unexplained)
+    return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "
+           "disturbance.";
+  if (result.verdict == Verdict::explained && !result.cause.empty())
+    return "To confirm, record: " + advice(result.cause.front().effect) + ".";
+  return "None needed: the simulation holds over the range that was recorded.";
+}
+
+}  // namespace thermopower::gap

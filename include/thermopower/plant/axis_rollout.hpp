@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/axis_step.hpp>
+#include <thermopower/gap/data/inputs.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thermopower::gap {
+
+/// Simulates angle and rate of one axis over the rows of a window.
+template <class Scalar>
+class AxisRollout {
+public:
+  /// Keeps references to both arguments: they must outlive this object.
+  AxisRollout(const Instance<Scalar>& instance, const Inputs& inputs)
+      : instance_(instance), inputs_(inputs), step_(instance) {}
+
+  /// The state in which the readings at `row` are these; the spring is relaxed.
+  AxisState<Scalar> start(Eigen::Index row, double run_start_s, double angle_deg, double rate_dps) const {
+    // Readings are affine in the state: two evaluations invert them.
+    const double t_s = inputs_.t_s[row] - run_start_s;
+    const AxisReadings<Scalar> at_0 = read(t_s, constant<Scalar>(0.0), constant<Scalar>(0.0));
+    const AxisReadings<Scalar> at_1 = read(t_s, constant<Scalar>(1.0), constant<Scalar>(1.0));
+    const Scalar zero = constant<Scalar>(0.0);
+    AxisState<Scalar> state{zero, zero, zero, zero};
+    state.angle_rad = (angle_deg - at_0.angle_deg) / (at_1.angle_deg - at_0.angle_deg) * rad_per_deg;
+    state.rate_rad_per_s = (rate_dps - at_0.rate_dps) / (at_1.rate_dps - at_0.rate_dps) * rad_per_deg;
+    return state;
+  }
+
+  /// Simulates the rows [begin, end) of `run` from `state` at `begin` and hands the readings of each row to
+  /// `sink(row, readings)`. Leaves the state at row `end` where the run goes on, else at its last row.
+  template <class Sink>
+  void window(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state,
+              Sink&& sink) const {
+    const double start_s = inputs_.t_s[run.begin];
+    const double delay_s =
+        instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
+    // Row whose command reaches the drive now; before its first row a run is idle.
+    Eigen::Index commanded = begin;
+    while (commanded >= run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
+    for (Eigen::Index row = begin; row < end; ++row) {
+      const double t_s = inputs_.t_s[row] - start_s;
+      sink(row, read(t_s, Scalar(state.angle_rad * (1.0 / rad_per_deg)),
+                     Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))));
+      if (row + 1 < run.end)
+        interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run, state);
+    }
+  }
+
+private:
+  AxisReadings<Scalar> read(double t_s, const Scalar& angle_deg, const Scalar& rate_dps) const {
+    AxisReadings<Scalar> readings{t_s, angle_deg, rate_dps};
+    for (const auto& effect : instance_.axis_readings) effect(readings);
+    return readings;
+  }
+
+  Scalar torque(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
+    DriveTerms<Scalar> terms;
+    terms.t_s = t_s;
+    terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
+    terms.drive_A = constant<Scalar>(commanded >= run.begin ? inputs_.drive_A[commanded] : 0.0);
+    terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
+    for (const auto& effect : instance_.drive) effect(terms);
+    return terms.torque_constant_Nm_per_A * terms.drive_A;
+  }
+
+  void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,
+                const RunSpan& run, AxisState<Scalar>& state) const {
+    if (!instance_.axis_structure.delayed) {
+      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), torque(row, run, row, from_s));
+      return;
+    }
+    // The command switches inside the interval, at its stamp plus the delay: any delay acts smoothly.
+    const Scalar& delay_s = instance_.axis_structure.delay_s;
+    Scalar now_s = constant<Scalar>(from_s);
+    while (commanded + 1 < run.end) {
+      const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
+      if (!(value_of(switch_s) < to_s)) break;
+      step_.advance(state, value_of(now_s), Scalar(switch_s - now_s),
+                    torque(commanded, run, row, value_of(now_s)));
+      if (value_of(switch_s) > value_of(now_s)) now_s = switch_s;
+      ++commanded;
+    }
+    step_.advance(state, value_of(now_s), Scalar(to_s - now_s), torque(commanded, run, row, value_of(now_s)));
+  }
+
+  const Instance<Scalar>& instance_;
+  const Inputs& inputs_;
+  AxisStep<Scalar> step_;
+};
+
+/// The rows at which windows of `horizon_s` begin in a run; whole runs where the horizon is not positive.
+inline std::vector<Eigen::Index> window_starts(const Inputs& inputs, const RunSpan& run, double horizon_s) {
+  std::vector<Eigen::Index> starts;
+  const auto usable = [&](Eigen::Index row) {
+    for (Signal signal : {Signal::angle_deg, Signal::rate_dps})
+      if (inputs.judged(signal) && !std::isfinite(inputs.of(signal)[row])) return false;
+    return true;
+  };
+  double next_s = -1e300;
+  for (Eigen::Index row = run.begin; row < run.end; ++row) {
+    // A stamp that is short of the grid by rounding belongs to the next window.
+    if (inputs.t_s[row] < next_s - 1e-9 * (1.0 + std::abs(next_s)) || !usable(row)) continue;
+    starts.push_back(row);
+    if (!(horizon_s > 0.0) || !std::isfinite(horizon_s)) break;
+    next_s = inputs.t_s[row] + horizon_s;
+  }
+  return starts;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/instance.hpp>
+
+#include <cmath>
+
+namespace thermopower::gap {
+
+/// What the axis remembers. The far side is stated relative to the near one: 0 while the spring is relaxed.
+template <class Scalar>
+struct AxisState {
+  Scalar angle_rad;             ///< of the driven inertia
+  Scalar rate_rad_per_s;        ///< its derivative
+  Scalar twist_rad;             ///< far side minus near side; unused on a rigid axis
+  Scalar twist_rate_rad_per_s;  ///< its derivative
+};
+
+/// Integrates the axis under a constant drive, with dry friction.
+///
+/// Where the equations are smooth the classical Runge-Kutta rule integrates them, halving its step where the
+/// acceleration bends. Friction that turns over within a transition is smooth but stiff near standstill:
+/// there the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length.
+/// Friction without a transition goes by events: at a zero crossing of the rate the step is cut; the axis
+/// sticks while friction holds the other torques, else it leaves with friction reversed. With an
+/// automatic-differentiation scalar the cut's position is differentiated too, so derivatives are exact
+/// through reversals.
+template <class Scalar>
+class AxisStep {
+public:
+  /// Precomputes what stays the same; keeps a reference to `instance`, which must outlive this object.
+  explicit AxisStep(const Instance<Scalar>& instance) : instance_(instance) {
+    const auto& shape = instance.axis_structure;
+    Scalar near_inertia_kgm2 = instance.inertia_kgm2;
+    if (shape.compliant) {
+      near_inertia_kgm2 = instance.inertia_kgm2 * (1.0 - shape.far_share);
+      far_inertia_kgm2_ = instance.inertia_kgm2 * shape.far_share;
+      const Scalar reduced = near_inertia_kgm2 * shape.far_share;
+      spring_Nm_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_rad_per_s;
+      damper_Nms_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_damping * 2.0;
+    }
+    per_near_inertia_ = 1.0 / near_inertia_kgm2;
+    double fastest = std::abs(value_of(instance.viscous_Nms_per_rad) / value_of(near_inertia_kgm2));
+    if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
+    longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
+    const Scalar zero = constant<Scalar>(0.0);
+    soft_ = value_of(balance({zero, zero, zero, zero}, 0.0, zero).transition_rad_per_s) >
+            1.001 * friction_sticks_below_rad_per_s;
+  }
+
+  /// Moves the state by `h_s` under the drive torque `drive_Nm`.
+  void advance(AxisState<Scalar>& state, double t_s, Scalar h_s, const Scalar& drive_Nm) const {
+    const double length = value_of(h_s);
+    if (!(length > 0.0)) return;
+    const int pieces = static_cast<int>(std::fmin(2000.0, std::ceil(length / longest_s_)));
+    for (int i = 0; i < pieces; ++i) {
+      const double from_s = t_s + length * i / pieces;
+      const Scalar piece_s = h_s * (1.0 / pieces);
+      if (instance_.axis_structure.compliant) smooth<true>(state, from_s, piece_s, drive_Nm, 6);
+      else smooth<false>(state, from_s, piece_s, drive_Nm, 6);
+    }
+  }
+
+private:
+  struct Slope {
+    Scalar angle, rate, twist, twist_rate;
+  };
+  struct Balance {
+    Scalar torque_Nm, forward_Nm, backward_Nm, transition_rad_per_s;
+  };
+
+  Balance balance(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
+    const Scalar zero = constant<Scalar>(0.0);
+    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero, zero};
+    for (const auto& effect : instance_.axis) effect(terms);
+    terms.load_Nm += drive_Nm;
+    terms.load_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+    return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm, terms.transition_rad_per_s};
+  }
+
+  /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
+  static Scalar soft_friction(const Balance& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
+    using std::tanh;
+    const bool forward = value_of(rate_rad_per_s) >= 0.0;
+    const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
+    constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
+    if (std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
+      if (stiffness != nullptr) *stiffness = constant<Scalar>(0.0);
+      return forward ? size_Nm : Scalar(-size_Nm);
+    }
+    const Scalar share = tanh(Scalar(rate_rad_per_s / now.transition_rad_per_s));
+    if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
+    return size_Nm * share;
+  }
+
+  Scalar spring(const AxisState<Scalar>& state) const {
+    return spring_Nm_per_rad_ * state.twist_rad + damper_Nms_per_rad_ * state.twist_rate_rad_per_s;
+  }
+
+  /// @param direction  +1 or -1: which way friction acts against; 0: sticking
+  template <bool compliant>
+  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction, Slope& rate,
+             Scalar* stiffness = nullptr) const {
+    if (direction == 0) {
+      rate.angle = rate.rate = constant<Scalar>(0.0);
+    } else {
+      rate.angle = state.rate_rad_per_s;
+      if (instance_.axis.empty()) {
+        rate.rate = drive_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+      } else {
+        const Balance now = balance(state, t_s, drive_Nm);
+        rate.rate = now.torque_Nm;
+        if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, stiffness);
+        else if (direction > 0) rate.rate -= now.forward_Nm;
+        else rate.rate += now.backward_Nm;
+      }
+      if constexpr (compliant) rate.rate += spring(state);
+      rate.rate *= per_near_inertia_;
+    }
+    if constexpr (compliant) {
+      rate.twist = state.twist_rate_rad_per_s;
+      rate.twist_rate = -spring(state) / far_inertia_kgm2_ - rate.rate;
+    }
+  }
+
+  /// Writes only what moves: a rigid axis has no twist.
+  template <bool compliant>
+  void move(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s,
+            AxisState<Scalar>& to) const {
+    to.angle_rad = from.angle_rad + rate.angle * h_s;
+    to.rate_rad_per_s = from.rate_rad_per_s + rate.rate * h_s;
+    if constexpr (compliant) {
+      to.twist_rad = from.twist_rad + rate.twist * h_s;
+      to.twist_rate_rad_per_s = from.twist_rate_rad_per_s + rate.twist_rate * h_s;
+    }
+  }
+
+  /// One Runge-Kutta step from `from`, where the slope is `k1`; `bend` is how far the acceleration strays
+  /// from a straight line, as a rate.
+  template <bool compliant>
+  AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
+                                const Scalar& drive_Nm, int direction, const Slope& k1, double& bend) const {
+    const double h = value_of(h_s);
+    const Scalar half_s = h_s * 0.5;
+    Slope k2, k3, k4;
+    AxisState<Scalar> point = from;
+    move<compliant>(from, k1, half_s, point);
+    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k2);
+    move<compliant>(from, k2, half_s, point);
+    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k3);
+    move<compliant>(from, k3, h_s, point);
+    slope<compliant>(point, t_s + h, drive_Nm, direction, k4);
+    bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
+    // A transition of friction between the second and the third slope shows in their difference only.
+    if (soft_) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
+    const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, Scalar& d) {
+      d += a;
+      d += 2.0 * (b + c);
+      d *= 1.0 / 6.0;
+    };
+    mean(k1.angle, k2.angle, k3.angle, k4.angle);
+    mean(k1.rate, k2.rate, k3.rate, k4.rate);
+    if constexpr (compliant) {
+      mean(k1.twist, k2.twist, k3.twist, k4.twist);
+      mean(k1.twist_rate, k2.twist_rate, k3.twist_rate, k4.twist_rate);
+    }
+    move<compliant>(from, k4, h_s, point);
+    return point;
+  }
+
+  template <bool compliant>
+  int direction_of(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
+    const double rate = value_of(state.rate_rad_per_s);
+    if (rate != 0.0) return rate > 0.0 ? 1 : -1;
+    const Balance now = balance(state, t_s, drive_Nm);
+    double torque = value_of(now.torque_Nm);
+    if constexpr (compliant) torque += value_of(spring(state));
+    if (torque > value_of(now.forward_Nm)) return 1;
+    if (-torque > value_of(now.backward_Nm)) return -1;
+    return 0;
+  }
+
+  template <bool compliant>
+  void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const Scalar& drive_Nm, int depth) const {
+    const double bend_limit_rad_per_s = soft_ ? 1e-4 : 5e-4;
+    const bool dry = !instance_.axis.empty() && !soft_;
+    for (int event = 0; event < 12; ++event) {
+      const int direction = dry ? direction_of<compliant>(state, t_s, drive_Nm) : 1;
+      Slope start;
+      Scalar stiffness = constant<Scalar>(0.0);
+      slope<compliant>(state, t_s, drive_Nm, direction, start, &stiffness);
+      if (soft_ && creep<compliant>(state, t_s, left_s, drive_Nm, depth, start, stiffness)) return;
+      double bend = 0.0;
+      const AxisState<Scalar> reached =
+          runge_kutta<compliant>(state, t_s, left_s, drive_Nm, direction, start, bend);
+      if (bend > bend_limit_rad_per_s && depth > 0) {
+        const Scalar half_s = left_s * 0.5;
+        smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
+        smooth<compliant>(state, t_s + value_of(half_s), half_s, drive_Nm, depth - 1);
+        return;
+      }
+      if (!dry || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
+        state = reached;
+        return;
+      }
+      // The rate crosses zero on the way: find where (linear guess, one Newton step), stop there, go on.
+      const double before = value_of(state.rate_rad_per_s), after = value_of(reached.rate_rad_per_s);
+      if (before == 0.0) {  // would start and turn back at once: it stays
+        state.rate_rad_per_s = constant<Scalar>(0.0);
+        slope<compliant>(state, t_s, drive_Nm, 0, start);
+        state = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, 0, start, bend);
+        return;
+      }
+      Scalar cut_s = left_s * (before / (before - after));
+      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
+      Slope there;
+      slope<compliant>(at_cut, t_s, drive_Nm, direction, there);
+      if (value_of(there.rate) * direction < 0.0) {
+        const Scalar correction_s = at_cut.rate_rad_per_s / there.rate;
+        const double corrected = value_of(cut_s) - value_of(correction_s);
+        if (corrected > 0.0 && corrected < value_of(left_s)) {
+          cut_s -= correction_s;
+          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
+        }
+      }
+      at_cut.rate_rad_per_s = constant<Scalar>(0.0);
+      state = at_cut;
+      t_s += value_of(cut_s);
+      left_s -= cut_s;
+      if (!(value_of(left_s) > 0.0)) return;
+    }
+  }
+
+  /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
+  /// exactly; what the linearisation missed is the error.
+  /// @param now, stiffness  what `slope` says of the start
+  /// @return false: not stiff here, nothing was done
+  template <bool compliant>
+  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth,
+             const Slope& now, const Scalar& stiffness) const {
+    constexpr double error_limit_rad_per_s = 1e-4;
+    using std::exp;
+    const Scalar decay = stiffness * (h_s * per_near_inertia_);
+    if (!(value_of(decay) > 0.3)) return false;
+    const double h = value_of(h_s);
+    const Scalar phi_1 = (1.0 - exp(Scalar(-decay))) / decay, phi_2 = (1.0 - phi_1) / decay;
+    AxisState<Scalar> reached = state;
+    reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * h_s * phi_2);
+    const Scalar gain_rad_per_s = now.rate * h_s * phi_1;
+    reached.rate_rad_per_s += gain_rad_per_s;
+    if constexpr (compliant) {
+      // Symplectic Euler: the spring neither gains nor loses energy by it.
+      reached.twist_rate_rad_per_s += h_s * now.twist_rate;
+      reached.twist_rad += h_s * reached.twist_rate_rad_per_s;
+    }
+    Slope there;
+    slope<compliant>(reached, t_s + h, drive_Nm, 1, there);
+    const double missed =
+        value_of(there.rate) - value_of(now.rate) + value_of(decay) / h * value_of(gain_rad_per_s);
+    if (std::abs(missed) * h * value_of(phi_2) > error_limit_rad_per_s && depth > 0) {
+      const Scalar half_s = h_s * 0.5;
+      smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
+      smooth<compliant>(state, t_s + 0.5 * h, half_s, drive_Nm, depth - 1);
+    } else {
+      state = reached;
+    }
+    return true;
+  }
+
+  const Instance<Scalar>& instance_;
+  Scalar per_near_inertia_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
+  double longest_s_ = 1e9;
+  bool soft_ = false;  ///< dry friction has a transition
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/duty.hpp>
+#include <thermopower/plant/exchange_step.hpp>
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/plant/instance.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thermopower::gap {
+
+/// Everything that the motor on the bench remembers.
+template <class Scalar>
+struct BenchState {
+  Scalar winding_C;      ///< node that the heat enters
+  Scalar surface_C;      ///< node that the air cools; follows the winding where there is one node
+  Scalar thermometer_C;  ///< what a lagging thermometer has come to; follows the winding without lag
+  Scalar charge_Ah;      ///< drawn since the start of the run, discharges the battery
+};
+
+/// Simulates current and temperature of one motor, run by run.
+///
+/// Inputs are held over each interval. The coupled equations are integrated with the midpoint rule where an
+/// interval is short against every time constant and with sub-steps of the classical Runge-Kutta rule else;
+/// two nodes whose exchange is fast against the interval, with an exponential rule that solves it exactly.
+template <class Scalar>
+class BenchRollout {
+public:
+  /// What is fed in besides the recorded inputs.
+  struct Feed {
+    bool measured_motor = false;    ///< current from the recorded temperature
+    bool measured_current = false;  ///< heat from the recorded current
+  };
+
+  /// Keeps references to `instance` and `inputs`: they must outlive this object.
+  BenchRollout(const Instance<Scalar>& instance, const Inputs& inputs, Feed feed)
+      : instance_(instance), inputs_(inputs), feed_(feed) {}
+  /// With no measured signal fed in.
+  BenchRollout(const Instance<Scalar>& instance, const Inputs& inputs)
+      : BenchRollout(instance, inputs, Feed()) {}
+
+  /// Simulates the rows [begin, end) of a run that starts at `run_start_s`, from `state`, and hands the
+  /// readings of each row to `sink(row, readings)`. Leaves the state at the last row.
+  template <class Sink>
+  void run(Eigen::Index begin, Eigen::Index end, double run_start_s, BenchState<Scalar>& state,
+           Sink&& sink) const {
+    for (Eigen::Index row = begin; row < end; ++row) {
+      const double t_s = inputs_.t_s[row] - run_start_s;
+      const bool driven = inputs_.heat == HeatSource::law || feed_.measured_motor;
+      BenchReadings<Scalar> read;
+      read.t_s = t_s;
+      read.measured_ambient_C = at(inputs_.ambient_C, row);
+      read.motor_C = instance_.thermal_structure.lagged ? state.thermometer_C : state.winding_C;
+      read.current_A = constant<Scalar>(0.0);
+      if (driven && inputs_.power_param.size() > 0) {
+        const Scalar winding_C =
+            feed_.measured_motor ? constant<Scalar>(at(inputs_.held_motor_C, row)) : state.winding_C;
+        read.current_A = circuit(row, t_s, winding_C, state.charge_Ah).current_A;
+      }
+      for (const auto& effect : instance_.bench_readings) effect(read);
+      sink(row, read);
+      if (row + 1 < end) step(row, t_s, inputs_.t_s[row + 1] - inputs_.t_s[row], state);
+    }
+  }
+
+  /// The state in which the readings at `row` are `motor_C`, all nodes alike.
+  BenchState<Scalar> start(Eigen::Index row, double motor_C) const {
+    // Readings are affine in the temperature: two evaluations invert them.
+    const Scalar at_0 = reading(row, 0.0), at_1 = reading(row, 1.0);
+    const Scalar true_C = (motor_C - at_0) / (at_1 - at_0);
+    return {true_C, true_C, true_C, constant<Scalar>(0.0)};
+  }
+
+private:
+  struct Circuit {
+    Scalar supply_V, v_rms_V, current_A, winding_W;
+  };
+  struct Slope {
+    Scalar winding, surface, charge;
+  };
+
+  static double at(const Eigen::VectorXd& values, Eigen::Index row) {
+    return values.size() > 0 ? values[row] : missing;
+  }
+
+  Scalar reading(Eigen::Index row, double motor_C) const {
+    BenchReadings<Scalar> read;
+    read.measured_ambient_C = at(inputs_.ambient_C, row);
+    read.motor_C = constant<Scalar>(motor_C);
+    read.current_A = constant<Scalar>(0.0);
+    for (const auto& effect : instance_.bench_readings) effect(read);
+    return read.motor_C;
+  }
+
+  Circuit circuit(Eigen::Index row, double t_s, const Scalar& winding_C, const Scalar& charge_Ah) const {
+    ElectricalTerms<Scalar> terms;
+    const Scalar zero = constant<Scalar>(0.0);
+    terms.t_s = t_s;
+    terms.rate_dps = at(inputs_.covariate_rate_dps, row);
+    terms.winding_C = winding_C;
+    terms.charge_Ah = charge_Ah;
+    terms.supply_V =
+        constant<Scalar>(inputs_.supply_V.size() > 0 ? inputs_.supply_V[row] : inputs_.nominal_V);
+    const double power = std::clamp(inputs_.power_param[row], 0.0, 255.0);
+    terms.duty = constant<Scalar>(duty_from_power(power));
+    terms.source_ohm = terms.series_ohm = terms.counter_V = zero;
+    terms.tempco_per_K = instance_.ohmic ? instance_.winding.tempco_per_K : zero;
+    for (const auto& effect : instance_.electrical) effect(terms);
+    const bool on = value_of(terms.duty) > 0.0;
+    // Guarded, as the derivative of a square root at 0 is infinite.
+    const Scalar root = on ? v_rms_from_duty<Scalar>(constant<Scalar>(1.0), terms.duty) : zero;
+    const Scalar open_V = terms.supply_V * root - terms.counter_V;
+    Circuit result{terms.supply_V, zero, zero, zero};
+    if (!on || value_of(open_V) <= 0.0) return result;
+    // The supply carries I sqrt(duty); its drop reaches the motor as source_ohm I duty.
+    const Scalar outside_ohm = terms.series_ohm + terms.source_ohm * terms.duty;
+    if (instance_.ohmic) {
+      OhmicCurrent<Scalar> winding = instance_.winding;
+      winding.tempco_per_K = terms.tempco_per_K;
+      const Scalar resistance = winding.resistance_at(winding_C);
+      result.current_A = open_V / (resistance + outside_ohm);
+      result.winding_W = result.current_A * result.current_A * resistance;
+    } else {
+      Scalar current = instance_.current_law.current_A(open_V, winding_C);
+      if (value_of(outside_ohm) != 0.0 || !instance_.electrical.empty())
+        for (int i = 0; i < 4; ++i)
+          current = instance_.current_law.current_A(at_least(Scalar(open_V - outside_ohm * current), 0.0),
+                                                    winding_C);
+      result.current_A = current;
+      result.winding_W = (open_V - outside_ohm * current) * current;
+    }
+    result.v_rms_V = open_V - outside_ohm * result.current_A;
+    result.supply_V = terms.supply_V - terms.source_ohm * result.current_A * root;
+    return result;
+  }
+
+  Circuit powered(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    if (inputs_.heat == HeatSource::law && !feed_.measured_current)
+      return circuit(row, t_s, state.winding_C, state.charge_Ah);
+    const double recorded =
+        inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
+    Circuit result;
+    if (inputs_.power_param.size() > 0) result = circuit(row, t_s, state.winding_C, state.charge_Ah);
+    else result.supply_V = result.v_rms_V = constant<Scalar>(inputs_.nominal_V);
+    result.current_A = constant<Scalar>(recorded);
+    result.winding_W = instance_.ohmic
+                           ? Scalar(instance_.winding.resistance_at(state.winding_C) * (recorded * recorded))
+                           : Scalar(result.v_rms_V * recorded);
+    return result;
+  }
+
+  Slope slope(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    const Circuit electrical = powered(row, t_s, state);
+    if (!instance_.lumped && !instance_.thesis_thermal) {
+      const Scalar still = constant<Scalar>(0.0);
+      return {still, still, electrical.current_A * charge_share(row) * (1.0 / 3600.0)};
+    }
+    const auto& shape = instance_.thermal_structure;
+    ThermalTerms<Scalar> terms;
+    terms.t_s = t_s;
+    terms.airspeed_mps = at(inputs_.airspeed_mps, row);
+    terms.neighbour_C = at(inputs_.neighbour_C, row);
+    terms.rate_dps = at(inputs_.covariate_rate_dps, row);
+    terms.measured_ambient_C = at(inputs_.ambient_C, row);
+    terms.winding_C = state.winding_C;
+    terms.surface_C = shape.two_nodes ? state.surface_C : state.winding_C;
+    terms.current_A = electrical.current_A;
+    terms.supply_V = electrical.supply_V;
+    terms.v_rms_V = electrical.v_rms_V;
+    terms.ambient_C = constant<Scalar>(terms.measured_ambient_C);
+    terms.heat_W = electrical.winding_W;
+    terms.conductance_factor = constant<Scalar>(1.0);
+    terms.extra_loss_W = constant<Scalar>(0.0);
+    for (const auto& effect : instance_.thermal) effect(terms);
+
+    Scalar rise_K_per_J, loss_W;
+    const Scalar rise_K = terms.surface_C - terms.ambient_C;
+    if (instance_.lumped) {
+      rise_K_per_J = instance_.heat_capacity.rise_K_per_J(electrical.v_rms_V, state.winding_C);
+      loss_W = instance_.conductance_W_per_K * terms.conductance_factor * rise_K + terms.extra_loss_W;
+    } else {
+      // The law has no heat capacity below its least voltage; extra watts then use the capacity just above
+      // it.
+      const Scalar floor_V = instance_.heating_law.minimum_V_rms + 1e-9;
+      const Scalar v_V = value_of(electrical.v_rms_V) > value_of(floor_V) ? electrical.v_rms_V : floor_V;
+      rise_K_per_J = instance_.heating_law.rise_K_per_J(v_V, state.winding_C);
+      if (!(value_of(electrical.v_rms_V) > value_of(floor_V))) terms.heat_W -= electrical.winding_W;
+      const Scalar natural_rate = instance_.cooling_per_s * terms.conductance_factor * rise_K;
+      loss_W = (value_of(rise_K_per_J) > 0.0 ? Scalar(natural_rate / rise_K_per_J) : constant<Scalar>(0.0)) +
+               terms.extra_loss_W;
+    }
+    Slope rate;
+    if (shape.two_nodes) {
+      const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
+      rate.winding = (terms.heat_W - flow_W) * rise_K_per_J / shape.winding_share;
+      rate.surface = (flow_W - loss_W) * rise_K_per_J / (1.0 - shape.winding_share);
+    } else {
+      rate.winding = (terms.heat_W - loss_W) * rise_K_per_J;
+      rate.surface = rate.winding;
+    }
+    rate.charge = electrical.current_A * charge_share(row) * (1.0 / 3600.0);
+    return rate;
+  }
+
+  /// Share of the motor's current that the supply carries: sqrt(duty).
+  double charge_share(Eigen::Index row) const {
+    if (inputs_.power_param.size() == 0) return 1.0;
+    return std::sqrt(std::clamp(inputs_.power_param[row], 0.0, 255.0) / 255.0);
+  }
+
+  /// What a joule warms the whole motor by; of the polynomial law just above its least voltage.
+  Scalar storage_K_per_J(const BenchState<Scalar>& state) const {
+    if (instance_.lumped) return 1.0 / instance_.heat_capacity.heat_capacity_J_per_K;
+    return instance_.heating_law.rise_K_per_J(instance_.heating_law.minimum_V_rms + 1.0, state.winding_C);
+  }
+
+  /// Fastest decay rate of the linear part, 1/s.
+  double fastest_per_s(const BenchState<Scalar>& state) const {
+    const auto& shape = instance_.thermal_structure;
+    if (!instance_.lumped && !instance_.thesis_thermal) return 0.0;
+    const double rise_K_per_J = value_of(storage_K_per_J(state));
+    const double base = instance_.lumped ? value_of(instance_.conductance_W_per_K) * rise_K_per_J
+                                         : value_of(instance_.cooling_per_s);
+    double fastest = 2.0 * base;
+    if (shape.two_nodes) {
+      const double share = value_of(shape.winding_share);
+      const double flow = value_of(shape.coupling_W_per_K) * rise_K_per_J;
+      fastest = std::max(fastest, flow / share + (flow + 2.0 * base) / (1.0 - share));
+    }
+    return fastest;
+  }
+
+  static BenchState<Scalar> moved(const BenchState<Scalar>& from, const Slope& rate, double h_s) {
+    return {from.winding_C + rate.winding * h_s, from.surface_C + rate.surface * h_s, from.thermometer_C,
+            from.charge_Ah + rate.charge * h_s};
+  }
+
+  void step(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
+    const auto& shape = instance_.thermal_structure;
+    coupling_W_per_K_ = shape.coupling_W_per_K;
+    double stiffness = dt_s * fastest_per_s(state);
+    if (shape.two_nodes && !shape.lagged && stiffness > 0.6) {
+      exchange(row, t_s, dt_s, state);
+      return;
+    }
+    constexpr double stiffest = 25.0;
+    if (stiffness > stiffest) {
+      // Nodes that are one within a twentieth of an interval look like one: a slower exchange shows the same.
+      coupling_W_per_K_ *= stiffest / stiffness;
+      stiffness = stiffest;
+    }
+    if (stiffness < 0.02) {
+      const Slope first = slope(row, t_s, state);
+      const Slope middle = slope(row, t_s + 0.5 * dt_s, moved(state, first, 0.5 * dt_s));
+      settle(state, moved(state, middle, dt_s), dt_s);
+      return;
+    }
+    const int steps = static_cast<int>(std::ceil(stiffness / 0.6));
+    const double h_s = dt_s / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double now_s = t_s + i * h_s;
+      const Slope k1 = slope(row, now_s, state);
+      const Slope k2 = slope(row, now_s + 0.5 * h_s, moved(state, k1, 0.5 * h_s));
+      const Slope k3 = slope(row, now_s + 0.5 * h_s, moved(state, k2, 0.5 * h_s));
+      const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
+      const Slope mean{(k1.winding + 2.0 * (k2.winding + k3.winding) + k4.winding) * (1.0 / 6.0),
+                       (k1.surface + 2.0 * (k2.surface + k3.surface) + k4.surface) * (1.0 / 6.0),
+                       (k1.charge + 2.0 * (k2.charge + k3.charge) + k4.charge) * (1.0 / 6.0)};
+      settle(state, moved(state, mean, h_s), h_s);
+    }
+  }
+
+  /// An interval of two nodes with a fast exchange, in steps that are cut until what the linear part does not
+  /// know (the resistance that follows the temperature, losses that are not proportional) moves them little.
+  void exchange(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
+    constexpr double enough_K = 0.02;
+    const double shortest_s = dt_s / 1024.0;
+    const auto& shape = instance_.thermal_structure;
+    const Scalar share = shape.winding_share, rest = 1.0 - shape.winding_share;
+    const Scalar rise_K_per_J = storage_K_per_J(state);
+    const Scalar flow_per_s = coupling_W_per_K_ * rise_K_per_J;
+    const Scalar loss_per_s =
+        instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J) : instance_.cooling_per_s;
+    ExchangeStep<Scalar> linear(flow_per_s / share, flow_per_s / rest, loss_per_s / rest);
+    using Pair = typename ExchangeStep<Scalar>::Pair;
+    double done_s = 0.0, h_s = dt_s;
+    Slope first = slope(row, t_s, state);
+    linear.set_length(h_s);
+    for (;;) {
+      const Pair moved = linear.moved({first.winding, first.surface});
+      BenchState<Scalar> reached = state;
+      reached.winding_C += moved.winding;
+      reached.surface_C += moved.surface;
+      reached.charge_Ah += first.charge * h_s;
+      const Slope last = slope(row, t_s + done_s + h_s, reached);
+      const Pair known = linear.exchanged(moved);
+      const Pair correction = linear.corrected(
+          {last.winding - first.winding - known.winding, last.surface - first.surface - known.surface});
+      const double moved_K = std::abs(value_of(correction.winding)) + std::abs(value_of(correction.surface));
+      if (moved_K > enough_K && h_s > shortest_s) {
+        h_s *= 0.5;
+        linear.set_length(h_s);
+        continue;
+      }
+      reached.winding_C += correction.winding;
+      reached.surface_C += correction.surface;
+      reached.charge_Ah += (last.charge - first.charge) * (0.5 * h_s);
+      state = reached;
+      done_s += h_s;
+      if (!(done_s < dt_s)) return;
+      const double next_s = std::min(moved_K < 0.25 * enough_K ? 2.0 * h_s : h_s, dt_s - done_s);
+      if (next_s != h_s) linear.set_length(h_s = next_s);
+      first = slope(row, t_s + done_s, state);
+    }
+  }
+
+  /// Accepts a step, and lets the thermometer follow a winding that moved in a straight line: exact for any
+  /// lag, however short.
+  void settle(BenchState<Scalar>& state, const BenchState<Scalar>& reached, double h_s) const {
+    if (!instance_.thermal_structure.lagged) {
+      state = reached;
+      return;
+    }
+    using std::exp;
+    const Scalar& lag_s = instance_.thermal_structure.thermometer_lag_s;
+    const Scalar behind_K = (reached.winding_C - state.winding_C) * (lag_s / h_s);
+    const Scalar decay = exp(-h_s / lag_s);
+    const Scalar thermometer_C =
+        reached.winding_C - behind_K + (state.thermometer_C - state.winding_C + behind_K) * decay;
+    state = reached;
+    state.thermometer_C = thermometer_C;
+  }
+
+  const Instance<Scalar>& instance_;
+  const Inputs& inputs_;
+  Feed feed_;
+  mutable Scalar coupling_W_per_K_;  ///< of the step under way
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A pure delay between command and torque; any value, not only multiples of the sampling step.
+struct ActuationDelay {
+  /// What it is.
+  static EffectInfo info() {
+    return {"actuation_delay",
+            "mechanical.drive",
+            "drive(t) = u(t - s)",
+            "The torque comes later than the command.",
+            {{"s", "s", 0.0, 1.0, {0.002, 0.01, 0.03, 0.08}, false}},
+            {"axis"},
+            "fast reversals, recorded at a high rate"};
+  }
+
+  /// Delays the command.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisStructure<Scalar>& shape) {
+    shape.delayed = true;
+    shape.delay_s = shape.delay_s + p[0];
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A constant error of the recorded air temperature.
+struct AmbientBias {
+  /// What it is.
+  static EffectInfo info() {
+    return {
+        "ambient_bias",
+        "thermal.loss",
+        "loss = G (T - (Ta + bias))",
+        "The air around the motor is not what its sensor says: the motor cools towards another temperature.",
+        {{"bias_K", "K", -40.0, 40.0, {0.0}, false}},
+        {"thermal", "motor_C"},
+        "a long rest with the power off, until the motor is at air temperature"};
+  }
+
+  /// Shifts the air temperature.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
+    terms.ambient_C += p[0];
+  }
+};
+
+}  // namespace thermopower::gap

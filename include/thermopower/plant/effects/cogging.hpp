@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A torque that repeats several times a turn.
+struct Cogging {
+  /// What it is.
+  static EffectInfo info() {
+    return {"cogging",
+            "mechanical.load",
+            "torque -= sin_Nm sin(cycles theta) + cos_Nm cos(cycles theta)",
+            "Magnets hold the rotor at preferred angles, several times a turn.",
+            {{"sin_Nm", "N m", -1e3, 1e3, {0.0}, false},
+             {"cos_Nm", "N m", -1e3, 1e3, {0.0}, false},
+             {"cycles_per_turn",
+              "1",
+              1.6,
+              400.0,
+              {2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24,
+               25, 26, 27, 28, 29, 30, 32, 34, 36, 38, 40, 42, 44, 46, 48, 52, 56, 60, 66, 72, 84, 96, 120},
+              false}},
+            {"axis", "angle_deg"},
+            "slow motion through a full turn in both directions"};
+  }
+
+  /// Adds a torque periodic in the angle.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+    using std::cos;
+    using std::sin;
+    const Scalar phase = p[2] * terms.angle_rad;
+    terms.load_Nm -= p[0] * sin(phase) + p[1] * cos(phase);
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A constant loss of duty.
+struct DeadTime {
+  /// What it is.
+  static EffectInfo info() {
+    return {"dead_time",
+            "electrical",
+            "duty = max(0, power_param / 255 - lost)",
+            "The bridge loses a fixed part of each period: low powers suffer most.",
+            {{"duty_lost", "1", 0.0, 0.5, {0.0, 0.01, 0.03, 0.08}, false}},
+            {"current", "current_A", "power_param"},
+            "holds at low power parameters"};
+  }
+
+  /// Takes a fixed part of the duty.
+  template <class Scalar>
+  static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
+    const Scalar left = terms.duty - p[0];
+    if (value_of(terms.duty) > 0.0) terms.duty = value_of(left) > 0.0 ? left : constant<Scalar>(0.0);
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/cooling.hpp>
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// The conductance grows with the recorded airspeed; `gain` is its relative growth at 1 m/s.
+struct ForcedAirflowEffect {
+  /// What it is.
+  static EffectInfo info() {
+    return {"forced_airflow",
+            "thermal.loss",
+            "loss = G (1 + gain v^n) (T - Ta)",
+            "Moving air takes more heat away than still air.",
+            {{"gain", "1", 0.0, 50.0, {0.1}, false}, {"exponent", "1", 0.2, 1.2, {0.7}, false}},
+            {"thermal", "motor_C", "airspeed_mps"},
+            "the same power with the air still and moving"};
+  }
+
+  /// Scales the baseline's conductance.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
+    const Surroundings<Scalar> around{constant<Scalar>(0.0), constant<Scalar>(terms.airspeed_mps)};
+    const ForcedAirflow<Scalar> law{constant<Scalar>(1.0), p[0], p[1]};
+    terms.conductance_factor *= law.loss_W(constant<Scalar>(1.0), around);
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// Heat from turning, with the square of the recorded rate.
+struct MotionHeating {
+  /// What it is.
+  static EffectInfo info() {
+    return {"motion_heating",
+            "thermal.heating",
+            "P += c rate^2",
+            "Turning heats the motor (iron, bearing and windage losses).",
+            {{"W_s2_per_rad2", "W s^2/rad^2", 0.0, 100.0, {0.0}, false}},
+            {"thermal", "motor_C", "rate_dps"},
+            "the same power at rest and turning fast"};
+  }
+
+  /// Adds heat that grows with the square of the rate.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
+    const double rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
+    terms.heat_W += p[0] * (rate_rad_per_s * rate_rad_per_s);
+  }
+};
+
+}  // namespace thermopower::gap

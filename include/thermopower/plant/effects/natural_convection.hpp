@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/cooling.hpp>
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// Natural convection in place of Newton's law; at a rise of `reference_K` both lose the same.
+struct NaturalConvectionEffect {
+  /// What it is.
+  static EffectInfo info() {
+    return {"natural_convection",
+            "thermal.loss",
+            "loss = G (T - Ta) (|T - Ta| / reference)^n",
+            "Warm air rises faster the warmer it is: the loss grows faster than the temperature rise.",
+            {{"exponent", "1", 0.0, 1.0, {0.2}, false}, {"reference_K", "K", 1.0, 300.0, {15.0, 40.0}, true}},
+            {"thermal", "motor_C"},
+            "holds at several powers and a long cooling curve in still air"};
+  }
+
+  /// Scales the baseline's conductance.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
+    const Surroundings<Scalar> around{terms.ambient_C, constant<Scalar>(0.0)};
+    const NaturalConvection<Scalar> law{constant<Scalar>(1.0), p[0], p[1]};
+    const Scalar rise_K = terms.surface_C - terms.ambient_C;
+    if (value_of(rise_K) != 0.0) terms.conductance_factor *= law.loss_W(terms.surface_C, around) / rise_K;
+  }
+};
+
+}  // namespace thermopower::gap

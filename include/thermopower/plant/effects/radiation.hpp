@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/cooling.hpp>
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// Radiation to surroundings at air temperature; emissivity and area only show as their product.
+struct Radiation {
+  /// What it is.
+  static EffectInfo info() {
+    return {"radiation",
+            "thermal.loss",
+            "loss += sigma A eps (T^4 - Ta^4), in kelvin",
+            "Hot surfaces lose more than in proportion to their temperature rise.",
+            {{"emissive_area_m2", "m^2", 0.0, 10.0, {0.0}, false}},
+            {"thermal", "motor_C"},
+            "long holds at the highest and at a low temperature"};
+  }
+
+  /// Adds the radiated power.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
+    const Surroundings<Scalar> around{terms.ambient_C, constant<Scalar>(0.0)};
+    const RadiationCooling<Scalar> law{p[0], constant<Scalar>(1.0)};
+    terms.extra_loss_W += law.loss_W(terms.surface_C, around);
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A thermometer that scales the rise over air temperature.
+struct ThermometerGain {
+  /// What it is.
+  static EffectInfo info() {
+    return {"thermometer_gain",
+            "sensing.temperature",
+            "reading = Ta + gain (T - Ta)",
+            "The thermometer shows only part of the temperature rise (a wrong emissivity, a poor contact).",
+            {{"gain", "1", 0.2, 2.0, {1.0}, false}},
+            {"thermal", "motor_C"},
+            "runs with the current recorded: the winding's resistance knows the true temperature"};
+  }
+
+  /// Scales the rise over the air.
+  template <class Scalar>
+  static void act(const Scalar* p, BenchReadings<Scalar>& read) {
+    read.motor_C = p[0] * (read.motor_C - read.measured_ambient_C) + read.measured_ambient_C;
+  }
+};
+
+}  // namespace thermopower::gap

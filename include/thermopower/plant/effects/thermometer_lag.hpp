@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A first-order lag of the thermometer.
+struct ThermometerLag {
+  /// What it is.
+  static EffectInfo info() {
+    return {"thermometer_lag",
+            "sensing.temperature",
+            "lag dS/dt = T - S, S is read",
+            "The thermometer follows late: corners of the temperature curve are rounded and shifted.",
+            {{"lag_s", "s", 0.05, 3000.0, {3.0, 20.0, 100.0}, true}},
+            {"thermal", "motor_C"},
+            "power steps sampled faster than the lag"};
+  }
+
+  /// Puts a first-order lag between body and reading.
+  template <class Scalar>
+  static void act(const Scalar* p, ThermalStructure<Scalar>& shape) {
+    shape.lagged = true;
+    shape.thermometer_lag_s = p[0];
+  }
+};
+
+}  // namespace thermopower::gap

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::gap {
+
+/// A torque constant that falls with the recorded motor temperature.
+struct TorqueFade {
+  /// What it is.
+  static EffectInfo info() {
+    return {"torque_fade",
+            "mechanical.drive",
+            "Kt(T) = Kt (1 - per_K (T - 25))",
+            "Magnets weaken as the motor warms: the same current gives less torque.",
+            {{"per_K", "1/K", -0.02, 0.05, {0.0}, false}},
+            {"axis", "motor_C"},
+            "the same motion cold and hot"};
+  }
+
+  /// Lowers the torque constant.
+  template <class Scalar>
+  static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
+    terms.torque_constant_Nm_per_A *= 1.0 - p[0] * (terms.motor_C - 25.0);
+  }
+};
+
+}  // namespace thermopower::gap

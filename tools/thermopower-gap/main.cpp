@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+//
+// thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the
+// gap shrinks with it.
+
+#include "atomic_file.hpp"
+#include "engine.hpp"
+#include "header_export.hpp"
+#include "input_error.hpp"
+#include "model_file.hpp"
+#include "predictions_file.hpp"
+#include "recording_file.hpp"
+#include "report_html.hpp"
+#include "report_json.hpp"
+#include "summary.hpp"
+
+#include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+#include <thermopower/version.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <new>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace gap = thermopower::gap;
+namespace files = thermopower::gap::files;
+
+namespace {
+
+enum ExitStatus : int { made = 0, failed = 1, wrong_usage = 2, invalid_input = 3, too_little_data = 4 };
+
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments {
+  std::string model, report, html, predictions, augmented, header;
+  std::vector<std::string> recordings, held_out, without;
+  double horizon_s = 0.5;
+  double tolerance = 0.05;
+  unsigned threads = 0;
+  unsigned seed = 1;
+};
+
+/// Tells a person at a terminal what takes so long; silent for the first second, and when nobody watches.
+class Progress {
+public:
+  Progress() {
+    if (isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { run(); });
+  }
+  ~Progress() {
+    if (!thread_.joinable()) return;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      done_ = true;
+    }
+    wake_.notify_all();
+    thread_.join();
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void stage(const char* name) { stage_ = name; }
+
+private:
+  void run() {
+    const auto begin = std::chrono::steady_clock::now();
+    bool shown = false;
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!wake_.wait_for(lock, std::chrono::milliseconds(250), [this] { return done_; })) {
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (seconds < 1.0) continue;
+      std::fprintf(stderr, "\r\033[K%s ... %.0f s", stage_.load(), seconds);
+      shown = true;
+    }
+    if (shown) std::fprintf(stderr, "\r\033[K");
+  }
+
+  std::atomic<const char*> stage_{"reading"};
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool done_ = false;
+  std::thread thread_;
+};
+
+std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
+                                     std::vector<gap::Finding>& findings) {
+  std::vector<gap::Recording> list;
+  for (const auto& path : paths) {
+    files::RecordingFile file = files::read_recording(path);
+    list.push_back(std::move(file.recording));
+    findings.insert(findings.end(), file.findings.begin(), file.findings.end());
+  }
+  return list;
+}
+
+// Two outputs in one file, or an output over an input, would lose one of them.
+void refuse_overlaps(const Arguments& arguments) {
+  std::vector<std::string> taken = arguments.recordings;
+  taken.insert(taken.end(), arguments.held_out.begin(), arguments.held_out.end());
+  taken.push_back(arguments.model);
+  for (const auto* output : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
+                             &arguments.header}) {
+    if (output->empty()) continue;
+    for (const auto& other : taken) {
+      std::error_code error;
+      const bool special =
+          std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
+      if (!special && (*output == other || std::filesystem::equivalent(*output, other, error))) {
+        throw UsageError("'" + *output +
+                         "' is named twice; an output must not be an input or another output");
+      }
+    }
+    taken.push_back(*output);
+  }
+}
+
+// The catalogue's list and the engine's `without` are two things; a misspelt id would silently remove
+// nothing.
+void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalogue) {
+  for (const auto& id : ids) {
+    if (id.rfind("calibration.", 0) == 0 || catalogue.find(id) != nullptr) continue;
+    throw UsageError("--without: there is no effect '" + id + "'; 'thermopower-gap effects' lists them");
+  }
+}
+
+int diagnose(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  refuse_overlaps(arguments);
+  check_ids(arguments.without, catalogue);
+  files::OutputFiles outputs;
+  for (const auto* path : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
+                           &arguments.header}) {
+    if (!path->empty()) outputs.expect(*path);
+  }
+  gap::Diagnosis diagnosis;
+  gap::Model model;
+  {
+    Progress progress;
+    model = files::read_model(arguments.model, catalogue);
+    std::vector<gap::Finding> findings;
+    std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
+    std::vector<gap::Recording> held_out = read_all(arguments.held_out, findings);
+    gap::Options options;
+    options.horizon_s = arguments.horizon_s;
+    options.tolerance = arguments.tolerance;
+    options.without = arguments.without;
+    options.threads =
+        arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+    options.seed = arguments.seed;
+    if (held_out.empty()) {
+      for (auto& recording : recordings) {
+        auto [first, last] = gap::split(recording, options.held_out_fraction);
+        recording = std::move(first);
+        held_out.push_back(std::move(last));
+      }
+    }
+    progress.stage("diagnosing");
+    diagnosis = files::run_diagnosis(model, recordings, held_out, options);
+    diagnosis.findings.insert(diagnosis.findings.begin(), findings.begin(), findings.end());
+    progress.stage("writing");
+    if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
+    if (!arguments.html.empty())
+      outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
+    if (!arguments.predictions.empty()) {
+      outputs.put(arguments.predictions,
+                  files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
+    }
+    if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
+    if (!arguments.header.empty())
+      outputs.put(arguments.header,
+                  files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
+    outputs.commit();
+  }
+  std::fputs(files::summary(diagnosis).c_str(), stdout);
+  return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
+}
+
+int predict(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  refuse_overlaps(arguments);
+  files::OutputFiles outputs;
+  outputs.expect(arguments.predictions);
+  const gap::Model augmented = files::read_model(arguments.model, catalogue);
+  std::vector<gap::Finding> findings;
+  const std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
+  gap::Model bare = augmented;
+  bare.effects.clear();
+  outputs.put(arguments.predictions,
+              files::predictions_csv(bare, augmented, recordings, arguments.horizon_s));
+  outputs.commit();
+  return made;
+}
+
+std::string version() {
+  using thermopower::Version;
+  return std::to_string(Version::major_number()) + "." + std::to_string(Version::minor_number()) + "." +
+         std::to_string(Version::patch_number());
+}
+
+int run(int count, char** values) {
+  CLI::App app(
+      "Says where a simulated actuator and the real one part, which effect is missing, and how far the gap shrinks with it.",
+      "thermopower-gap");
+  app.set_version_flag("--version", version());
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data for any statement.");
+  Arguments arguments;
+
+  CLI::App* const diagnosing = app.add_subcommand("diagnose", "find the missing effect");
+  diagnosing->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
+  diagnosing
+      ->add_option("--recording", arguments.recordings,
+                   "a recording to find and fit on (CSV); may be repeated")
+      ->required();
+  diagnosing->add_option("--heldout", arguments.held_out,
+                         "a recording to judge on; without it the last 30 % of each recording");
+  diagnosing->add_option("--report", arguments.report, "write the report for machines (JSON)");
+  diagnosing->add_option("--html", arguments.html, "write the report for people (one HTML page)");
+  diagnosing->add_option("--predictions", arguments.predictions, "write held-out predictions (CSV)");
+  diagnosing->add_option("--augmented", arguments.augmented, "write the model with what was found (JSON)");
+  diagnosing->add_option("--header", arguments.header, "write the same as a C++11 header for firmware");
+  diagnosing->add_option("--without", arguments.without,
+                         "remove an effect from the catalogue; may be repeated");
+  diagnosing->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  diagnosing
+      ->add_option("--tolerance", arguments.tolerance,
+                   "relative shrinkage of the gap below which nobody cares")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  diagnosing
+      ->add_option("--threads", arguments.threads,
+                   "worker threads; 0: one per core. The result does not depend on it")
+      ->check(CLI::Range(0u, 256u))
+      ->capture_default_str();
+  diagnosing->add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
+
+  CLI::App* const predicting = app.add_subcommand("predict", "simulate a recording with a model");
+  predicting->add_option("--model", arguments.model, "a model, with effects or without (JSON)")->required();
+  predicting->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")
+      ->required();
+  predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")
+      ->required();
+  predicting->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+
+  CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
+
+  try {
+    app.parse(count, values);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? made : wrong_usage;
+  }
+  if (*listing) {
+    std::fputs(files::catalogue_text(gap::standard_catalogue().list()).c_str(), stdout);
+    return made;
+  }
+  return *predicting ? predict(arguments) : diagnose(arguments);
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  const auto complain = [](const char* what) { std::fprintf(stderr, "thermopower-gap: %s\n", what); };
+  try {
+    const int status = run(count, values);
+    if (std::fflush(stdout) != 0) {
+      complain("standard output cannot be written");
+      return invalid_input;
+    }
+    return status;
+  } catch (const UsageError& error) {
+    complain(error.what());
+    return wrong_usage;
+  } catch (const files::InputError& error) {
+    complain(error.what());
+    return invalid_input;
+  } catch (const files::OutputError& error) {
+    complain(error.what());
+    return invalid_input;
+  } catch (const gap::InvalidInput& error) {
+    complain(error.what());
+    return invalid_input;
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+    return invalid_input;
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return failed;
+  }
+}
