@@ -10,7 +10,7 @@
 /// Air drag on something that the axis turns: a torque against the motion, with the square of the rate.
 struct AirDrag {
   /// What it is, for people and for the engine.
-  static thermopower::gap::EffectInfo info() {
+  static thermopower::plant::EffectInfo info() {
     return {"air_drag",
             "mechanical.friction",
             "torque -= c rate |rate|",
@@ -22,8 +22,8 @@ struct AirDrag {
 
   /// Its equation, for numbers and for derivatives alike.
   template <class Scalar>
-  static void act(const Scalar* p, thermopower::gap::AxisTerms<Scalar>& terms) {
-    using thermopower::gap::magnitude;
+  static void act(const Scalar* p, thermopower::plant::AxisTerms<Scalar>& terms) {
+    using thermopower::plant::magnitude;
     terms.load_Nm -= p[0] * terms.rate_rad_per_s * magnitude(terms.rate_rad_per_s);
   }
 };

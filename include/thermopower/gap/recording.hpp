@@ -2,11 +2,11 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/rows.hpp>
+
 #include <Eigen/Core>
 
-#include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,25 +14,7 @@
 
 namespace thermopower::gap {
 
-/// Radians per degree.
-inline constexpr double rad_per_deg = 0.017453292519943295;
-
-/// Thrown where the input of a diagnosis cannot be used; `what()` names the recording, column, field or
-/// parameter and what was expected there.
-class InvalidInput : public std::invalid_argument {
-public:
-  using std::invalid_argument::invalid_argument;
-};
-
-/// Half-open range of rows [begin, end) that belong to one run; the model's state starts anew at `begin`.
-struct RunSpan {
-  Eigen::Index begin = 0;  ///< first row
-  Eigen::Index end = 0;    ///< one past the last row
-  std::string label;       ///< text of the `run` column, may be empty
-
-  /// Number of rows.
-  Eigen::Index size() const { return end - begin; }
-};
+using namespace plant;  // NOLINT: what a user of the diagnosis names comes from both
 
 /// One recorded channel.
 struct Column {
@@ -129,8 +111,5 @@ struct Recording {
     return std::nullopt;
   }
 };
-
-/// A missing sample.
-inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace thermopower::gap

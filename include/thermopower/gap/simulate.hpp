@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 

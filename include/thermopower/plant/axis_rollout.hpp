@@ -3,12 +3,12 @@
 #pragma once
 
 #include <thermopower/plant/axis_step.hpp>
-#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/plant/rows.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Simulates angle and rate of one axis over the rows of a window.
 template <class Scalar>
@@ -112,4 +112,4 @@ inline std::vector<Eigen::Index> window_starts(const Inputs& inputs, const RunSp
   return starts;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

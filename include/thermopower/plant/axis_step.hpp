@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// What the axis remembers. The far side is stated relative to the near one: 0 while the spring is relaxed.
 template <class Scalar>
@@ -274,4 +274,4 @@ private:
   bool soft_ = false;  ///< dry friction has a transition
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

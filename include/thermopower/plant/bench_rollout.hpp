@@ -4,13 +4,13 @@
 
 #include <thermopower/actuator/duty.hpp>
 #include <thermopower/plant/exchange_step.hpp>
-#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/instance.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Everything that the motor on the bench remembers.
 template <class Scalar>
@@ -340,4 +340,4 @@ private:
   mutable Scalar coupling_W_per_K_;  ///< of the step under way
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -4,7 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
-#include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Which hooks an effect has; the engine calls no others.
 struct HookSet {
@@ -160,4 +160,4 @@ private:
   std::vector<CatalogueEntry> entries_;
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Directions that one automatic-differentiation pass carries.
 inline constexpr int dual_width = 8;
@@ -160,4 +160,4 @@ Scalar at_least(const Scalar& x, double floor) {
   return value_of(x) > floor ? x : constant<Scalar>(floor);
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// One parameter of an effect.
 struct Parameter {
@@ -33,4 +33,4 @@ struct EffectInfo {
   std::string experiment;             ///< the excitation that shows it best
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Heat that two nodes, a winding and the surface around it, exchange with each other, and the surface with
 /// the air: the stiff and linear part of their equations, solved exactly.
@@ -87,4 +87,4 @@ private:
   Function first_{}, second_{};
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

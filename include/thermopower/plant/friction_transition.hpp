@@ -5,7 +5,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// The parameter that every dry friction has last: the rate in rad/s within which it turns over, 0.0005 (where
 /// the axis sticks) to 0.3; 0.01 where a model leaves it out.
@@ -21,4 +21,4 @@ inline Parameter friction_transition() {
   return transition;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,12 +6,12 @@
 #include <thermopower/actuator/ohmic_current.hpp>
 #include <thermopower/actuator/thesis_current.hpp>
 #include <thermopower/plant/catalogue.hpp>
-#include <thermopower/gap/model.hpp>
+#include <thermopower/plant/model.hpp>
 
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// One effect at work: its hooks and where its parameters lie.
 template <class Scalar>
@@ -189,4 +189,4 @@ private:
   std::vector<std::vector<Scalar>> parameters_;
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

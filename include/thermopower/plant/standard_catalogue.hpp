@@ -36,7 +36,7 @@
 #include <thermopower/plant/effects/torque_saturation.hpp>
 #include <thermopower/plant/effects/winding_tempco.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// The catalogue that comes with the library; copy it and add() to the copy to extend it.
 inline const Catalogue& standard_catalogue() {
@@ -79,4 +79,4 @@ inline const Catalogue& standard_catalogue() {
   return catalogue;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

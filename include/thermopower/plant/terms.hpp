@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// @file terms.hpp
 /// The terms of the model's equations, as the hooks of an effect see and change them.
@@ -121,4 +121,4 @@ struct AxisReadings {
   Scalar rate_dps;   ///< what the gyroscope shows; given as the true rate
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

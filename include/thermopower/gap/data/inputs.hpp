@@ -4,74 +4,14 @@
 
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/rows.hpp>
 
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace thermopower::gap {
-
-/// The signals that a diagnosis can judge.
-enum class Signal { current_A = 0, motor_C = 1, angle_deg = 2, rate_dps = 3 };
-
-/// Number of signals.
-inline constexpr int signal_count = 4;
-
-/// Column name of a signal.
-inline const char* name_of(Signal signal) {
-  constexpr const char* names[] = {"current_A", "motor_C", "angle_deg", "rate_dps"};
-  return names[static_cast<int>(signal)];
-}
-
-/// Unit of a signal as reports spell it.
-inline const char* unit_of(Signal signal) {
-  constexpr const char* units[] = {"A", "degC", "deg", "deg/s"};
-  return units[static_cast<int>(signal)];
-}
-
-/// Where the heat of the thermal model comes from.
-enum class HeatSource {
-  law,       ///< the current law, from `power_param`
-  measured,  ///< the recorded `current_A`
-  drive,     ///< the recorded `drive_A`
-  none,      ///< nothing recorded: temperature is not judged
-};
-
-/// A recording as a rollout wants it: inputs without holes, outputs with theirs, and what can be judged.
-struct Inputs {
-  std::string name;           ///< of the recording
-  Eigen::VectorXd t_s;        ///< stamps of the rows, strictly increasing in a run
-  std::vector<RunSpan> runs;  ///< rows between which time passes
-  // Held inputs and covariates by row; empty where not recorded. Holes hold the value before them.
-  Eigen::VectorXd power_param;                         ///< POWER, 0..255
-  Eigen::VectorXd drive_A;                             ///< commanded current of the axis
-  Eigen::VectorXd supply_V;                            ///< supply voltage
-  Eigen::VectorXd ambient_C;                           ///< air temperature
-  Eigen::VectorXd airspeed_mps;                        ///< of the air past the motor
-  Eigen::VectorXd neighbour_C;                         ///< temperature of what is mounted next to it
-  Eigen::VectorXd covariate_rate_dps;                  ///< rotation as an input of the bench models
-  Eigen::VectorXd covariate_motor_C;                   ///< motor temperature as an input of the axis
-  Eigen::VectorXd held_current_A;                      ///< current as an input of the thermal model
-  Eigen::VectorXd held_motor_C;                        ///< temperature as an input of the electrical model
-  double nominal_V = 12.0;                             ///< stands in for `supply_V` where that is empty
-  Eigen::VectorXd repeats;                             ///< samples averaged in each row; empty: one
-  HeatSource heat = HeatSource::none;                  ///< what drives the thermal model
-  std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
-  std::vector<std::string> not_judged;                 ///< one sentence each
-
-  /// Number of rows.
-  Eigen::Index rows() const { return t_s.size(); }
-  /// Whether the signal is recorded and has a law.
-  bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
-  /// Measured values of a judged signal.
-  const Eigen::VectorXd& of(Signal signal) const { return measured[static_cast<std::size_t>(signal)]; }
-  /// Whether temperature or current is judged.
-  bool bench() const { return judged(Signal::current_A) || judged(Signal::motor_C); }
-  /// Whether angle or rate is judged.
-  bool axis() const { return judged(Signal::angle_deg) || judged(Signal::rate_dps); }
-};
 
 namespace detail {
 

@@ -2,7 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/model.hpp>
 #include <thermopower/plant/instance.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>

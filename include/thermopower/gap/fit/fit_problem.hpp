@@ -5,6 +5,7 @@
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
+#include <thermopower/gap/data/inputs.hpp>
 
 #include <Eigen/Dense>
 

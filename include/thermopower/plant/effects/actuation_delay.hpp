@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A pure delay between command and torque; any value, not only multiples of the sampling step.
 struct ActuationDelay {
@@ -29,4 +29,4 @@ struct ActuationDelay {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A constant error of the recorded air temperature.
 struct AmbientBias {
@@ -29,4 +29,4 @@ struct AmbientBias {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

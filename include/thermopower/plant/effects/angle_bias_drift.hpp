@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A drift of the angle in proportion to time.
 struct AngleBiasDrift {
@@ -28,4 +28,4 @@ struct AngleBiasDrift {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A wrong factor of the angle (a unit, a gear, a sign).
 struct AngleScale {
@@ -28,4 +28,4 @@ struct AngleScale {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -7,7 +7,7 @@
 #include <thermopower/plant/friction_transition.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Dry friction with a magnitude for each direction.
 struct AsymmetricFriction {
@@ -31,4 +31,4 @@ struct AsymmetricFriction {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

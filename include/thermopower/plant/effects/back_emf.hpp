@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Voltage induced by the recorded rate.
 struct BackEmf {
@@ -29,4 +29,4 @@ struct BackEmf {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

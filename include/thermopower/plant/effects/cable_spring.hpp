@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A linear spring to a rest position.
 struct CableSpring {
@@ -30,4 +30,4 @@ struct CableSpring {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A torque that repeats several times a turn.
 struct Cogging {
@@ -39,4 +39,4 @@ struct Cogging {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Two inertias on a spring; the near one is driven and measured.
 struct Compliance {
@@ -34,4 +34,4 @@ struct Compliance {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

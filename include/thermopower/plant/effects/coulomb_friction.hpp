@@ -7,7 +7,7 @@
 #include <thermopower/plant/friction_transition.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Dry friction of constant magnitude.
 struct CoulombFriction {
@@ -29,4 +29,4 @@ struct CoulombFriction {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

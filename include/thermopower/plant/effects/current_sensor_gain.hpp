@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A wrong factor of the current sensor.
 struct CurrentSensorGain {
@@ -28,4 +28,4 @@ struct CurrentSensorGain {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

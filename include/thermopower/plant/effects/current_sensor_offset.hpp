@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A constant error of the current sensor.
 struct CurrentSensorOffset {
@@ -28,4 +28,4 @@ struct CurrentSensorOffset {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

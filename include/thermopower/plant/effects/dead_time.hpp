@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A constant loss of duty.
 struct DeadTime {
@@ -29,4 +29,4 @@ struct DeadTime {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

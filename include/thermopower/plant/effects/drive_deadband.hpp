@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A dead band of the drive; beyond it the command counts from its edge.
 struct DriveDeadband {
@@ -31,4 +31,4 @@ struct DriveDeadband {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -7,7 +7,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// The conductance grows with the recorded airspeed; `gain` is its relative growth at 1 m/s.
 struct ForcedAirflowEffect {
@@ -31,4 +31,4 @@ struct ForcedAirflowEffect {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Gravity on a centre of mass off the axis.
 struct Imbalance {
@@ -30,4 +30,4 @@ struct Imbalance {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

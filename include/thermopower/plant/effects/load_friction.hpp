@@ -7,7 +7,7 @@
 #include <thermopower/plant/friction_transition.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Dry friction in proportion to the transmitted torque.
 struct LoadFriction {
@@ -30,4 +30,4 @@ struct LoadFriction {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Heat from turning, with the square of the recorded rate.
 struct MotionHeating {
@@ -29,4 +29,4 @@ struct MotionHeating {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -7,7 +7,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Natural convection in place of Newton's law; at a rise of `reference_K` both lose the same.
 struct NaturalConvectionEffect {
@@ -32,4 +32,4 @@ struct NaturalConvectionEffect {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Heat conducted from a neighbour whose temperature was recorded.
 struct NeighbourHeating {
@@ -28,4 +28,4 @@ struct NeighbourHeating {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

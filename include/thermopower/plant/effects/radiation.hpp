@@ -7,7 +7,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Radiation to surroundings at air temperature; emissivity and area only show as their product.
 struct Radiation {
@@ -31,4 +31,4 @@ struct Radiation {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A constant error of the rate sensor.
 struct RateBias {
@@ -28,4 +28,4 @@ struct RateBias {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A heated node (the thermometer is on it) coupled to a housing that loses the heat.
 struct SecondThermalMass {
@@ -32,4 +32,4 @@ struct SecondThermalMass {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

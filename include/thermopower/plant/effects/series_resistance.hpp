@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Resistance in the circuit that neither warms with the winding nor heats it.
 struct SeriesResistance {
@@ -28,4 +28,4 @@ struct SeriesResistance {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -7,7 +7,7 @@
 #include <thermopower/plant/friction_transition.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Dry friction with a Stribeck rise near standstill.
 struct StribeckFriction {
@@ -35,4 +35,4 @@ struct StribeckFriction {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

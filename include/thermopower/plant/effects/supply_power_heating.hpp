@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Heat by the supply's voltage in place of the effective one; a share of 1 is all of it.
 struct SupplyPowerHeating {
@@ -28,4 +28,4 @@ struct SupplyPowerHeating {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

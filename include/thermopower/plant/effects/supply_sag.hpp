@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// Internal resistance and discharge of a supply whose voltage was not recorded.
 struct SupplySag {
@@ -29,4 +29,4 @@ struct SupplySag {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

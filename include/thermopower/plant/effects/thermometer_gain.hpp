@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A thermometer that scales the rise over air temperature.
 struct ThermometerGain {
@@ -28,4 +28,4 @@ struct ThermometerGain {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A first-order lag of the thermometer.
 struct ThermometerLag {
@@ -29,4 +29,4 @@ struct ThermometerLag {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

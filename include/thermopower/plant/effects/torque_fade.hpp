@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A torque constant that falls with the recorded motor temperature.
 struct TorqueFade {
@@ -28,4 +28,4 @@ struct TorqueFade {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

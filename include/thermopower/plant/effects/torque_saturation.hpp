@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A limit of the drive, stated in the command's unit.
 struct TorqueSaturation {
@@ -29,4 +29,4 @@ struct TorqueSaturation {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant

@@ -6,7 +6,7 @@
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/terms.hpp>
 
-namespace thermopower::gap {
+namespace thermopower::plant {
 
 /// A temperature coefficient where the simulation has none.
 struct WindingTempco {
@@ -28,4 +28,4 @@ struct WindingTempco {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::plant
