@@ -84,6 +84,9 @@ enum class ConfigError : uint8_t {
   rise_per_s = 67,                    ///< Must be finite and above 0.
   fall_per_s = 68,                    ///< Must be finite and above 0.
   ease_from_deg = 69,                 ///< Must be finite and above 0.
+  longest_s = 70,                     ///< Must be finite and not below interval_s.
+  maximum_supply_V = 71,              ///< Must be finite and above supply_V.
+  current_offset_A = 72,              ///< Must be finite and not negative.
   user_defined = 128                  ///< Codes from here up are free for policies of your own.
 };
 

@@ -19,6 +19,8 @@
 #include "actuator/observer_thermal.hpp"
 #include "actuator/ohmic_current.hpp"
 #include "actuator/power_up.hpp"
+#include "actuator/record_ring.hpp"
+#include "actuator/start_bounds.hpp"
 #include "actuator/stored_state.hpp"
 #include "actuator/tabulated_current.hpp"
 #include "actuator/temperature_observer.hpp"

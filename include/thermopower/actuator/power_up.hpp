@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "start_bounds.hpp"
 #include "stored_state.hpp"
 #include "two_node_thermal_model.hpp"
 
@@ -22,28 +23,35 @@
 /// during power down". Under every rule: a record that is missing or damaged counts as `AsHottest`; a time
 /// off that is not known counts as `AsStored`; and nothing is ever colder than the air. "As warm as the air"
 /// is not among the rules.
+///
+/// What the actuator did between its last record and the loss of power is not known either. The estimates are
+/// raised by half of what it may have warmed by in that time, and are that much less sure; only the time
+/// that it was certainly off has cooled it. Bounds instead of estimates: start_bounds.hpp.
 
 namespace thermopower {
 
 /// What is known at power-up.
 struct PowerUpFacts {
-  bool has_stored;                          ///< A whole record was found.
-  StoredState stored;                       ///< That record.
-  float off_s;                              ///< How long the power was off; NaN or negative: not known.
-  float air_C;                              ///< Air temperature; NaN: not known, which counts as `AsHottest`.
-  float heat_now_W;                         ///< Read by `AsNewLoad`.
-  float preset_C;                           ///< Read by `AsPreset`.
-  float hottest_winding_C;                  ///< Limit of the winding; what `AsHottest` starts from.
-  float hottest_body_C;                     ///< Limit of the body; what `AsHottest` starts from.
+  bool has_stored;          ///< A whole record was found.
+  StoredState stored;       ///< That record.
+  float off_s;              ///< How long the power was certainly off; NaN or negative: not known.
+  float air_C;              ///< Air temperature; NaN: not known, which counts as `AsHottest`.
+  float heat_now_W;         ///< Read by `AsNewLoad`.
+  float preset_C;           ///< Read by `AsPreset`.
+  float hottest_winding_C;  ///< Limit of the winding; what `AsHottest` starts from.
+  float hottest_body_C;     ///< Limit of the body; what `AsHottest` starts from.
+  float
+      unrecorded_K;  ///< It may have warmed by this after the record: `StartAssumptions::unrecorded_K()`. >= 0.
 
-  /// Time off from a clock that went on without power. @param clock_s  `StoredState::no_clock()` when there
-  /// is none
+  /// The time that was certainly spent without power, from a clock that went on: the age of the record less
+  /// the time that the controller may have run without leaving another one.
+  /// @param clock_s  `StoredState::no_clock()` when there is none
+  /// @param promise  `StateJournal::promise()`
   /// @return s; NaN when it cannot be known, also when the clock was set back
-  static float off_s_from(const StoredState& stored, uint32_t clock_s) noexcept {
-    if (stored.clock_s == StoredState::no_clock() || clock_s == StoredState::no_clock() ||
-        clock_s < stored.clock_s)
-      return detail::not_a_number();
-    return static_cast<float>(clock_s - stored.clock_s);
+  static float off_s_from(const StoredState& stored, uint32_t clock_s,
+                          const RecordPromise& promise) noexcept {
+    const float age_s = record_age_s(stored, clock_s);
+    return detail::is_finite(age_s) ? detail::at_least(age_s - promise.longest_s, 0.0f) : age_s;
   }
 };
 
@@ -71,7 +79,9 @@ inline PowerUpTemperatures not_below_air(PowerUpTemperatures at, float air_C) no
 inline PowerUpTemperatures carried(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config& thermal, float heat_W) noexcept {
   if (!facts.has_stored || !is_finite(facts.air_C) || !is_finite(heat_W)) return hottest(facts);
-  PowerUpTemperatures at = {facts.stored.winding_C, facts.stored.body_C, facts.stored.std_K, true};
+  const float half_K = 0.5f * (facts.unrecorded_K > 0.0f ? facts.unrecorded_K : 0.0f);
+  PowerUpTemperatures at = {facts.stored.winding_C + half_K, facts.stored.body_C + half_K,
+                            sqrtf(facts.stored.std_K * facts.stored.std_K + half_K * half_K), true};
   if (facts.off_s >= 0.0f && is_finite(facts.off_s)) {
     TwoNodeThermalModel<float> model(thermal, at.body_C);
     model.start(at.winding_C, at.body_C);

@@ -5,78 +5,90 @@
 #include <stddef.h>
 
 #include "../detail/check.hpp"
+#include "record_ring.hpp"
 
 /// @file stored_state.hpp
 /// An actuator's temperatures through a loss of power: a record with a check sum, and a journal that spreads
 /// the wear.
 ///
-/// A record is 18 bytes, low byte first whatever the machine:
+/// A record is 22 bytes, low byte first whatever the machine:
 ///
 /// | byte | what |
 /// |---|---|
 /// | 0 | 0x54, a record is here |
-/// | 1 | version of this format, 1 |
+/// | 1 | version of this format, 2 |
 /// | 2, 3 | sequence number, one up with every record, wraps |
 /// | 4, 5 | winding, signed, hundredths of a degC |
 /// | 6, 7 | body, signed, hundredths of a degC |
-/// | 8, 9 | heat in the winding, hundredths of a watt |
-/// | 10, 11 | uncertainty (1 sigma) of both temperatures, hundredths of a kelvin |
-/// | 12 .. 15 | the caller's clock, seconds; 0xffffffff: it has none |
-/// | 16, 17 | CRC-16/CCITT-FALSE of bytes 0 .. 15 |
+/// | 8, 9 | upper bound of the winding, signed, hundredths of a degC |
+/// | 10, 11 | upper bound of the body, signed, hundredths of a degC |
+/// | 12, 13 | heat in the winding, hundredths of a watt |
+/// | 14, 15 | uncertainty (1 sigma) of both temperatures, hundredths of a kelvin |
+/// | 16 .. 19 | the caller's clock, seconds; 0xffffffff: it has none |
+/// | 20, 21 | CRC-16/CCITT-FALSE of bytes 0 .. 19 |
 
 namespace thermopower {
 
 /// What is worth keeping.
 struct StoredState {
-  float winding_C;    ///< -300 .. 300; outside, it is kept as the nearest of these.
-  float body_C;       ///< -300 .. 300.
-  float heat_W;       ///< 0 .. 655. What was heating it when it was stored.
-  float std_K;        ///< 0 .. 655. How sure the temperatures are.
-  uint32_t clock_s;   ///< Any clock that goes on without power; `no_clock()` when there is none.
-  uint16_t sequence;  ///< Set by the journal.
+  float winding_C;        ///< -300 .. 300; outside, it is kept as the nearest of these.
+  float body_C;           ///< -300 .. 300.
+  float winding_upper_C;  ///< The winding is not hotter. NaN: no bound is known, which is kept as 300.
+  float body_upper_C;     ///< The body is not hotter. NaN: no bound is known, which is kept as 300.
+  float heat_W;           ///< 0 .. 655. What was heating it when it was stored.
+  float std_K;            ///< 0 .. 655. How sure the temperatures are.
+  uint32_t clock_s;       ///< Any clock that goes on without power; `no_clock()` when there is none.
+  uint16_t sequence;      ///< Set by the journal.
 
   static constexpr uint32_t no_clock() { return 0xffffffffUL; }  ///< There is no such clock.
-  static constexpr uint8_t size() { return 18; }                 ///< Bytes of a record.
+  static constexpr uint8_t size() { return 22; }                 ///< Bytes of a record.
 
   /// Writes the record. @param bytes  at least `size()` of them
   void write(uint8_t* bytes) const noexcept {
     bytes[0] = 0x54;
-    bytes[1] = 1;
+    bytes[1] = 2;
     put(bytes + 2, sequence);
     put(bytes + 4, hundredths(winding_C));
     put(bytes + 6, hundredths(body_C));
-    put(bytes + 8, whole_hundredths(heat_W));
-    put(bytes + 10, whole_hundredths(std_K));
-    put(bytes + 12, static_cast<uint16_t>(clock_s & 0xffffu));
-    put(bytes + 14, static_cast<uint16_t>(clock_s >> 16));
-    put(bytes + 16, crc(bytes, 16));
+    put(bytes + 8, hundredths(winding_upper_C));
+    put(bytes + 10, hundredths(body_upper_C));
+    put(bytes + 12, whole_hundredths(heat_W));
+    put(bytes + 14, whole_hundredths(std_K));
+    put(bytes + 16, static_cast<uint16_t>(clock_s & 0xffffu));
+    put(bytes + 18, static_cast<uint16_t>(clock_s >> 16));
+    put(bytes + 20, crc(bytes, 20));
   }
 
   /// Reads a record. @return false, with this object unchanged, when the bytes are not one, or damaged
   bool read(const uint8_t* bytes) noexcept {
-    if (bytes[0] != 0x54 || bytes[1] != 1 || take(bytes + 16) != crc(bytes, 16)) return false;
+    if (bytes[0] != 0x54 || bytes[1] != 2 || take(bytes + 20) != crc(bytes, 20)) return false;
     sequence = take(bytes + 2);
     winding_C = signed_from(take(bytes + 4));
     body_C = signed_from(take(bytes + 6));
-    heat_W = static_cast<float>(take(bytes + 8)) * 0.01f;
-    std_K = static_cast<float>(take(bytes + 10)) * 0.01f;
-    clock_s = static_cast<uint32_t>(take(bytes + 12)) | (static_cast<uint32_t>(take(bytes + 14)) << 16);
+    winding_upper_C = signed_from(take(bytes + 8));
+    body_upper_C = signed_from(take(bytes + 10));
+    heat_W = static_cast<float>(take(bytes + 12)) * 0.01f;
+    std_K = static_cast<float>(take(bytes + 14)) * 0.01f;
+    clock_s = static_cast<uint32_t>(take(bytes + 16)) | (static_cast<uint32_t>(take(bytes + 18)) << 16);
     return true;
+  }
+
+  /// Has a temperature or a bound moved away from another record's? @param change_K  by this or more; NaN counts
+  bool differs(const StoredState& other, float change_K) const noexcept {
+    return !(is_near(winding_C, other.winding_C, change_K) && is_near(body_C, other.body_C, change_K) &&
+             is_near(winding_upper_C, other.winding_upper_C, change_K) &&
+             is_near(body_upper_C, other.body_upper_C, change_K));
   }
 
   /// CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xffff; of "123456789" it is 0x29b1.
   static uint16_t crc(const uint8_t* bytes, uint8_t count) noexcept {
-    uint16_t sum = 0xffffu;
-    for (uint8_t i = 0; i < count; ++i) {
-      sum = static_cast<uint16_t>(sum ^ static_cast<uint16_t>(static_cast<uint16_t>(bytes[i]) << 8));
-      for (uint8_t step = 0; step < 8; ++step)
-        sum = static_cast<uint16_t>((sum & 0x8000u) != 0 ? static_cast<uint16_t>(sum << 1) ^ 0x1021u
-                                                         : static_cast<uint16_t>(sum << 1));
-    }
-    return sum;
+    return detail::record_crc(bytes, count);
   }
 
- private:
+private:
+  static bool is_near(float left, float right, float change_K) noexcept {
+    return detail::magnitude(left - right) < change_K;
+  }
   static void put(uint8_t* at, uint16_t value) noexcept {
     at[0] = static_cast<uint8_t>(value & 0xffu);
     at[1] = static_cast<uint8_t>(value >> 8);
@@ -102,27 +114,41 @@ struct StoredState {
   }
 };
 
+/// What is certain about the time after a record: how long an actuator may have gone on unrecorded.
+struct RecordPromise {
+  float interval_s;  ///< Whatever happened in this time after a record may have left no other. >= 0.
+  float change_K;    ///< Later than that, temperatures and bounds stayed within this of the record. >= 0.
+  float longest_s;   ///< Later than this there would be another record: the power was off. >= `interval_s`.
+};
+
 /// Keeps records in a ring of slots, so that no byte is written more often than it bears.
-/// @tparam Memory  has `uint8_t read(size_t)` and `void write(size_t, uint8_t)`: an EEPROM, a file, an FRAM
+/// @tparam Memory  as RecordRing takes it: an EEPROM, a file, an FRAM
 ///
-/// A record that was cut off by the loss of power fails its check sum, and the one before it counts.
+/// Liveness: a record is written at power-up (`write_now()` with what the actuator was started with), when
+/// something has changed but at most once in `interval_s`, at least once in `longest_s`, and before a planned
+/// stop (`write_now()`). What that makes certain is `promise()`. A record that was cut off by the loss of
+/// power fails its check sum, and the one before it counts.
 template <class Memory>
 class StateJournal {
- public:
+public:
   /// What one tunes.
   struct Config {
     uint16_t start;      ///< First byte in the memory.
     uint8_t slots;       ///< Records in the ring, 2 .. 255.
     float interval_s;    ///< Not more often than this. Above 0.
-    float change_K;      ///< Nor unless a temperature has changed by this. >= 0.
+    float change_K;      ///< Nor, before `longest_s`, unless a temperature has changed by this. >= 0.
     uint32_t endurance;  ///< Writes that a byte bears: 100000 for an AVR's EEPROM. At least 1.
+    float longest_s;     ///< A record at least this often, changed or not. At least `interval_s`.
+    float step_s;        ///< `step()` is called at least this often. Above 0.
 
-    /// 16 slots from byte 0, once a minute, 2 K, an AVR's EEPROM: three years of changing every minute.
+    /// 16 slots from byte 0, once a minute when changed by 2 K, every ten minutes in any case, stepped at
+    /// least once a second, an AVR's EEPROM: three years of changing every minute.
     static Config standard() noexcept {
-      const Config config = {0, 16, 60.0f, 2.0f, 100000UL};
+      const Config config = {0, 16, 60.0f, 2.0f, 100000UL, 600.0f, 1.0f};
       return config;
     }
-    /// Time until the memory is worn out if a record is due every time. @return years of operation
+    /// Time until the memory is worn out if a record is due every time. Every power-up costs one record more.
+    /// @return years of operation
     float years() const noexcept {
       return static_cast<float>(endurance) * static_cast<float>(slots) * interval_s / 31557600.0f;
     }
@@ -132,80 +158,76 @@ class StateJournal {
       if (slots < 2) return ConfigError::slots;
       if (is_error(detail::require_positive(interval_s, ConfigError::interval_s)) || years() < 1.0f)
         return ConfigError::interval_s;
-      return detail::require_not_negative(change_K, ConfigError::change_K);
+      if (!detail::is_finite(longest_s) || longest_s < interval_s) return ConfigError::longest_s;
+      return first_error(detail::require_not_negative(change_K, ConfigError::change_K),
+                         detail::require_positive(step_s, ConfigError::longest_s));
     }
   };
 
   /// Touches nothing yet.
   /// @param memory  where the records lie; must outlive this object
   /// @param config  the ring; ask `validate()` once
-  StateJournal(Memory& memory, const Config& config) noexcept : memory_(memory), config_(config) {
-    const StoredState none = {0.0f, 0.0f, 0.0f, 0.0f, StoredState::no_clock(), 0};
+  StateJournal(Memory& memory, const Config& config) noexcept
+      : ring_(memory, config.start, config.slots), config_(config) {
+    const float none_C = detail::not_a_number();
+    const StoredState none = {none_C, none_C, none_C, none_C, 0.0f, 0.0f, StoredState::no_clock(), 0};
     last_ = none;
   }
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
 
-  /// Finds the newest whole record. Call once, at power-up, before `step()`. @return false when there is none
-  bool load(StoredState& newest) noexcept {
-    bool is_found = false;
-    for (uint8_t slot = 0; slot < config_.slots; ++slot) {
-      uint8_t bytes[StoredState::size()];
-      for (uint8_t i = 0; i < StoredState::size(); ++i) bytes[i] = memory_.read(address(slot) + i);
-      StoredState record;
-      if (!record.read(bytes)) continue;
-      // Newer by less than half a turn of the counter: right across the wrap.
-      if (is_found && static_cast<uint16_t>(record.sequence - newest.sequence) >= 0x8000u) continue;
-      newest = record;
-      slot_ = slot;
-      is_found = true;
-    }
-    if (is_found) {
-      last_ = newest;
-      next_sequence_ = static_cast<uint16_t>(newest.sequence + 1);
-      slot_ = static_cast<uint8_t>(slot_ + 1 < config_.slots ? slot_ + 1 : 0);
-      has_last_ = true;
-    }
-    return is_found;
+  /// What the newest record leaves open.
+  RecordPromise promise() const noexcept {
+    const RecordPromise promise = {config_.interval_s + config_.step_s, config_.change_K,
+                                   config_.longest_s + config_.step_s};
+    return promise;
   }
 
-  /// Writes a record when one is due. @param dt_s  time since the last call  @return true when one was
-  /// written
-  bool step(StoredState now, float dt_s) noexcept {
-    if (is_error(config_.validate())) return false;
-    if (dt_s > 0.0f) since_s_ += dt_s;
-    if (since_s_ < config_.interval_s) return false;
-    const bool has_changed =
-        !has_last_ || !(detail::magnitude(now.winding_C - last_.winding_C) < config_.change_K &&
-                        detail::magnitude(now.body_C - last_.body_C) < config_.change_K);
-    if (!has_changed) return false;
-    now.sequence = next_sequence_++;
-    uint8_t bytes[StoredState::size()];
-    now.write(bytes);
-    for (uint8_t i = 0; i < StoredState::size(); ++i) {
-      // A byte that is right already is not worn.
-      if (memory_.read(address(slot_) + i) != bytes[i]) memory_.write(address(slot_) + i, bytes[i]);
-    }
-    slot_ = static_cast<uint8_t>(slot_ + 1 < config_.slots ? slot_ + 1 : 0);
-    last_ = now;
-    has_last_ = true;
-    since_s_ = 0.0f;
+  /// Finds the newest whole record. Call once, at power-up, before `step()`. @return false when there is none
+  bool load(StoredState& newest) noexcept {
+    if (!ring_.load(newest)) return false;
+    last_ = newest;
     return true;
   }
 
- private:
-  size_t address(uint8_t slot) const noexcept {
-    return static_cast<size_t>(config_.start) + static_cast<size_t>(slot) * StoredState::size();
+  /// Writes a record when one is due. @param dt_s  time since the last call  @return true when one was
+  /// begun
+  bool step(const StoredState& now, float dt_s) noexcept {
+    if (is_error(config_.validate())) return false;
+    if (dt_s > 0.0f) since_s_ += dt_s;
+    ring_.work();
+    if (since_s_ < config_.interval_s) return false;
+    if (since_s_ < config_.longest_s && !now.differs(last_, config_.change_K)) return false;
+    return write_now(now);
   }
 
-  Memory& memory_;
+  /// Writes a record whatever the interval says: at power-up and before a planned stop. @return false when
+  /// the record before it is still being written to a slow memory, or the configuration is refused
+  bool write_now(const StoredState& now) noexcept {
+    if (is_error(config_.validate()) || !ring_.begin(now)) return false;
+    last_ = now;
+    since_s_ = 0.0f;
+    ring_.work();
+    return true;
+  }
+
+  /// Seconds since the newest record, rounded up: for `Retained::keep()`. Stops at 65535.
+  uint16_t since_s() const noexcept {
+    return since_s_ < 65534.0f ? static_cast<uint16_t>(since_s_ + 1.0f) : static_cast<uint16_t>(65535u);
+  }
+  /// Goes on after a reset that was no loss of power, without a record: the promise still counts from the
+  /// newest one. @param since_s  `Retained::since_s`
+  void resume(uint16_t since_s) noexcept { since_s_ = static_cast<float>(since_s); }
+
+  /// Goes on writing to a memory that takes a byte at a time. @return true when nothing is left to be written
+  bool work() noexcept { return ring_.work(); }
+
+private:
+  RecordRing<Memory, StoredState> ring_;
   Config config_;
   StoredState last_;
   float since_s_ = 0.0f;
-  uint16_t next_sequence_ = 0;
-  uint8_t slot_ = 0;
-  bool has_last_ = false;
 };
 
 }  // namespace thermopower

@@ -149,6 +149,10 @@ class CertifiedLimiter {
   /// Says how warm the actuator is, when that is known better than "at its limits".
   /// @param winding_C, body_C  never below the truth. NaN: at the limits. Below the air counts as the air.
   void start(float winding_C, float body_C) noexcept { network_.start(winding_C, body_C); }
+  /// Says how hot the actuator can be at most after a loss of power or a reset.
+  /// @param bounds  has `winding_upper_C` and `body_upper_C`, such as StartBounds
+  template <class Bounds>
+  void start(const Bounds& bounds) noexcept { start(bounds.winding_upper_C, bounds.body_upper_C); }
   /// Lowers the bounds to a measurement, for instance an observer's estimate plus its uncertainty.
   /// @param winding_C, body_C  never below the truth; NaN where nothing was measured
   void tighten(float winding_C, float body_C) noexcept { network_.tighten(winding_C, body_C); }
