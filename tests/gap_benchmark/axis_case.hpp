@@ -42,6 +42,7 @@ struct AxisSetup {
   AxisUnknown unknown = AxisUnknown::none;
   double noise_angle_deg = 0.02, noise_rate_dps = 0.15, quantum_angle_deg = 0.0, quantum_rate_dps = 0.0;
   double amplitude_deg = 40.0, bandwidth_Hz = 2.5, top_A = 1.0, first_C = 28.0, rise_K = 8.0, coloured = 0.0;
+  NoiseKind noise_kind = NoiseKind::mild;
   bool jitter = false, missing_cells = false;
   std::vector<std::string> decoys;
   double unknown_size = 0.0, unknown_time_s = 1.0;
@@ -211,8 +212,8 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
     for (std::size_t k = 0; k < n; ++k) made.values.push_back(quantise(value(k), std::pow(10.0, -decimals)));
     out.log.columns.push_back(std::move(made));
   };
-  SensorNoise angle_noise(setup.noise_angle_deg, setup.coloured, 4.0),
-      rate_noise(setup.noise_rate_dps, setup.coloured, 4.0);
+  SensorNoise angle_noise(setup.noise_angle_deg, setup.coloured, 4.0, setup.noise_kind),
+      rate_noise(setup.noise_rate_dps, setup.coloured, 4.0, setup.noise_kind);
   const auto lost = [&](std::size_t k) { return k > 0 && setup.missing_cells && random.chance(0.006); };
   column("t_s", 5, [&](std::size_t k) { return out.drive.t_s[k]; });
   if (session.runs > 1) out.log.run = labels;

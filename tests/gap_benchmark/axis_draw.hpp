@@ -88,7 +88,9 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
       s.plant[warming_share] = random.uniform(0.5, 0.85);
       s.plant[warming_s] = random.uniform(3.0, 10.0);
       break;
-    case AxisUnknown::gusts: s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5); break;
+    case AxisUnknown::gusts:
+      s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5);
+      break;
     case AxisUnknown::wear:
       s.unknown_size = random.chance(0.6) ? random.uniform(2.0, 4.0) : random.uniform(0.2, 0.45);
       break;
@@ -107,7 +109,18 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
       s.plant[stop_deg] = c.swing_rad * degrees_per_radian * random.uniform(0.7, 1.2);
       s.plant[stop_Nm_per_rad] = c.torque_Nm * random.uniform(6.0, 25.0);
       break;
-    case AxisUnknown::none: break;
+    case AxisUnknown::none:
+      break;
+  }
+}
+
+/// Gives a drawn effect another form than the catalogue's.
+inline void draw_form(AxisSetup& s, OtherForm form, Random& random) {
+  if (form == OtherForm::stribeck_exponent) s.plant[stribeck_exponent] = random.pick({1.0, 4.0});
+  if (form == OtherForm::bristles) {
+    s.plant[magnetic_Nm] = s.plant[coulomb_Nm];
+    s.plant[magnetic_deg] = random.log_uniform(0.2, 2.0);
+    s.plant[coulomb_Nm] = 0.0;
   }
 }
 
@@ -198,6 +211,12 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
       else effect.draw(random, c, setup.plant);
     }
     if (!possible) continue;
+    draw_form(setup, order.form, random);
+    setup.noise_kind = noise_kind(order);
+    if (has(order.dirt, Dirt::coarse)) {
+      setup.quantum_angle_deg = setup.noise_angle_deg * random.uniform(3.0, 6.0);
+      setup.quantum_rate_dps = setup.noise_rate_dps * random.uniform(3.0, 6.0);
+    }
     const auto unknown = static_cast<AxisUnknown>(order.unknown);
     draw_unknown(setup, unknown, random);
 
@@ -211,6 +230,10 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
       }
     if (!(widest < 4000.0) || !(fastest < 900.0)) continue;  // an unstable loop is a story of its own
     SquaredErrors before, perfect, literal;
+    if (order.refitted)
+      refit(c.model,
+            axis_scenario(first, {setup.noise_rate_dps, setup.noise_angle_deg}, axis_horizon_s, 10.0),
+            axis_slack(c));
     add_errors(c.model, drive_from_log(setup, second), second, false, before);
     add_errors(setup.plant, drive_from_log(setup, second), second, false, perfect);
     add_errors(setup.plant, drive_from_log(setup, second), second, true, literal);
@@ -278,6 +301,7 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
     label["noise"] = {{"angle_deg", setup.noise_angle_deg}, {"rate_dps", setup.noise_rate_dps}};
     write_gap(label, before, perfect, all_before, all_perfect);
     for (const auto& entry : literal) label["gap"][entry.first]["floor_absolute"] = entry.second.rms();
+    drawn.finish(order, random);
     return drawn;
   }
   throw std::runtime_error("no drawing of this kind passed the gate");

@@ -19,6 +19,7 @@ enum AxisParameter : int {
   asymmetry,
   stick_ratio,
   stribeck_dps,
+  stribeck_exponent,
   load_share,
   film_dps,
   // drive
@@ -64,6 +65,7 @@ using AxisParameters = std::array<double, axis_parameter_count>;
 inline AxisParameters axis_defaults() {
   AxisParameters p{};
   p[stribeck_dps] = 10.0;
+  p[stribeck_exponent] = 2.0;
   p[cogging_count] = 12.0;
   p[spring_Hz] = 10.0;
   p[spring_damping] = 0.05;
@@ -229,8 +231,8 @@ private:
   double friction(const AxisState& x, const Held& held, double way) const {
     double torque = p_[coulomb_Nm] * (1.0 + way * p_[asymmetry]);
     if (p_[stick_ratio] > 0.0) {
-      const double v = x.rate * degrees_per_radian / p_[stribeck_dps];
-      torque *= 1.0 + p_[stick_ratio] * std::exp(-v * v);
+      const double v = std::fabs(x.rate) * degrees_per_radian / p_[stribeck_dps];
+      torque *= 1.0 + p_[stick_ratio] * std::exp(-std::pow(v, p_[stribeck_exponent]));
     }
     torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm);
     if (p_[notch_Nm] > 0.0) {

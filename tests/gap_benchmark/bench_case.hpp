@@ -20,6 +20,7 @@ struct BenchSetup {
   BenchUnknown unknown = BenchUnknown::none;
   double dt_s = 1.0, tau_s = 300.0, limit_C = 90.0, top_power = 255.0;
   double noise_current_A = 0.003, noise_motor_C = 0.1, noise_ambient_C = 0.05, coloured = 0.0;
+  NoiseKind noise_kind = NoiseKind::mild;
   double quantum_motor_C = 0.1, quantum_ambient_C = 0.01;
   int current_decimals = 3;
   bool jitter = false, gaps = false, missing_cells = false, warm_start = false;
@@ -167,8 +168,8 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
     for (std::size_t k = 0; k < n; ++k) made.values.push_back(value(k));
     out.log.columns.push_back(std::move(made));
   };
-  SensorNoise current_noise(setup.noise_current_A, setup.coloured, 4.0),
-      motor_noise(setup.noise_motor_C, setup.coloured, 4.0);
+  SensorNoise current_noise(setup.noise_current_A, setup.coloured, 4.0, setup.noise_kind),
+      motor_noise(setup.noise_motor_C, setup.coloured, 4.0, setup.noise_kind);
   const auto lost = [&] { return setup.missing_cells && random.chance(0.008); };
   const auto& in = out.drive.input;
   column("t_s", 3, [&](std::size_t k) { return out.drive.t_s[k]; });

@@ -170,13 +170,31 @@ inline void draw_unknown(BenchSetup& s, BenchUnknown unknown, Random& random) {
       s.plant[fan_on_C] = random.uniform(46.0, 62.0);
       s.plant[fan_off_C] = s.plant[fan_on_C] - random.uniform(3.0, 14.0);
       break;
-    case BenchUnknown::loosening: s.unknown_size = random.uniform(0.5, 0.8); break;
-    case BenchUnknown::draughts: s.unknown_size = random.uniform(0.5, 1.0); break;
+    case BenchUnknown::loosening:
+      s.unknown_size = random.uniform(0.5, 0.8);
+      break;
+    case BenchUnknown::draughts:
+      s.unknown_size = random.uniform(0.5, 1.0);
+      break;
     case BenchUnknown::shorted_turns:
       s.plant[short_share] = random.uniform(0.08, 0.25);
       s.plant[short_C] = random.uniform(42.0, 60.0);
       break;
-    case BenchUnknown::none: break;
+    case BenchUnknown::none:
+      break;
+  }
+}
+
+/// Gives a drawn effect another form than the catalogue's.
+inline void draw_form(BenchSetup& s, OtherForm form, Random& random) {
+  const BenchContext& c = s.context;
+  if (form == OtherForm::third_node) {
+    s.plant[soak_J_per_K] = s.plant[heat_capacity] * random.uniform(0.15, 0.5);
+    s.plant[soak_W_per_K] = s.plant[conductance] * random.log_uniform(0.5, 3.0);
+  }
+  if (form == OtherForm::curved_sensor) {
+    const double bend = random.sign() * random.uniform(0.1, 0.25);
+    s.plant[current_curve_per_A] = bend / c.top_A;
   }
 }
 
@@ -229,13 +247,24 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
       else effect.draw(random, c, setup.plant);
     }
     if (!possible) continue;
+    draw_form(setup, order.form, random);
+    setup.noise_kind = noise_kind(order);
+    if (has(order.dirt, Dirt::coarse)) {
+      setup.quantum_motor_C = setup.noise_motor_C * random.uniform(3.0, 6.0);
+      setup.current_decimals = setup.noise_current_A > 0.0025 ? 2 : 3;
+    }
     const auto unknown = static_cast<BenchUnknown>(order.unknown);
     if (unknown == BenchUnknown::intermittent_contact && (!c.has_current || c.current_is_input)) continue;
     draw_unknown(setup, unknown, random);
     const bool thresholds = unknown == BenchUnknown::melting || unknown == BenchUnknown::hidden_fan ||
                             unknown == BenchUnknown::shorted_turns;
-    BenchSession train{PowerProfile::any(random), c.length_s, random.uniform(16.0, 30.0), 0.0,
-                       random.uniform(0.0, 6.28), 1, random.bits()};
+    BenchSession train{PowerProfile::any(random),
+                       c.length_s,
+                       random.uniform(16.0, 30.0),
+                       0.0,
+                       random.uniform(0.0, 6.28),
+                       1,
+                       random.bits()};
     if (random.chance(0.2)) {
       train.runs = random.integer(2, 3);
       setup.warm_start = false;
@@ -252,6 +281,10 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
     const BenchRecording first = record(setup, train, Random(random.bits()));
     const BenchRecording second = record(setup, heldout, Random(random.bits()));
     SquaredErrors before, perfect;
+    if (order.refitted) {
+      const std::vector<double> unit = {setup.noise_motor_C, setup.noise_current_A};
+      refit(setup.context.model, bench_scenario(setup, first, unit), bench_slack(c));
+    }
     add_errors(replay(c.model, drive_from_log(setup, second)), second, before);
     add_errors(replay(second.exact, drive_from_log(setup, second)), second, perfect);
     std::vector<double> floors = {perfect["motor_C"].rms()};
@@ -311,6 +344,7 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
                       {"motor_C", setup.noise_motor_C},
                       {"ambient_C", setup.noise_ambient_C}};
     write_gap(label, before, perfect, all_before, all_perfect);
+    drawn.finish(order, random);
     return drawn;
   }
   throw std::runtime_error("no drawing of this kind passed the gate");

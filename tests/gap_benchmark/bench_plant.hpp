@@ -38,6 +38,7 @@ enum BenchParameter : int {
   emf_V_per_dps,
   current_offset_A,
   current_gain,
+  current_curve_per_A,
   // thermal effects
   winding_share,
   coupling_W_per_K,
@@ -138,7 +139,8 @@ public:
   }
 
   double sensed_current(const BenchInput& u, const BenchState& x) const {
-    return p_[current_gain] * current(u, x) + p_[current_offset_A];
+    const double true_A = current(u, x);
+    return (p_[current_gain] + p_[current_curve_per_A] * true_A) * true_A + p_[current_offset_A];
   }
 
   double sensed_temperature(const BenchInput& u, const BenchState& x) const {

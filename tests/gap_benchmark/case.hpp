@@ -9,12 +9,51 @@
 #include <vector>
 
 #include "assess.hpp"
+#include "dirt.hpp"
 #include "recording.hpp"
 
 namespace gap_benchmark {
 
+/// Which half of the benchmark a case belongs to.
+enum class Half {
+  clean,        ///< the plant's physics are the catalogue's, the log is as a careful person records it
+  dirty,        ///< the same physics, and a log as logs are
+  misspecified  ///< constants fitted with the wrong structure, or physics of another form than the catalogue's
+};
+
+inline const char* name(Half half) {
+  static const char* const names[] = {"clean", "dirty", "misspecified"};
+  return names[static_cast<int>(half)];
+}
+
+/// Physics that the catalogue knows in another form.
+enum class OtherForm {
+  none,
+  stribeck_exponent,  ///< friction falls with exp(-|w / knee|^n), n of 1 or 4 instead of 2
+  bristles,           ///< friction builds up over an angle after each reversal
+  third_node,         ///< a body behind the winding soaks up heat beside the housing
+  curved_sensor       ///< the current sensor's gain changes with the current
+};
+
+inline const char* name(OtherForm form) {
+  static const char* const names[] = {"none", "Stribeck friction of another exponent", "friction on bristles",
+                                      "a third node", "a current sensor that is not straight"};
+  return names[static_cast<int>(form)];
+}
+
+/// The effect of the catalogue that comes nearest to a form, though it is not the same.
+inline const char* nearest(OtherForm form) {
+  static const char* const ids[] = {"", "stribeck_friction", "coulomb_friction", "second_thermal_mass",
+                                    "current_sensor_gain"};
+  return ids[static_cast<int>(form)];
+}
+
 /// What is asked of the generator for one case.
 struct CaseOrder {
+  Half half = Half::clean;
+  std::vector<Dirt> dirt;            ///< of both recordings
+  bool refitted = false;             ///< the simulation's constants were fitted without the effect
+  OtherForm form = OtherForm::none;  ///< acts besides, or instead of, `effects`
   bool axis = false, thesis = false;
   std::vector<std::string> effects;
   int unknown = 0;       ///< number of the cause outside the catalogue, 0 for none
@@ -28,7 +67,39 @@ struct DrawnCase {
   nlohmann::ordered_json model, label;
   Recording train, heldout;
   Assessment assessment;
+
+  /// The logs as the judge gets them, and what the label says of that.
+  void finish(const CaseOrder& order, Random& random) {
+    label["half"] = name(order.half);
+    label["refitted"] = order.refitted;
+    if (order.form != OtherForm::none) label["form"] = name(order.form);
+    label["dirt"] = nlohmann::ordered_json::array();
+    for (const Dirt dirt : order.dirt) label["dirt"].push_back(name(dirt));
+    for (Recording* log : {&train, &heldout}) Soiling(*log, random).apply(order.dirt);
+  }
 };
+
+/// The noise of a dirty log; of a clean one what was drawn.
+inline NoiseKind noise_kind(const CaseOrder& order) {
+  if (has(order.dirt, Dirt::coloured)) return NoiseKind::coloured;
+  return has(order.dirt, Dirt::heavy_tailed) ? NoiseKind::heavy_tailed : NoiseKind::mild;
+}
+
+/// The simulation's constants as somebody fits them who does not know of the effect: what brings the training
+/// recording nearest, up to a factor of 2.5.
+template <class Values>
+void refit(Values& model, const Scenario<Values>& train, std::vector<Free> constants) {
+  for (auto& f : constants) {
+    const double value = f.starts.front(), a = value / 2.5, b = value * 2.5;
+    f.from = std::min(a, b);
+    f.to = std::max(a, b);
+  }
+  for (const auto& fitted : train.explained(model, constants, 25).fitted) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.5g", fitted.second);
+    model[static_cast<std::size_t>(fitted.first)] = std::stod(digits);
+  }
+}
 
 struct SquaredError {
   double sum = 0.0;

@@ -7,6 +7,7 @@
 #include "../catch.hpp"
 
 #include <filesystem>
+#include <map>
 
 #include "axis_draw.hpp"
 #include "bench_draw.hpp"
@@ -255,11 +256,103 @@ TEST_CASE("the plan holds every effect, and its order says nothing") {
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis))
       CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
-              return o.axis == axis && o.effects == std::vector<std::string>{id};
+              return o.half == Half::clean && o.axis == axis && o.effects == std::vector<std::string>{id};
             }) == 5);
+  for (const bool axis : {false, true})
+    for (const auto& id : all_ids(axis))
+      CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
+              return o.half == Half::dirty && o.axis == axis && o.effects == std::vector<std::string>{id};
+            }) == 1);
+  for (const Dirt dirt : all_dirt()) {
+    CAPTURE(name(dirt));
+    CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
+            return o.effects.empty() && o.unknown == 0 && has(o.dirt, dirt);
+          }) >= 3);
+  }
+  // Of N cases in an order that says nothing, n of a kind stand side by side n (n - 1) / N times on average.
+  std::map<std::vector<std::string>, double> alike;
   int neighbours = 0;
-  for (std::size_t i = 1; i < orders.size(); ++i) neighbours += orders[i].effects == orders[i - 1].effects;
-  CHECK(neighbours < 40);
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    alike[orders[i].effects] += 1.0;
+    neighbours += i > 0 && orders[i].effects == orders[i - 1].effects;
+  }
+  double expected = 0.0;
+  for (const auto& kind : alike)
+    expected += kind.second * (kind.second - 1.0) / static_cast<double>(orders.size());
+  CHECK(neighbours < expected + 4.0 * std::sqrt(expected));
+}
+
+TEST_CASE("coloured and heavy-tailed noise have the deviation, the memory and the tails they are named for") {
+  for (const NoiseKind kind : {NoiseKind::mild, NoiseKind::coloured, NoiseKind::heavy_tailed}) {
+    Random random(31);
+    SensorNoise noise(0.2, 0.0, 4.0, kind);
+    double square = 0.0, product = 0.0, before = 0.0;
+    int far = 0;
+    const int n = 400000;
+    for (int i = 0; i < n; ++i) {
+      const double x = noise.next(random);
+      square += x * x;
+      product += x * before;
+      far += std::fabs(x) > 0.8;
+      before = x;
+    }
+    CAPTURE(static_cast<int>(kind));
+    CHECK(std::fabs(std::sqrt(square / n) - 0.2) < 0.012);
+    CHECK(std::fabs(product / square - (kind == NoiseKind::coloured ? 0.95 : 0.0)) < 0.01);
+    // Beyond four deviations lie 6e-5 of a normal sample, and 6.2e-3 of Student's t with three degrees of freedom.
+    if (kind == NoiseKind::heavy_tailed) CHECK(std::fabs(static_cast<double>(far) / n - 6.2e-3) < 1e-3);
+    else CHECK(far < n / 5000);
+  }
+}
+
+TEST_CASE("every kind of dirt changes its share of the log, and the true motion of nothing") {
+  for (const Dirt dirt : all_dirt()) {
+    CAPTURE(name(dirt));
+    CaseOrder order;
+    order.half = Half::dirty;
+    order.effects = {"series_resistance"};
+    order.thorough = false;
+    order.replicates = 0;
+    Random first(77), second(77);
+    const DrawnCase clean = draw_bench_case(order, first);
+    order.dirt = {dirt};
+    const DrawnCase dirty = draw_bench_case(order, second);
+    CHECK(dirty.model.dump() == clean.model.dump());
+    const auto &before = clean.train["motor_C"], &after = dirty.train["motor_C"];
+    if (dirt == Dirt::pauses) {
+      CHECK(after.size() < before.size());
+      CHECK(static_cast<double>(after.size()) > 0.9 * static_cast<double>(before.size()));
+      continue;
+    }
+    REQUIRE(after.size() == before.size());
+    std::size_t changed = 0, all = 0;
+    for (const char* column : {"t_s", "motor_C", "current_A"})
+      for (std::size_t k = 0; k < before.size(); ++k) {
+        const double a = clean.train[column][k], b = dirty.train[column][k];
+        changed += !(a == b || (std::isnan(a) && std::isnan(b)));
+        ++all;
+      }
+    CHECK(changed > 0);
+    const bool noise = dirt == Dirt::coloured || dirt == Dirt::heavy_tailed || dirt == Dirt::coarse;
+    const bool rows = dirt == Dirt::jitter || dirt == Dirt::clipped;
+    if (!noise && !rows) CHECK(static_cast<double>(changed) < 0.1 * static_cast<double>(all));
+  }
+}
+
+TEST_CASE(
+    "constants that were fitted without the effect come nearer to the recording than those of the motor") {
+  CaseOrder order;
+  order.half = Half::misspecified;
+  order.effects = {"second_thermal_mass"};
+  order.thorough = false;
+  order.replicates = 0;
+  Random first(12), second(12);
+  const DrawnCase known = draw_bench_case(order, first);
+  order.refitted = true;
+  const DrawnCase fitted = draw_bench_case(order, second);
+  CHECK(fitted.model["thermal"].dump() != known.model["thermal"].dump());
+  CHECK(fitted.label["gap"]["motor_C"]["before"].get<double>() <
+        known.label["gap"]["motor_C"]["before"].get<double>());
 }
 
 TEST_CASE("Wilson's interval is that of the tables") {

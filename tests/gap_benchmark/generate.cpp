@@ -34,7 +34,7 @@ struct Options {
 constexpr const char* usage =
     "usage: gap_benchmark_generate --out DIR --seed S [options]\n"
     "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
-    "  --only LIST   effect ids, none, pairs, unknown, with commas between\n"
+    "  --only LIST   effect ids, none, pairs, unknown, dirty, misspecified, with commas between\n"
     "  --case N      draw only this case of the plan\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
     "  --quick       do not look for the best wrong cause (no confusability in the labels)\n"
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   Random random(options.seed ^ 0xabcdefull);
   std::vector<std::pair<std::string, Json>> drawn_jobs;
   for (std::size_t i = 0; i < labels.size() && options.leave_one_out; ++i) {
-    if (labels[i].is_null() || orders[i].effects.size() != 1) continue;
+    if (labels[i].is_null() || orders[i].effects.size() != 1 || orders[i].half != Half::clean) continue;
     const std::string truth = orders[i].effects.front();
     const auto harmless = [&](const std::string& id) {
       return id != truth && (!labels[i].contains("likeness") || labels[i]["likeness"].value(id, 0.0) < 0.5);

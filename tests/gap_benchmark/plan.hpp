@@ -77,7 +77,22 @@ inline std::vector<std::string> all_ids(bool axis) {
   return ids;
 }
 
+/// Effects whose absence a fit of the constants can hide in part: what people fit with the wrong structure.
+inline const std::vector<const char*>& refitted_effects(bool axis) {
+  static const std::vector<const char*> bench = {"second_thermal_mass", "natural_convection",
+                                                 "thermometer_lag",     "ambient_bias",
+                                                 "dead_time",           "forced_airflow",
+                                                 "neighbour_heating",   "current_sensor_offset"},
+                                        axes = {"coulomb_friction", "asymmetric_friction",
+                                                "load_friction",    "imbalance",
+                                                "actuation_delay",  "cable_spring",
+                                                "drive_deadband",   "cogging",
+                                                "compliance",       "torque_saturation"};
+  return axis ? axes : bench;
+}
+
 inline std::string title(const CaseOrder& order) {
+  if (order.form != OtherForm::none) return name(order.form);
   if (order.unknown)
     return order.axis ? axis_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second
                       : bench_unknowns()[static_cast<std::size_t>(order.unknown) - 1].second;
@@ -87,8 +102,9 @@ inline std::string title(const CaseOrder& order) {
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
-/// @param only comma-separated effect ids, `none`, `pairs` or `unknown`; everything when empty
-/// With 5 recordings per effect: 190 single effects, 60 none, 48 pairs, 45 outside the catalogue.
+/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty` or `misspecified`; everything when empty
+/// With 5 recordings per effect: 190 single effects, 60 none, 48 pairs, 45 outside the catalogue; 104 dirty; 60
+/// misspecified.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
                                    bool thorough) {
   Random random(seed ^ 0x5eedull);
@@ -140,6 +156,69 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
         order.unknown = 1 + i % kinds;
         orders.push_back(order);
       }
+    }
+  // The dirty half: every effect under a kind of dirt in turn, one in four under two kinds; no gap and causes
+  // outside the catalogue under each kind.
+  const auto& kinds = all_dirt();
+  std::size_t turn = seed % kinds.size();
+  const auto dirty = [&] {
+    std::vector<Dirt> list = {kinds[turn++ % kinds.size()]};
+    if (random.chance(0.25)) list.push_back(kinds[(turn + 3) % kinds.size()]);
+    return list;
+  };
+  if (wanted("dirty"))
+    for (const bool axis : {false, true}) {
+      for (const auto& id : all_ids(axis))
+        for (int i = 0; i < std::max(1, count / 3); ++i) {
+          CaseOrder order;
+          order.half = Half::dirty;
+          order.axis = axis;
+          order.effects = {id};
+          order.thesis = id == "supply_power_heating";
+          order.clear = true;
+          order.dirt = dirty();
+          orders.push_back(order);
+        }
+      for (int i = 0; i < scaled(25); ++i) {
+        CaseOrder order;
+        order.half = Half::dirty;
+        order.axis = axis;
+        order.dirt = dirty();
+        orders.push_back(order);
+      }
+      const int unknowns = static_cast<int>(axis ? axis_unknowns().size() : bench_unknowns().size());
+      for (int i = 0; i < scaled(8); ++i) {
+        CaseOrder order;
+        order.half = Half::dirty;
+        order.axis = axis;
+        order.unknown = 1 + i % unknowns;
+        order.dirt = dirty();
+        orders.push_back(order);
+      }
+    }
+  // The misspecified half: constants that were fitted without the effect, and effects of another form.
+  if (wanted("misspecified"))
+    for (const bool axis : {false, true}) {
+      for (const char* id : refitted_effects(axis))
+        for (int i = 0; i < std::max(1, 2 * count / 5); ++i) {
+          CaseOrder order;
+          order.half = Half::misspecified;
+          order.axis = axis;
+          order.effects = {id};
+          order.refitted = true;
+          orders.push_back(order);
+        }
+      for (const OtherForm form :
+           axis ? std::vector<OtherForm>{OtherForm::stribeck_exponent, OtherForm::bristles}
+                : std::vector<OtherForm>{OtherForm::third_node, OtherForm::curved_sensor})
+        for (int i = 0; i < count; ++i) {
+          CaseOrder order;
+          order.half = Half::misspecified;
+          order.axis = axis;
+          order.effects = {nearest(form)};
+          order.form = form;
+          orders.push_back(order);
+        }
     }
   for (auto& order : orders) order.thorough = thorough;
   random.shuffle(orders);

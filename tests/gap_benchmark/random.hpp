@@ -103,16 +103,35 @@ private:
   bool started_ = false;
 };
 
-/// Sensor noise: white, with a share of its variance remembered over a few samples.
+/// What noise a sensor has.
+enum class NoiseKind {
+  mild,         ///< white, with a share of its variance remembered over a few samples
+  coloured,     ///< all of it remembered: 0.95 from one sample to the next
+  heavy_tailed  ///< Student's t with three degrees of freedom, of the same standard deviation
+};
+
+/// Sensor noise of a standard deviation.
 class SensorNoise {
 public:
-  SensorNoise(double deviation, double coloured_share, double memory_samples)
-      : white_(deviation * std::sqrt(1.0 - coloured_share)),
-        coloured_(deviation * std::sqrt(coloured_share), memory_samples) {}
+  SensorNoise(double deviation, double coloured_share, double memory_samples,
+              NoiseKind kind = NoiseKind::mild)
+      : kind_(kind),
+        white_(deviation * std::sqrt(kind == NoiseKind::coloured ? 0.0 : 1.0 - coloured_share)),
+        coloured_(deviation * std::sqrt(kind == NoiseKind::coloured ? 1.0 : coloured_share),
+                  kind == NoiseKind::coloured ? -1.0 / std::log(0.95) : memory_samples) {}
 
-  double next(Random& random) { return white_ * random.gauss() + coloured_.next(random, 1.0); }
+  double next(Random& random) {
+    double white = random.gauss();
+    if (kind_ == NoiseKind::heavy_tailed) {
+      double square = 0.0;
+      for (int i = 0; i < 3; ++i) square += std::pow(random.gauss(), 2.0);
+      white /= std::sqrt(square);  // t / sqrt(3), whose variance is one
+    }
+    return white_ * white + coloured_.next(random, 1.0);
+  }
 
 private:
+  NoiseKind kind_;
   double white_;
   Wander coloured_;
 };

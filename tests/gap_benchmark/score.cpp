@@ -107,6 +107,10 @@ private:
     const std::string kind = text(label, "kind");
     Explanation truth;
     for (const auto& id : label["effects"]) truth.insert(id.get<std::string>());
+    judge_odds(v, label, truth);
+    const std::string half = text(label, "half");
+    if (half == "dirty") return judge_dirty(job, label, v, truth);
+    if (half == "misspecified") return judge_misspecified(job, label, v, truth);
     const bool unknown = label["unknown"].is_string();
     const std::string name = unknown ? text(label, "unknown") : truth.empty() ? "none" : join(truth);
     confusion_[unknown ? "outside the catalogue"
@@ -137,25 +141,23 @@ private:
     }
     const auto all = v.everything();
     const bool top = v.named() && v.cause == truth;
-    const bool in_class = v.named() && std::any_of(all.begin(), all.end(), [&](const Explanation& e) {
-                            return std::includes(e.begin(), e.end(), truth.begin(), truth.end());
-                          });
+    const bool classed = in_class(v, truth);
     if (truth.size() == 1) {
       Row& row = rows_[name];
       ++row.cases;
       row.top += top;
-      row.in_class += in_class;
+      row.in_class += classed;
       const double confusability = number(label, "confusability", -1.0);
       row.confusability += std::max(0.0, confusability);
-      tallies_.add("class", in_class);
+      tallies_.add("class", classed);
       tallies_.add("top1_all", top);
       if (v.named()) class_sizes_.push_back(static_cast<double>(all.size()));
       if (confusability < 0.9) {
         tallies_.add("top1", top);
         ++row.clear;
         row.clear_top += top;
-        if (!top) miss(job, in_class ? "top-1, in class" : "top-1 and class", name, v, why(v, label, truth));
-      } else if (!in_class) {
+        if (!top) miss(job, classed ? "top-1, in class" : "top-1 and class", name, v, why(v, label, truth));
+      } else if (!classed) {
         miss(job, "class", name, v,
              why(v, label, truth) + "; confusability " + rounded(confusability) + " with " +
                  text(label, "confused_with"));
@@ -165,17 +167,128 @@ private:
           v.named() && std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end());
       tallies_.add("both", both);
       tallies_.add("both_exactly", top);
-      tallies_.add("both_in_class", in_class);
+      tallies_.add("both_in_class", classed);
       if (!both) {
         std::string reason = why(v, label, truth);
         for (const auto& id : truth)
           if (v.cause.count(id))
             reason = "only " + id + " found, the other " + rounded(number(label["visible"], "heldout")) +
                      " times the floor beside it";
-        miss(job, in_class ? "pair, in class" : "pair", name, v, reason);
+        miss(job, classed ? "pair, in class" : "pair", name, v, reason);
       }
     }
     judge_gap(job, label, v, name, top, report);
+  }
+
+  /// What holds for every stated probability and every interval of a parameter, whatever the half.
+  void judge_odds(const Verdict& v, const Json& label, const Explanation& truth) {
+    if (!v.named() || v.cause.empty()) return;
+    const bool right = v.cause == truth && !label["unknown"].is_string();
+    const bool beyond_telling = !right && passes_for_truth(v, label);
+    if (beyond_telling) return;  // nobody could know
+    if (v.probability >= 0.95) tallies_.add("odds_95", right);
+    else if (v.probability >= 0.8) tallies_.add("odds_80", right);
+    else if (v.probability >= 0.5) tallies_.add("odds_50", right);
+    if (!right || truth.size() != 1 || label.contains("form") || text(label, "half") == "dirty") return;
+    // Parameters that have the same meaning in the plant and in the catalogue, with the factor between their units.
+    struct Same {
+      const char *effect, *parameter;
+      std::size_t index;
+      double factor;
+    };
+    constexpr double per_rad = 57.295779513082323;
+    static const Same list[] = {{"second_thermal_mass", "winding_share", 0, 1.0},
+                                {"second_thermal_mass", "coupling", 1, 1.0},
+                                {"natural_convection", "exponent", 0, 1.0},
+                                {"forced_airflow", "gain", 0, 1.0},
+                                {"ambient_bias", "bias_K", 0, 1.0},
+                                {"neighbour_heating", "coupling", 0, 1.0},
+                                {"motion_heating", "W_s2_per_rad2", 0, per_rad * per_rad},
+                                {"thermometer_lag", "lag_s", 0, 1.0},
+                                {"thermometer_gain", "gain", 0, 1.0},
+                                {"supply_sag", "internal_ohm", 0, 1.0},
+                                {"supply_sag", "V_per_Ah", 1, 1.0},
+                                {"series_resistance", "ohm", 0, 1.0},
+                                {"dead_time", "duty_lost", 0, 1.0},
+                                {"back_emf", "V_s_per_rad", 0, per_rad},
+                                {"current_sensor_offset", "A", 0, 1.0},
+                                {"current_sensor_gain", "gain", 0, 1.0},
+                                {"winding_tempco", "tempco_per_K", 0, 1.0},
+                                {"coulomb_friction", "Nm", 0, 1.0},
+                                {"load_friction", "share", 0, 1.0},
+                                {"drive_deadband", "A", 0, 1.0},
+                                {"cable_spring", "Nm_per_rad", 0, 1.0},
+                                {"compliance", "far_share", 0, 1.0},
+                                {"compliance", "frequency_Hz", 1, 1.0},
+                                {"actuation_delay", "s", 0, 1.0},
+                                {"torque_fade", "per_K", 0, 1.0},
+                                {"angle_scale", "gain", 0, 1.0},
+                                {"angle_bias_drift", "deg_per_s", 0, 1.0},
+                                {"rate_bias", "dps", 0, 1.0}};
+    for (const Same& same : list) {
+      const auto found = v.parameters.find(std::string(same.effect) + "." + same.parameter);
+      if (*truth.begin() != same.effect || found == v.parameters.end()) continue;
+      const double value = label["parameters"][same.effect][same.index].get<double>() * same.factor;
+      tallies_.add("parameters",
+                   found->second.has_interval && found->second.low <= value && value <= found->second.high);
+    }
+  }
+
+  /// Whether a wrong answer is one that the recording cannot tell from the truth.
+  static bool passes_for_truth(const Verdict& v, const Json& label) {
+    return v.cause.size() == 1 && label.contains("likeness") &&
+           number(label["likeness"], v.cause.begin()->c_str()) >= 0.9;
+  }
+
+  static bool in_class(const Verdict& v, const Explanation& truth) {
+    const auto all = v.everything();
+    return v.named() && std::any_of(all.begin(), all.end(), [&](const Explanation& e) {
+             return std::includes(e.begin(), e.end(), truth.begin(), truth.end());
+           });
+  }
+
+  /// A name stated with at least 0.9 that is wrong, and could have been known to be.
+  static bool confidently_wrong(const Verdict& v, const Json& label, const Explanation& truth) {
+    return (v.verdict == "explained" || v.verdict == "partial") && v.cause != truth && v.probability >= 0.9 &&
+           !passes_for_truth(v, label);
+  }
+
+  void judge_dirty(const std::string& job, const Json& label, const Verdict& v, const Explanation& truth) {
+    const bool unknown = label["unknown"].is_string();
+    std::string what;
+    for (const auto& dirt : label["dirt"]) what += (what.empty() ? "" : ", ") + dirt.get<std::string>();
+    const std::string title = (unknown         ? text(label, "unknown")
+                               : truth.empty() ? "none"
+                                               : join(truth)) +
+                              " under " + what;
+    const bool wrong = confidently_wrong(v, label, truth);
+    tallies_.add("dirty_confident", wrong);
+    bool right = false;
+    if (unknown) {
+      right = v.verdict == "unexplained" || v.verdict == "insufficient";
+      tallies_.add("dirty_unknown", right);
+    } else if (truth.empty()) {
+      right = v.verdict == "no_gap";
+      tallies_.add("dirty_none", right);
+    } else {
+      right = v.named() && v.cause == truth;
+      tallies_.add("dirty_class", in_class(v, truth));
+      if (number(label, "confusability", 0.0) < 0.9) tallies_.add("dirty_named", right);
+    }
+    if (!right) miss(job, wrong ? "dirty, confident" : "dirty", title, v, why(v, label, truth));
+  }
+
+  void judge_misspecified(const std::string& job, const Json& label, const Verdict& v,
+                          const Explanation& truth) {
+    const bool form = label.contains("form");
+    const bool wrong = confidently_wrong(v, label, truth);
+    tallies_.add("misspecified_confident", wrong);
+    const bool right = in_class(v, truth);
+    tallies_.add(form ? "other_form" : "refitted", right);
+    if (!right)
+      miss(job, wrong ? "misspecified, confident" : "misspecified",
+           form ? text(label, "form") : join(truth) + ", constants fitted without it", v,
+           why(v, label, truth));
   }
 
   void judge_where(const std::string& job, const Json& label, const Verdict& v, const std::string& kind,
@@ -293,7 +406,8 @@ void Score::print(std::ostream& out) const {
     out << "| " << what << " | " << rounded(a) << unit << " (95 %: " << rounded(b) << unit << ") | | | |\n";
   };
   line("wall time of a diagnosis, median", quantile(seconds_, 0.5), quantile(seconds_, 0.95), " s");
-  line("processor time of a diagnosis, median", quantile(processor_s_, 0.5), quantile(processor_s_, 0.95), " s");
+  line("processor time of a diagnosis, median", quantile(processor_s_, 0.5), quantile(processor_s_, 0.95),
+       " s");
   line("explanations in the reported class, median", quantile(class_sizes_, 0.5),
        quantile(class_sizes_, 0.95), "");
   line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5),

@@ -37,7 +37,13 @@ struct Verdict {
   };
   std::map<std::string, Gap> gap;
 
-  bool named() const { return verdict == "explained" || verdict == "ambiguous"; }
+  struct Parameter {
+    double low = 0.0, high = 0.0;
+    bool has_interval = false;
+  };
+  std::map<std::string, Parameter> parameters;  ///< of the named causes, as `effect.parameter`
+
+  bool named() const { return verdict == "explained" || verdict == "partial" || verdict == "ambiguous"; }
 
   /// The cause and everything that the report says could stand in its place.
   std::vector<Explanation> everything() const {
@@ -53,6 +59,16 @@ inline double number(const Json& j, const char* key, double otherwise = 0.0) {
 
 inline std::string text(const Json& j, const char* key) {
   return j.is_object() && j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
+}
+
+/// Reads the `ci95` of an entry. @return whether it has one
+inline bool interval_of(const Json& entry, double& low, double& high) {
+  if (!entry.is_object() || !entry.contains("ci95") || !entry["ci95"].is_array() ||
+      entry["ci95"].size() != 2 || !entry["ci95"][0].is_number() || !entry["ci95"][1].is_number())
+    return false;
+  low = entry["ci95"][0].get<double>();
+  high = entry["ci95"][1].get<double>();
+  return true;
 }
 
 inline Verdict read_verdict(const std::string& directory) {
@@ -73,6 +89,11 @@ inline Verdict read_verdict(const std::string& directory) {
   for (const auto& cause : list("cause")) {
     v.cause.insert(text(cause, "effect"));
     v.probability = std::min(v.probability, number(cause, "probability", 1.0));
+    if (!cause.contains("parameters") || !cause["parameters"].is_object()) continue;
+    for (const auto& entry : cause["parameters"].items()) {
+      Verdict::Parameter& parameter = v.parameters[text(cause, "effect") + "." + entry.key()];
+      parameter.has_interval = interval_of(entry.value(), parameter.low, parameter.high);
+    }
   }
   if (v.cause.empty()) v.probability = 0.0;
   for (const auto& alternative : list("alternatives")) {
@@ -91,13 +112,7 @@ inline Verdict read_verdict(const std::string& directory) {
       g.before = number(entry.value(), "before");
       g.after = number(entry.value(), "after");
       g.floor = number(entry.value(), "noise_floor");
-      if (entry.value().contains("ci95") && entry.value()["ci95"].is_array() &&
-          entry.value()["ci95"].size() == 2 && entry.value()["ci95"][0].is_number() &&
-          entry.value()["ci95"][1].is_number()) {
-        g.has_interval = true;
-        g.low = entry.value()["ci95"][0].get<double>();
-        g.high = entry.value()["ci95"][1].get<double>();
-      }
+      g.has_interval = interval_of(entry.value(), g.low, g.high);
       v.gap[entry.key()] = g;
     }
   return v;
