@@ -34,7 +34,8 @@ gap::Recording record(double seconds, unsigned seed) {
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double t = 0.01 * static_cast<double>(i), phase = static_cast<double>(seed);
     recording.t_s[i] = t;
-    drive[i] = 0.12 * std::sin(1.9 * t + phase) + 0.10 * std::sin(0.6 * t) + 0.06 * std::sin(7.3 * t + 2.0 * phase);
+    drive[i] =
+        0.12 * std::sin(1.9 * t + phase) + 0.10 * std::sin(0.6 * t) + 0.06 * std::sin(7.3 * t + 2.0 * phase);
     angle[i] = theta * 57.29577951308232 + angle_noise(random);
     rate[i] = w * 57.29577951308232 + rate_noise(random);
     for (int k = 0; k < 100; ++k) {
@@ -63,18 +64,21 @@ int main() {
 
   std::printf("verdict: %s\n", gap::to_string(diagnosis.verdict));
   for (const gap::Location& where : diagnosis.where) {
-    std::printf("where:   %s, %s: %s\n", where.signal.c_str(), where.submodel.c_str(), where.evidence.c_str());
+    std::printf("where:   %s, %s: %s\n", to_string(where.signal).c_str(), to_string(where.submodel).c_str(),
+                where.evidence.c_str());
   }
   bool found = false;
   for (const gap::Cause& cause : diagnosis.cause) {
     for (const gap::ParameterEstimate& one : cause.parameters) {
-      std::printf("which:   %s, %.0f %%: %s = %.3g [%.3g, %.3g] %s (true: %.3g)\n", cause.effect.c_str(), 100.0 * cause.probability, one.name.c_str(),
-                  one.value, one.ci95.low, one.ci95.high, one.unit.c_str(), drag);
+      std::printf("which:   %s, %.0f %%: %s = %.3g [%.3g, %.3g] %s (true: %.3g)\n", cause.effect.c_str(),
+                  100.0 * cause.probability, one.name.c_str(), one.value, one.ci95.low, one.ci95.high,
+                  one.unit.c_str(), drag);
       found = found || (cause.effect == "air_drag" && std::fabs(one.value - drag) < 0.05 * drag);
     }
   }
   for (const gap::GapScore& score : diagnosis.gap) {
-    std::printf("gap:     %-10s %.3g -> %.3g %s (noise floor %.3g)\n", score.signal.c_str(), score.before, score.after, score.unit.c_str(), score.noise_floor);
+    std::printf("gap:     %-10s %.3g -> %.3g %s (noise floor %.3g)\n", to_string(score.signal).c_str(),
+                score.before, score.after, score.unit.c_str(), score.noise_floor);
   }
   return found ? 0 : 1;
 }

@@ -22,7 +22,7 @@ std::vector<SimulatedColumn> run_simulation(const Model& model, const Recording&
   options.horizon_s = horizon_s;
   std::vector<SimulatedColumn> list;
   for (auto& one : simulate(model, recording, options, standard_catalogue()))
-    list.push_back({one.signal, std::move(one.values)});
+    list.push_back({to_string(one.signal), std::move(one.values)});
   return list;
 }
 

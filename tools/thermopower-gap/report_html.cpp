@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 namespace thermopower::gap::files {
 namespace {
@@ -28,13 +27,20 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return text.empty() ? number : number + "\u00a0" + text;
 }
 
-std::string signal_text(const std::string& signal) {
-  static const std::map<std::string, std::string> names = {{"motor_C", "motor temperature"},
-                                                           {"current_A", "motor current"},
-                                                           {"angle_deg", "angle"},
-                                                           {"rate_dps", "angular rate"}};
-  const auto found = names.find(signal);
-  return found == names.end() ? signal : found->second;
+std::string signal_text(const plant::SignalName& signal) {
+  const auto known = signal.known();
+  if (!known) return to_string(signal);
+  switch (*known) {
+    case plant::Signal::motor_C:
+      return "motor temperature";
+    case plant::Signal::current_A:
+      return "motor current";
+    case plant::Signal::angle_deg:
+      return "angle";
+    case plant::Signal::rate_dps:
+      return "angular rate";
+  }
+  return to_string(signal);
 }
 
 /// Escaped, and a long id may break after its underscores.
@@ -160,7 +166,7 @@ private:
         more += "; most for <code>" + escaped(first.regime->variable) + "</code> " +
                 readable(first.regime->from) + " to " + readable(first.regime->to);
       }
-      fact("Where", breakable(first.submodel), more);
+      fact("Where", breakable(to_string(first.submodel)), more);
     }
     for (const auto& cause : d_.cause) {
       std::string more;
@@ -331,7 +337,7 @@ private:
   void curves() {
     if (d_.series.empty()) return;
     out_ += "<h2>Measured and simulated</h2>\n";
-    std::vector<std::string> signals;
+    std::vector<plant::SignalName> signals;
     for (const auto& s : d_.series) {
       if (std::find(signals.begin(), signals.end(), s.signal) == signals.end()) signals.push_back(s.signal);
     }
@@ -376,10 +382,10 @@ private:
         first = false;
       }
       Chart chart;
-      chart.title = q.quantity + " against " + q.variable;
+      chart.title = to_string(q.quantity) + " against " + q.variable;
       chart.x_label =
           q.variable + (unit_text(q.variable_unit).empty() ? "" : " / " + unit_text(q.variable_unit));
-      chart.y_label = q.quantity + (unit_text(q.unit).empty() ? "" : " / " + unit_text(q.unit));
+      chart.y_label = to_string(q.quantity) + (unit_text(q.unit).empty() ? "" : " / " + unit_text(q.unit));
       chart.zero_line = true;
       Series bars{"", "missing", Series::Style::interval, numbers(q.x), numbers(q.value), {}, {}};
       for (Eigen::Index i = 0; i < q.x.size(); ++i) {
@@ -416,7 +422,7 @@ private:
     out_ +=
         "<h2>Where</h2>\n<p class=\"soft\">Found from residuals alone, before any effect is considered.</p>\n";
     for (const auto& one : d_.where) {
-      out_ += "<div class=\"where\"><b>" + escaped(one.submodel) + "</b> in " +
+      out_ += "<div class=\"where\"><b>" + escaped(to_string(one.submodel)) + "</b> in " +
               escaped(signal_text(one.signal)) + ", " + percent(one.share) + " of its gap";
       if (one.regime) {
         out_ += "; most for <code>" + escaped(one.regime->variable) + "</code> " +

@@ -41,7 +41,9 @@ Json parameters(const std::vector<ParameterEstimate>& list) {
 }
 
 Json location(const Location& where) {
-  Json object = {{"signal", where.signal}, {"submodel", where.submodel}, {"share", number(where.share)}};
+  Json object = {{"signal", to_string(where.signal)},
+                 {"submodel", to_string(where.submodel)},
+                 {"share", number(where.share)}};
   object["regime"] = nullptr;
   if (where.regime) {
     object["regime"] = {{"variable", where.regime->variable},
@@ -93,7 +95,7 @@ std::string report_json(const Diagnosis& diagnosis) {
   }
   root["alternatives"] = diagnosis.alternatives;
   root["gap"] = Json::object();
-  for (const auto& gap : diagnosis.gap) root["gap"][gap.signal] = score(gap);
+  for (const auto& gap : diagnosis.gap) root["gap"][to_string(gap.signal)] = score(gap);
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
   root["none_of_these"] = number(diagnosis.none_of_these);

@@ -85,10 +85,10 @@ std::string gap_table(const Diagnosis& diagnosis) {
                              ? "-"
                              : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " +
                                    readable(100.0 * gap.ci95.high, 3) + "]";
-    std::snprintf(row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (gap.signal + " / " + gap.unit).c_str(),
-                  readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
-                  diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(),
-                  readable(gap.noise_floor).c_str());
+    std::snprintf(
+        row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (to_string(gap.signal) + " / " + gap.unit).c_str(),
+        readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
+        diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(), readable(gap.noise_floor).c_str());
     out += row + shrunk + "\n";
   }
   return out;
@@ -101,7 +101,8 @@ std::string summary(const Diagnosis& diagnosis) {
   if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
   bool first = true;
   for (const auto& where : diagnosis.where) {
-    std::string text = where.signal + ", " + where.submodel + " (" + percent(where.share) + " of the gap)";
+    std::string text = to_string(where.signal) + ", " + to_string(where.submodel) + " (" +
+                       percent(where.share) + " of the gap)";
     if (where.regime) {
       text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +
               readable(where.regime->to);

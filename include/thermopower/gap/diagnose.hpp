@@ -321,7 +321,7 @@ private:
         for (SimulatedSignal& signal :
              simulate(result_.augmented, train_recordings_[i],
                       {SimulationMode::free_running, options_.horizon_s}, catalogue_))
-          simulated[i].set(signal.signal, std::move(signal.values));
+          simulated[i].set(to_string(signal.signal), std::move(signal.values));
       draw_effect(model_, simulated, result_.missing_quantities);
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <thermopower/gap/model.hpp>
+#include <thermopower/plant/quantity.hpp>
+#include <thermopower/plant/signal.hpp>
+#include <thermopower/plant/submodel.hpp>
 
 #include <Eigen/Core>
 
@@ -53,9 +56,9 @@ struct Regime {
 
 /// Where simulation and recording part, found from residuals alone.
 struct Location {
-  std::string signal;    ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
-  std::string submodel;  ///< `electrical`, `thermal.loss`, `mechanical.friction`, `sensing.angle`, ...
-  double share = 0.0;    ///< part of that signal's excess residual, 0..1
+  plant::SignalName signal;      ///< in which the two part
+  plant::SubmodelName submodel;  ///< which part of the plant is at fault
+  double share = 0.0;            ///< part of that signal's excess residual, 0..1
   std::optional<Regime> regime;  ///< where in which variable it is largest
   std::string evidence;          ///< one sentence
 };
@@ -78,7 +81,7 @@ struct Cause {
 
 /// The gap of one signal on held-out data; RMSE of simulation against recording.
 struct GapScore {
-  std::string signal;               ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
+  plant::SignalName signal;         ///< which
   std::string unit;                 ///< of the scores: degC, A, deg or deg/s
   std::optional<double> horizon_s;  ///< length of a window; none: whole runs
   double before = 0.0;              ///< the model as configured
@@ -103,7 +106,7 @@ struct Finding {
 
 /// Measured and simulated curves of one signal over one held-out run, for pictures.
 struct SignalSeries {
-  std::string signal;            ///< `motor_C`, `current_A`, `angle_deg` or `rate_dps`
+  plant::SignalName signal;      ///< which
   std::string unit;              ///< of the values: degC, A, deg or deg/s
   std::string recording;         ///< name of the recording, all of its runs
   Eigen::VectorXd t_s;           ///< stamps of the rows as recorded; the vectors below are as long
@@ -115,15 +118,15 @@ struct SignalSeries {
 
 /// The missing physical quantity itself (watts, newton metres, volts) against the variable that orders it.
 struct MissingQuantity {
-  std::string signal;         ///< the signal it was inferred from
-  std::string quantity;       ///< `missing heat`, `missing torque`, `missing voltage`, ...
-  std::string unit;           ///< W, N m, V, ...
-  std::string variable;       ///< abscissa, such as `rise_K` or `rate_rad_per_s`
-  std::string variable_unit;  ///< unit of the abscissa
-  Eigen::VectorXd x;          ///< abscissa of the binned samples
-  Eigen::VectorXd value;      ///< missing quantity there
-  Eigen::VectorXd spread;     ///< its standard error
-  Eigen::VectorXd effect;     ///< what the chosen causes supply there; empty where there are none
+  plant::SignalName signal;      ///< the signal it was inferred from
+  plant::QuantityName quantity;  ///< what is missing
+  std::string unit;              ///< W, N m, V, ...
+  std::string variable;          ///< abscissa, such as `rise_K` or `rate_rad_per_s`
+  std::string variable_unit;     ///< unit of the abscissa
+  Eigen::VectorXd x;             ///< abscissa of the binned samples
+  Eigen::VectorXd value;         ///< missing quantity there
+  Eigen::VectorXd spread;        ///< its standard error
+  Eigen::VectorXd effect;        ///< what the chosen causes supply there; empty where there are none
 };
 
 /// How alike two explanations look to this recording.

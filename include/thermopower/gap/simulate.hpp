@@ -31,8 +31,8 @@ struct SimulationOptions {
 
 /// One simulated signal, a value per row of the recording; NaN where it could not be simulated.
 struct SimulatedSignal {
-  std::string signal;      ///< `current_A`, `motor_C`, `angle_deg` or `rate_dps`
-  Eigen::VectorXd values;  ///< in the signal's unit: A, degC, deg or deg/s
+  plant::SignalName signal;  ///< which
+  Eigen::VectorXd values;    ///< in the signal's unit: A, degC, deg or deg/s
 };
 
 namespace detail {
@@ -132,8 +132,7 @@ inline std::vector<SimulatedSignal> simulate(const Model& model, const Recording
   for (int i = 0; i < signal_count; ++i)
     if (inputs[0].judged(static_cast<Signal>(i))) {
       place[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
-      results.push_back(
-          {name_of(static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
+      results.push_back({static_cast<Signal>(i), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
   detail::simulate_segments<double>(instance, cut(inputs, options.horizon_s), options.mode,
                                     [&](std::size_t, Signal signal, Eigen::Index row, double value) {

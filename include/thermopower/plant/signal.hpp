@@ -2,24 +2,74 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/open_name.hpp>
+
+#include <cstddef>
+#include <vector>
+
 namespace thermopower::plant {
 
-/// The signals that a diagnosis can judge.
-enum class Signal { current_A = 0, motor_C = 1, angle_deg = 2, rate_dps = 3 };
+/// A measured output of a plant, by its place in the plant's list of signals.
+///
+/// The members are the signals of our own plants. A plant of the user's own counts its signals from 0, too
+/// (`static_cast<Signal>(i)`); what they are called, and their units, then stands in its list, and
+/// `to_string` and `unit_of` do not apply.
+enum class Signal : int {
+  current_A = 0,  ///< motor current
+  motor_C = 1,    ///< what the motor's thermometer shows
+  angle_deg = 2,  ///< angle of the axis
+  rate_dps = 3,   ///< its rate
+};
 
-/// Number of signals.
+/// Number of signals of our own plants.
 inline constexpr int signal_count = 4;
 
-/// Column name of a signal.
-inline const char* name_of(Signal signal) {
+/// Number of signals in the closed set.
+inline constexpr int count_of(Signal) { return signal_count; }
+
+/// Column name of a signal of our own plants.
+inline const char* to_string(Signal signal) {
   constexpr const char* names[] = {"current_A", "motor_C", "angle_deg", "rate_dps"};
   return names[static_cast<int>(signal)];
 }
 
-/// Unit of a signal as reports spell it.
+/// Unit of a signal of our own plants as reports spell it.
 inline const char* unit_of(Signal signal) {
   constexpr const char* units[] = {"A", "degC", "deg", "deg/s"};
   return units[static_cast<int>(signal)];
 }
+
+/// A signal in a report: one of our plants, or a column of a user's own.
+using SignalName = OpenName<Signal>;
+
+/// One value for each signal of a plant, indexed by the signal.
+template <class T>
+class PerSignal {
+public:
+  /// For the signals of our own plants, all values alike.
+  PerSignal(const T& value = T()) : PerSignal(signal_count, value) {}  // NOLINT(google-explicit-constructor)
+  /// For a plant of `count` signals, >= 0, all values alike.
+  PerSignal(int count, const T& value) : values_(static_cast<std::size_t>(count), value) {}
+
+  /// The value of a signal, which must be one of the plant's.
+  T& operator[](Signal signal) { return values_[static_cast<std::size_t>(signal)]; }
+  /// The value of a signal, which must be one of the plant's.
+  const T& operator[](Signal signal) const { return values_[static_cast<std::size_t>(signal)]; }
+
+  /// Number of signals.
+  int count() const { return static_cast<int>(values_.size()); }
+
+  /// The values in the order of the signals.
+  typename std::vector<T>::iterator begin() { return values_.begin(); }
+  /// One past the last.
+  typename std::vector<T>::iterator end() { return values_.end(); }
+  /// The values in the order of the signals.
+  typename std::vector<T>::const_iterator begin() const { return values_.begin(); }
+  /// One past the last.
+  typename std::vector<T>::const_iterator end() const { return values_.end(); }
+
+private:
+  std::vector<T> values_;
+};
 
 }  // namespace thermopower::plant

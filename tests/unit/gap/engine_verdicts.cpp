@@ -193,7 +193,7 @@ TEST_CASE("a part that lacks its columns is not judged, and the diagnosis says s
                       blind.columns.end());
   const Diagnosis diagnosis = diagnose(bench_model(), {blind}, {blind});
   REQUIRE(diagnosis.gap.size() == 1);
-  CHECK(diagnosis.gap[0].signal == "motor_C");
+  CHECK(diagnosis.gap[0].signal == Signal::motor_C);
   REQUIRE(diagnosis.not_judged.size() == 1);
   CHECK_THAT(diagnosis.not_judged[0], ContainsSubstring("current_A"));
 }

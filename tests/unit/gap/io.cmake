@@ -12,6 +12,7 @@ thermopower_add_test(gap_io_model LINK thermopower_gap_files LABELS gap SOURCES 
 thermopower_add_test(gap_io_report LINK thermopower_gap_files nlohmann_json::nlohmann_json LABELS gap SOURCES io_report.cpp)
 thermopower_add_test(gap_io_gate LINK thermopower::desktop LABELS gap SOURCES io_gate.cpp)
 thermopower_add_test(gap_io_localise LINK thermopower::desktop LABELS gap SOURCES io_localise.cpp)
+thermopower_add_test(gap_plant_names LINK thermopower::desktop LABELS gap SOURCES plant_names.cpp)
 thermopower_add_test(gap_io_program LINK thermopower_gap_files nlohmann_json::nlohmann_json LABELS gap TIMEOUT 600 SOURCES io_program.cpp)
 target_compile_definitions(gap_io_program PRIVATE THERMOPOWER_GAP_PROGRAM="$<TARGET_FILE:thermopower-gap>"
                                                   THERMOPOWER_INCLUDE="${PROJECT_SOURCE_DIR}/include")

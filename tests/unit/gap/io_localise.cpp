@@ -8,6 +8,7 @@
 #include <thermopower/gap/localise/localisation.hpp>
 
 using namespace thermopower::gap;
+namespace plant = thermopower::plant;
 
 namespace {
 
@@ -18,7 +19,7 @@ Localisation axis(const test::AxisFault& fault) {
   return localise(test::axis_model(), {test::axis_recording(fault, 4000, 3)});
 }
 
-void check_first(const Localisation& found, const char* signal, const char* submodel) {
+void check_first(const Localisation& found, Signal signal, plant::Submodel submodel) {
   REQUIRE_FALSE(found.where.empty());
   CHECK(found.where.front().signal == signal);
   CHECK(found.where.front().submodel == submodel);
@@ -40,44 +41,44 @@ TEST_CASE("nothing is accused where the model holds, nor where its constants are
 TEST_CASE("a loss that grows faster than the rise is placed in the loss") {
   test::BenchFault fault;
   fault.extra_loss_W_per_K2 = 0.003;
-  check_first(bench(fault), "motor_C", "thermal.loss");
+  check_first(bench(fault), Signal::motor_C, plant::Submodel::thermal_loss);
 }
 
 TEST_CASE("a lagging thermometer is placed in the thermometer") {
   test::BenchFault fault;
   fault.lag_s = 25.0;
-  check_first(bench(fault), "motor_C", "sensing.temperature");
+  check_first(bench(fault), Signal::motor_C, plant::Submodel::sensing_temperature);
 }
 
 TEST_CASE("a current sensor's faults are not blamed on the motor, nor a wire's on the temperature") {
   test::BenchFault fault;
   fault.sensor_offset_A = 0.03;
-  check_first(bench(fault), "current_A", "sensing.current");
+  check_first(bench(fault), Signal::current_A, plant::Submodel::sensing_current);
   CHECK(bench(fault).where.size() == 1);
   fault = {};
   fault.sensor_gain = 1.15;
-  check_first(bench(fault), "current_A", "sensing.current");
+  check_first(bench(fault), Signal::current_A, plant::Submodel::sensing_current);
   CHECK(bench(fault).where.size() == 1);
   fault = {};
   fault.series_ohm = 1.2;
-  check_first(bench(fault), "current_A", "electrical");
+  check_first(bench(fault), Signal::current_A, plant::Submodel::electrical);
   CHECK(bench(fault).where.size() == 1);
 }
 
 TEST_CASE("friction, spring, delay and a wrong angle are told apart") {
   test::AxisFault fault;
   fault.coulomb_Nm = 0.004;
-  check_first(axis(fault), "rate_dps", "mechanical.friction");
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_friction);
   fault = {};
   fault.spring_Nm_per_rad = 0.01;
-  check_first(axis(fault), "rate_dps", "mechanical.load");
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_load);
   CHECK(axis(fault).where.front().regime->variable == "angle_deg");
   fault = {};
   fault.delay_rows = 2;
-  check_first(axis(fault), "rate_dps", "mechanical.drive");
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_drive);
   fault = {};
   fault.angle_gain = 1.1;
-  check_first(axis(fault), "angle_deg", "sensing.angle");
+  check_first(axis(fault), Signal::angle_deg, plant::Submodel::sensing_angle);
 }
 
 TEST_CASE("the missing quantity has the size that was put in") {

@@ -25,12 +25,14 @@ Diagnosis example() {
   Diagnosis d;
   d.verdict = Verdict::ambiguous;
   d.reason = "two explanations fit";
-  d.where.push_back({"motor_C", "thermal.loss", 0.83, Regime{"rise_K", 12.0, 40.0}, "given the heat"});
-  d.where.push_back({"current_A", "electrical", 0.1, std::nullopt, "given the voltage"});
+  d.where.push_back({Signal::motor_C, thermopower::plant::Submodel::thermal_loss, 0.83,
+                     Regime{"rise_K", 12.0, 40.0}, "given the heat"});
+  d.where.push_back(
+      {Signal::current_A, thermopower::plant::Submodel::electrical, 0.1, std::nullopt, "given the voltage"});
   d.cause.push_back({"radiation", 0.61, {{"emissive_area_m2", 0.1 + 0.2, {0.25, missing}, "m^2"}}});
   d.alternatives = {{"natural_convection"}, {"ambient_bias", "series_resistance"}};
-  d.gap.push_back({"motor_C", "degC", std::nullopt, 4.4, 1.2, 0.14, 0.12, 0.968, {0.96, 0.98}});
-  d.gap.push_back({"rate_dps", "deg/s", 0.5, 3.0, 2.0, 0.3, 0.2, 0.9, {0.88, 0.92}});
+  d.gap.push_back({Signal::motor_C, "degC", std::nullopt, 4.4, 1.2, 0.14, 0.12, 0.968, {0.96, 0.98}});
+  d.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 3.0, 2.0, 0.3, 0.2, 0.9, {0.88, 0.92}});
   d.next_experiment = "heat <hard> & wait";
   d.not_judged = {"angle_deg: not recorded"};
   d.findings.push_back({"quantum", Severity::note, "a.csv", "motor_C", "steps of 0.1"});
@@ -46,7 +48,7 @@ Diagnosis example() {
                        {{{"natural_convection"}, 0.97}}});
   d.constants.push_back({"conductance", 0.11, 0.112});
   SignalSeries series;
-  series.signal = "motor_C";
+  series.signal = Signal::motor_C;
   series.unit = "degC";
   const Eigen::Index n = 300000;
   series.t_s = Eigen::VectorXd::LinSpaced(n, 0.0, 3000.0);

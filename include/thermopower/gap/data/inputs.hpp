@@ -73,7 +73,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     return recording.has(column) ? detail::held(recording.column(column), inputs.runs) : Eigen::VectorXd();
   };
   const auto measure = [&](Signal signal) {
-    inputs.measured[static_cast<std::size_t>(signal)] = recording.column(name_of(signal));
+    inputs.measured[static_cast<std::size_t>(signal)] = recording.column(to_string(signal));
   };
   inputs.power_param = take("power_param");
   inputs.drive_A = take("drive_A");

@@ -132,7 +132,7 @@ inline std::string evidence_text(const std::string& given, const std::string& wo
   if (ordered.ratio > ordered.chance) {
     std::snprintf(more, sizeof more,
                   " The %s follows %s most (correlation ratio %.2f, by chance up to %.2f).",
-                  o.quantity.c_str(), ordered.axis.c_str(), ordered.ratio, ordered.chance);
+                  to_string(o.quantity).c_str(), ordered.axis.c_str(), ordered.ratio, ordered.chance);
     text += more;
   }
   const double period = half_power_period(o.value, o.interval_s);
@@ -147,8 +147,9 @@ inline void report(Localisation& out, const std::string& signal, const std::stri
                    const std::string& variable, const std::string& given, const std::string& words,
                    const Observed& observed) {
   Location location;
-  location.signal = signal;
-  location.submodel = submodel;
+  location.signal = plant::SignalName(signal);
+  location.submodel = plant::SubmodelName(submodel);
+  const plant::SignalName location_signal = location.signal;
   location.share = std::min(1.0, std::max(0.0, share));
   const OrderingAxis* axis = observed.find(variable);
   if (axis == nullptr) axis = observed.find(strongest_axis(observed).axis);
@@ -158,7 +159,7 @@ inline void report(Localisation& out, const std::string& signal, const std::stri
   if (axis == nullptr || (share < 0.15 && !out.quantities.empty()))
     return;  // a picture of a trace shows nothing
   MissingQuantity quantity = binned(observed, *axis, equal_count_edges(axis->values, 28));
-  quantity.signal = signal;
+  quantity.signal = location_signal;
   for (const MissingQuantity& one : out.quantities) {
     if (one.signal == quantity.signal && one.variable == quantity.variable) return;
   }
@@ -347,19 +348,19 @@ inline void draw_effect(const Model& baseline, const std::vector<Recording>& sim
   if (recording.rows() < 30) return;
   for (MissingQuantity& q : quantities) {
     detail::Observed observed;
-    if (q.quantity == "missing torque" && baseline.has_axis()) {
+    if (q.quantity == plant::Quantity::missing_torque && baseline.has_axis()) {
       observed = detail::observe_torque(*baseline.axis, detail::axis_rows(recording));
-    } else if (q.quantity == "slope of the angle minus rate") {
+    } else if (q.quantity == plant::Quantity::angle_slope_minus_rate) {
       observed = detail::observe_instruments(detail::axis_rows(recording));
-    } else if (q.quantity == "missing heat" && baseline.has_thermal()) {
+    } else if (q.quantity == plant::Quantity::missing_heat && baseline.has_thermal()) {
       const detail::BenchRows rows = detail::bench_rows(baseline, recording);
       Eigen::VectorXd heat = detail::heat_of(baseline, rows, detail::HeatSource::measured_current);
       if (heat.size() == 0) heat = detail::heat_of(baseline, rows, detail::HeatSource::law);
       if (heat.size() == 0) continue;
       observed = detail::observe_heat(rows, detail::ThermalJudge(baseline, rows, heat));
     } else if (baseline.has_current()) {
-      observed =
-          detail::observe_current(detail::bench_rows(baseline, recording), q.quantity == "missing current");
+      observed = detail::observe_current(detail::bench_rows(baseline, recording),
+                                         q.quantity == plant::Quantity::missing_current);
     }
     const detail::OrderingAxis* axis = observed.find(q.variable);
     if (axis == nullptr || q.x.size() < 2) continue;

@@ -21,7 +21,9 @@ struct OrderingAxis {
 
 /// Samples of a missing quantity, and everything recorded that may order them.
 struct Observed {
-  std::string signal, quantity, unit;
+  plant::SignalName signal;
+  plant::QuantityName quantity;
+  std::string unit;
   Eigen::VectorXd value;
   std::vector<OrderingAxis> axes;
   double interval_s = 1.0;  ///< between samples
@@ -50,8 +52,8 @@ inline std::string unit_of_column(const std::string& name) {
 
 /// Missing voltage: what would have to be added to V_rms for the law to give the measured current.
 inline Observed observe_current(const BenchRows& b, bool as_current) {
-  Observed o{"current_A",
-             as_current ? "missing current" : "missing voltage",
+  Observed o{Signal::current_A,
+             as_current ? plant::Quantity::missing_current : plant::Quantity::missing_voltage,
              as_current ? "A" : "V",
              {},
              {},
@@ -77,7 +79,7 @@ inline Observed observe_current(const BenchRows& b, bool as_current) {
 /// Missing heat: C dT/dt + G (T - Ta) - P, averaged over stretches long enough that the thermometer's noise
 /// is small in it.
 inline Observed observe_heat(const BenchRows& b, const ThermalJudge& judge) {
-  Observed o{"motor_C", "missing heat", "W", {}, {}, b.interval_s, 0.0};
+  Observed o{Signal::motor_C, plant::Quantity::missing_heat, "W", {}, {}, b.interval_s, 0.0};
   AxisRows frame;  // only its times and runs are used
   frame.runs = b.runs;
   frame.t_s = b.t_s;
@@ -133,7 +135,13 @@ inline bool scatters_with_rise(const Observed& o) {
 
 /// Missing torque: J dw/dt + b w - Kt i, averaged over short stretches.
 inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
-  Observed o{a.has_rate ? "rate_dps" : "angle_deg", "missing torque", "N m", {}, {}, a.interval_s, 0.0};
+  Observed o{a.has_rate ? Signal::rate_dps : Signal::angle_deg,
+             plant::Quantity::missing_torque,
+             "N m",
+             {},
+             {},
+             a.interval_s,
+             0.0};
   const Bumps bumps(a, a.raw_rate, 6, 4000);
   const Eigen::VectorXd acceleration = bumps.derivative(a.rate);
   const Eigen::VectorXd drive = bumps.held_integral(a.drive_A);
@@ -157,7 +165,7 @@ inline Observed observe_torque(const RigidAxisModel& axis, const AxisRows& a) {
 
 /// What the angle's slope has more than the rate says.
 inline Observed observe_instruments(const AxisRows& a) {
-  Observed o{"angle_deg", "slope of the angle minus rate", "deg/s", {}, {}, a.interval_s, 0.0};
+  Observed o{Signal::angle_deg, plant::Quantity::angle_slope_minus_rate, "deg/s", {}, {}, a.interval_s, 0.0};
   const Bumps bumps(a, a.raw_rate + a.raw_angle, 16, 4000);
   const Eigen::VectorXd rate = bumps.integral(a.rate);
   o.value = (bumps.derivative(a.angle) - rate) / rad_per_deg;

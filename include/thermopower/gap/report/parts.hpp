@@ -154,7 +154,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);
     GapScore gap;
-    gap.signal = name_of(signal);
+    gap.signal = signal;
     gap.unit = unit_of(signal);
     if (i >= 2) gap.horizon_s = options.horizon_s;
     gap.before = before.rms(signal);
@@ -211,7 +211,8 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
     return text + ".";
   }
   if (result.verdict == Verdict::unexplained && !result.where.empty())
-    return "Log more around " + result.where.front().submodel + " (" + result.where.front().signal +
+    return "Log more around " + to_string(result.where.front().submodel) + " (" +
+           to_string(result.where.front().signal) +
            "): whatever is switched, touched or moved while it runs, and repeat the same excitation twice.";
   if (result.verdict == Verdict::unexplained)
     return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "
