@@ -10,6 +10,8 @@
 #include "summary.hpp"
 #include "svg_chart.hpp"
 
+#include <thermopower/gap/recording.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
