@@ -51,13 +51,7 @@ public:
     }
   }
 
-private:
-  AxisReadings<Scalar> read(double t_s, const Scalar& angle_deg, const Scalar& rate_dps) const {
-    AxisReadings<Scalar> readings{t_s, angle_deg, rate_dps};
-    for (const auto& effect : instance_.axis_readings) effect(readings);
-    return readings;
-  }
-
+  /// Torque of the drive at a row, from the command of row `commanded` (of none where that lies before the run).
   Scalar torque(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
     DriveTerms<Scalar> terms;
     terms.t_s = t_s;
@@ -66,6 +60,16 @@ private:
     terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
     for (const auto& effect : instance_.drive) effect(terms);
     return terms.torque_constant_Nm_per_A * terms.drive_A;
+  }
+
+  /// The equations of motion.
+  const AxisStep<Scalar>& step() const { return step_; }
+
+private:
+  AxisReadings<Scalar> read(double t_s, const Scalar& angle_deg, const Scalar& rate_dps) const {
+    AxisReadings<Scalar> readings{t_s, angle_deg, rate_dps};
+    for (const auto& effect : instance_.axis_readings) effect(readings);
+    return readings;
   }
 
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,

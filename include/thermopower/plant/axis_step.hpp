@@ -45,7 +45,7 @@ public:
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
     const Scalar zero = constant<Scalar>(0.0);
-    soft_ = value_of(balance({zero, zero, zero, zero}, 0.0, zero).transition_rad_per_s) >
+    soft_ = value_of(torques({zero, zero, zero, zero}, 0.0, zero).transition_rad_per_s) >
             1.001 * friction_sticks_below_rad_per_s;
   }
 
@@ -62,15 +62,16 @@ public:
     }
   }
 
-private:
-  struct Slope {
-    Scalar angle, rate, twist, twist_rate;
-  };
-  struct Balance {
-    Scalar torque_Nm, forward_Nm, backward_Nm, transition_rad_per_s;
+  /// The torques on the driven inertia at an instant.
+  struct Torques {
+    Scalar torque_Nm;             ///< drive, load and viscous drag
+    Scalar forward_Nm;            ///< dry friction while the rate is positive, >= 0
+    Scalar backward_Nm;           ///< dry friction while the rate is negative, >= 0
+    Scalar transition_rad_per_s;  ///< of dry friction; 0: it sticks
   };
 
-  Balance balance(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
+  /// The torques in a state under the drive torque `drive_Nm`; a spring's is not among them.
+  Torques torques(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
     const Scalar zero = constant<Scalar>(0.0);
     AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero, zero};
     for (const auto& effect : instance_.axis) effect(terms);
@@ -79,8 +80,12 @@ private:
     return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm, terms.transition_rad_per_s};
   }
 
+private:
+  struct Slope {
+    Scalar angle, rate, twist, twist_rate;
+  };
   /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
-  static Scalar soft_friction(const Balance& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
+  static Scalar soft_friction(const Torques& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
     using std::tanh;
     const bool forward = value_of(rate_rad_per_s) >= 0.0;
     const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
@@ -109,7 +114,7 @@ private:
       if (instance_.axis.empty()) {
         rate.rate = drive_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
       } else {
-        const Balance now = balance(state, t_s, drive_Nm);
+        const Torques now = torques(state, t_s, drive_Nm);
         rate.rate = now.torque_Nm;
         if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, stiffness);
         else if (direction > 0) rate.rate -= now.forward_Nm;
@@ -173,7 +178,7 @@ private:
   int direction_of(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
     const double rate = value_of(state.rate_rad_per_s);
     if (rate != 0.0) return rate > 0.0 ? 1 : -1;
-    const Balance now = balance(state, t_s, drive_Nm);
+    const Torques now = torques(state, t_s, drive_Nm);
     double torque = value_of(now.torque_Nm);
     if constexpr (compliant) torque += value_of(spring(state));
     if (torque > value_of(now.forward_Nm)) return 1;

@@ -74,27 +74,15 @@ public:
     return {true_C, true_C, true_C, constant<Scalar>(0.0)};
   }
 
-private:
+  /// What flows in the circuit at an instant.
   struct Circuit {
-    Scalar supply_V, v_rms_V, current_A, winding_W;
+    Scalar supply_V;   ///< at the bridge
+    Scalar v_rms_V;    ///< at the motor
+    Scalar current_A;  ///< through the motor
+    Scalar winding_W;  ///< heat of the winding
   };
-  struct Slope {
-    Scalar winding, surface, charge;
-  };
 
-  static double at(const Eigen::VectorXd& values, Eigen::Index row) {
-    return values.size() > 0 ? values[row] : missing;
-  }
-
-  Scalar reading(Eigen::Index row, double motor_C) const {
-    BenchReadings<Scalar> read;
-    read.measured_ambient_C = at(inputs_.ambient_C, row);
-    read.motor_C = constant<Scalar>(motor_C);
-    read.current_A = constant<Scalar>(0.0);
-    for (const auto& effect : instance_.bench_readings) effect(read);
-    return read.motor_C;
-  }
-
+  /// The circuit at a row under its recorded power, with the winding at `winding_C` and `charge_Ah` drawn so far.
   Circuit circuit(Eigen::Index row, double t_s, const Scalar& winding_C, const Scalar& charge_Ah) const {
     ElectricalTerms<Scalar> terms;
     const Scalar zero = constant<Scalar>(0.0);
@@ -137,36 +125,37 @@ private:
     return result;
   }
 
-  Circuit powered(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
-    if (inputs_.heat == HeatSource::law && !feed_.measured_current)
-      return circuit(row, t_s, state.winding_C, state.charge_Ah);
-    const double recorded =
-        inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
+  /// What a recorded current does at a row: the circuit's voltages, and the heat of that current.
+  Circuit driven_by(Eigen::Index row, double t_s, double current_A, const Scalar& winding_C,
+                    const Scalar& charge_Ah) const {
     Circuit result;
-    if (inputs_.power_param.size() > 0) result = circuit(row, t_s, state.winding_C, state.charge_Ah);
+    if (inputs_.power_param.size() > 0) result = circuit(row, t_s, winding_C, charge_Ah);
     else result.supply_V = result.v_rms_V = constant<Scalar>(inputs_.nominal_V);
-    result.current_A = constant<Scalar>(recorded);
+    result.current_A = constant<Scalar>(current_A);
     result.winding_W = instance_.ohmic
-                           ? Scalar(instance_.winding.resistance_at(state.winding_C) * (recorded * recorded))
-                           : Scalar(result.v_rms_V * recorded);
+                           ? Scalar(instance_.winding.resistance_at(winding_C) * (current_A * current_A))
+                           : Scalar(result.v_rms_V * current_A);
     return result;
   }
 
-  Slope slope(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
-    const Circuit electrical = powered(row, t_s, state);
-    if (!instance_.lumped && !instance_.thesis_thermal) {
-      const Scalar still = constant<Scalar>(0.0);
-      return {still, still, electrical.current_A * charge_share(row) * (1.0 / 3600.0)};
-    }
-    const auto& shape = instance_.thermal_structure;
+  /// The heat balance of the body at an instant.
+  struct HeatFlows {
+    Scalar heat_W;        ///< into the winding node
+    Scalar loss_W;        ///< out of the surface node
+    Scalar rise_K_per_J;  ///< of all nodes together; 0 where the law has no capacity
+  };
+
+  /// The heat balance at a row with these nodes (`surface_C` counts where there are two).
+  HeatFlows heat_flows(Eigen::Index row, double t_s, const Circuit& electrical, const Scalar& winding_C,
+                       const Scalar& surface_C) const {
     ThermalTerms<Scalar> terms;
     terms.t_s = t_s;
     terms.airspeed_mps = at(inputs_.airspeed_mps, row);
     terms.neighbour_C = at(inputs_.neighbour_C, row);
     terms.rate_dps = at(inputs_.covariate_rate_dps, row);
     terms.measured_ambient_C = at(inputs_.ambient_C, row);
-    terms.winding_C = state.winding_C;
-    terms.surface_C = shape.two_nodes ? state.surface_C : state.winding_C;
+    terms.winding_C = winding_C;
+    terms.surface_C = instance_.thermal_structure.two_nodes ? surface_C : winding_C;
     terms.current_A = electrical.current_A;
     terms.supply_V = electrical.supply_V;
     terms.v_rms_V = electrical.v_rms_V;
@@ -179,36 +168,73 @@ private:
     Scalar rise_K_per_J, loss_W;
     const Scalar rise_K = terms.surface_C - terms.ambient_C;
     if (instance_.lumped) {
-      rise_K_per_J = instance_.heat_capacity.rise_K_per_J(electrical.v_rms_V, state.winding_C);
+      rise_K_per_J = instance_.heat_capacity.rise_K_per_J(electrical.v_rms_V, winding_C);
       loss_W = instance_.conductance_W_per_K * terms.conductance_factor * rise_K + terms.extra_loss_W;
     } else {
       // The law has no heat capacity below its least voltage; extra watts then use the capacity just above
       // it.
       const Scalar floor_V = instance_.heating_law.minimum_V_rms + 1e-9;
       const Scalar v_V = value_of(electrical.v_rms_V) > value_of(floor_V) ? electrical.v_rms_V : floor_V;
-      rise_K_per_J = instance_.heating_law.rise_K_per_J(v_V, state.winding_C);
+      rise_K_per_J = instance_.heating_law.rise_K_per_J(v_V, winding_C);
       if (!(value_of(electrical.v_rms_V) > value_of(floor_V))) terms.heat_W -= electrical.winding_W;
       const Scalar natural_rate = instance_.cooling_per_s * terms.conductance_factor * rise_K;
       loss_W = (value_of(rise_K_per_J) > 0.0 ? Scalar(natural_rate / rise_K_per_J) : constant<Scalar>(0.0)) +
                terms.extra_loss_W;
     }
-    Slope rate;
-    if (shape.two_nodes) {
-      const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
-      rate.winding = (terms.heat_W - flow_W) * rise_K_per_J / shape.winding_share;
-      rate.surface = (flow_W - loss_W) * rise_K_per_J / (1.0 - shape.winding_share);
-    } else {
-      rate.winding = (terms.heat_W - loss_W) * rise_K_per_J;
-      rate.surface = rate.winding;
-    }
-    rate.charge = electrical.current_A * charge_share(row) * (1.0 / 3600.0);
-    return rate;
+    return {terms.heat_W, loss_W, rise_K_per_J};
   }
 
   /// Share of the motor's current that the supply carries: sqrt(duty).
   double charge_share(Eigen::Index row) const {
     if (inputs_.power_param.size() == 0) return 1.0;
     return std::sqrt(std::clamp(inputs_.power_param[row], 0.0, 255.0) / 255.0);
+  }
+
+private:
+  struct Slope {
+    Scalar winding, surface, charge;
+  };
+
+  static double at(const Eigen::VectorXd& values, Eigen::Index row) {
+    return values.size() > 0 ? values[row] : missing;
+  }
+
+  Scalar reading(Eigen::Index row, double motor_C) const {
+    BenchReadings<Scalar> read;
+    read.measured_ambient_C = at(inputs_.ambient_C, row);
+    read.motor_C = constant<Scalar>(motor_C);
+    read.current_A = constant<Scalar>(0.0);
+    for (const auto& effect : instance_.bench_readings) effect(read);
+    return read.motor_C;
+  }
+
+  Circuit powered(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    if (inputs_.heat == HeatSource::law && !feed_.measured_current)
+      return circuit(row, t_s, state.winding_C, state.charge_Ah);
+    const double recorded =
+        inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
+    return driven_by(row, t_s, recorded, state.winding_C, state.charge_Ah);
+  }
+
+  Slope slope(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    const Circuit electrical = powered(row, t_s, state);
+    if (!instance_.lumped && !instance_.thesis_thermal) {
+      const Scalar still = constant<Scalar>(0.0);
+      return {still, still, electrical.current_A * charge_share(row) * (1.0 / 3600.0)};
+    }
+    const auto& shape = instance_.thermal_structure;
+    const HeatFlows flows = heat_flows(row, t_s, electrical, state.winding_C, state.surface_C);
+    Slope rate;
+    if (shape.two_nodes) {
+      const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
+      rate.winding = (flows.heat_W - flow_W) * flows.rise_K_per_J / shape.winding_share;
+      rate.surface = (flow_W - flows.loss_W) * flows.rise_K_per_J / (1.0 - shape.winding_share);
+    } else {
+      rate.winding = (flows.heat_W - flows.loss_W) * flows.rise_K_per_J;
+      rate.surface = rate.winding;
+    }
+    rate.charge = electrical.current_A * charge_share(row) * (1.0 / 3600.0);
+    return rate;
   }
 
   /// What a joule warms the whole motor by; of the polynomial law just above its least voltage.

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/quantity.hpp>
+#include <thermopower/plant/rows.hpp>
+#include <thermopower/plant/signal.hpp>
+#include <thermopower/plant/submodel.hpp>
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file balance.hpp
+/// What is missing at measured rows, in one balance per conservation law or pair of instruments:
+///
+/// \f[ \mathrm{missing} = c \, \frac{\mathrm{d}x}{\mathrm{d}t} - f_\mathrm{sampled} - f_\mathrm{held} \f]
+///
+/// with the stored state x (a temperature, a rate, an angle), what stores it c, and the flows into it at the
+/// measured state. A law without a store is a balance of its measured output alone: missing = x - f. A plant
+/// states its balances; the localisation integrates them and knows no equation.
+
+namespace thermopower::plant {
+
+/// How a balance is compared with its measurement.
+enum class BalanceForm {
+  algebraic,  ///< row by row: the law has no store
+  weak,       ///< integrated against smooth test functions of compact support: what moves within many rows
+  filtered,   ///< through the baseline's own linear response: what is slow against the interval between rows
+};
+
+/// The rows that balances stand on.
+struct BalanceRows {
+  Eigen::VectorXd t_s;        ///< stamps, strictly increasing inside a run
+  std::vector<RunSpan> runs;  ///< rows between which time passes
+  double interval_s = 1.0;    ///< median interval between rows
+
+  /// Number of rows.
+  Eigen::Index size() const { return t_s.size(); }
+};
+
+/// One way in which values that a plant computes enter its balance, one value per row.
+struct BalancePart {
+  /// Where they enter.
+  enum class Kind {
+    flow_sampled,  ///< a flow, known at the row's instant, in the balance's unit
+    flow_held,     ///< a flow that holds over the interval that starts at the row, in the balance's unit
+    store,         ///< a further store: takes capacity times the derivative of these, in the state's unit
+    reading,       ///< shown besides the state by its instrument, in the state's unit; not for the weak form
+    reading_late,  ///< the instrument follows the state with `delay_s` as time constant; `filtered` only
+  };
+  Kind kind = Kind::flow_sampled;  ///< where the values enter
+  Eigen::VectorXd values;          ///< one per row; none for reading_late
+  double delay_s = 0.0;            ///< of a held flow: it starts that much after its row
+  double factor = 1.0;             ///< multiplies them
+  Eigen::VectorXd weight = {};     ///< of a store: multiplies the derivative row by row; empty: 1
+};
+
+/// A direction in which a balance can be off: the sum of its parts.
+using Direction = std::vector<BalancePart>;
+
+/// How the reading of a signal would have to be corrected where an instrument is at fault, per unit of the
+/// coefficient that a freedom was fitted with.
+struct Correction {
+  Signal signal = Signal{};  ///< whose reading
+  double offset = 0.0;       ///< to be taken off, in the signal's unit
+};
+
+/// What in a plant may be otherwise than its equation says, with no formula for it: a few directions.
+struct Freedom {
+  SubmodelName submodel;  ///< who is at fault if this helps
+  std::string variable;   ///< what orders the missing quantity then: one of the balance's variables, or empty
+  std::string words;      ///< "a loss that depends on the rise": for the evidence
+  /// The directions; made when asked for, as a recording may be long. `at` is one of `scan`.
+  std::function<std::vector<Direction>(double at)> directions;
+  /// Bound of every coefficient from below: 0 for what acts one way only.
+  double least = -std::numeric_limits<double>::infinity();
+  int penalty = 0;               ///< directions that count besides: what a scan tried
+  std::vector<double> scan = {}; ///< values of which the best is taken; empty: `directions(0)` once
+  std::vector<double> refine = {};                        ///< factors tried around the best of `scan`
+  std::function<std::string(double at)> words_at = nullptr;  ///< words for the scan's best; empty: `words`
+  /// The instrument that may be at fault instead: it is, where other balances hold better without its reading,
+  /// or with `correction` applied to it.
+  std::optional<SubmodelName> or_instrument = {};
+  std::optional<Correction> correction = {};  ///< see `or_instrument`; also of a fault of the instrument itself
+  std::string scatters_with = {};  ///< of a course without an order: its size goes with this variable
+};
+
+/// Something that may order a missing quantity.
+struct OrderingVariable {
+  /// How it is averaged where a missing quantity is.
+  enum class Kind {
+    sampled,     ///< known at the row's instant
+    held,        ///< holds over the interval that starts at the row
+    derivative,  ///< the derivative of the values is meant
+  };
+  std::string name;                ///< a column, or a derived name such as `rise_K`
+  std::string unit;                ///< of the variable (of its derivative where that is meant)
+  Eigen::VectorXd values;          ///< one per row
+  Kind kind = Kind::sampled;       ///< how it is averaged
+  SignalName from = SignalName("");  ///< the signal whose reading it is, where it is one
+};
+
+/// The same missing quantity stated as another one: volts that would drive the missing amperes.
+struct RestatedQuantity {
+  QuantityName quantity;   ///< what it is called then
+  std::string unit;        ///< its unit
+  Eigen::VectorXd factor;  ///< multiplies the missing quantity row by row
+};
+
+/// One balance of a plant at the rows of a recording.
+struct Balance {
+  QuantityName quantity;     ///< what may be missing; balances of one quantity are alternatives of each other
+  std::string unit;          ///< of the missing quantity
+  SignalName signal;         ///< the measured signal that its residual shows in
+  SubmodelName instrument;   ///< that shows the signal
+  SubmodelName otherwise;    ///< who is at fault where no freedom helps
+  std::string given;         ///< "Given the measured motion and command": what the balance takes as known
+  BalanceForm form = BalanceForm::algebraic;     ///< how it is compared
+  std::shared_ptr<const BalanceRows> rows;       ///< not null
+  Eigen::VectorXd measured;                      ///< the state as measured; NaN where missing
+  Eigen::VectorXd state;                         ///< the same without holes
+  Eigen::VectorXd capacity = {};                 ///< what stores the state, row by row; empty: 1
+  Eigen::VectorXd flow_sampled;                  ///< at the row's instant, at the measured state
+  Eigen::VectorXd flow_held = {};                ///< over the row's interval; empty: none
+  double held_delay_s = 0.0;                     ///< the held flow starts that much after its row
+  Eigen::VectorXd relaxation_per_s = {};         ///< `filtered`: -(d flow/d state) / capacity
+  double state_noise = 0.0;                      ///< standard deviation of `measured`, in its unit
+  double flow_noise = 0.0;                       ///< of the sampled flow where another instrument tells it
+  std::vector<std::pair<std::string, Direction>> constants = {};  ///< flow per logarithm of each constant
+  std::vector<SignalName> reads = {};            ///< other signals whose readings make its flows
+  std::vector<Freedom> freedoms = {};            ///< what may be otherwise
+  std::vector<Freedom> courses = {};             ///< of many directions, for what follows no variable
+  std::vector<OrderingVariable> variables = {};  ///< what may order the missing quantity
+  std::optional<RestatedQuantity> restated = {}; ///< for faults of the plant rather than of the instrument
+  std::vector<int> half_widths = {};  ///< `weak`: of the test functions, in rows; narrow ones see fast faults
+  int picture_half_width = 0;         ///< rows that a sample of the missing quantity spans; 0: as noise asks
+  double per_display_unit = 1.0;      ///< the missing quantity is divided by this for display
+};
+
+}  // namespace thermopower::plant
