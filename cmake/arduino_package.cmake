@@ -15,7 +15,7 @@ file(REMOVE_RECURSE ${package})
 file(GLOB umbrella ${root}/include/thermopower/*.hpp)
 list(FILTER umbrella EXCLUDE REGEX "/desktop\\.hpp$")
 file(COPY ${umbrella} DESTINATION ${package}/src/thermopower)
-foreach(part actuator control detail motors sbgc)
+foreach(part actuator control detail fixed_point motors sbgc)
   file(COPY ${root}/include/thermopower/${part} DESTINATION ${package}/src/thermopower)
 endforeach()
 # The Arduino builder finds a library by a header in the root of its sources.

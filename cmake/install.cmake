@@ -13,7 +13,7 @@ endif()
 
 install(FILES include/thermopower/config_error.hpp include/thermopower/thermopower.hpp include/thermopower/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower)
-install(DIRECTORY include/thermopower/actuator include/thermopower/control include/thermopower/detail include/thermopower/motors
+install(DIRECTORY include/thermopower/actuator include/thermopower/control include/thermopower/detail include/thermopower/fixed_point include/thermopower/motors
                   include/thermopower/sbgc
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower FILES_MATCHING PATTERN "*.hpp")
 if(THERMOPOWER_DESKTOP)

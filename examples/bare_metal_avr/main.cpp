@@ -12,17 +12,19 @@
 #include <thermopower/thermopower.hpp>
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 namespace sbgc = thermopower::sbgc;
 
 namespace {
 
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t> > Small;
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12> > Large;
-typedef tp::FixedHysteresisLevels<> PowerLaw;
-typedef tp::FixedSafetyLimiter<> Limiter;
-typedef tp::FixedGimbalController<tp::FixedAxisController<Small, PowerLaw, Limiter, tp::FixedGain<24, 4> >,
-                                  tp::FixedAxisController<Small, PowerLaw, Limiter, tp::FixedGain<180, 105> >,
-                                  tp::FixedAxisController<Large, PowerLaw, Limiter, tp::FixedGain<40, 2> > >
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t> > Small;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm5208_200_12> > Large;
+typedef fixed::HysteresisLevels<> PowerLaw;
+typedef fixed::SafetyLimiter<> Limiter;
+typedef fixed::GimbalController<
+    fixed::AxisController<Small, PowerLaw, Limiter, fixed::RoundedGain<24, 4> >,
+    fixed::AxisController<Small, PowerLaw, Limiter, fixed::RoundedGain<180, 105> >,
+    fixed::AxisController<Large, PowerLaw, Limiter, fixed::RoundedGain<40, 2> > >
     Gimbal;
 
 // 115200 baud, 8N1, at double speed: 16 MHz / 8 / 17 is 2.1 % fast, which the data sheet allows.
@@ -48,7 +50,7 @@ struct Uart {
 // Timer 1 counts half microseconds in 16 bits; asked at least every 32 ms it gives a time that does not wrap
 // for 71 minutes, and differences stay right beyond that.
 class Clock {
- public:
+public:
   static void start() { TCCR1B = 1 << CS11; }
   uint32_t now_us() {
     const uint16_t count = TCNT1;
@@ -58,7 +60,7 @@ class Clock {
     return us_;
   }
 
- private:
+private:
   uint16_t last_ = 0;
   uint32_t us_ = 0;
 };
@@ -66,7 +68,7 @@ class Clock {
 Gimbal gimbal;
 tp::SbgcCodec<> codec;
 sbgc::Poller poller;
-tp::FixedClock step_clock;
+fixed::Clock step_clock;
 Uart uart;
 Clock clock;
 

@@ -11,6 +11,7 @@
 #include "board.hpp"
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 
 namespace {
 
@@ -22,21 +23,22 @@ struct JointMotor {
   static constexpr double heat_capacity_J_per_K() { return 180.0; }
   static constexpr double conductance_W_per_K() { return 0.9; }
 };
-struct JointLimit : tp::ThesisLimit {
+struct JointLimit : fixed::ThesisLimit {
   static constexpr double maximum_C() { return 80.0; }
   static constexpr double safety_time_s() { return 10.0; }
 };
-struct JointLevels : tp::ThesisLevels {
+struct JointLevels : fixed::ThesisLevels {
   static constexpr double full_power_error_deg() { return 5.0; }
 };
-typedef tp::FixedThermalModel<tp::FixedOhmicMotor<JointMotor> > Thermal;
-typedef tp::FixedAxisController<Thermal, tp::FixedLevels<JointLevels>, tp::FixedSafetyLimiter<JointLimit> >
+typedef fixed::ThermalModel<fixed::OhmicMotor<JointMotor> > Thermal;
+typedef fixed::AxisController<Thermal, fixed::ProgrammedLevels<JointLevels>,
+                              fixed::SafetyLimiter<JointLimit> >
     Axis;
 
 // What main() wants to know. The interrupt writes it, so main() reads it with interrupts held back.
 struct Snapshot {
   uint32_t cycles;
-  tp::FixedTemperature motor;
+  fixed::Temperature motor;
   tp::LimitedPower granted;
   uint32_t longest;  // control interrupt, in clocks of the processor
 };
@@ -56,12 +58,12 @@ Snapshot read_latest() {
 void control() {
   const uint32_t began = board::clocks();
   const board::Measured measured = board::measure();
-  const tp::FixedCelsius air = static_cast<tp::FixedCelsius>(measured.air_C * 128);
+  const fixed::CoarseTemperature air = static_cast<fixed::CoarseTemperature>(measured.air_C * 128);
   // As warm as the air at first; a thermometer on the motor would know better.
-  if (!is_started) axis.start(static_cast<tp::FixedTemperature>(air) * 65536);
+  if (!is_started) axis.start(static_cast<fixed::Temperature>(air) * 65536);
   is_started = true;
 
-  const tp::FixedAxisInputs inputs = {
+  const fixed::AxisInputs inputs = {
       measured.error_units, air,
       measured.is_valid ? tp::LimitReason::none : tp::LimitReason::air_implausible};
   latest.granted = axis.step(inputs, board::control_ticks);

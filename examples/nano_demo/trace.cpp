@@ -12,21 +12,24 @@ namespace nano {
 namespace {
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 
 // The types of nano_gimbal.ino.
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed>> Small;
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed>> Large;
-typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
-typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<24, 4>> Roll;
-typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<180, 105>> Pitch;
-typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2>> Yaw;
-typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed>> Small;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed>> Large;
+typedef fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle> Limiter;
+typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<24, 4>> Roll;
+typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<180, 105>>
+    Pitch;
+typedef fixed::AxisController<Large, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<40, 2>> Yaw;
+typedef fixed::GimbalController<Roll, Pitch, Yaw> Gimbal;
 
 template <class Axis>
 AxisPoint point_of(const Axis& axis, const RecordedTelemetry& telemetry, std::uint8_t index, double true_C) {
   const std::int16_t error =
       tp::position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
-  const std::uint8_t demand = tp::FixedLevels<>().step(static_cast<std::uint16_t>(std::abs(int(error))));
+  const std::uint8_t demand =
+      fixed::ProgrammedLevels<>().step(static_cast<std::uint16_t>(std::abs(int(error))));
   const tp::LimitedPower& granted = axis.state();
   return {double(tp::deg_from_units(error)), demand, granted.power, axis.p_gain(),
           double(axis.thermal().motor_C()),  true_C, granted.reason};
@@ -36,7 +39,7 @@ AxisPoint point_of(const Axis& axis, const RecordedTelemetry& telemetry, std::ui
 
 Trace Trace::of(const Rig& rig, const Story& story) {
   Gimbal gimbal;
-  tp::FixedClock clock;
+  fixed::Clock clock;
   Trace trace;
   std::size_t sample = 0;
   for (const Update& update : rig.updates()) {

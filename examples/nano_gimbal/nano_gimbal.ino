@@ -11,20 +11,23 @@
 #include <thermopower.h>
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 namespace sbgc = thermopower::sbgc;
 
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed> > Small;
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed> > Large;
-typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
-typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<24, 4> > Roll;
-typedef tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<180, 105> > Pitch;
-typedef tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2> > Yaw;
-typedef tp::FixedGimbalController<Roll, Pitch, Yaw> Gimbal;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed> > Small;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed> > Large;
+typedef fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle> Limiter;
+typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<24, 4> > Roll;
+typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<180, 105> >
+    Pitch;
+typedef fixed::AxisController<Large, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<40, 2> > Yaw;
+typedef fixed::GimbalController<Roll, Pitch, Yaw> Gimbal;
 
-const uint32_t silence_us = 501000;  // a little above StandardGimbal::timeout_s(), so that the gimbal agrees
+const uint32_t silence_us =
+    501000;  // a little above fixed_point::StandardGimbal::timeout_s(), so that the gimbal agrees
 
 Gimbal gimbal;
-tp::FixedClock step_clock;
+fixed::Clock step_clock;
 tp::SbgcCodec<> codec;
 sbgc::Poller poller;
 
@@ -65,8 +68,13 @@ void loop() {
   receive();
   const uint32_t now_us = micros();
   switch (poller.turn(now_us)) {
-    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
-    case sbgc::Turn::missed: miss_answer(now_us); break;
-    case sbgc::Turn::wait: break;
+    case sbgc::Turn::ask:
+      codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
+      break;
+    case sbgc::Turn::missed:
+      miss_answer(now_us);
+      break;
+    case sbgc::Turn::wait:
+      break;
   }
 }

@@ -12,16 +12,16 @@ namespace on_target {
 
 /// A sum in which order and every bit count.
 class Digest {
- public:
+public:
   void add(uint32_t value) { sum_ = (sum_ << 5 | sum_ >> 27) ^ (sum_ + value); }
   int32_t value() const { return static_cast<int32_t>(sum_); }
 
- private:
+private:
   uint32_t sum_ = 1;
 };
 
 inline void run_products(Report& report) {
-  namespace detail = thermopower::detail;
+  namespace detail = thermopower::fixed_point::detail;
   report.section("products");
   uint32_t random = 1;
   const auto next = [&random]() {
@@ -61,8 +61,9 @@ template <class Motor>
     Digest digest;
     // -50 .. 180 degC by 1.3 K.
     for (int16_t motor = -6400; motor <= 23040; motor = static_cast<int16_t>(motor + 167))
-      digest.add(static_cast<uint32_t>(thermopower::FixedHeating<thermopower::FixedThesisMotor<Motor> >::rate(
-          static_cast<uint8_t>(level), motor)));
+      digest.add(static_cast<uint32_t>(
+          thermopower::fixed_point::Heating<thermopower::fixed_point::ThesisMotor<Motor> >::rate(
+              static_cast<uint8_t>(level), motor)));
     report.integer(digest.value());
   }
 }
@@ -79,21 +80,22 @@ struct FixedTelemetry {
 
 [[gnu::noinline]] inline void run_fixed_gimbal(Report& report) {
   namespace tp = thermopower;
-  typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed> > Small;
-  typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12> > Large;
-  typedef tp::FixedAxisController<Small, tp::FixedLevels<>,
-                                  tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle>,
-                                  tp::FixedTruncatedGain<24, 4> >
+  namespace fixed = thermopower::fixed_point;
+  typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed> > Small;
+  typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm5208_200_12> > Large;
+  typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>,
+                                fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle>,
+                                fixed::TruncatedGain<24, 4> >
       Roll;
-  typedef tp::FixedAxisController<Small, tp::FixedHysteresisLevels<>, tp::FixedSafetyLimiter<>,
-                                  tp::FixedGain<180, 105> >
+  typedef fixed::AxisController<Small, fixed::HysteresisLevels<>, fixed::SafetyLimiter<>,
+                                fixed::RoundedGain<180, 105> >
       Pitch;
-  typedef tp::FixedAxisController<Large, tp::FixedLevels<>, tp::FixedSafetyLimiter<>, tp::FixedNoGain> Yaw;
+  typedef fixed::AxisController<Large, fixed::ProgrammedLevels<>, fixed::SafetyLimiter<>, fixed::NoGain> Yaw;
   report.section("fixed gimbal");
-  static tp::FixedGimbalController<Roll, Pitch, Yaw> gimbal;
+  static fixed::GimbalController<Roll, Pitch, Yaw> gimbal;
   for (uint16_t cycle = 0; cycle < 900; ++cycle) {
     const FixedTelemetry telemetry = {cycle};
-    const tp::FixedTicks ticks = static_cast<tp::FixedTicks>(120u + cycle * 7u % 20u);
+    const fixed::Ticks ticks = static_cast<fixed::Ticks>(120u + cycle * 7u % 20u);
     const auto& command = cycle % 211u == 200u ? gimbal.step_silent(2500) : gimbal.step(telemetry, ticks);
     gimbal.prepare();
     Digest digest;

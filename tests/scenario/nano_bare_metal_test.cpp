@@ -15,6 +15,7 @@
 namespace {
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 using nano::Rig;
 
 const char* const program = NANO_PROGRAMS "/bare_metal_avr.elf";
@@ -29,12 +30,10 @@ Rig::Truth moving(double time_s, Rig::Board&) {
 }
 
 template <class Motor, std::uint8_t low, std::uint8_t high>
-using Axis =
-    tp::FixedAxisController<tp::FixedThermalModel<tp::FixedThesisMotor<Motor>>, tp::FixedHysteresisLevels<>,
-                            tp::FixedSafetyLimiter<>, tp::FixedGain<low, high>>;
-typedef tp::FixedGimbalController<Axis<tp::motors::Bgm2606_90t, 24, 4>,
-                                  Axis<tp::motors::Bgm2606_90t, 180, 105>,
-                                  Axis<tp::motors::Bgm5208_200_12, 40, 2>>
+using Axis = fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<Motor>>, fixed::HysteresisLevels<>,
+                                   fixed::SafetyLimiter<>, fixed::RoundedGain<low, high>>;
+typedef fixed::GimbalController<Axis<tp::motors::Bgm2606_90t, 24, 4>, Axis<tp::motors::Bgm2606_90t, 180, 105>,
+                                Axis<tp::motors::Bgm5208_200_12, 40, 2>>
     Gimbal;
 
 }  // namespace
@@ -50,7 +49,7 @@ TEST_CASE("the bare-metal program polls, decides as its controller does here, an
   CHECK(rig.board().counters().shortest_request_gap_us >= 10000);
 
   Gimbal gimbal;
-  tp::FixedClock clock;
+  fixed::Clock clock;
   long agreeing = 0;
   std::uint64_t slowest = 0;
   for (const nano::Update& update : rig.updates()) {

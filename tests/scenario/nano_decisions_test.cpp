@@ -20,6 +20,7 @@ namespace {
 
 using nano::Rig;
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 
 /// Five minutes that go everywhere the original's model is defined: air of 16 to 80 degC, every level on
 /// every axis, several turns, full demand until the limiter acts and beyond, a cut, and two recoveries.
@@ -152,18 +153,18 @@ TEST_CASE("nano_gimbal decides as the original in every regime") {
 
 namespace {
 
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed>> Small;
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed>> Large;
-typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
-typedef tp::FixedGimbalController<
-    tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<24, 4>>,
-    tp::FixedAxisController<Small, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<180, 105>>,
-    tp::FixedAxisController<Large, tp::FixedLevels<>, Limiter, tp::FixedTruncatedGain<40, 2>>>
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t::AsProgrammed>> Small;
+typedef fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm5208_200_12::AsProgrammed>> Large;
+typedef fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle> Limiter;
+typedef fixed::GimbalController<
+    fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<24, 4>>,
+    fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<180, 105>>,
+    fixed::AxisController<Large, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<40, 2>>>
     Gimbal;
 
 /// nano_gimbal's arithmetic on this computer: the same to the bit (tests/on_target/vectors_fixed.cpp).
 class OnThisComputer {
- public:
+public:
   original::Decision update(const tp::sbgc::RealtimeFields& fields, std::uint32_t micros) {
     const nano::RecordedTelemetry telemetry = {fields};
     const Gimbal::Command& command = gimbal_.step(telemetry, clock_.elapsed(micros));
@@ -175,9 +176,9 @@ class OnThisComputer {
     return decision;
   }
 
- private:
+private:
   Gimbal gimbal_;
-  tp::FixedClock clock_;
+  fixed::Clock clock_;
 };
 
 bool agree(const original::Decision& left, const original::Decision& right) {

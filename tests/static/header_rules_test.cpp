@@ -210,16 +210,26 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a firmware header has one idea: at most 350 lines") {
+/// Lines that are neither empty nor a comment alone.
+long code_lines(const std::string& code) {
+  std::istringstream lines(code);
+  long count = 0;
+  for (std::string line; std::getline(lines, line);)
+    count += line.find_first_not_of(" \t") != std::string::npos;
+  return count;
+}
+
+TEST_CASE("a firmware header has one idea: at most 450 lines of code") {
   for (const auto& [name, header] : headers()) {
     CAPTURE(name);
-    CHECK(std::count(header.text.begin(), header.text.end(), '\n') <= 350);
+    CHECK(code_lines(header.code) <= 450);
   }
 }
 
 TEST_CASE("the checks themselves see what they look for") {
   CHECK(code_of("int a; // new\nint b;") == "int a; \nint b;");
   CHECK(code_of("x /* throw\n */ y") == "x \n y");
+  CHECK(code_lines(code_of("int a;  // b\n\n// c\n/* d\n */\nint e;\n")) == 2);
   CHECK(code_of("\nf(\"new // \\\" x\");") == "\nf(\"\");");
   CHECK(code_of("\n#include \"a.hpp\"\n") == "\n#include \"a.hpp\"\n");
 }

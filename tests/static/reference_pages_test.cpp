@@ -41,15 +41,18 @@ std::string enumerators(const std::string& header) {
 std::string menus() {
   std::map<std::string, std::string> found;
   for (const char* folder : {"actuator", "control", "sbgc"}) {
-    for (const auto& entry : fs::directory_iterator(fs::path(THERMOPOWER_INCLUDE) / folder)) {
-      static const std::regex head("/// \\| (law|rule|step) \\|.*");
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(THERMOPOWER_INCLUDE) / folder)) {
+      if (entry.path().extension() != ".hpp") continue;
+      static const std::regex head("/// \\| (law|rule|step|limiter|motor|network|heat|gain|supply) \\|.*");
       std::string table;
       bool is_menu = false;
       for (const std::string& line : lines_of(entry.path())) {
-        is_menu = line.rfind("/// |", 0) == 0 && (is_menu || std::regex_match(line, head));
+        const bool is_head = std::regex_match(line, head);
+        is_menu = line.rfind("/// |", 0) == 0 && (is_menu || is_head);
+        if (is_head && !table.empty()) table += "\n";
         if (is_menu) table += line.substr(4) + "\n";
       }
-      const std::string name = std::string(folder) + "/" + entry.path().filename().string();
+      const std::string name = fs::relative(entry.path(), THERMOPOWER_INCLUDE).generic_string();
       if (!table.empty()) found[name] = table;
     }
   }

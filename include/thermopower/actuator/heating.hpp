@@ -4,7 +4,7 @@
 
 #include "../detail/check.hpp"
 
-/// @file heating.hpp
+/// @file actuator/heating.hpp
 /// Heating laws: how fast a watt warms the heated node. eq 3.7: dT/dt = r P, with r in K/J.
 ///
 /// | law | r | when to take it |
@@ -61,11 +61,11 @@ template <class Number = float>
 struct ThesisHeating {
   typedef Number Scalar;  ///< What it computes in.
 
-  Number slope_V1_J_per_K2;   ///< s1, per volt
-  Number slope_V0_J_per_K2;   ///< s0
-  Number offset_V1_J_per_K;   ///< o1, per volt
-  Number offset_V0_J_per_K;   ///< o0
-  Number minimum_V_rms;       ///< At or below this voltage there is no heating (the program: 1 V).
+  Number slope_V1_J_per_K2;  ///< s1, per volt
+  Number slope_V0_J_per_K2;  ///< s0
+  Number offset_V1_J_per_K;  ///< o1, per volt
+  Number offset_V0_J_per_K;  ///< o0
+  Number minimum_V_rms;      ///< At or below this voltage there is no heating (the program: 1 V).
 
   /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
   static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1,
@@ -105,7 +105,7 @@ struct ThesisHeating {
         detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms));
   }
 
- private:
+private:
   Number capacity_slope_J_per_K2(const Number& v_rms_V) const noexcept {
     return slope_V1_J_per_K2 * v_rms_V + slope_V0_J_per_K2;
   }

@@ -7,7 +7,7 @@
 #include "heating.hpp"
 #include "thermal_step.hpp"
 
-/// @file thermal_model.hpp
+/// @file actuator/thermal_model.hpp
 /// The temperature of an actuator with one node, eq 3.9: dT/dt = r P - cooling.
 
 namespace thermopower {
@@ -23,7 +23,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {
- public:
+public:
   typedef typename Heating::Scalar Scalar;  ///< What it computes in.
   static_assert(!Step::needs_linear_laws() || (Heating::is_linear() && Cooling::is_linear()),
                 "thermopower: ExactStep needs linear heating and cooling laws; take LinearizedStep or "
@@ -51,10 +51,10 @@ class ThermalModel {
 
   /// What one logs: the temperature and how it came about.
   struct State {
-    Scalar motor_C;           ///< Temperature after the last step.
-    Scalar heating_K_per_s;   ///< r P at the start of the last step.
-    Scalar cooling_K_per_s;   ///< Cooling at the start of the last step.
-    Scalar rate_K_per_s;      ///< heating - cooling: dT/dt of eq 3.9, which the limiter of eq 4.23 uses.
+    Scalar motor_C;          ///< Temperature after the last step.
+    Scalar heating_K_per_s;  ///< r P at the start of the last step.
+    Scalar cooling_K_per_s;  ///< Cooling at the start of the last step.
+    Scalar rate_K_per_s;     ///< heating - cooling: dT/dt of eq 3.9, which the limiter of eq 4.23 uses.
   };
 
   /// @param config   constants; call `validate()` once
@@ -91,7 +91,7 @@ class ThermalModel {
   Scalar hottest_rate_K_per_s() const noexcept { return state_.rate_K_per_s; }  ///< dT/dt of eq 3.9.
   const Config& config() const noexcept { return config_; }                     ///< The constants.
 
- private:
+private:
   typedef typename detail::Numeric<Scalar>::Real Real;
   Config config_;
   State state_;

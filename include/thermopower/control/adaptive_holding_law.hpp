@@ -3,7 +3,7 @@
 #pragma once
 
 #include "step_power_law.hpp"
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 
 /// @file adaptive_holding_law.hpp
 /// Learns how much power each pose needs to be held, instead of waiting for an error to ask for it.
@@ -64,7 +64,7 @@ template <uint8_t bins = 8>
 class AdaptiveHoldingLaw {
   static_assert(bins >= 1 && bins <= 64, "thermopower: AdaptiveHoldingLaw takes 1 .. 64 ranges of poses");
 
- public:
+public:
   typedef AdaptiveHoldingConfig Config;  ///< What one tunes.
 
   /// What one logs.
@@ -128,7 +128,7 @@ class AdaptiveHoldingLaw {
   const State& state() const noexcept { return state_; }     ///< What was learned.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   static uint16_t units(float power) noexcept { return static_cast<uint16_t>(power * 128.0f); }
 
   void learn(float beyond_deg, float dt_s) noexcept {

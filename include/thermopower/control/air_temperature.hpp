@@ -4,7 +4,7 @@
 
 #include "../detail/check.hpp"
 
-/// @file air_temperature.hpp
+/// @file control/air_temperature.hpp
 /// Air temperature from the two thermometers on a gimbal, eq 4.20, and what to do when one of them is missing
 /// or lies.
 
@@ -13,11 +13,11 @@ namespace thermopower {
 /// Where an air temperature came from.
 /// @ingroup control
 enum class AirSource : uint8_t {
-  neither = 0,   ///< No plausible reading: `air_C` is NaN.
-  camera = 1,    ///< Only the camera's IMU is plausible.
-  frame = 2,     ///< Only the frame's IMU is plausible.
-  both = 3,      ///< Both, averaged (eq 4.20).
-  warmer = 4     ///< Both are plausible, but they disagree or the frame reads exactly 0: the warmer one.
+  neither = 0,  ///< No plausible reading: `air_C` is NaN.
+  camera = 1,   ///< Only the camera's IMU is plausible.
+  frame = 2,    ///< Only the frame's IMU is plausible.
+  both = 3,     ///< Both, averaged (eq 4.20).
+  warmer = 4    ///< Both are plausible, but they disagree or the frame reads exactly 0: the warmer one.
 };
 
 /// Fuses two thermometers. A frame IMU that is not fitted reads 0 degC on a SimpleBGC, and the average would
@@ -26,7 +26,7 @@ enum class AirSource : uint8_t {
 /// costs the motor.
 /// @ingroup control
 class AirTemperature {
- public:
+public:
   /// What one tunes.
   struct Config {
     float minimum_plausible_C;   ///< Below this a reading is rejected.
@@ -80,7 +80,7 @@ class AirTemperature {
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
 
- private:
+private:
   bool is_plausible(float reading_C) const noexcept {
     return reading_C >= config_.minimum_plausible_C && reading_C <= config_.maximum_plausible_C;
   }

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "../detail/check.hpp"
-#include "../detail/composition.hpp"
-#include "../detail/limiter_call.hpp"
+#include "detail/composition.hpp"
+#include "detail/policy_call.hpp"
 #include "gain_scheduler.hpp"
 #include "position_error.hpp"
 #include "safety_limiter.hpp"
 #include "step_power_law.hpp"
 
-/// @file axis_controller.hpp
+/// @file control/axis_controller.hpp
 /// One axis: from a position error to a power that the motor can bear, and the gain that goes with it.
 
 namespace thermopower {
@@ -46,17 +46,17 @@ class AxisController {
                 "step(power) const, such "
                 "as GainScheduler or NoGain");
 
- public:
+public:
   typedef typename Motor::Current Current;  ///< Current model.
   typedef typename Motor::Thermal Thermal;  ///< Thermal model.
 
   /// What one tunes.
   struct Config {
-    typename Current::Config current;      ///< From the motor.
-    typename Thermal::Config thermal;      ///< From the motor.
-    typename PowerLaw::Config power_law;   ///< What an error is worth.
-    typename Limiter::Config limiter;      ///< Limit temperature.
-    typename Gain::Config gain;            ///< Must be set where the gain rule has one.
+    typename Current::Config current;     ///< From the motor.
+    typename Thermal::Config thermal;     ///< From the motor.
+    typename PowerLaw::Config power_law;  ///< What an error is worth.
+    typename Limiter::Config limiter;     ///< Limit temperature.
+    typename Gain::Config gain;           ///< Must be set where the gain rule has one.
 
     /// The motor's constants and every policy's standard.
     static Config standard() noexcept {
@@ -111,8 +111,16 @@ class AxisController {
         limiter_(config.limiter),
         gain_(config.gain),
         config_error_(config.validate()) {
-    const State state = {0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f, least_power(),
-                         limiter_.ceiling(), least_power(), gain_.step(least_power()),
+    const State state = {0.0f,
+                         0.0f,
+                         0.0f,
+                         0.0f,
+                         detail::not_a_number(),
+                         0.0f,
+                         least_power(),
+                         limiter_.ceiling(),
+                         least_power(),
+                         gain_.step(least_power()),
                          LimitReason::no_telemetry_yet};
     state_ = state;
   }
@@ -135,8 +143,7 @@ class AxisController {
     // comparing floats is not.
     const bool is_air_new = !detail::is_same(inputs.air_C, last_air_C_);
     const bool is_supply_new = !detail::is_same(inputs.supply_V, last_supply_V_);
-    const bool is_air_bad =
-        is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
+    const bool is_air_bad = is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
     const bool is_supply_bad =
         is_supply_new && !(detail::is_finite_positive(inputs.supply_V) || inputs.supply_V == 0.0f);
     if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
@@ -144,14 +151,18 @@ class AxisController {
     const bool is_time_positive = detail::is_finite_positive(dt_s);
     state_.error_deg = wrap_deg(inputs.error_deg);
     LimitReason fault = inputs.fault;
-    if (is_error(config_error_))
-      fault = LimitReason::config_invalid;
+    if (is_error(config_error_)) fault = LimitReason::config_invalid;
     else if (!is_fault(fault))
       fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
 
-    AxisFacts facts = {0,           state_.motor_C, detail::body_of(thermal_, 0), state_.rate_K_per_s,
-                       last_air_C_, last_supply_V_,  state_.error_deg};
+    AxisFacts facts = {0,
+                       state_.motor_C,
+                       detail::body_of(thermal_, 0),
+                       state_.rate_K_per_s,
+                       last_air_C_,
+                       last_supply_V_,
+                       state_.error_deg};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
     const LimitedPower granted = is_fault(fault)
@@ -170,7 +181,7 @@ class AxisController {
   Thermal& thermal() noexcept { return thermal_; }       ///< To tell an observer what was measured.
   const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
 
- private:
+private:
   LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad,
                          bool is_time_good) const noexcept {
     if (!is_time_good) return LimitReason::time_invalid;

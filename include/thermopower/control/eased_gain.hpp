@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 #include "gain_scheduler.hpp"
 
 /// @file eased_gain.hpp
@@ -20,7 +20,7 @@ namespace thermopower {
 /// @ingroup control
 template <class Gain = GainScheduler<> >
 class EasedGain {
- public:
+public:
   /// What one tunes.
   struct Config {
     typename Gain::Config gain;  ///< Of the gain itself.
@@ -61,7 +61,7 @@ class EasedGain {
 
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
   Gain gain_;
 };

@@ -5,7 +5,7 @@
 #include "../detail/check.hpp"
 #include "../detail/flash.hpp"
 
-/// @file gain_scheduler.hpp
+/// @file control/gain_scheduler.hpp
 /// The proportional gain that keeps an axis's response the same when its power changes, eq 4.27.
 ///
 /// | rule | gain | when to take it |
@@ -97,7 +97,7 @@ struct TableGain {
     return static_cast<uint8_t>(below - part(static_cast<uint8_t>(below - above), fraction));
   }
 
- private:
+private:
   // value / 255, without the division that an 8-bit chip has not: exact below 65535.
   static uint8_t by_255(uint16_t value) noexcept {
     return static_cast<uint8_t>(static_cast<uint16_t>(value + 1u + (value >> 8)) >> 8);
@@ -125,7 +125,7 @@ struct NoGainRule {
 /// @ingroup control
 template <class Rule = RoundedGain>
 class GainScheduler {
- public:
+public:
   typedef typename Rule::Config Config;  ///< What one tunes.
 
   /// @param config  constants; ask `validate()` once
@@ -138,7 +138,7 @@ class GainScheduler {
 
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
 };
 

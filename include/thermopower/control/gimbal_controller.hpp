@@ -5,7 +5,7 @@
 #include "air_temperature.hpp"
 #include "axis_controller.hpp"
 
-/// @file gimbal_controller.hpp
+/// @file control/gimbal_controller.hpp
 /// One `AxisController` per axis, each with its own motor, fed by one telemetry message.
 
 namespace thermopower {
@@ -14,9 +14,9 @@ namespace thermopower {
 /// @ingroup control
 template <uint8_t axis_count>
 struct GimbalCommand {
-  uint8_t power[axis_count];        ///< POWER
-  uint8_t p_gain[axis_count];       ///< P
-  LimitReason reason[axis_count];   ///< Why `power` is below what the error asks for.
+  uint8_t power[axis_count];       ///< POWER
+  uint8_t p_gain[axis_count];      ///< P
+  LimitReason reason[axis_count];  ///< Why `power` is below what the error asks for.
 };
 
 /// The first wrong field of a gimbal's configuration.
@@ -44,10 +44,10 @@ struct MeasuredSupply {
 /// What one tunes on the gimbal as a whole.
 /// @ingroup control
 struct GimbalConfig {
-  float supply_V;                      ///< Nominal supply, above 0. The thesis: 13.
-  float minimum_supply_V;              ///< Below this the battery counts as empty or missing. The program: 3.
-  float timeout_s;                     ///< Silence of the link that is tolerated, above 0.
-  AirTemperature::Config air;          ///< When a thermometer is believed.
+  float supply_V;              ///< Nominal supply, above 0. The thesis: 13.
+  float minimum_supply_V;      ///< Below this the battery counts as empty or missing. The program: 3.
+  float timeout_s;             ///< Silence of the link that is tolerated, above 0.
+  AirTemperature::Config air;  ///< When a thermometer is believed.
 
   /// 13 V, 3 V, half a second.
   static GimbalConfig standard() noexcept {
@@ -117,22 +117,22 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 /// @ingroup control
 template <class Supply, class... Axes>
 class BasicGimbalController {
- public:
+public:
   /// Number of axes.
   static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }
   static_assert(sizeof...(Axes) >= 1 && sizeof...(Axes) < 255,
                 "thermopower: a GimbalController needs at least one AxisController");
 
-  typedef GimbalConfig Config;                                  ///< What one tunes on the gimbal as a whole.
-  typedef GimbalCommand<sizeof...(Axes)> Command;               ///< What goes back to the board.
-  typedef GimbalInputs<sizeof...(Axes)> Inputs;                 ///< What the gimbal decides on.
+  typedef GimbalConfig Config;                     ///< What one tunes on the gimbal as a whole.
+  typedef GimbalCommand<sizeof...(Axes)> Command;  ///< What goes back to the board.
+  typedef GimbalInputs<sizeof...(Axes)> Inputs;    ///< What the gimbal decides on.
 
   /// What one logs; each axis has its own state.
   struct State {
-    Command command;     ///< The last command.
-    float air_C;         ///< NaN when no thermometer is plausible.
-    AirSource air_source;///< Which thermometers `air_C` rests on.
-    float silent_s;      ///< Time since the last telemetry.
+    Command command;       ///< The last command.
+    float air_C;           ///< NaN when no thermometer is plausible.
+    AirSource air_source;  ///< Which thermometers `air_C` rests on.
+    float silent_s;        ///< Time since the last telemetry.
   };
 
   /// Every axis and the gimbal with their standard configuration.
@@ -169,10 +169,8 @@ class BasicGimbalController {
     last_ = inputs;
     has_telemetry_ = true;
     telemetry_fault_ = LimitReason::none;
-    if (!detail::is_finite(inputs.supply_V))
-      telemetry_fault_ = LimitReason::supply_not_finite;
-    else if (inputs.supply_V < config_.minimum_supply_V)
-      telemetry_fault_ = LimitReason::supply_low;
+    if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
+    else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
     return step_axes(telemetry_fault_, dt_s);
   }
 
@@ -202,7 +200,7 @@ class BasicGimbalController {
     return detail::axis_at<index>(axes_);
   }
 
- private:
+private:
   struct StepVisitor {
     BasicGimbalController& gimbal;
     LimitReason fault;

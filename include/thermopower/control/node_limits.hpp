@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 #include "safety_limiter.hpp"
 
 /// @file node_limits.hpp
@@ -47,7 +47,7 @@ struct PerNode {
 /// infinite counts as too hot.
 template <>
 class SafetyLimiter<PerNode> {
- public:
+public:
   /// What one tunes.
   struct Config {
     NodeLimit node[PerNode::count];  ///< In the order of `PerNode::Node`.
@@ -146,7 +146,7 @@ class SafetyLimiter<PerNode> {
   const State& state() const noexcept { return state_; }       ///< After the last step.
   const Config& config() const noexcept { return config_; }    ///< The constants.
 
- private:
+private:
   static bool is_possible(float temperature_C) noexcept {
     return temperature_C > -273.15f && temperature_C < 1.0e4f;
   }

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 #include "step_power_law.hpp"
 
 /// @file reserve_law.hpp
@@ -20,7 +20,7 @@ namespace thermopower {
 /// @ingroup control
 template <class Law = StepPowerLaw<> >
 class ReserveLaw {
- public:
+public:
   /// What one tunes.
   struct Config {
     typename Law::Config law;  ///< Of the law itself.
@@ -50,9 +50,9 @@ class ReserveLaw {
 
   /// What one logs.
   struct State {
-    uint8_t asked;    ///< What the law asked for.
-    float reserve;    ///< Power kept in reserve, 0 .. `reserve_power`.
-    float calm_s;     ///< Time since the last disturbance; stops at the configured one.
+    uint8_t asked;  ///< What the law asked for.
+    float reserve;  ///< Power kept in reserve, 0 .. `reserve_power`.
+    float calm_s;   ///< Time since the last disturbance; stops at the configured one.
   };
 
   /// Starts calm, without a reserve. @param config  constants; ask `validate()` once
@@ -85,13 +85,11 @@ class ReserveLaw {
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   void carry(float error_deg, float dt_s) noexcept {
     const float highest = static_cast<float>(config_.reserve_power);
-    if (detail::magnitude(error_deg) > config_.moving_error_deg)
-      state_.calm_s = 0.0f;
-    else
-      state_.calm_s = detail::at_most(state_.calm_s + dt_s, config_.calm_s);
+    if (detail::magnitude(error_deg) > config_.moving_error_deg) state_.calm_s = 0.0f;
+    else state_.calm_s = detail::at_most(state_.calm_s + dt_s, config_.calm_s);
     state_.reserve = state_.calm_s < config_.calm_s
                          ? detail::at_most(state_.reserve + config_.rise_per_s * dt_s, highest)
                          : detail::at_least(state_.reserve - config_.fall_per_s * dt_s, 0.0f);

@@ -5,7 +5,7 @@
 #include "../detail/check.hpp"
 #include "limit_reason.hpp"
 
-/// @file safety_limiter.hpp
+/// @file control/safety_limiter.hpp
 /// Keeps an actuator below its limit temperature, eq 4.23: T_safety = T_max - t_safety dT/dt.
 ///
 /// | rule | the ceiling moves | when to take it |
@@ -56,7 +56,7 @@ struct PerCycle {
   static void raise(State& state, const SafetyLimiterConfig&, float) noexcept {
     if (state.ceiling < 255) ++state.ceiling;
   }
-  static void cut(State& state) noexcept { state.ceiling = least_power(); }  ///< To the least power.
+  static void cut(State& state) noexcept { state.ceiling = least_power(); }      ///< To the least power.
   static uint8_t ceiling(const State& state) noexcept { return state.ceiling; }  ///< In whole counts.
 };
 
@@ -91,7 +91,7 @@ struct PerSecond {
 /// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {
- public:
+public:
   typedef SafetyLimiterConfig Config;  ///< What one tunes.
   typedef typename Rule::State State;  ///< The ceiling.
 
@@ -118,10 +118,8 @@ class SafetyLimiter {
 
     const float safety_C = config_.maximum_C - config_.safety_time_s * inputs.rate_K_per_s;  // eq 4.23
     const bool is_safe = inputs.motor_C <= safety_C;
-    if (is_safe)
-      Rule::raise(state_, config_, dt_s);
-    else
-      Rule::lower(state_, config_, dt_s);
+    if (is_safe) Rule::raise(state_, config_, dt_s);
+    else Rule::lower(state_, config_, dt_s);
 
     const uint8_t ceiling = Rule::ceiling(state_);
     LimitedPower granted = {inputs.demand, LimitReason::none};
@@ -144,7 +142,7 @@ class SafetyLimiter {
   const State& state() const noexcept { return state_; }              ///< The rule's own memory.
   const Config& config() const noexcept { return config_; }           ///< The constants.
 
- private:
+private:
   Config config_;
   State state_;
 };

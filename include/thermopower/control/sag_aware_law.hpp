@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 #include "step_power_law.hpp"
 
 /// @file sag_aware_law.hpp
@@ -18,7 +18,7 @@ namespace thermopower {
 /// power is never granted than the actuator bears. A supply that is not finite, or 0, is not corrected for.
 template <class Law = StepPowerLaw<>>
 class SagAwareLaw {
- public:
+public:
   /// What one tunes.
   struct Config {
     typename Law::Config law;  ///< Of the law itself.
@@ -77,7 +77,7 @@ class SagAwareLaw {
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   void correct(float supply_V) noexcept {
     supply_V_ = supply_V;
     state_.correction = 1.0f;

@@ -5,7 +5,7 @@
 #include "../detail/check.hpp"
 #include "limit_reason.hpp"
 
-/// @file step_power_law.hpp
+/// @file control/step_power_law.hpp
 /// How much power a position error is worth, eq 4.22.
 ///
 /// | rule | power | when to take it |
@@ -50,7 +50,7 @@ struct NoState {};
 /// Levels per degree, divided once: a division in every step is dear on a small chip.
 /// @ingroup control
 class LevelScale {
- public:
+public:
   /// int(10 e / e_max), saturated at `highest`; 0 where a refused configuration makes it NaN or negative.
   /// @param magnitude_deg  size of the error, finite and >= 0
   uint8_t level(float magnitude_deg, const StepPowerConfig& config, uint8_t highest) noexcept {
@@ -60,7 +60,7 @@ class LevelScale {
     return level > 0.0f ? highest : 0;
   }
 
- private:
+private:
   float per_deg_ = 0.0f;  // 0: not yet known
 };
 
@@ -111,7 +111,7 @@ struct HysteresisLevels {
 /// @ingroup control
 struct ContinuousPower {
   typedef StepPowerConfig Config;  ///< What one tunes.
-  typedef NoState State;  ///< Nothing to remember.
+  typedef NoState State;           ///< Nothing to remember.
   /// @param magnitude_deg  size of the error, finite and >= 0  @return power parameter
   static uint8_t power(float magnitude_deg, const Config& config, State&) noexcept {
     const uint8_t highest = static_cast<uint8_t>(10u * config.power_step);
@@ -126,7 +126,7 @@ struct ContinuousPower {
 /// @ingroup control
 template <class Rule = ProgrammedLevels>
 class StepPowerLaw {
- public:
+public:
   typedef typename Rule::Config Config;  ///< What one tunes.
   typedef typename Rule::State State;    ///< What the rule remembers.
 
@@ -147,7 +147,7 @@ class StepPowerLaw {
   const State& state() const noexcept { return state_; }     ///< What the rule remembers.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
   State state_;
 };

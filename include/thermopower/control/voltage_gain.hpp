@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/limiter_call.hpp"
+#include "detail/policy_call.hpp"
 #include "gain_scheduler.hpp"
 
 /// @file voltage_gain.hpp
@@ -24,7 +24,7 @@ struct VoltageGain {};
 /// of the tuning are assumed.
 template <>
 class GainScheduler<VoltageGain> {
- public:
+public:
   /// What one tunes.
   struct Config {
     float gain_low_power;    ///< The gain at the tuning point, 0 .. 255: `tuned_power`, `nominal_supply_V`,
@@ -85,7 +85,7 @@ class GainScheduler<VoltageGain> {
 
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   static bool is_near(float now_C, float then_C) noexcept { return detail::magnitude(now_C - then_C) < 0.5f; }
 
   float over_reference_K(float temperature_C) const noexcept {

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "../detail/sbgc_requirements.hpp"
+#include "detail/requirements.hpp"
 #include "ids.hpp"
 
 /// @file
@@ -24,7 +24,7 @@ class PowerAndGain {
   static_assert(thermopower::detail::SbgcHasPowerAndGain<Command>::value,
                 "thermopower: PowerAndGain needs a command with power[3] and p_gain[3]");
 
- public:
+public:
   /// @param gimbal the command
   explicit PowerAndGain(const Command& gimbal) noexcept : gimbal_(gimbal) {}
 
@@ -45,7 +45,7 @@ class PowerAndGain {
     }
   }
 
- private:
+private:
   const Command& gimbal_;
 };
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "../detail/sbgc_index.hpp"
+#include "detail/index.hpp"
 #include "frame.hpp"
 #include "protocol.hpp"
 
@@ -57,7 +57,7 @@ template <size_t payload_capacity, class Protocol>
 class Receiver {
   static_assert(payload_capacity <= 255, "thermopower: an SBGC payload has at most 255 bytes");
 
- public:
+public:
   /// @param timeout_us longest pause between two bytes of a frame, at most 8 000 000 (longer is taken for
   /// that); 0 waits for ever. A pause is noticed up to 512 us late and never early. The default is long for
   /// the wire (a byte takes 87 us at 115200 baud), because bytes are often read late and in groups.
@@ -140,7 +140,7 @@ class Receiver {
   /// @brief The policy's state, to change it; for ProtocolAuto.
   Protocol& protocol() noexcept { return protocol_; }
 
- private:
+private:
   enum : uint16_t { header_size = 4, buffer_size = payload_capacity + Protocol::overhead, tick_shift = 8 };
   typedef typename thermopower::detail::SbgcIndex<(buffer_size > 255)>::Type Index;
   enum class Stage : uint8_t { hunting, header, payload, trailer, complete };

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../detail/sbgc_requirements.hpp"
-#include "../detail/sbgc_sink.hpp"
+#include "detail/requirements.hpp"
+#include "detail/sink.hpp"
 #include "protocol.hpp"
 
 /// @file

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../control/adaptive_holding_law.hpp"
-#include "../control/certified_limiter.hpp"
+#include "../control/certified/limiter.hpp"
 #include "../control/eased_gain.hpp"
 #include "../control/reserve_law.hpp"
 #include "../control/sag_aware_law.hpp"
@@ -31,13 +31,13 @@ struct AdaptiveTuning {
   std::array<std::uint8_t, 3> least_power = {26, 20, 18};
   /// Kept while the axis is being disturbed.
   std::array<std::uint8_t, 3> reserve_power = {48, 38, 35};
-  float moving_error_deg = 0.08f;     ///< An error beyond this is a disturbance.
-  float calm_s = 4.0f;                ///< The reserve outlasts the last disturbance by this.
-  float forgetting_per_s = 2.0f;      ///< Counts per second that a learned power sinks.
+  float moving_error_deg = 0.08f;  ///< An error beyond this is a disturbance.
+  float calm_s = 4.0f;             ///< The reserve outlasts the last disturbance by this.
+  float forgetting_per_s = 2.0f;   ///< Counts per second that a learned power sinks.
   /// Gain at POWER 45 against the one that is as stiff as eq 4.27 is at POWER 89.
   float stiffness = 2.0f;
-  float ease_from_deg = 1.5f;         ///< Error beyond which the gain is eased.
-  std::uint8_t far_gain = 3;          ///< Not eased below this.
+  float ease_from_deg = 1.5f;  ///< Error beyond which the gain is eased.
+  std::uint8_t far_gain = 3;   ///< Not eased below this.
 };
 
 /// Configuration of one axis. @param axis  0 roll, 1 pitch, 2 yaw
@@ -89,7 +89,7 @@ class AdaptiveGimbal {
   using Small = AdaptiveAxis<motors::Bgm2606_90t>;
   using Large = AdaptiveAxis<motors::Bgm5208_200_12>;
 
- public:
+public:
   /// @param started_C  temperature of each motor at the start, not below the truth: from a stored state and
   ///                   the time off, from the winding's resistance, or 60 (its limit) when nothing is known.
   ///                   "As warm as the air" is wrong after a hot run.
@@ -120,7 +120,7 @@ class AdaptiveGimbal {
     return gimbal_;
   }
 
- private:
+private:
   template <class Axis>
   static void tell(Axis& axis, float pose_deg) noexcept {
     auto& holding = axis.power_law().law().law();

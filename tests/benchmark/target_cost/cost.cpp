@@ -32,8 +32,8 @@ void give(uint16_t round) {
   given.warm = pick(1, -50 * 128, 25 * 128, 58 * 128, 180 * 128);
   given.air = pick(2, -60 * 128, 16 * 128, 40 * 128, 125 * 128);
   given.error_units = static_cast<uint16_t>(pick(3, 0, 0, 60, 8192));
-  given.rate = static_cast<tp::FixedRate>(pick(4, -16384, -300, 1000, 16383)) * 32768;
-  given.ticks = static_cast<tp::FixedTicks>(pick(5, 0, 60, 70, 32767) * 2 + 1);
+  given.rate = static_cast<fixed::Rate>(pick(4, -16384, -300, 1000, 16383)) * 32768;
+  given.ticks = static_cast<fixed::Ticks>(pick(5, 0, 60, 70, 32767) * 2 + 1);
   given.fault = is_corner && round % 7 == 6 ? tp::LimitReason::link_silent : tp::LimitReason::none;
   given.camera_C = static_cast<int8_t>(pick(2, -128, 20, 34, 34));
   given.frame_C = static_cast<int8_t>(pick(3, 34, 20, 34, 127));

@@ -13,6 +13,7 @@
 namespace cost {
 
 namespace tp = thermopower;
+namespace fixed = thermopower::fixed_point;
 
 typedef tp::motors::Bgm2606_90t::AsProgrammed Small;
 typedef tp::motors::Bgm5208_200_12::AsProgrammed Large;
@@ -24,12 +25,12 @@ extern volatile float real_sink;
 /// What an operation is given: made outside the measured call.
 struct Given {
   uint8_t level;
-  tp::FixedCelsius warm, air;  ///< -50 .. 180 degC, -60 .. 125 degC.
+  fixed::CoarseTemperature warm, air;  ///< -50 .. 180 degC, -60 .. 125 degC.
   float warm_C, air_C;
   uint16_t error_units;  ///< 0 .. 8192
   float error_deg;
-  tp::FixedRate rate;  ///< -3.8 .. 3.8 K/s
-  tp::FixedTicks ticks;
+  fixed::Rate rate;  ///< -3.8 .. 3.8 K/s
+  fixed::Ticks ticks;
   tp::LimitReason fault;
   int8_t camera_C, frame_C;
   float camera_real_C, frame_real_C, level_real, power_W, elapsed_s;

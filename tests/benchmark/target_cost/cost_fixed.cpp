@@ -6,54 +6,50 @@
 
 using namespace cost;
 
-typedef tp::FixedThermalModel<tp::FixedThesisMotor<Small> > Thermal;
-typedef tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle> Limiter;
+typedef fixed::ThermalModel<fixed::ThesisMotor<Small> > Thermal;
+typedef fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle> Limiter;
 
 static Thermal& thermal() {
   static Thermal model;
   return model;
 }
 
-extern "C" void fixed_thermal_set() {
-  thermal().start(static_cast<tp::FixedTemperature>(given.warm) * 65536);
-}
+extern "C" void fixed_thermal_set() { thermal().start(static_cast<fixed::Temperature>(given.warm) * 65536); }
 extern "C" void fixed_heating() {
-  sink = static_cast<uint32_t>(tp::FixedHeating<tp::FixedThesisMotor<Small> >::rate(given.level, given.warm));
+  sink = static_cast<uint32_t>(fixed::Heating<fixed::ThesisMotor<Small> >::rate(given.level, given.warm));
 }
 // Every level at every temperature, to a quarter of a kelvin: near the pole of a law a division takes
 // longest.
 static void search_heating(uint16_t round) {
   const uint32_t at = static_cast<uint32_t>(round) * (235520u / counter::searches + 1u);
   given.level = static_cast<uint8_t>(at);
-  given.warm = static_cast<tp::FixedCelsius>(-6400 + static_cast<int16_t>(at % 920u) * 32);
+  given.warm = static_cast<fixed::CoarseTemperature>(-6400 + static_cast<int16_t>(at % 920u) * 32);
 }
 extern "C" void fixed_thermal() { sink = static_cast<uint32_t>(thermal().step(given.air, given.ticks)); }
 extern "C" void fixed_levels() {
-  static tp::FixedLevels<> law;
+  static fixed::ProgrammedLevels<> law;
   small_sink = law.step(given.error_units);
 }
 extern "C" void fixed_hysteresis() {
-  static tp::FixedHysteresisLevels<> law;
+  static fixed::HysteresisLevels<> law;
   small_sink = law.step(given.error_units);
 }
 extern "C" void fixed_limiter_cycle() {
   static Limiter limiter;
   small_sink =
-      limiter
-          .step(given.level, static_cast<tp::FixedTemperature>(given.warm) * 65536, given.rate, given.ticks)
+      limiter.step(given.level, static_cast<fixed::Temperature>(given.warm) * 65536, given.rate, given.ticks)
           .power;
 }
 extern "C" void fixed_limiter_second() {
-  static tp::FixedSafetyLimiter<> limiter;
+  static fixed::SafetyLimiter<> limiter;
   small_sink =
-      limiter
-          .step(given.level, static_cast<tp::FixedTemperature>(given.warm) * 65536, given.rate, given.ticks)
+      limiter.step(given.level, static_cast<fixed::Temperature>(given.warm) * 65536, given.rate, given.ticks)
           .power;
 }
-extern "C" void fixed_gain_cut() { small_sink = tp::FixedTruncatedGain<24, 4>::gain(given.level); }
-extern "C" void fixed_gain() { small_sink = tp::FixedGain<24, 4>::gain(given.level); }
+extern "C" void fixed_gain_cut() { small_sink = fixed::TruncatedGain<24, 4>::gain(given.level); }
+extern "C" void fixed_gain() { small_sink = fixed::RoundedGain<24, 4>::gain(given.level); }
 extern "C" void fixed_air() {
-  static tp::FixedAirTemperature<> air;
+  static fixed::AirTemperature<> air;
   sink = static_cast<uint32_t>(air.step(given.camera_C, given.frame_C).air);
 }
 

@@ -8,11 +8,12 @@
 using namespace cost;
 
 template <class Motor, class Gain>
-using AxisOf = tp::FixedAxisController<tp::FixedThermalModel<tp::FixedThesisMotor<Motor> >, tp::FixedLevels<>,
-                                       tp::FixedSafetyLimiter<tp::ThesisLimit, tp::FixedPerCycle>, Gain>;
-typedef AxisOf<Small, tp::FixedTruncatedGain<24, 4> > Axis;
-typedef tp::FixedGimbalController<Axis, AxisOf<Small, tp::FixedTruncatedGain<180, 105> >,
-                                  AxisOf<Large, tp::FixedTruncatedGain<40, 2> > >
+using AxisOf =
+    fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<Motor> >, fixed::ProgrammedLevels<>,
+                          fixed::SafetyLimiter<fixed::ThesisLimit, fixed::PerCycle>, Gain>;
+typedef AxisOf<Small, fixed::TruncatedGain<24, 4> > Axis;
+typedef fixed::GimbalController<Axis, AxisOf<Small, fixed::TruncatedGain<180, 105> >,
+                                AxisOf<Large, fixed::TruncatedGain<40, 2> > >
     Gimbal;
 
 static Axis& axis() {
@@ -24,9 +25,9 @@ static Gimbal& gimbal() {
   return controller;
 }
 
-extern "C" void fixed_axis_set() { axis().start(static_cast<tp::FixedTemperature>(given.warm) * 65536); }
+extern "C" void fixed_axis_set() { axis().start(static_cast<fixed::Temperature>(given.warm) * 65536); }
 extern "C" void fixed_axis_step() {
-  const tp::FixedAxisInputs inputs = {given.error_units, given.air, given.fault};
+  const fixed::AxisInputs inputs = {given.error_units, given.air, given.fault};
   axis().step(inputs, given.ticks);
   small_sink = axis().p_gain();
 }
@@ -38,8 +39,8 @@ extern "C" void fixed_axis_whole() {
 static void search_axis(uint16_t round) {
   const uint32_t at = static_cast<uint32_t>(round) * (47u * 14080u / counter::searches + 1u);
   given.error_units = static_cast<uint16_t>(at % 47u);
-  given.warm = static_cast<tp::FixedCelsius>(-6400 + static_cast<int16_t>(at % 14080u));
-  given.air = static_cast<tp::FixedCelsius>(given.warm - 128);
+  given.warm = static_cast<fixed::CoarseTemperature>(-6400 + static_cast<int16_t>(at % 14080u));
+  given.air = static_cast<fixed::CoarseTemperature>(given.warm - 128);
   given.fault = tp::LimitReason::none;
   given.ticks = 0;
 }

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "arithmetic.hpp"
+
+/// @file control/certified/bounds.hpp
+/// What must be declared about an actuator before a limiter can vouch for it: bounds, not values.
+///
+/// Most bounds have one end only, because a comparison argument shows which end is the dangerous one
+/// (docs/explain/certified-limiter.md). Only heat capacities need both: a small one warms fast, a large one
+/// cools slowly.
+
+namespace thermopower {
+
+/// A constant that is not known exactly. `lowest` <= true value <= `highest`.
+struct Bounds {
+  float lowest;   ///< Above 0.
+  float highest;  ///< Not below `lowest`, finite.
+
+  /// A value and a tolerance. @param fraction  0.2 for +-20 %; 0 .. below 1
+  static Bounds around(float value, float fraction) noexcept {
+    const Bounds bounds = {value * (1.0f - fraction), value * (1.0f + fraction)};
+    return bounds;
+  }
+  /// `field` unless 0 < lowest <= highest < infinity.
+  ConfigError validate(ConfigError field) const noexcept {
+    return first_error(detail::require_positive(lowest, field),
+                       detail::is_finite(highest) && highest >= lowest ? ConfigError::none : field);
+  }
+};
+
+/// The most heat that can arise in the winding at full POWER (255) and the highest supply: at two winding
+/// temperatures, because a warm winding takes less. In between, the heat may be no more than that of a
+/// resistance that rises in a straight line.
+struct HeatBounds {
+  float highest_supply_V;  ///< The supply is never above this. Above 0.
+  float supply_error;  ///< The measured supply may be wrong by this fraction until the next step, >= 0. 1 or
+                       ///< more: it is not used.
+  float coldest_C;     ///< The winding is never colder: the coldest air. -60 .. 100 degC.
+  float heat_when_cold_W;  ///< Highest heat at `coldest_C`. Above 0.
+  float heat_when_hot_W;   ///< Highest heat at the winding's limit. Above 0, not above `heat_when_cold_W`.
+
+  /// For a winding that follows Ohm's law.
+  /// @param highest_supply_V  V
+  /// @param supply_error      see the field
+  /// @param resistance_ohm    lowest and highest at `reference_C`; only the lowest counts
+  /// @param tempco_per_K      relative rise per kelvin of the winding, lowest and highest (copper: 0.0038 ..
+  /// 0.0040)
+  /// @param reference_C       where the resistance was measured
+  /// @param coldest_C         see the field
+  /// @param hottest_C         the winding's limit
+  static HeatBounds ohmic(float highest_supply_V, float supply_error, const Bounds& resistance_ohm,
+                          const Bounds& tempco_per_K, float reference_C, float coldest_C,
+                          float hottest_C) noexcept {
+    const float at_reference_W = highest_supply_V * highest_supply_V / resistance_ohm.lowest;
+    const HeatBounds heat = {highest_supply_V, supply_error, coldest_C,
+                             at_reference_W / resistance_ratio(tempco_per_K, coldest_C - reference_C),
+                             at_reference_W / resistance_ratio(tempco_per_K, hottest_C - reference_C)};
+    return heat;
+  }
+
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    if (is_error(detail::require_positive(highest_supply_V, ConfigError::highest_supply_V)))
+      return ConfigError::highest_supply_V;
+    if (is_error(detail::require_not_negative(supply_error, ConfigError::supply_error)))
+      return ConfigError::supply_error;
+    if (is_error(detail::require_within(coldest_C, -60.0f, 100.0f, ConfigError::coldest_C)))
+      return ConfigError::coldest_C;
+    if (is_error(detail::require_positive(heat_when_cold_W, ConfigError::heat_when_cold_W)))
+      return ConfigError::heat_when_cold_W;
+    if (is_error(detail::require_positive(heat_when_hot_W, ConfigError::heat_when_hot_W)) ||
+        heat_when_hot_W > heat_when_cold_W)
+      return ConfigError::heat_when_hot_W;
+    return ConfigError::none;
+  }
+
+private:
+  // The lowest there can be: below the reference the larger coefficient takes more away.
+  static float resistance_ratio(const Bounds& tempco_per_K, float difference_K) noexcept {
+    return 1.0f + (difference_K < 0.0f ? tempco_per_K.highest : tempco_per_K.lowest) * difference_K;
+  }
+};
+
+/// What a certified network is told about its surroundings and its use.
+struct CertifiedUse {
+  HeatBounds heat;      ///< What full POWER does.
+  float highest_air_C;  ///< The air is never warmer than this. Not below `heat.coldest_C`.
+  float hold_s;     ///< A ceiling acts for at most this long before the next plan can lower it. Above 0, at
+                    ///< most 10.
+  float horizon_s;  ///< How long a power must be bearable to be granted: how gently authority falls. At least
+                    ///< `hold_s`.
+  uint8_t every;    ///< Plan in every n-th step only, at least 1; `hold_s` must cover that many steps.
+  uint8_t phase;    ///< In which of them, below `every`: give each axis its own, and they take turns.
+};
+
+/// Carries a step's length through the network's two time constants: the part of the way to its final value
+/// that a node goes.
+struct CertifiedTravel {
+  detail::FineFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
+  detail::FineFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
+
+  /// @param fastest_per_s  rate with the smallest heat capacity  @param slowest_per_s  with the largest
+  static CertifiedTravel over(float fastest_per_s, float slowest_per_s, float dt_s) noexcept {
+    const float slow = slowest_per_s * dt_s;
+    const float below = slow < 1.0f ? slow * (1.0f - 0.5f * slow) : 0.5f;
+    const CertifiedTravel travel = {detail::fine_up(above(fastest_per_s * dt_s)), detail::fine_down(below)};
+    return travel;
+  }
+  /// Not below 1 - exp(-x). Taylor's series ends above it after an odd term, and below it after an even one,
+  /// for every x >= 0.
+  static float above(float x) noexcept {
+    return x < 1.0f ? x * (1.0f - x * (0.5f - x * (1.0f / 6.0f))) : 1.0f;
+  }
+};
+
+/// How much less heat a warm winding takes: a chord over 1/R(T), which is convex, so the chord lies above it.
+class CertifiedRelief {
+public:
+  /// @param hot_C  where `heat_when_hot_W` holds  @param end_C  where the chord is to be exact; above it the
+  /// relief stays
+  void set(const HeatBounds& heat, float hot_C, float end_C) noexcept {
+    const float resistance =
+        heat.heat_when_cold_W / heat.heat_when_hot_W - 1.0f;  // relative rise from coldest to hot
+    const float at_end = resistance * (end_C - heat.coldest_C) / (hot_C - heat.coldest_C);
+    const float per_K = at_end / (1.0f + at_end) / (end_C - heat.coldest_C);
+    const int32_t fine =
+        detail::rounded_down(per_K * 8388608.0f);  // 2^-23 per kelvin: up to 0.78 % per kelvin
+    per_K_ = static_cast<uint16_t>(fine < 0xffffL ? fine : 0xffffL);
+    end_ = detail::celsius_units(end_C - heat.coldest_C);
+    if (end_ > 255L * 262144L) end_ = 255L * 262144L;
+  }
+  /// Heat at a winding temperature as a fraction of the heat at the coldest, not below the truth. @param
+  /// over_coldest  difference
+  detail::UnitFraction at(detail::KelvinUnits over_coldest) const noexcept {
+    const detail::KelvinUnits over = over_coldest < end_ ? over_coldest : end_;
+    if (over <= 0) return detail::whole_fraction();
+    const uint16_t coarse = static_cast<uint16_t>(static_cast<uint32_t>(over) >> 10);  // 1/256 K
+    // Below one half of 2^32, because the relief is less than the whole; so doubled instead of shifted by 15.
+    const uint32_t half_relief = detail::product(coarse, per_K_);
+    const uint16_t relief = static_cast<uint16_t>((half_relief + half_relief) >> 16);
+    return static_cast<detail::UnitFraction>(detail::whole_fraction() - relief);
+  }
+
+private:
+  uint16_t per_K_ = 0;
+  detail::KelvinUnits end_ = 0;
+};
+
+/// What holds a power back.
+enum class CertifiedNode : uint8_t {
+  none = 0,     ///< Nothing: full power is bearable.
+  winding = 1,  ///< The winding's limit.
+  body = 2      ///< The body's limit, or the only node's.
+};
+
+/// The largest power that a network can bear, in counts of heat above the least, and which node says so.
+struct CertifiedCount {
+  uint8_t count;              ///< 0 .. 254.
+  CertifiedNode node;         ///< `none` at 254.
+  detail::KelvinUnits apart;  ///< What the winding has to hand on beyond the least power's; 0 with one node.
+
+  /// Lowers the count to how often `size` goes into `room`.
+  void fit(int32_t room, int32_t size, CertifiedNode which) noexcept {
+    const uint8_t fitting = detail::count_within(room, size, count);
+    if (fitting < count) {
+      count = fitting;
+      node = which;
+    }
+  }
+};
+
+}  // namespace thermopower

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "bounds.hpp"
+
+/// @file control/certified/one_node.hpp
+/// A sound upper bound of the temperature of an actuator that is equally warm everywhere, and the largest
+/// power that keeps it below its limit. Symbols and numbers in brackets are those of
+/// docs/explain/certified-limiter.md.
+
+namespace thermopower {
+
+/// One node with bounds instead of constants: C dT/dt = P - G (T - T_air). G, the air, the supply and the
+/// resistance may change at any time within their bounds, and so may C.
+class CertifiedOneNode {
+public:
+  /// What is declared.
+  struct Config {
+    Bounds heat_capacity_J_per_K;     ///< C
+    float least_conductance_W_per_K;  ///< G is never below this. Above 0.
+    float maximum_C;                  ///< The limit. 0 .. 200 degC.
+
+    /// Nothing suits every motor: NaN, which `validate()` refuses by name until it is set.
+    static Config standard() noexcept {
+      const float unset = detail::not_a_number();
+      const Config config = {{unset, unset}, unset, unset};
+      return config;
+    }
+    /// First constant out of its range, or ConfigError::none.
+    ConfigError validate() const noexcept {
+      return first_error(
+          heat_capacity_J_per_K.validate(ConfigError::heat_capacity_J_per_K),
+          first_error(detail::require_positive(least_conductance_W_per_K, ConfigError::conductance_W_per_K),
+                      detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C)));
+    }
+    float hottest_C() const noexcept { return maximum_C; }  ///< Limit of the heated node.
+  };
+
+  /// Length of a step, in the form the network needs it.
+  struct Travel {
+    CertifiedTravel body;  ///< towards the air
+    bool is_late;          ///< Longer than a hold: outside the contract, but still carried soundly.
+  };
+
+  /// Constants once; the bound starts at the limit (hot), the safe guess for an actuator that this limiter
+  /// has guarded before.
+  CertifiedOneNode(const Config& config, const CertifiedUse& use) noexcept {
+    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
+    fastest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.lowest;
+    slowest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.highest;
+    to_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
+    hold_s_ = use.hold_s;
+    hold_ = detail::fraction_up(CertifiedTravel::above(fastest_per_s_ * use.hold_s));
+    horizon_ =
+        detail::fraction_down(1.0f - detail::Numeric<float>::exponential(-fastest_per_s_ * use.horizon_s));
+    coldest_ = detail::celsius_units(use.heat.coldest_C);
+    limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
+    relief_.set(use.heat, config.maximum_C, config.maximum_C);
+    feasible_ = ConfigError::none;
+    if (!(config.maximum_C > use.highest_air_C + detail::celsius_from(to_air_) + 0.01f))
+      feasible_ = ConfigError::highest_air_C;
+    if (!(255.0f * detail::celsius_from(to_air_) < detail::highest_rise_K()))
+      feasible_ = ConfigError::heat_when_cold_W;
+    node_.set(limit_);
+    surroundings(use.highest_air_C, detail::whole_fraction());
+  }
+
+  /// A bound that cannot be met: see CertifiedTwoNode.
+  ConfigError feasible() const noexcept { return feasible_; }
+
+  /// Sets the bound to what is known. @param winding_C, body_C  the hotter counts; NaN starts at the limit
+  void start(float winding_C, float body_C) noexcept {
+    if (!detail::is_finite(winding_C) || !detail::is_finite(body_C)) {
+      node_.set(limit_);
+      return;
+    }
+    node_.set(detail::celsius_units(winding_C > body_C ? winding_C : body_C) + 1);
+  }
+  /// Lowers the bound to a measurement that is never below the truth; NaN changes nothing.
+  void tighten(float winding_C, float) noexcept {
+    if (winding_C >= -100.0f && winding_C < detail::celsius_from(node_.below()))
+      node_.set(detail::celsius_units(winding_C) + 1);
+  }
+
+  /// Prepares a step length.
+  Travel travel(float dt_s) const noexcept {
+    const Travel travel = {CertifiedTravel::over(fastest_per_s_, slowest_per_s_, dt_s), dt_s > hold_s_};
+    return travel;
+  }
+  /// Carries the bound over a step during which at most `count` acted.
+  void advance(uint8_t count, const Travel& step) noexcept {
+    if (step.is_late)
+      to_air_now_ = to_air_;  // the winding may have cooled, and drawn more, than one hold allows for
+    node_.raise(base_);
+    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
+    node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
+  }
+  /// Carries the bound over an unknown time of at most one hold.
+  void advance_unknown(uint8_t count) noexcept {
+    node_.raise(base_);
+    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
+    if (way > 0) node_.go(way, travel(hold_s_).body.heating);
+  }
+  /// Takes note of the air and the supply until the next step. See CertifiedTwoNode.
+  void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
+    if (!detail::is_same(air_C, air_C_)) {
+      air_C_ = air_C;
+      base_ = detail::celsius_units(air_C) + 1 + to_air_;
+    }
+    const detail::KelvinUnits above = room();
+    const detail::UnitFraction relief = relief_.at(base_ + above - detail::part_up(above, hold_) - coldest_);
+    to_air_now_ = detail::part_up(
+        to_air_, supply_squared == detail::whole_fraction()
+                     ? relief
+                     : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared)));
+  }
+
+  /// The largest count that is bearable for the horizon, and safe for ever after the next hold.
+  CertifiedCount largest() const noexcept {
+    CertifiedCount largest = {254, CertifiedNode::none, 0};
+    const detail::KelvinUnits above = room(), left = limit_ - base_ - above;
+    largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_),
+                CertifiedNode::body);
+    largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_),
+                CertifiedNode::body);
+    return largest;
+  }
+  /// The largest count that is bearable for ever in this air.
+  uint8_t sustainable() const noexcept { return detail::count_within(limit_ - base_, to_air_now_, 254); }
+
+  /// True when the bound is inside the set that the least power never leaves. It stays true once it is,
+  /// within the contract.
+  bool is_certified() const noexcept { return limit_ - base_ - room() >= -64; }
+  /// Always true: there is no second node that could hand on heat.
+  bool is_below(uint8_t, const CertifiedCount&) const noexcept { return true; }
+
+  float winding_C() const noexcept {
+    return detail::celsius_from(node_.above());
+  }                                                      ///< Upper bound of the node.
+  float body_C() const noexcept { return winding_C(); }  ///< The same node.
+
+  /// Time until the limit is reached at a constant count; infinite when it never is. 0 when it is reached.
+  float seconds_to_limit(uint8_t count) const noexcept {
+    const float above_K = detail::celsius_from(room()), limit_K = detail::celsius_from(limit_ - base_);
+    const float settled_K = detail::celsius_from(detail::times(to_air_now_, count));
+    if (above_K >= limit_K) return 0.0f;
+    if (settled_K <= limit_K) return static_cast<float>(INFINITY);
+    return static_cast<float>(logf((settled_K - above_K) / (settled_K - limit_K))) / fastest_per_s_;
+  }
+
+private:
+  detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }
+
+  float fastest_per_s_, slowest_per_s_, hold_s_;
+  detail::KelvinUnits to_air_, to_air_now_, coldest_, limit_;
+  detail::UnitFraction horizon_, hold_;
+  CertifiedRelief relief_;
+  detail::UpperBound node_;
+  detail::KelvinUnits base_ = 0;
+  float air_C_ = detail::not_a_number();
+  ConfigError feasible_;
+};
+
+}  // namespace thermopower

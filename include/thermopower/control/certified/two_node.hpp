@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "bounds.hpp"
+
+/// @file control/certified/two_node.hpp
+/// A sound upper bound of a winding's and a body's temperature, and the largest power that keeps both below
+/// their limits.
+///
+/// The second bound is kept on the mean of winding and body, weighted by heat capacity: what both would
+/// become if the heat stored in the winding went into the body at once. The body can never be warmer than
+/// that, however well it is coupled, so a limit on the mean covers the peak that the body reaches after a
+/// cut; and its heat balance does not contain the coupling at all. Symbols and numbers in brackets are those
+/// of docs/explain/certified-limiter.md.
+
+namespace thermopower {
+
+/// What is declared about an actuator with a winding and a body.
+struct CertifiedTwoNodeConfig {
+  Bounds winding_heat_capacity_J_per_K;  ///< C_w
+  Bounds body_heat_capacity_J_per_K;     ///< C_b
+  float least_coupling_W_per_K;          ///< K is never below this. Above 0.
+  float least_conductance_W_per_K;       ///< G is never below this. Above 0.
+  float maximum_winding_C;               ///< Limit of the winding. 0 .. 250 degC.
+  float maximum_body_C;                  ///< Limit of the body. 0 .. 250 degC.
+
+  /// Nothing suits every motor: NaN, which `validate()` refuses by name until it is set.
+  static CertifiedTwoNodeConfig standard() noexcept {
+    const float unset = detail::not_a_number();
+    const CertifiedTwoNodeConfig config = {{unset, unset}, {unset, unset}, unset, unset, unset, unset};
+    return config;
+  }
+  /// The constants of a `TwoNodeThermalModel`, each known to a fraction. @param fraction  0.2 for +-20 %
+  template <class ThermalConfig>
+  static CertifiedTwoNodeConfig around(const ThermalConfig& thermal, float fraction, float maximum_winding_C,
+                                       float maximum_body_C) noexcept {
+    const CertifiedTwoNodeConfig config = {Bounds::around(thermal.winding_heat_capacity_J_per_K, fraction),
+                                           Bounds::around(thermal.body_heat_capacity_J_per_K, fraction),
+                                           thermal.coupling_W_per_K * (1.0f - fraction),
+                                           thermal.cooling.conductance_W_per_K * (1.0f - fraction),
+                                           maximum_winding_C,
+                                           maximum_body_C};
+    return config;
+  }
+  /// First constant out of its range, or ConfigError::none.
+  ConfigError validate() const noexcept {
+    return first_error(
+        first_error(winding_heat_capacity_J_per_K.validate(ConfigError::winding_heat_capacity_J_per_K),
+                    body_heat_capacity_J_per_K.validate(ConfigError::body_heat_capacity_J_per_K)),
+        first_error(
+            first_error(
+                detail::require_positive(least_coupling_W_per_K, ConfigError::coupling_W_per_K),
+                detail::require_positive(least_conductance_W_per_K, ConfigError::conductance_W_per_K)),
+            first_error(
+                detail::require_within(maximum_winding_C, 0.0f, 250.0f, ConfigError::maximum_winding_C),
+                detail::require_within(maximum_body_C, 0.0f, 250.0f, ConfigError::maximum_body_C))));
+  }
+  float hottest_C() const noexcept { return maximum_winding_C; }  ///< Limit of the heated node.
+};
+
+/// Two nodes with bounds instead of constants:
+///
+///     C_w dT_w/dt = P - K (T_w - T_b),   C_b dT_b/dt = K (T_w - T_b) - G (T_b - T_air)
+///
+/// K, G, the air, the supply and the resistance may change at any time within their bounds; C_w and C_b are
+/// constant but unknown.
+class CertifiedTwoNode {
+public:
+  typedef CertifiedTwoNodeConfig Config;  ///< What is declared.
+
+  /// Lengths of a step, in the form the network needs them.
+  struct Travel {
+    CertifiedTravel winding;  ///< towards the body
+    CertifiedTravel body;     ///< towards the air
+    bool is_late;             ///< Longer than a hold: outside the contract, but still carried soundly.
+  };
+
+  /// Constants once; both bounds start at the limits (hot), the safe guess for an actuator that this limiter
+  /// has guarded before.
+  CertifiedTwoNode(const Config& config, const CertifiedUse& use) noexcept {
+    const Bounds& winding = config.winding_heat_capacity_J_per_K;
+    const Bounds& body = config.body_heat_capacity_J_per_K;
+    const float least_capacity = winding.lowest + body.lowest;
+    const float winding_share = body.highest / (winding.lowest + body.highest);  // 1 - mu, largest
+    const float body_share = body.lowest / (winding.highest + body.lowest);      // 1 - mu, smallest
+    const float winding_rate = config.least_coupling_W_per_K / winding_share;  // W/K between winding and mean
+    const float body_rate = config.least_conductance_W_per_K / body_share;     // W/K between mean and air
+    fastest_winding_per_s_ = winding_rate / winding.lowest;
+    slowest_winding_per_s_ = winding_rate / winding.highest;
+    fastest_body_per_s_ = body_rate / least_capacity;
+    slowest_body_per_s_ = body_rate / (winding.highest + body.highest);
+
+    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
+    across_ = detail::kelvin_per_count_up(count_W / winding_rate);
+    soak_ = detail::kelvin_per_count_up(count_W * use.hold_s / least_capacity);
+    to_air_ = detail::kelvin_per_count_up(count_W / body_rate);
+    gap_ = across_ + soak_;  // (12): what the least power keeps between the two
+    base_over_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
+    weight_ = detail::fraction_up(1.0f - body_share);
+    least_mean_ = detail::kelvin_up(
+        detail::at_most(detail::celsius_from(gap_) * (1.0f - body_share) / body_share, 1000.0f));
+
+    hold_s_ = use.hold_s;
+    hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
+    hold_body_ = detail::fraction_up(part_of_hold(fastest_body_per_s_));
+    horizon_winding_ = detail::fraction_down(
+        1.0f - detail::Numeric<float>::exponential(-fastest_winding_per_s_ * use.horizon_s));
+    horizon_body_ = detail::fraction_down(
+        1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
+
+    coldest_ = detail::celsius_units(use.heat.coldest_C);
+    set_limits(config, use, 1.0f - body_share, count_W);
+    // A chord for each bound, so that each is exact at its own limit.
+    winding_relief_.set(use.heat, config.maximum_winding_C, config.maximum_winding_C);
+    mean_relief_.set(use.heat, config.maximum_winding_C, detail::celsius_from(mean_limit_));
+    winding_.set(winding_limit_);
+    mean_.set(mean_limit_);
+    surroundings(use.highest_air_C, detail::whole_fraction());
+  }
+
+  /// A bound that cannot be met: in the hottest air even the least power is too much, or full power is out of
+  /// the arithmetic's range.
+  ConfigError feasible() const noexcept { return feasible_; }
+
+  /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the
+  /// limit starts at the limit
+  void start(float winding_C, float body_C) noexcept {
+    const float hot = body_C > winding_C ? body_C : winding_C;
+    winding_.set(detail::is_finite(hot) ? detail::celsius_units(hot) + 1 : winding_limit_);
+    if (!detail::is_finite(body_C) || !detail::is_finite(winding_C)) {
+      mean_.set(mean_limit_);
+      return;
+    }
+    const detail::KelvinUnits body = detail::celsius_units(body_C) + 1;
+    mean_.set(body + detail::part_up(winding_.above() - body, weight_));
+  }
+
+  /// Lowers the bounds to a measurement that is never below the truth; NaN changes nothing.
+  void tighten(float winding_C, float body_C) noexcept {
+    if (winding_C >= -100.0f && winding_C < detail::celsius_from(winding_.below()))
+      winding_.set(detail::celsius_units(winding_C) + 1);
+    if (body_C >= -100.0f && body_C < detail::celsius_from(mean_.below())) {
+      const detail::KelvinUnits body = detail::celsius_units(body_C) + 1;
+      const detail::KelvinUnits mean =
+          winding_.above() > body ? body + detail::part_up(winding_.above() - body, weight_) : body;
+      if (mean < mean_.below()) mean_.set(mean);
+    }
+  }
+
+  /// Prepares a step length; only a length that changed costs anything.
+  Travel travel(float dt_s) const noexcept {
+    const Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
+                           CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s),
+                           dt_s > hold_s_};
+    return travel;
+  }
+
+  /// Carries both bounds over a step during which at most `count` acted. (17) to (20)
+  void advance(uint8_t count, const Travel& step) noexcept {
+    mean_.raise(base_ + least_mean_);
+    const detail::KelvinUnits soaked =
+        step.is_late ? soaked_late(count) : mean_.above() + gap_ + detail::times(soak_now_, count);
+    winding_.raise(soaked);
+    const detail::KelvinUnits before = winding_.above();
+    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
+    winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
+    const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
+    mean_.raise(floor);
+    const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
+    mean_.go(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
+  }
+
+  /// Carries both bounds over an unknown time of at most one hold.
+  void advance_unknown(uint8_t count) noexcept {
+    const detail::UpperBound winding = winding_, mean = mean_;
+    advance(count, travel(hold_s_));
+    winding_.raise(winding.above());
+    mean_.raise(mean.above());
+  }
+
+  /// Takes note of the air and the supply until the next step.
+  /// @param air_C  never below the truth  @param supply_squared  (supply / highest supply)^2, never below the
+  /// truth
+  void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
+    if (!detail::is_same(air_C, air_C_)) {
+      air_C_ = air_C;
+      base_ = detail::celsius_units(air_C) + 1 + base_over_air_;
+    }
+    take_warm_winding(supply_squared);
+  }
+
+  /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
+  CertifiedCount largest() const noexcept {
+    const Room room = this->room();
+    CertifiedCount largest = {254, CertifiedNode::none, room.apart};
+    // Horizon: how authority falls. Not needed for safety.
+    const detail::KelvinUnits lost =
+        detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
+    largest.fit(room.mean_left + lost, sizes_.slow, CertifiedNode::body);
+    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost,
+                sizes_.slow_winding, CertifiedNode::winding);
+    // One hold: what the proof rests on.
+    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding,
+                CertifiedNode::winding);
+    largest.fit(room.winding_left + room.apart, sizes_.jump, CertifiedNode::winding);
+    const detail::KelvinUnits spare = room.mean - room.weighted;
+    largest.fit(room.mean_left + detail::part_down(spare, hold_body_), sizes_.held_body, CertifiedNode::body);
+    largest.fit(room.mean_left + spare, sizes_.fed, CertifiedNode::body);
+    return largest;
+  }
+
+  /// The largest count that is bearable for ever in this air. (28)
+  uint8_t sustainable() const noexcept {
+    const detail::KelvinUnits mean = mean_limit_ - base_, winding = winding_limit_ - base_;
+    CertifiedCount count = {254, CertifiedNode::none, 0};
+    count.fit(mean - detail::part_up(mean + gap_, weight_), sizes_.settled, CertifiedNode::body);
+    count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_,
+              CertifiedNode::winding);
+    return count.count;
+  }
+
+  /// True when both bounds are inside the set that the least power never leaves. It stays true once it is,
+  /// within the contract.
+  bool is_certified() const noexcept {
+    const Room room = this->room();
+    return room.winding_left >= -rounding_units() && room.mean_left >= -rounding_units();
+  }
+  /// True when the winding had no more heat to hand on, at the last plan, than it would have at this count
+  /// for ever.
+  bool is_below(uint8_t count, const CertifiedCount& plan) const noexcept {
+    return plan.apart <= detail::times(across_now_ + soak_now_, count);
+  }
+
+  /// Upper bound of the winding.
+  float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }
+  /// Upper bound of the body, now and after a cut.
+  float body_C() const noexcept { return detail::celsius_from(mean_.above()); }
+
+  /// Time until a node reaches its limit at a constant count; infinite when none does. 0 when one is there.
+  float seconds_to_limit(uint8_t count) const noexcept {
+    const Room room = this->room();
+    const detail::KelvinUnits rise = across_now_ + soak_now_;
+    const float apart = detail::celsius_from(gap_ + detail::times(rise, count));
+    const float settled = detail::celsius_from(detail::times(to_air_now_, count)) + share() * apart;
+    const float mean_s = crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
+                                    detail::celsius_from(room.mean + room.mean_left), fastest_body_per_s_);
+    const float winding_s =
+        crossing_s(detail::celsius_from(room.winding), detail::celsius_from(room.mean) + apart,
+                   detail::celsius_from(room.winding + room.winding_left), fastest_winding_per_s_);
+    // The winding may also be carried to its limit by a body that warms slowly under it.
+    const float carried_s =
+        crossing_s(detail::celsius_from(room.mean), settled / (1.0f - share()),
+                   detail::celsius_from(room.winding + room.winding_left) - apart, fastest_body_per_s_);
+    const float winding_first_s = winding_s < carried_s ? winding_s : carried_s;
+    return mean_s < winding_first_s ? mean_s : winding_first_s;
+  }
+
+private:
+  // All of it above the base: the temperature that the least power would reach in the hottest air (11).
+  struct Room {
+    detail::KelvinUnits winding, mean, weighted, apart, winding_left, mean_left;
+  };
+
+  // Kelvin per count in the conditions of largest(); they change only when the heat per count does.
+  struct Sizes {
+    detail::KelvinUnits settled, slow, slow_winding, held_winding, jump, held_body, fed;
+  };
+
+  Room room() const noexcept {
+    Room room;
+    room.mean = mean_.above() - base_;
+    if (room.mean < least_mean_) room.mean = least_mean_;
+    room.winding = winding_.above() - base_;
+    if (room.winding < room.mean + gap_) room.winding = room.mean + gap_;
+    room.weighted = detail::part_up(room.winding, weight_);
+    if (room.mean < room.weighted) room.mean = room.weighted;
+    room.apart = room.winding - room.mean - gap_;
+    if (room.apart < 0) room.apart = 0;
+    room.winding_left = winding_limit_ - base_ - room.winding;
+    room.mean_left = mean_limit_ - base_ - room.mean;
+    return room;
+  }
+
+  // The limits are kept half a millikelvin low; what roundings may add to a bound is a hundredth of that.
+  static constexpr detail::KelvinUnits rounding_units() { return 64; }
+
+  static float crossing_s(float from_K, float to_K, float limit_K, float rate_per_s) noexcept {
+    if (from_K >= limit_K) return 0.0f;
+    if (to_K <= limit_K) return static_cast<float>(INFINITY);
+    return static_cast<float>(logf((to_K - from_K) / (to_K - limit_K))) / rate_per_s;
+  }
+
+  float share() const noexcept { return static_cast<float>(weight_) * (1.0f / 65536.0f); }
+  float part_of_hold(float rate_per_s) const noexcept { return CertifiedTravel::above(rate_per_s * hold_s_); }
+
+  // What the mean cannot pass however long the count acts: the box below it is invariant (29).
+  detail::KelvinUnits soaked_late(uint8_t count) noexcept {
+    take(detail::whole_fraction(), detail::whole_fraction());
+    taken_winding_ = -1000L * 262144L;  // to be taken anew
+    const float apart_K = detail::celsius_from(gap_ + detail::times(across_now_ + soak_now_, count));
+    const float to_air_K = detail::celsius_from(detail::times(to_air_now_, count));
+    const detail::KelvinUnits settled =
+        base_ + detail::kelvin_up((to_air_K + share() * apart_K) / (1.0f - share()));
+    const detail::KelvinUnits fed =
+        base_ + detail::part_up(winding_.above() - base_, weight_) + detail::times(to_air_now_, count);
+    detail::KelvinUnits mean = mean_.above() > settled ? mean_.above() : settled;
+    if (fed > mean) mean = fed;
+    return mean + gap_ + detail::times(soak_now_, count);
+  }
+
+  // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a
+  // little, so that it need not be taken anew before a bound has moved by about as much.
+  void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
+    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
+    // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
+    if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
+        winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
+        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
+      return;
+    taken_supply_ = supply_squared;
+    taken_winding_ = winding;
+    taken_mean_ = mean;
+    // How far each may fall within a hold, also when it has first moved by the slack, and the air by
+    // anything.
+    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
+    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
+    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
+    take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
+         supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
+  }
+  static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
+  static detail::UnitFraction supply(detail::UnitFraction relief,
+                                     detail::UnitFraction supply_squared) noexcept {
+    return supply_squared == detail::whole_fraction()
+               ? relief
+               : static_cast<detail::UnitFraction>(detail::part_up(relief, supply_squared));
+  }
+  void take(detail::UnitFraction winding, detail::UnitFraction body) noexcept {
+    across_now_ = detail::part_up(across_, winding);
+    soak_now_ = detail::part_up(soak_, body);
+    to_air_now_ = detail::part_up(to_air_, body);
+    const detail::KelvinUnits rise = across_now_ + soak_now_;
+    sizes_.settled = to_air_now_ + detail::part_up(rise, weight_);
+    sizes_.slow = detail::part_up(sizes_.settled, horizon_body_);
+    sizes_.slow_winding = sizes_.slow + detail::part_up(rise, horizon_winding_);
+    sizes_.held_winding = detail::part_up(rise, hold_winding_);
+    sizes_.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
+    const detail::KelvinUnits fed = detail::part_up(sizes_.jump, weight_);
+    sizes_.held_body = detail::part_up(fed + to_air_now_, hold_body_);
+    sizes_.fed = fed + detail::part_up(to_air_now_, hold_body_);
+  }
+
+  void set_limits(const Config& config, const CertifiedUse& use, float weight, float count_W) noexcept {
+    const float base_C = use.highest_air_C + detail::celsius_from(base_over_air_ + 2);
+    const float gap_K = detail::celsius_from(gap_ + 2);
+    const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
+    // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
+    const float winding_C =
+        detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
+    const float rounding_K = 0.0005f;
+    mean_limit_ = detail::celsius_units(mean_C - rounding_K);
+    winding_limit_ = detail::celsius_units(winding_C - rounding_K);
+    feasible_ = ConfigError::none;
+    if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) ||
+        !(winding_C > mean_C + gap_K - 0.001f))
+      feasible_ = ConfigError::highest_air_C;
+    const float rise_K = 255.0f * count_W *
+                         (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
+                          use.hold_s / config.body_heat_capacity_J_per_K.lowest);
+    if (!(rise_K < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
+  }
+
+  float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
+  detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
+  detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step
+  detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, winding_limit_, mean_limit_;
+  detail::UnitFraction weight_, hold_winding_, hold_body_, horizon_winding_, horizon_body_;
+  CertifiedRelief winding_relief_, mean_relief_;
+  Sizes sizes_;
+  detail::KelvinUnits taken_winding_ = -1000L * 262144L, taken_mean_ = 0;
+  detail::UnitFraction taken_supply_ = 0;
+  detail::UpperBound winding_, mean_;
+  detail::KelvinUnits base_ = 0;
+  float air_C_ = detail::not_a_number();
+  ConfigError feasible_;
+};
+
+}  // namespace thermopower

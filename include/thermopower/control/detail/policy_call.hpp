@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "../axis_facts.hpp"
+
+/// @file control/detail/policy_call.hpp
+/// Hands an axis's facts to its policies in the form they ask for. A limiter whose `Inputs` are a demand, a
+/// temperature and a rate gets these; one that needs more has `static Inputs read(const AxisFacts&)`. A
+/// limiter that must know how long a fault lasted has `cut_after(reason, demand, dt_s)` beside `cut(reason,
+/// demand)`. A power law may take `step(error_deg, facts, dt_s)` and a gain `step(power, facts)`.
+
+namespace thermopower {
+
+namespace detail {
+
+template <class Limiter>
+auto limiter_inputs(const AxisFacts& facts, int) noexcept -> decltype(Limiter::read(facts)) {
+  return Limiter::read(facts);
+}
+template <class Limiter>
+typename Limiter::Inputs limiter_inputs(const AxisFacts& facts, long) noexcept {
+  const typename Limiter::Inputs inputs = {facts.demand, facts.motor_C, facts.rate_K_per_s};
+  return inputs;
+}
+
+template <class Limiter>
+auto cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float dt_s, int) noexcept
+    -> decltype(limiter.cut_after(reason, demand, dt_s)) {
+  return limiter.cut_after(reason, demand, dt_s);
+}
+template <class Limiter>
+LimitedPower cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float, long) noexcept {
+  return limiter.cut(reason, demand);
+}
+
+template <class Law>
+auto demanded_power(Law& law, float error_deg, const AxisFacts& facts, float dt_s, int) noexcept
+    -> decltype(law.step(error_deg, facts, dt_s)) {
+  return law.step(error_deg, facts, dt_s);
+}
+template <class Law>
+uint8_t demanded_power(Law& law, float error_deg, const AxisFacts&, float, long) noexcept {
+  return law.step(error_deg);
+}
+
+template <class Gain>
+auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept
+    -> decltype(gain.step(power, facts)) {
+  return gain.step(power, facts);
+}
+template <class Gain>
+uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
+  return gain.step(power);
+}
+
+/// What a motor draws at a POWER; a model that remembers may take it as the byte it is, and spare the
+/// conversion.
+template <class Current>
+auto drawn_at(Current& current, uint8_t power, float supply_V, float motor_C, int) noexcept
+    -> decltype(current.at_count(power, supply_V, motor_C)) {
+  return current.at_count(power, supply_V, motor_C);
+}
+template <class Current>
+typename Current::State drawn_at(const Current& current, uint8_t power, float supply_V, float motor_C,
+                                 long) noexcept {
+  return current.at_power(static_cast<float>(power), supply_V, motor_C);
+}
+
+/// Starts a model that nobody told a temperature: its own way, or as warm as the air (the thesis's
+/// assumption, section 4.2).
+template <class Thermal>
+auto start_thermal(Thermal& thermal, float air_C, int) noexcept -> decltype(thermal.start_in(air_C)) {
+  return thermal.start_in(air_C);
+}
+template <class Thermal>
+void start_thermal(Thermal& thermal, float air_C, long) noexcept {
+  thermal.start(air_C);
+}
+
+/// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has
+/// only one.
+template <class Thermal>
+auto body_of(const Thermal& thermal, int) noexcept -> decltype(thermal.state().body_C + 0.0f) {
+  return thermal.state().body_C;
+}
+template <class Thermal>
+float body_of(const Thermal& thermal, long) noexcept {
+  return thermal.hottest_C();
+}
+
+}  // namespace detail
+}  // namespace thermopower

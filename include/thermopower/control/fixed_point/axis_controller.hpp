@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "gain_scheduler.hpp"
+#include "step_power_law.hpp"
+#include "safety_limiter.hpp"
+
+/// @file control/fixed_point/axis_controller.hpp
+/// One axis in whole numbers: thermopower::AxisController for chips without a floating-point unit.
+
+namespace thermopower {
+namespace fixed_point {
+
+/// What an axis decides on.
+/// @ingroup control
+struct AxisInputs {
+  uint16_t error_units;   ///< Magnitude of the folded error in units of 360/16384 degree, 0 .. 8192.
+  CoarseTemperature air;  ///< Air temperature, -60 .. 125 degC.
+  LimitReason fault;      ///< A fault found by the caller, or `LimitReason::none`.
+};
+
+namespace detail {
+
+/// An axis but for its motor's constants and its gain: axes that differ in nothing else share its code.
+template <class Core, class PowerLaw, class Limiter>
+class SharedAxis {
+public:
+  // Numbers and not a struct: this compiler keeps them in registers.
+  [[gnu::noinline]] void step(uint16_t error_units, CoarseTemperature air, LimitReason fault, Ticks ticks,
+                              uint16_t cooling_factor) noexcept {
+    const uint8_t demand = power_law.step(error_units);
+    const Rate rate = thermal.step(air, ticks, cooling_factor);
+    granted = is_fault(fault) ? limiter.cut(fault, demand)
+                              : limiter.step(demand, thermal.state().motor, rate, ticks);
+  }
+
+  Core thermal;
+  PowerLaw power_law;
+  Limiter limiter;
+  LimitedPower granted = {least_power(), LimitReason::no_telemetry_yet};
+};
+
+}  // namespace detail
+
+/// Temperature estimate, power law, limiter and gain of one axis, in the order of thermopower::AxisController, which says
+/// what each does. Constants are types, so the object is its state: twelve bytes with the thesis's policies.
+///
+/// @tparam Thermal   ThermalModel of a motor. A model of your own names its `Core`, which has `start()`,
+///                   `step()`, `heat()` and `state()` as ThermalCore, and has `cooling_factor`, which it
+///                   is stepped with, and a static `heating(power, motor)`
+/// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
+/// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
+/// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
+/// @ingroup control
+template <class Thermal, class PowerLaw = ProgrammedLevels<>, class Limiter = SafetyLimiter<>,
+          class Gain = NoGain>
+class AxisController {
+public:
+  typedef AxisInputs Inputs;   ///< What the axis decides on.
+  typedef LimitedPower State;  ///< The power granted, to be sent as POWER, and why it is below the demand.
+
+  /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then
+  /// the motor is at 0 degC and every step needs a fault. @param motor  saturates at -50 and 180 degC
+  void start(Temperature motor) noexcept { axis_.thermal.start(motor); }
+
+  /// One control cycle; `prepare()` must have been called since the last one. @param ticks  time since then
+  const State& step(const Inputs& inputs, Ticks ticks) noexcept {
+    axis_.step(inputs.error_units, inputs.air, inputs.fault, ticks, Thermal::cooling_factor);
+    return axis_.granted;
+  }
+
+  /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for
+  /// it there.
+  void prepare() noexcept {
+    axis_.thermal.heat(Thermal::heating(axis_.granted.power, axis_.thermal.state().motor));
+  }
+
+  /// Send this as P.
+  uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
+  /// P at the least power.
+  static constexpr uint8_t first_gain() { return Gain::gain(least_power()); }
+
+  const State& state() const noexcept { return axis_.granted; }                     ///< After the last step.
+  const typename Thermal::Core& thermal() const noexcept { return axis_.thermal; }  ///< The temperature.
+  uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
+
+private:
+  detail::SharedAxis<typename Thermal::Core, PowerLaw, Limiter> axis_;
+};
+
+}  // namespace fixed_point
+}  // namespace thermopower
