@@ -37,41 +37,57 @@ enum class Turn : uint8_t {
 ///       case sbgc::Turn::wait: break;
 ///     }
 ///
+/// A request whose time is up is asked again. Should answers come late after all, no further request is made
+/// until every one of them is there, or none has come for the length of a time-out: answers that come late
+/// cost time and never set the pace.
+///
 /// It knows no wire and no clock. All times are differences, so a clock that wraps at 2^32 (71.6 minutes)
 /// does no harm.
 /// @tparam Constants StandardPolling, or your own
 /// @ingroup sbgc
 template <class Constants>
 class BasicPoller {
- public:
+public:
   /// @brief What is to be done. Call it in every round of the loop.
   /// @param now_us a clock that may wrap around at 2^32, such as Arduino's micros().
   Turn turn(uint32_t now_us) noexcept {
-    const uint32_t waited_us = now_us - asked_us_;
+    if (is_answer_new_) mark_us_ = now_us;
+    is_answer_new_ = false;
+    const uint32_t waited_us = now_us - mark_us_;
     if (is_waiting_) {
       if (waited_us <= Constants::answer_timeout_us()) return Turn::wait;
       is_waiting_ = false;
-      return Turn::missed;
+      if (!is_draining_) return Turn::missed;
+      is_draining_ = false;
+      outstanding_ = 0;
     }
     if (waited_us <= Constants::request_interval_us()) return Turn::wait;
-    asked_us_ = now_us;
+    mark_us_ = now_us;
     is_waiting_ = true;
+    if (outstanding_ < 255) ++outstanding_;
     return Turn::ask;
   }
 
-  /// @brief The answer has come.
-  void answered() noexcept { is_waiting_ = false; }
+  /// @brief An answer has come.
+  void answered() noexcept {
+    if (outstanding_ > 0) --outstanding_;
+    // Answers to requests that were given up may follow: they are waited for, as long as one comes.
+    is_draining_ = is_waiting_ = is_answer_new_ = outstanding_ > 0;
+  }
 
   /// @brief Is an answer awaited?
   bool is_waiting() const noexcept { return is_waiting_; }
 
- private:
+private:
   static_assert(Constants::request_interval_us() < 0x80000000u &&
                     Constants::answer_timeout_us() < 0x80000000u,
                 "thermopower: a Poller's times must be below 2^31 microseconds");
 
-  uint32_t asked_us_ = 0;
+  uint32_t mark_us_ = 0;     // of the last request, or of the last answer while draining
+  uint8_t outstanding_ = 0;  // requests without an answer so far; stops at 255
   bool is_waiting_ = false;
+  bool is_draining_ = false;    // answers to requests that were given up are coming
+  bool is_answer_new_ = false;  // one has come since the last turn
 };
 
 /// @brief The poller with the standard pace.

@@ -59,7 +59,8 @@ class Receiver {
 
 public:
   /// @param timeout_us longest pause between two bytes of a frame, at most 8 000 000 (longer is taken for
-  /// that); 0 waits for ever. A pause is noticed up to 512 us late and never early. The default is long for
+  /// that); 0 waits for ever. A pause is noticed up to 512 us late and never early, and however long it is but for the
+  /// last 16 s before the clock comes round. The default is long for
   /// the wire (a byte takes 87 us at 115200 baud), because bytes are often read late and in groups.
   explicit Receiver(uint32_t timeout_us = 20000) noexcept { set_timeout_us(timeout_us); }
 
@@ -69,9 +70,9 @@ public:
   /// @return true when a valid frame is there: see frame(). Call next() for more of them before the next
   /// byte; it is allowed not to, frames then come with later bytes, and none is lost.
   bool receive(uint8_t byte, uint32_t now_us) noexcept {
-    const uint16_t now = ticks(now_us);
-    const bool late = is_late(now);
-    last_ = now;
+    const bool late = is_late(now_us);
+    last_ = ticks(now_us);
+    last_high_ = high_ticks(now_us);
     if (stage_ == Stage::payload && !late) {
       // By far the most frequent case: all bytes before this one are read, and check_header() has made room.
       bytes_[end_] = byte;
@@ -97,7 +98,7 @@ public:
   /// Call it now and then while no byte comes: it brings out frames that a false start is holding back.
   bool poll(uint32_t now_us) noexcept {
     release();
-    if (is_late(ticks(now_us))) stale_ = end_;
+    if (is_late(now_us)) stale_ = end_;
     return parse();
   }
 
@@ -228,11 +229,16 @@ private:
   /// dozens.
   static uint16_t ticks(uint32_t now_us) noexcept { return static_cast<uint16_t>(now_us >> tick_shift); }
 
+  /// The eight bits above: together they wrap where the clock does.
+  static uint8_t high_ticks(uint32_t now_us) noexcept { return static_cast<uint8_t>(now_us >> 24); }
+
   /// No frame may continue across a long pause. The bytes before it may still hold whole frames: parse()
-  /// gives up at the mark `stale_` whatever is incomplete there. The difference is signed so that a clock
-  /// reading taken a little earlier than the last one is no pause.
-  bool is_late(uint16_t now) const noexcept {
-    return static_cast<int16_t>(now - last_) > static_cast<int16_t>(timeout_) && timeout_ != 0;
+  /// gives up at the mark `stale_` whatever is incomplete there. A clock reading taken a little earlier than
+  /// the last one (up to 16 s) is no pause; every other difference is.
+  bool is_late(uint32_t now_us) const noexcept {
+    const uint16_t now = ticks(now_us), passed = static_cast<uint16_t>(now - last_);
+    const uint8_t turns = static_cast<uint8_t>(high_ticks(now_us) - last_high_ - (now < last_ ? 1 : 0));
+    return timeout_ != 0 && turns != 0xFFu && (turns != 0 || passed > timeout_);
   }
 
   /// There is room in front whenever the end is reached: an incomplete frame is shorter than the buffer.
@@ -252,8 +258,9 @@ private:
   uint8_t left_ = 0;
   uint8_t trailer_at_ = 0;
   Protocol protocol_;
-  uint16_t last_ = 0;     // when the last byte came, in ticks
-  uint16_t timeout_ = 0;  // in ticks; 0 waits for ever
+  uint16_t last_ = 0;      // when the last byte came, in ticks
+  uint8_t last_high_ = 0;  // and the bits above
+  uint16_t timeout_ = 0;   // in ticks; 0 waits for ever
   ReceiverCounters counters_ = ReceiverCounters();
   uint8_t bytes_[buffer_size];
 };

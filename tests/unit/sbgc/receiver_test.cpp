@@ -29,6 +29,17 @@ TEST_CASE("time-out: never early, at most 512 us late, whatever the clock shows"
   }
 }
 
+TEST_CASE("time-out: a pause of any length is noticed") {
+  for (const std::uint32_t start : {0u, 0x12345678u, 0xFFFFFF00u})
+    for (std::uint32_t pause_ms = 21; pause_ms < 4250000; pause_ms += pause_ms / 3 + 1) {
+      INFO("start " << start << ", pause of " << pause_ms << " ms");
+      thermopower::SbgcCodec<> codec(20000);
+      CHECK(receive_all(codec, head, start).empty());
+      CHECK(receive_all(codec, tail, start + pause_ms * 1000u).empty());
+      CHECK(codec.counters().timeouts == 1);
+    }
+}
+
 TEST_CASE("time-out: counts from the last byte, not from the first") {
   thermopower::SbgcCodec<> codec(1000);
   std::uint32_t now_us = 0;

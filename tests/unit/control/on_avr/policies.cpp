@@ -137,7 +137,7 @@ static void work() {
 #elif THERMOPOWER_POLICY == 14
 static uint8_t bytes[StoredState::size()];
 static void work() {
-  StoredState state = {winding_C, body_C, heat_W, 1.0f, 0, call};
+  StoredState state = {winding_C, body_C, winding_C, body_C, heat_W, 1.0f, 0, call};
   state.write(bytes);
   result = state.read(bytes) ? 1 : 0;
 }
