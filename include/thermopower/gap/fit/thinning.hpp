@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/fit/fit_problem.hpp>
-#include <thermopower/gap/simulate.hpp>
+#include <thermopower/gap/fit/segment_simulation.hpp>
 
 #include <algorithm>
 #include <array>

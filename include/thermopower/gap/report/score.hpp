@@ -4,7 +4,7 @@
 
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/data/noise.hpp>
-#include <thermopower/gap/simulate.hpp>
+#include <thermopower/gap/fit/segment_simulation.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+/// @file definitions.hpp
+/// Every definition that the public headers of the diagnosis leave to a library where
+/// THERMOPOWER_GAP_LIBRARY is defined: for the one source file that compiles them.
+
+#include <thermopower/gap/detail/diagnose.hpp>
+#include <thermopower/gap/detail/simulate.hpp>
+#include <thermopower/plant/detail/standard_catalogue.hpp>

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#define THERMOPOWER_GAP_LIBRARY
+#include "calls_diagnose.cpp"
