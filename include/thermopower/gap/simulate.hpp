@@ -4,7 +4,7 @@
 
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
-#include <thermopower/gap/simulation_mode.hpp>
+#include <thermopower/plant/simulation_mode.hpp>
 #include <thermopower/plant/signal.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -82,6 +83,25 @@ struct CalibratedConstant {
   bool has_slack = true;            ///< may move by the slack for free; of a polynomial each coefficient does
 };
 
+class Plant;
+
+/// A constant of a plant of one's own.
+struct PlantConstant {
+  std::string block;         ///< the part of the plant it belongs to
+  std::string name;          ///< ends in its unit, as in `outflow_m3_per_s`
+  std::string unit;          ///< as reports spell it; "1" for a pure number
+  double value = 1.0;        ///< in that unit
+  bool may_be_cause = true;  ///< may be off by more than its slack; a known constant (gravity) is not
+  bool above_zero = true;    ///< only values above 0 make sense
+};
+
+/// A plant of one's own in a model: its equations, and its constants.
+struct PlantModel {
+  std::string type;                        ///< what the plant calls itself, in messages
+  std::shared_ptr<const Plant> equations;  ///< never null
+  std::vector<PlantConstant> constants;    ///< in the order in which the equations read them
+};
+
 /// The simulation under test, as in a model file. Blocks may be absent: what they would say is not judged.
 struct Model {
   std::string name;  ///< as reports call it
@@ -94,6 +114,8 @@ struct Model {
   /// From commanded current to motion.
   std::optional<RigidAxisModel> axis;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
+  /// A plant of one's own in place of the blocks above; none: the library's actuator.
+  std::optional<PlantModel> own;
 
   bool has_current() const {
     return !std::holds_alternative<std::monostate>(current);
@@ -153,6 +175,9 @@ void for_each_constant(ModelType& model, Visitor&& visit) {
     visit("axis", "viscous_Nms_per_rad", model.axis->viscous_Nms_per_rad);
     visit("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
   }
+  if (model.own)
+    for (auto& constant : model.own->constants)
+      visit(constant.block.c_str(), constant.name.c_str(), constant.value);
 }
 
 /// The constant of that (possibly qualified) name, or nullptr.
@@ -222,6 +247,10 @@ inline std::vector<CalibratedConstant> Model::calibrated() const {
     if (axis->viscous_Nms_per_rad != 0.0) list.push_back({"viscous", "axis", {"viscous_Nms_per_rad"}});
     list.push_back({"torque_constant", "axis", {"torque_constant_Nm_per_A"}});
   }
+  if (own)
+    for (const PlantConstant& constant : own->constants)
+      if (constant.may_be_cause && constant.value != 0.0)
+        list.push_back({constant.name, constant.block, {constant.name}});
   return list;
 }
 
@@ -242,7 +271,15 @@ inline std::optional<std::string> Model::validate() const {
     problem = "axis.viscous_Nms_per_rad is negative, expected 0 or more";
   if (!problem && axis && axis->torque_constant_Nm_per_A == 0.0)
     problem = "axis.torque_constant_Nm_per_A is 0, expected another number";
-  if (!problem && !has_current() && !has_thermal() && !axis)
+  if (own && !problem)
+    for (const PlantConstant& constant : own->constants)
+      if (constant.above_zero && !(constant.value > 0.0))
+        return constant.block + "." + constant.name + " is " + std::to_string(constant.value) +
+               ", expected a number above 0";
+  if (!problem && own && (has_current() || has_thermal() || axis))
+    problem =
+        "the model has a plant of its own and one of the blocks current, thermal and axis: expected one";
+  if (!problem && !own && !has_current() && !has_thermal() && !axis)
     problem = "the model has none of the blocks current, thermal and axis: nothing can be judged";
   return problem;
 }

@@ -15,7 +15,7 @@ FitProblem problem_of(const Model& model, const std::vector<Inputs>& inputs) {
   FitProblem problem;
   problem.model = &model;
   problem.catalogue = &standard_catalogue();
-  problem.segments = cut(inputs, 1.0);
+  problem.segments = cut(inputs, 1.0, plant_of(model));
   problem.sigma = {0.002, 0.05, 0.02, 0.15};
   return problem;
 }
@@ -35,7 +35,7 @@ Eigen::VectorXd coordinates_of(const Trial& trial, const std::vector<Coordinate>
 Eigen::VectorXd residuals(const FitProblem& problem, const Explanation& explanation,
                           const std::vector<Coordinate>& list, const Eigen::VectorXd& at) {
   std::vector<double> all;
-  problem.evaluate(explanation, list, at, std::vector<Start>(problem.segments.size(), Start::Zero()), false,
+  problem.evaluate(explanation, list, at, problem.measured_starts(), false,
                    [&](std::size_t, const FitProblem::Residuals& one) {
                      for (double value : one.value) all.push_back(value);
                    });
@@ -66,7 +66,7 @@ TEST_CASE("derivatives by automatic differentiation agree with finite difference
     const Eigen::VectorXd at = coordinates_of(trial, list);
     Eigen::MatrixXd jacobian(residuals(problem, explanation, list, at).size(), at.size());
     Eigen::Index filled = 0;
-    problem.evaluate(explanation, list, at, std::vector<Start>(problem.segments.size(), Start::Zero()), true,
+    problem.evaluate(explanation, list, at, problem.measured_starts(), true,
                      [&](std::size_t, const FitProblem::Residuals& one) {
                        jacobian.middleRows(filled, one.value.size()) = one.jacobian.leftCols(at.size());
                        filled += one.value.size();

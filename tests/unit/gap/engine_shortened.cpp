@@ -66,7 +66,7 @@ Candidate fitted(const Model& model, const std::string& id, const Inputs& inputs
   FitProblem problem;
   problem.model = &model;
   problem.catalogue = &standard_catalogue();
-  cut(inputs, 0.5, problem.segments);
+  problem.plant().cut(inputs, 0.5, problem.segments);
   problem.sigma = {0.002, 0.05, 0.02, 0.15};
   return Attribution(problem, Slack(), 1).fit({{standard_catalogue().find(id)}, {}}, {});
 }
@@ -137,11 +137,11 @@ TEST_CASE("shortening keeps the mean error of the simulation under test, block b
     FitProblem problem;
     problem.model = &model;
     problem.catalogue = &standard_catalogue();
-    cut(inputs, 0.5, problem.segments);
+    problem.plant().cut(inputs, 0.5, problem.segments);
     const std::vector<Coordinate> list = coordinates(model, {}, Slack());
     double sum = 0.0, count = 0.0;
-    problem.evaluate({}, list, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(list.size())), {Start::Zero()},
-                     false, [&](std::size_t, const FitProblem::Residuals& one) {
+    problem.evaluate({}, list, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(list.size())),
+                     problem.measured_starts(), false, [&](std::size_t, const FitProblem::Residuals& one) {
                        for (Eigen::Index i = 0; i < one.value.size(); ++i) {
                          const auto at = static_cast<std::size_t>(i);
                          if (one.signal[at] != Signal::motor_C) continue;

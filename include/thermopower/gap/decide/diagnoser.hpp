@@ -93,7 +93,7 @@ private:
   /// Whether a model scores what the noise allows on some data.
   bool holds(const Model& calibrated, const std::vector<Inputs>& inputs, const FitProblem& problem) const {
     constexpr double relevant = 1.2;
-    const std::vector<Segment> full = cut(inputs, options_.horizon_s);
+    const std::vector<Segment> full = cut(inputs, options_.horizon_s, plant_of(model_));
     const Errors errors = errors_of(calibrated, full, catalogue_);
     std::array<double, signal_count> sigma = noise_of(errors, inputs);
     if (problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
@@ -170,7 +170,7 @@ private:
     FitProblem problem;
     problem.model = &model_;
     problem.catalogue = &catalogue_;
-    std::vector<Segment> segments = cut(*thin, horizon_s);
+    std::vector<Segment> segments = cut(*thin, horizon_s, plant_of(model_));
     problem.segments = thinned_axis(segments, axis_rows, also);
     if (all != nullptr) *all = std::move(segments);
     kept_.push_back(std::move(thin));
@@ -305,7 +305,7 @@ private:
     result_.recalibrated =
         augmented(model_, recalibrated.explanation, recalibrated.list, recalibrated.fit.at);
     if (named) result_.augmented = fitted;
-    const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s);
+    const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     score(result_, model_, full, held_out_inputs_, fitted, options_, catalogue_);
     if (named) {
       std::vector<Recording> simulated = train_recordings_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/simulate.hpp>
 
@@ -15,19 +16,25 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
                                                              const SimulationOptions& options,
                                                              const Catalogue& catalogue) {
   const std::vector<Inputs> inputs{prepare(model, recording)};
-  const Instance<double> instance(model, {}, {}, catalogue);
   std::vector<SimulatedSignal> results;
-  std::array<int, signal_count> place{-1, -1, -1, -1};
+  std::array<int, signal_count> column;
+  column.fill(-1);
   for (int i = 0; i < signal_count; ++i)
     if (inputs[0].judged(static_cast<Signal>(i))) {
-      place[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
+      column[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
       results.push_back({static_cast<Signal>(i), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
-  detail::simulate_segments<double>(instance, cut(inputs, options.horizon_s), options.mode,
-                                    [&](std::size_t, Signal signal, Eigen::Index row, double value) {
-                                      const int at = place[static_cast<std::size_t>(signal)];
-                                      if (at >= 0) results[static_cast<std::size_t>(at)].values[row] = value;
-                                    });
+  const Plant& plant = plant_of(model);
+  const std::vector<Segment> segments = cut(inputs, options.horizon_s, plant);
+  detail::simulate_segments(
+      model, catalogue, segments, options.mode, [&](std::size_t index, const Readings& readings) {
+        const std::vector<Signal>& signals = plant.signals(segments[index]);
+        for (std::size_t k = 0; k < signals.size(); ++k) {
+          const int at = column[static_cast<std::size_t>(signals[k])];
+          for (Eigen::Index row = segments[index].begin; at >= 0 && row < segments[index].end; ++row)
+            results[static_cast<std::size_t>(at)].values[row] = readings.value(row, static_cast<int>(k));
+        }
+      });
   return results;
 }
 

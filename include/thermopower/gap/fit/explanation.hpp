@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/model.hpp>
-#include <thermopower/plant/instance.hpp>
+#include <thermopower/plant/plant.hpp>
 
 #include <Eigen/Core>
 
@@ -112,37 +112,20 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   return list;
 }
 
-/// A point of a fit as the arguments of an Instance, with up to `dual_width` directions seeded.
-template <class Scalar>
-struct Point {
-  std::vector<Scalar> factors;             ///< on each of Model::calibrated(), > 0
-  std::vector<AddedEffect<Scalar>> added;  ///< the explanation's effects with their parameters
-
-  /// @param first  coordinate that varies in direction 0; the next ones follow in the further directions
-  Point(const Model& model, const Explanation& explanation, const std::vector<Coordinate>& coordinates,
-        const Eigen::VectorXd& at, int first, int directions) {
-    int index = 0;
-    const auto next = [&] {
-      const Coordinate& coordinate = coordinates[static_cast<std::size_t>(index)];
-      Scalar value = constant<Scalar>(at[index]);
-      if (index >= first && index < first + directions) seed(value, index - first);
-      if (coordinate.logarithmic) {
-        using std::exp;
-        value = exp(value);
-      }
-      ++index;
-      return value;
-    };
-    const std::size_t constants = model.calibrated().size();
-    for (std::size_t i = 0; i < constants; ++i) factors.push_back(next());
-    for (const CatalogueEntry* entry : explanation.effects) {
-      AddedEffect<Scalar> one;
-      one.entry = entry;
-      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i) one.parameters.push_back(next());
-      added.push_back(std::move(one));
-    }
+/// A point of a fit as a plant takes it.
+inline ParameterPoint point_of(const Model& model, const Explanation& explanation,
+                               const std::vector<Coordinate>& coordinates, const Eigen::VectorXd& at) {
+  ParameterPoint point;
+  const std::size_t constants = model.calibrated().size();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const double coordinate = at[static_cast<Eigen::Index>(i)];
+    const double value = coordinates[i].logarithmic ? std::exp(coordinate) : coordinate;
+    (i < constants ? point.factors : point.parameters).push_back(value);
+    point.speed.push_back(coordinates[i].logarithmic ? value : 1.0);
   }
-};
+  point.effects = explanation.effects;
+  return point;
+}
 
 /// The model with an explanation's causes in it and its constants moved.
 inline Model augmented(const Model& model, const Explanation& explanation,

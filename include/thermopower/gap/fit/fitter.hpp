@@ -44,7 +44,7 @@ public:
                      const std::vector<Start>* starts = nullptr) {
     FitResult best;
     best.at = from;
-    best.starts = starts != nullptr ? *starts : std::vector<Start>(problem_.segments.size(), Start::Zero());
+    best.starts = starts != nullptr ? *starts : problem_.measured_starts();
     double damping = 1e-4;
     int small_steps = 0;
     for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
@@ -84,17 +84,20 @@ public:
   double scan(const Eigen::VectorXd& at) {
     FitResult point;
     point.at = at;
-    point.starts.assign(problem_.segments.size(), Start::Zero());
+    point.starts = problem_.measured_starts();
     linearise(point);
     const Eigen::VectorXd change = stepped(point, 1e-3).at - at;
     return projected_cost_ + 2.0 * gradient_.dot(change) + change.dot(information_ * change);
   }
 
 private:
+  /// Starts by starts.
+  using StartMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_start, largest_start>;
+
   struct Eliminated {
-    Eigen::Matrix2d inverse;   ///< of the starts' own block
+    StartMatrix inverse;       ///< of the starts' own block
     Eigen::MatrixXd coupling;  ///< starts by coordinates
-    Eigen::Vector2d gradient;
+    Start gradient;
   };
 
   void linearise(FitResult& at) {
@@ -127,14 +130,15 @@ private:
                    double& prior) {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     const auto own = residuals.jacobian.leftCols(n);
-    const auto starts = residuals.jacobian.rightCols(2);
+    const auto starts = residuals.jacobian.rightCols(start.size());
     const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
     Eliminated& part = eliminated_[i];
-    Eigen::Matrix2d block = starts.transpose() * starts;
+    StartMatrix block = starts.transpose() * starts;
     block.diagonal() += weight;
-    for (int k = 0; k < 2; ++k)
+    for (Eigen::Index k = 0; k < start.size(); ++k)
       if (!(block(k, k) > 0.0)) block(k, k) = 1.0;
-    part.inverse = block.inverse();
+    if (start.size() == 2) part.inverse = Eigen::Matrix2d(block).inverse();
+    else part.inverse = block.inverse();
     part.coupling = starts.transpose() * own;
     part.gradient = starts.transpose() * residuals.value + (weight.array() * start.array()).matrix();
     information_.noalias() += own.transpose() * own;

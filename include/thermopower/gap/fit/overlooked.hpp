@@ -25,7 +25,7 @@ inline std::vector<std::size_t> overlooked(const FitProblem& part, const std::ve
   whole.segments.clear();
   for (const Segment& segment : all)
     if (whole.segments.empty() || whole.segments.back().inputs != segment.inputs)
-      cut(*segment.inputs, horizon_s, whole.segments);
+      part.plant().cut(*segment.inputs, horizon_s, whole.segments);
   struct Sum {
     double squares = 0.0, samples = 0.0;
     void add(const Sum& other) { squares += other.squares, samples += other.samples; }
@@ -37,8 +37,7 @@ inline std::vector<std::size_t> overlooked(const FitProblem& part, const std::ve
   };
   std::vector<Sum> of(all.size());
   std::size_t place = 0;
-  whole.evaluate(best.explanation, best.list, best.fit.at,
-                 std::vector<Start>(whole.segments.size(), Start::Zero()), false,
+  whole.evaluate(best.explanation, best.list, best.fit.at, whole.measured_starts(), false,
                  [&](std::size_t i, const FitProblem::Residuals& one) {
                    while (place + 1 < all.size() && !within(whole.segments[i], all[place])) ++place;
                    of[place].add({one.value.squaredNorm(), static_cast<double>(one.value.size())});

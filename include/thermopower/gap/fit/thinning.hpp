@@ -27,8 +27,10 @@ public:
   /// @param rows       about so many are kept, > 0
   /// @param longest_s  blocks in which the power switches are no longer than this
   /// @param baseline   simulates what is lost; must outlive this object
-  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s, const Instance<double>& baseline)
-      : full_(full), longest_s_(longest_s), baseline_(baseline) {
+  /// @param catalogue  knows the effects of the baseline; must outlive this object
+  BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s, const Model& baseline,
+                const Catalogue& catalogue)
+      : full_(full), longest_s_(longest_s), baseline_(baseline), catalogue_(catalogue) {
     block_ = (2 * full.rows() + rows - 1) / rows;
   }
 
@@ -274,11 +276,16 @@ private:
     Simulated result;
     result.fill(Eigen::VectorXd::Constant(inputs.rows(), missing));
     std::vector<Segment> segments;
-    cut(inputs, 0.0, segments);
-    detail::simulate_segments<double>(baseline_, segments, SimulationMode::free_running,
-                                      [&](std::size_t, Signal signal, Eigen::Index row, double value) {
-                                        result[static_cast<std::size_t>(signal)][row] = value;
-                                      });
+    const Plant& plant = plant_of(baseline_);
+    plant.cut(inputs, 0.0, segments);
+    detail::simulate_segments(
+        baseline_, catalogue_, segments, SimulationMode::free_running,
+        [&](std::size_t index, const Readings& readings) {
+          const std::vector<Signal>& signals = plant.signals(segments[index]);
+          for (std::size_t k = 0; k < signals.size(); ++k)
+            for (Eigen::Index row = segments[index].begin; row < segments[index].end; ++row)
+              result[static_cast<std::size_t>(signals[k])][row] = readings.value(row, static_cast<int>(k));
+        });
     return result;
   }
 
@@ -295,7 +302,8 @@ private:
   const Inputs& full_;
   Eigen::Index block_ = 1;
   double longest_s_ = 1.0;
-  const Instance<double>& baseline_;
+  const Model& baseline_;
+  const Catalogue& catalogue_;
   std::vector<Row> rows_;
 };
 
@@ -307,8 +315,7 @@ inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& 
     tau_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
   else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
     tau_s = 60.0 / polynomial->cooling_per_min;
-  const Instance<double> baseline(model, {}, {}, catalogue);
-  return BenchThinning(full, rows, 0.02 * tau_s, baseline).run();
+  return BenchThinning(full, rows, 0.02 * tau_s, model, catalogue).run();
 }
 
 }  // namespace thermopower::gap

@@ -34,28 +34,33 @@ struct Errors {
 inline Errors errors_of(const Model& model, const std::vector<Segment>& segments,
                         const Catalogue& catalogue) {
   Errors errors;
-  const Instance<double> instance(model, {}, {}, catalogue);
+  const Plant& plant = plant_of(model);
   for (std::size_t i = 0; i < signal_count; ++i) {
     std::size_t rows = 0;
     for (const Segment& segment : segments) rows += static_cast<std::size_t>(segment.end - segment.begin);
     if (!segments.empty() && segments.front().inputs->judged(static_cast<Signal>(i)))
       errors.of[i].reserve(rows);
   }
-  detail::simulate_segments<double>(
-      instance, segments, SimulationMode::free_running,
-      [&](std::size_t index, Signal signal, Eigen::Index row, double value) {
-        const Segment& segment = segments[index];
-        const Inputs& inputs = *segment.inputs;
-        if (!inputs.judged(signal)) return;
-        const double measured = inputs.of(signal)[row];
-        if (!std::isfinite(measured) || (segment.axis && row == segment.begin)) return;
-        const std::size_t at = static_cast<std::size_t>(signal);
+  const auto take = [&](std::size_t index, const Readings& readings) {
+    const Segment& segment = segments[index];
+    const Inputs& inputs = *segment.inputs;
+    const std::vector<Signal>& signals = plant.signals(segment);
+    for (std::size_t k = 0; k < signals.size(); ++k) {
+      if (!inputs.judged(signals[k])) continue;
+      const std::size_t at = static_cast<std::size_t>(signals[k]);
+      for (Eigen::Index row = segment.begin + (segment.axis ? 1 : 0); row < segment.end; ++row) {
+        const double measured = inputs.of(signals[k])[row];
+        if (!std::isfinite(measured)) continue;
+        const double value = readings.value(row, static_cast<int>(k));
         // A simulation that ran away counts as very bad, not as undefined.
         errors.of[at].push_back(std::isfinite(value) ? std::clamp(value - measured, -1e9, 1e9) : 1e9);
         errors.segment[at].push_back(static_cast<int>(index));
         errors.simulated[at].push_back(value);
         errors.row[at].push_back(row);
-      });
+      }
+    }
+  };
+  detail::simulate_segments(model, catalogue, segments, SimulationMode::free_running, take);
   return errors;
 }
 
@@ -64,56 +69,30 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
                                                     const Catalogue& catalogue) {
-  const Instance<Dual> instance(model, {}, {}, catalogue);
+  const Plant& plant = plant_of(model);
   std::array<double, signal_count> sum{}, count{};
-  for (const Segment& segment : segments) {
+  Readings readings;
+  int directions = 0;
+  for (const Segment& segment : segments) directions = std::max(directions, plant.start_size(segment));
+  const auto rollout = plant.rollout(model, catalogue, {}, {0, directions}, SimulationMode::free_running);
+  for (Segment segment : segments) {
+    segment.carries_on = false;
     const Inputs& inputs = *segment.inputs;
-    const auto put = [&](Signal signal, Eigen::Index row, const Dual& value, int first, int second) {
-      const std::size_t at = static_cast<std::size_t>(signal);
-      if (!inputs.judged(signal) || !std::isfinite(inputs.of(signal)[row])) return;
-      const double by_first =
-          derivative_of(value, 0) * (first >= 0 ? sigma[static_cast<std::size_t>(first)] : 0.0);
-      const double by_second =
-          derivative_of(value, 1) * (second >= 0 ? sigma[static_cast<std::size_t>(second)] : 0.0);
-      sum[at] += sigma[at] * sigma[at] + by_first * by_first + by_second * by_second;
-      count[at] += 1.0;
-    };
-    if (segment.axis) {
-      const AxisRollout<Dual> rollout(instance, inputs);
-      AxisState<Dual> state = FitProblem::measured_start(rollout, inputs, segment.run, segment.begin);
-      Dual angle = constant<Dual>(0.0), rate = constant<Dual>(0.0);
-      seed(angle, 0);
-      seed(rate, 1);
-      const AxisState<Dual> unit = rollout.start(segment.begin, inputs.t_s[segment.run.begin], 1.0, 1.0);
-      const AxisState<Dual> zero = rollout.start(segment.begin, inputs.t_s[segment.run.begin], 0.0, 0.0);
-      state.angle_rad += angle * value_of(Dual(unit.angle_rad - zero.angle_rad));
-      state.rate_rad_per_s += rate * value_of(Dual(unit.rate_rad_per_s - zero.rate_rad_per_s));
-      rollout.window(segment.run, segment.begin, segment.end, state,
-                     [&](Eigen::Index row, const AxisReadings<Dual>& read) {
-                       if (row == segment.begin) return;
-                       const int first = inputs.judged(Signal::angle_deg) ? 2 : -1;
-                       const int second = inputs.judged(Signal::rate_dps) ? 3 : -1;
-                       put(Signal::angle_deg, row, read.angle_deg, first, second);
-                       put(Signal::rate_dps, row, read.rate_dps, first, second);
-                     });
-    } else {
-      typename BenchRollout<Dual>::Feed feed;
-      feed.measured_motor = !inputs.judged(Signal::motor_C);
-      const BenchRollout<Dual> rollout(instance, inputs, feed);
-      BenchState<Dual> state = rollout.start(
-          segment.begin, inputs.held_motor_C.size() > 0 ? inputs.held_motor_C[segment.begin] : 25.0);
-      Dual warm = constant<Dual>(0.0);
-      seed(warm, 0);
-      state.winding_C += warm;
-      state.surface_C += warm;
-      state.thermometer_C += warm;
-      rollout.run(segment.begin, segment.end, inputs.t_s[segment.run.begin], state,
-                  [&](Eigen::Index row, const BenchReadings<Dual>& read) {
-                    const int first = inputs.judged(Signal::motor_C) ? 1 : -1;
-                    put(Signal::current_A, row, read.current_A, first, -1);
-                    put(Signal::motor_C, row, read.motor_C, first, -1);
-                  });
-    }
+    const Start sd = rollout->measured_start_sd(segment, sigma);
+    rollout->roll(segment, Start::Zero(sd.size()), readings);
+    const std::vector<Signal>& signals = plant.signals(segment);
+    for (Eigen::Index row = segment.begin + (segment.axis ? 1 : 0); row < segment.end; ++row)
+      for (std::size_t k = 0; k < signals.size(); ++k) {
+        const std::size_t at = static_cast<std::size_t>(signals[k]);
+        if (!inputs.judged(signals[k]) || !std::isfinite(inputs.of(signals[k])[row])) continue;
+        double variance = sigma[at] * sigma[at];
+        for (Eigen::Index i = 0; i < sd.size(); ++i) {
+          const double carried = readings.slope(row, static_cast<int>(k), static_cast<int>(i)) * sd[i];
+          variance += carried * carried;
+        }
+        sum[at] += variance;
+        count[at] += 1.0;
+      }
   }
   std::array<double, signal_count> floor{};
   for (std::size_t i = 0; i < signal_count; ++i)

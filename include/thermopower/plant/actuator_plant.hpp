@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/axis_rollout.hpp>
+#include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/plant.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace thermopower::plant {
+
+/// The library's own plant: a circuit, a thermal body and its thermometer on the bench; a drive, a joint and its
+/// instruments. Which of them there are is the model's to say.
+///
+/// The bench runs freely over whole runs, from the first measured temperature on; the axis in windows, each from
+/// the measured angle and rate.
+class ActuatorPlant : public Plant {
+public:
+  const std::vector<Signal>& signals(const Segment& segment) const override {
+    static const std::vector<Signal> bench{Signal::current_A, Signal::motor_C},
+        axis{Signal::angle_deg, Signal::rate_dps};
+    return segment.axis ? axis : bench;
+  }
+
+  void cut(const Inputs& inputs, double horizon_s, std::vector<Segment>& segments) const override {
+    for (const RunSpan& run : inputs.runs) {
+      if (inputs.bench()) {
+        Eigen::Index begin = run.begin;
+        if (inputs.judged(Signal::motor_C))
+          while (begin < run.end && !std::isfinite(inputs.of(Signal::motor_C)[begin])) ++begin;
+        if (begin + 1 < run.end) segments.push_back({&inputs, run, begin, run.end, false, false, false});
+      }
+      if (inputs.axis()) {
+        const std::vector<Eigen::Index> starts = window_starts(inputs, run, horizon_s);
+        for (std::size_t i = 0; i < starts.size(); ++i) {
+          const Eigen::Index end = i + 1 < starts.size() ? starts[i + 1] : run.end;
+          if (starts[i] + 1 < end) segments.push_back({&inputs, run, starts[i], end, true, i > 0, false});
+        }
+      }
+    }
+  }
+
+  int start_size(const Segment&) const override { return 2; }
+
+  Start start_weight(const Segment& segment, const std::array<double, signal_count>& sigma) const override {
+    if (segment.axis) {
+      // The row itself is among the data: the prior only has to keep an unmeasured start bounded.
+      const bool angle = segment.inputs->judged(Signal::angle_deg),
+                 rate = segment.inputs->judged(Signal::rate_dps);
+      return Eigen::Vector2d(angle ? 0.01 / sigma[2] : 1e3, rate ? 0.01 / sigma[3] : 1e-4);
+    }
+    return Eigen::Vector2d(0.01 / sigma[1],
+                           0.3);  // a hidden node lies within a few kelvin of the measured one
+  }
+
+  std::unique_ptr<Rollout> rollout(const Model& model, const Catalogue& catalogue,
+                                   const ParameterPoint& point, const Directions& directions,
+                                   SimulationMode mode) const override;
+};
+
+namespace detail {
+
+/// A value of a parameter point as the scalar of a rollout.
+template <class Scalar>
+Scalar seeded(double value, double speed, int index, const Directions& directions) {
+  Scalar result = constant<Scalar>(value);
+  const int direction = index - directions.first;
+  if (direction < 0 || direction >= directions.count) return result;
+  Scalar unit = constant<Scalar>(0.0);
+  seed(unit, direction);
+  result += unit * speed;
+  return result;
+}
+
+/// A point's factors in the scalar of a rollout.
+template <class Scalar>
+std::vector<Scalar> factors_of(const ParameterPoint& point, const Directions& directions) {
+  std::vector<Scalar> factors;
+  for (std::size_t i = 0; i < point.factors.size(); ++i)
+    factors.push_back(seeded<Scalar>(point.factors[i], point.speed.empty() ? 1.0 : point.speed[i],
+                                     static_cast<int>(i), directions));
+  return factors;
+}
+
+/// A point's effects in the scalar of a rollout.
+template <class Scalar>
+std::vector<AddedEffect<Scalar>> effects_of(const ParameterPoint& point, const Directions& directions) {
+  std::vector<AddedEffect<Scalar>> added;
+  std::size_t at = 0;
+  for (const CatalogueEntry* entry : point.effects) {
+    AddedEffect<Scalar> one;
+    one.entry = entry;
+    for (std::size_t i = 0; i < entry->info.parameters.size(); ++i, ++at) {
+      const std::size_t index = point.factors.size() + at;
+      one.parameters.push_back(seeded<Scalar>(point.parameters[at],
+                                              point.speed.empty() ? 1.0 : point.speed[index],
+                                              static_cast<int>(index), directions));
+    }
+    added.push_back(std::move(one));
+  }
+  return added;
+}
+
+/// The actuator under way, in plain numbers or with derivatives.
+template <class Scalar>
+class ActuatorRollout : public Rollout {
+public:
+  ActuatorRollout(const Model& model, const Catalogue& catalogue, const ParameterPoint& point,
+                  const Directions& directions, SimulationMode mode)
+      : instance_(model, factors_of<Scalar>(point, directions), effects_of<Scalar>(point, directions),
+                  catalogue),
+        starts_from_(point.size() - directions.first),
+        directions_(directions.count),
+        isolated_(mode == SimulationMode::measured_inputs) {
+    const Scalar still = constant<Scalar>(0.0);
+    carried_ = {still, still, still, still};
+  }
+
+  void roll(const Segment& segment, const Start& start, Readings& out) override {
+    out.reset(segment.begin, segment.end, 2, directions_);
+    const std::array<Scalar, 2> from{start_scalar(start, 0), start_scalar(start, 1)};
+    if (segment.axis) roll_axis(segment, from, out);
+    else roll_bench(segment, from, out);
+  }
+
+  std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
+    const auto& shape = instance_.thermal_structure;
+    if (segment.axis || !segment.inputs->judged(Signal::motor_C)) return {};
+    if (!shape.lagged && !shape.two_nodes) return {};
+    HiddenStart hidden;
+    hidden.coordinate = 1;
+    hidden.shows_in = Signal::motor_C;  // spreads by 5 K, at a noise of 0.1 K
+    return {hidden};
+  }
+
+  Start measured_start_sd(const Segment& segment,
+                          const std::array<double, signal_count>& sigma) const override {
+    const Inputs& inputs = *segment.inputs;
+    if (!segment.axis) return Eigen::Vector2d(inputs.judged(Signal::motor_C) ? sigma[1] : 0.0, 0.0);
+    const AxisRollout<Scalar> rollout(instance_, inputs);
+    const double run_start_s = inputs.t_s[segment.run.begin];
+    const AxisState<Scalar> unit = rollout.start(segment.begin, run_start_s, 1.0, 1.0);
+    const AxisState<Scalar> zero = rollout.start(segment.begin, run_start_s, 0.0, 0.0);
+    const double per_angle = value_of(Scalar(unit.angle_rad - zero.angle_rad)) / rad_per_deg;
+    const double per_rate = value_of(Scalar(unit.rate_rad_per_s - zero.rate_rad_per_s)) / rad_per_deg;
+    return Eigen::Vector2d(inputs.judged(Signal::angle_deg) ? sigma[2] * per_angle : 0.0,
+                           inputs.judged(Signal::rate_dps) ? sigma[3] * per_rate : 0.0);
+  }
+
+private:
+  Scalar start_scalar(const Start& start, int coordinate) const {
+    Scalar result = constant<Scalar>(start[coordinate]);
+    const int direction = starts_from_ + coordinate;
+    if (direction >= 0 && direction < directions_) seed(result, direction);
+    return result;
+  }
+
+  void roll_bench(const Segment& segment, const std::array<Scalar, 2>& start, Readings& out) {
+    const Inputs& inputs = *segment.inputs;
+    typename BenchRollout<Scalar>::Feed feed;
+    feed.measured_motor = !inputs.judged(Signal::motor_C) || (isolated_ && inputs.held_motor_C.size() > 0);
+    feed.measured_current = isolated_ && inputs.held_current_A.size() > 0;
+    const BenchRollout<Scalar> rollout(instance_, inputs, feed);
+    const Eigen::VectorXd& temperature = inputs.held_motor_C;
+    BenchState<Scalar> state =
+        rollout.start(segment.begin, temperature.size() > 0 ? temperature[segment.begin] : 25.0);
+    state.winding_C += start[0];
+    state.surface_C = state.winding_C + start[1];
+    state.thermometer_C = state.winding_C;
+    // With a lagging thermometer the measured start is its own, and the winding's is the hidden one.
+    if (instance_.thermal_structure.lagged) {
+      state.winding_C += start[1];
+      state.surface_C = state.winding_C;
+    }
+    rollout.run(segment.begin, segment.end, inputs.t_s[segment.run.begin], state,
+                [&](Eigen::Index row, const BenchReadings<Scalar>& read) {
+                  out.put(row, 0, read.current_A);
+                  out.put(row, 1, read.motor_C);
+                });
+  }
+
+  void roll_axis(const Segment& segment, const std::array<Scalar, 2>& start, Readings& out) {
+    const Inputs& inputs = *segment.inputs;
+    const AxisRollout<Scalar> rollout(instance_, inputs);
+    AxisState<Scalar> state = measured_start(rollout, inputs, segment.run, segment.begin);
+    state.angle_rad += start[0] * rad_per_deg;
+    state.rate_rad_per_s += start[1] * rad_per_deg;
+    if (segment.carries_on) {
+      state.twist_rad = carried_.twist_rad;
+      state.twist_rate_rad_per_s = carried_.twist_rate_rad_per_s;
+    }
+    rollout.window(segment.run, segment.begin, segment.end, state,
+                   [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
+                     out.put(row, 0, read.angle_deg);
+                     out.put(row, 1, read.rate_dps);
+                   });
+    // What is carried on depends on the parameters, and on the starts of other segments, which stay out.
+    carried_ = state;
+    forget(carried_.twist_rad, starts_from_);
+    forget(carried_.twist_rate_rad_per_s, starts_from_);
+  }
+
+  /// The measured state of the axis at a row; an unrecorded rate is the angle's difference, an unrecorded
+  /// angle 0.
+  static AxisState<Scalar> measured_start(const AxisRollout<Scalar>& rollout, const Inputs& inputs,
+                                          const RunSpan& run, Eigen::Index row) {
+    double angle_deg = 0.0, rate_dps = 0.0;
+    if (inputs.judged(Signal::angle_deg)) angle_deg = inputs.of(Signal::angle_deg)[row];
+    if (inputs.judged(Signal::rate_dps)) {
+      rate_dps = inputs.of(Signal::rate_dps)[row];
+    } else if (run.size() > 1) {
+      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
+      const Eigen::VectorXd& angle = inputs.of(Signal::angle_deg);
+      rate_dps = (angle[after] - angle[before]) / (inputs.t_s[after] - inputs.t_s[before]);
+      if (!std::isfinite(rate_dps)) rate_dps = 0.0;
+    }
+    return rollout.start(row, inputs.t_s[run.begin], angle_deg, rate_dps);
+  }
+
+  const Instance<Scalar> instance_;
+  int starts_from_;  ///< direction of the first coordinate of a start
+  int directions_;
+  bool isolated_;
+  AxisState<Scalar> carried_;
+};
+
+}  // namespace detail
+
+inline std::unique_ptr<Rollout> ActuatorPlant::rollout(const Model& model, const Catalogue& catalogue,
+                                                       const ParameterPoint& point,
+                                                       const Directions& directions,
+                                                       SimulationMode mode) const {
+  if (directions.count > 0)
+    return std::make_unique<detail::ActuatorRollout<Dual>>(model, catalogue, point, directions, mode);
+  return std::make_unique<detail::ActuatorRollout<double>>(model, catalogue, point, directions, mode);
+}
+
+/// The plant that a model is of.
+inline const Plant& plant_of(const Model& model) {
+  static const ActuatorPlant actuator;
+  return model.own ? *model.own->equations : static_cast<const Plant&>(actuator);
+}
+
+}  // namespace thermopower::plant
