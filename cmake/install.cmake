@@ -3,29 +3,38 @@
 
 include(CMakePackageConfigHelpers)
 
+# Components: `headers` needs nothing built, `gap` the library of the diagnosis, `programs` the programs.
+#   cmake --install <build> --prefix <prefix> --component headers
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
+
 # The firmware floor is a package of its own: whoever takes only that needs no Eigen.
 install(TARGETS thermopower EXPORT thermopowerTargets)
-install(EXPORT thermopowerTargets NAMESPACE thermopower:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
-if(THERMOPOWER_DESKTOP)
-  install(TARGETS desktop EXPORT thermopowerDesktopTargets)
-  install(EXPORT thermopowerDesktopTargets NAMESPACE thermopower:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
-endif()
-
+install(EXPORT thermopowerTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT headers)
 install(FILES include/thermopower/config_error.hpp include/thermopower/thermopower.hpp include/thermopower/version.hpp
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower)
-install(DIRECTORY include/thermopower/actuator include/thermopower/control include/thermopower/detail include/thermopower/fixed_point include/thermopower/motors
-                  include/thermopower/sbgc
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower FILES_MATCHING PATTERN "*.hpp")
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
+install(DIRECTORY include/thermopower/actuator include/thermopower/control include/thermopower/detail include/thermopower/fixed_point
+                  include/thermopower/motors include/thermopower/sbgc
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
+
 if(THERMOPOWER_DESKTOP)
-  install(DIRECTORY include/thermopower/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower FILES_MATCHING PATTERN "*.hpp")
+  install(TARGETS thermopower_desktop EXPORT thermopowerDesktopTargets)
+  install(EXPORT thermopowerDesktopTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT headers)
+  install(FILES include/thermopower/desktop.hpp include/thermopower/gap.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
+  install(DIRECTORY include/thermopower/gap include/thermopower/plant include/thermopower/simulation
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
+endif()
+if(THERMOPOWER_GAP_LIBRARY)
+  install(TARGETS thermopower_gap EXPORT thermopowerGapTargets DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT gap)
+  install(EXPORT thermopowerGapTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT gap)
 endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/thermopowerConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
+  ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake INSTALL_DESTINATION ${package_dir})
 # Below 1.0 a minor version may break its users.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/thermopowerConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake ${PROJECT_BINARY_DIR}/thermopowerConfigVersion.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
+        DESTINATION ${package_dir} COMPONENT headers)
 
 configure_file(${CMAKE_CURRENT_LIST_DIR}/thermopower.pc.in ${PROJECT_BINARY_DIR}/thermopower.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/thermopower.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/thermopower.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig COMPONENT headers)

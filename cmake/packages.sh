@@ -26,10 +26,12 @@ need_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing </dev/null >/dev/null
 }
 
-# The compilers and libraries behind the programs ...
+# What the library's own tests need ...
+library_packages="g++ cmake ninja-build libeigen3-dev catch2"
+# ... the compilers and libraries behind the programs ...
 program_packages="g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json3-dev libcsv-dev"
 # ... the Nano and its simulator ...
 nano_packages="gcc-avr binutils-avr avr-libc arduino-core-avr libsimavr-dev libelf-dev"
 # ... and what only the tests need.
-test_packages="catch2 clang libclang-rt-14-dev arduino-builder gcc-arm-none-eabi libnewlib-arm-none-eabi
+test_packages="catch2 clang clang-format libclang-rt-14-dev arduino-builder gcc-arm-none-eabi libnewlib-arm-none-eabi
   libstdc++-arm-none-eabi-newlib qemu-system-arm doxygen doxygen-awesome-css libjs-mathjax pkg-config"

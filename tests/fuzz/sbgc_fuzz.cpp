@@ -16,7 +16,7 @@
 #include <thermopower/sbgc/codec.hpp>
 #include <vector>
 
-#include "../unit/sbgc/reference.hpp"
+#include "../sbgc/reference.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 ///
 /// For AVR the products are written out: its compiler calls a 32-bit multiplication for what a few 8-bit ones do
 /// in a third of the time. The results are the same to the bit, which a test on the chip confirms
-/// (tests/unit/control/on_avr).
+/// (tests/control/on_avr).
 
 namespace thermopower {
 namespace detail {

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "../../catch.hpp"
+
+#include "../plants.hpp"
+
+#include <thermopower/gap/localise/localisation.hpp>
+
+using namespace thermopower::gap;
+namespace plant = thermopower::plant;
+
+namespace {
+
+Localisation bench(const test::BenchFault& fault) {
+  return localise(test::bench_model(), {test::bench_recording(fault, 1500, 3)});
+}
+Localisation axis(const test::AxisFault& fault) {
+  return localise(test::axis_model(), {test::axis_recording(fault, 4000, 3)});
+}
+
+void check_first(const Localisation& found, Signal signal, plant::Submodel submodel) {
+  REQUIRE_FALSE(found.where.empty());
+  CHECK(found.where.front().signal == signal);
+  CHECK(found.where.front().submodel == submodel);
+  CHECK(found.where.front().share > 0.8);
+  CHECK_FALSE(found.where.front().evidence.empty());
+  CHECK_FALSE(found.quantities.empty());
+}
+
+}  // namespace
+
+TEST_CASE("nothing is accused where the model holds, nor where its constants are within their slack") {
+  CHECK(bench({}).where.empty());
+  CHECK(axis({}).where.empty());
+  test::BenchFault slack;
+  slack.motor_scale = 1.035;
+  CHECK(bench(slack).where.empty());
+}
+
+TEST_CASE("a loss that grows faster than the rise is placed in the loss") {
+  test::BenchFault fault;
+  fault.extra_loss_W_per_K2 = 0.003;
+  check_first(bench(fault), Signal::motor_C, plant::Submodel::thermal_loss);
+}
+
+TEST_CASE("a lagging thermometer is placed in the thermometer") {
+  test::BenchFault fault;
+  fault.lag_s = 25.0;
+  check_first(bench(fault), Signal::motor_C, plant::Submodel::sensing_temperature);
+}
+
+TEST_CASE("a current sensor's faults are not blamed on the motor, nor a wire's on the temperature") {
+  test::BenchFault fault;
+  fault.sensor_offset_A = 0.03;
+  check_first(bench(fault), Signal::current_A, plant::Submodel::sensing_current);
+  CHECK(bench(fault).where.size() == 1);
+  fault = {};
+  fault.sensor_gain = 1.15;
+  check_first(bench(fault), Signal::current_A, plant::Submodel::sensing_current);
+  CHECK(bench(fault).where.size() == 1);
+  fault = {};
+  fault.series_ohm = 1.2;
+  check_first(bench(fault), Signal::current_A, plant::Submodel::electrical);
+  CHECK(bench(fault).where.size() == 1);
+}
+
+TEST_CASE("friction, spring, delay and a wrong angle are told apart") {
+  test::AxisFault fault;
+  fault.coulomb_Nm = 0.004;
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_friction);
+  fault = {};
+  fault.spring_Nm_per_rad = 0.01;
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_load);
+  CHECK(axis(fault).where.front().regime->variable == "angle_deg");
+  fault = {};
+  fault.delay_rows = 2;
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_drive);
+  fault = {};
+  fault.angle_gain = 1.1;
+  check_first(axis(fault), Signal::angle_deg, plant::Submodel::sensing_angle);
+}
+
+TEST_CASE("the missing quantity has the size that was put in") {
+  test::AxisFault fault;
+  fault.spring_Nm_per_rad = 0.01;
+  const Localisation found = axis(fault);
+  REQUIRE_FALSE(found.quantities.empty());
+  const MissingQuantity& q = found.quantities.front();
+  REQUIRE(q.variable == "angle_deg");
+  REQUIRE(q.unit == "N m");
+  const Eigen::Index last = q.x.size() - 1;
+  const double slope = (q.value[last] - q.value[0]) / (q.x[last] - q.x[0]) * 57.29577951;
+  CHECK(slope == Approx(-0.01).epsilon(0.05));
+}
+
+TEST_CASE("recordings without the needed columns, or too short, place nothing") {
+  Recording r;
+  r.t_s = Eigen::VectorXd::LinSpaced(100, 0.0, 99.0);
+  r.set("motor_C", Eigen::VectorXd::Constant(100, 20.0));
+  CHECK(localise(test::bench_model(), {r}).where.empty());
+  CHECK(localise(test::axis_model(), {r}).where.empty());
+  CHECK(localise(test::bench_model(), {test::bench_recording({}, 20, 1)}).where.empty());
+}

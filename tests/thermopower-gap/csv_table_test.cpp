@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "../catch.hpp"
+
+#include "input_error.hpp"
+#include "recording_file.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+using namespace thermopower::gap;
+using files::CsvTable;
+
+namespace {
+
+CsvTable parse(const std::string& text) {
+  return files::parse_csv("log.csv", text.data(), text.size(), files::known_columns());
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const files::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("a recording keeps every number, bit by bit") {
+  const CsvTable table = parse("t_s,motor_C,my_sensor\n0,21.5,1e-3\n0.1,22,-4\n0.25,21.9375,+7\n");
+  REQUIRE(table.rows == 3);
+  REQUIRE(table.columns.size() == 3);
+  CHECK(table.columns[0].values == std::vector<double>{0.0, 0.1, 0.25});
+  CHECK(table.columns[1].values == std::vector<double>{21.5, 22.0, 21.9375});
+  CHECK(table.columns[2].values == std::vector<double>{1e-3, -4.0, 7.0});
+}
+
+TEST_CASE("numbers of any magnitude survive writing and reading") {
+  std::mt19937_64 random(7);
+  std::string text = "t_s,x\n";
+  std::vector<double> written;
+  for (int i = 0; i < 2000; ++i) {
+    const double value = std::ldexp(std::uniform_real_distribution<double>(-1.0, 1.0)(random),
+                                    static_cast<int>(random() % 600) - 300);
+    char row[64];
+    std::snprintf(row, sizeof row, "%d,%.17g\n", i, value);
+    text += row;
+    written.push_back(value);
+  }
+  CHECK(parse(text).columns[1].values == written);
+}
+
+TEST_CASE("empty cells and nan are missing samples") {
+  const CsvTable table = parse("t_s,motor_C\n0,\n1,nan\n2,NaN\n3,5\n");
+  CHECK(std::isnan(table.columns[1].values[0]));
+  CHECK(std::isnan(table.columns[1].values[1]));
+  CHECK(std::isnan(table.columns[1].values[2]));
+  CHECK(table.columns[1].values[3] == 5.0);
+}
+
+TEST_CASE(
+    "a byte-order mark, CRLF, blank lines, spaces, quotes and a missing last line break change nothing") {
+  const CsvTable plain = parse("t_s,motor_C\n0,1\n1,2\n");
+  for (const char* text : {"\xef\xbb\xbft_s,motor_C\n0,1\n1,2\n", "t_s,motor_C\r\n0,1\r\n1,2\r\n",
+                           "t_s,motor_C\n\n0,1\n\n\n1,2\n", "t_s, motor_C\n0 , 1\n1,2\n",
+                           "\"t_s\",\"motor_C\"\n\"0\",\"1\"\n1,2\n", "t_s,motor_C\n0,1\n1,2"}) {
+    CAPTURE(text);
+    const CsvTable table = parse(text);
+    REQUIRE(table.rows == 2);
+    CHECK(table.columns[0].values == plain.columns[0].values);
+    CHECK(table.columns[1].values == plain.columns[1].values);
+  }
+  CHECK_FALSE(parse("t_s,motor_C\n0,1\n1,2").ends_with_line_break);
+}
+
+TEST_CASE("a change of the run label starts a run, and time starts anew with it") {
+  const CsvTable table = parse("t_s,run,motor_C\n0,a,1\n1,a,1\n0,\"b, second\",1\n5,a,1\n");
+  CHECK(table.run_begin == std::vector<std::size_t>{0, 2, 3});
+  CHECK(table.run_labels == std::vector<std::string>{"a", "b, second", "a"});
+}
+
+TEST_CASE("a text column nobody knows is left out, and said to be") {
+  const CsvTable table = parse("t_s,note,motor_C\n0,warm,1\n1,\"cold\nand wet\",2\n");
+  CHECK(table.columns.size() == 2);
+  CHECK(table.ignored_text == std::vector<std::string>{"note"});
+  const auto file = files::to_recording(table);
+  REQUIRE(file.findings.size() == 1);
+  CHECK(file.findings[0].code == "text_column_ignored");
+  CHECK(file.findings[0].column == "note");
+}
+
+TEST_CASE("every kind of malformed input is refused with file, line, column and what was expected") {
+  struct Case {
+    const char* text;
+    std::vector<std::string> parts;
+  };
+  const std::string nul = std::string("t_s,motor_C\n0,1") + '\0' + "\n";
+  const std::vector<Case> cases = {
+      {"", {"log.csv: ", "empty", "expected a header row"}},
+      {"t_s,motor_C\n", {"log.csv: ", "only a header row", "at least one data row"}},
+      {"t_s,motor_C\n0,1\n1,2x\n",
+       {"log.csv:3: ", "column 'motor_C'", "'2x' is not a number", "expected a decimal number"}},
+      {"t_s,motor_C\n0,1\n1,0x10\n", {"log.csv:3: ", "'0x10' is not a number"}},
+      {"t_s,motor_C\n0,1,2\n", {"log.csv:2: ", "3 fields", "expected 2 as in the header row"}},
+      {"t_s,motor_C\n0\n1,2\n", {"log.csv:2: ", "column 'motor_C'", "1 field ", "expected 2"}},
+      {"t_s,motor_C\n0,1\n1", {"log.csv:3: ", "ends inside this row", "cut off"}},
+      {"t_s,x,x\n0,1,2\n", {"log.csv:1: ", "column 'x' appears twice", "distinct names"}},
+      {"t_s,,x\n0,1,2\n", {"log.csv:1: ", "name of column number 2 is empty"}},
+      {"time,motor_C\n0,1\n", {"log.csv:1: ", "no column 't_s'", "found 'time', 'motor_C'"}},
+      {"t_s;motor_C\n0;1\n", {"log.csv:1: ", "no column 't_s'", "separated by commas"}},
+      {"t_s,motor_C\n0,1\n0,2\n", {"log.csv:3: ", "column 't_s'", "0 s follows 0 s", "strictly increasing"}},
+      {"t_s,motor_C\n1,1\n0.5,2\n", {"log.csv:3: ", "0.5 s follows 1 s"}},
+      {"t_s,motor_C\n,1\n", {"log.csv:2: ", "column 't_s'", "time is missing"}},
+      {"t_s,motor_C\n0,inf\n", {"log.csv:2: ", "'inf' is not finite", "finite number"}},
+      {"t_s,motor_C\n0,1e999\n", {"log.csv:2: ", "'1e999' is not finite"}},
+      {"t_s,motor_C\n0,\"1\n", {"log.csv:2: ", "column 'motor_C'", "never closed", "closing '\"'"}},
+      {"t_s,motor_C\n0,1\"2\n", {"log.csv:2: ", "column 'motor_C'", "a quote inside a field"}},
+      {"t_s,power_param\n0,256\n", {"log.csv:2: ", "column 'power_param'", "expected 0..255"}},
+      {"t_s,power_param\n0,-1\n", {"log.csv:2: ", "expected 0..255"}},
+      {"t_s,x\n0,1\n1,oops\n", {"log.csv:3: ", "column 'x'", "'oops' is not a number"}},
+      {"t_s,motor_C\n0,warm\n", {"log.csv:2: ", "column 'motor_C'", "'warm' is not a number"}},
+      {"\xff\xfet", {"log.csv:1: ", "UTF-16", "expected UTF-8"}},
+      {"PK\x03\x04zip", {"log.csv:1: ", "ZIP", "expected CSV"}},
+      {"t_s,note,motor_C\n0,\"a\nb\",1\n1,c,bad\n", {"log.csv:4: ", "column 'motor_C'", "'bad'"}},
+  };
+  for (const auto& one : cases) {
+    const std::string message = error_of(one.text);
+    CAPTURE(one.text, message);
+    for (const auto& part : one.parts) CHECK_THAT(message, ContainsSubstring(part));
+  }
+  CHECK_THAT(error_of(nul), ContainsSubstring("'1\\x00' is not a number"));
+}
+
+TEST_CASE("a field without end is refused before it fills the memory") {
+  const std::string quoted = "t_s,motor_C\n0,\"" + std::string(1 << 20, 'x');
+  CHECK_THAT(error_of(quoted),
+             ContainsSubstring("log.csv:2: column 'motor_C': the quote that opens this field is not closed"));
+  const std::string plain = "t_s,motor_C\n0," + std::string(1 << 20, '1');
+  CHECK_THAT(error_of(plain),
+             ContainsSubstring("log.csv:2: column 'motor_C': field of more than 4096 bytes"));
+}
+
+TEST_CASE("an excerpt of binary junk is readable, short and pure ASCII") {
+  const std::string message = error_of("t_s,motor_C\n0,\x01\x80\xff" + std::string(100, 'z') + "\n");
+  CHECK_THAT(message, ContainsSubstring("'\\x01\\x80\\xff" + std::string(37, 'z') + "...' (103 bytes)"));
+  for (const char c : message) CHECK(static_cast<unsigned char>(c) < 0x80);
+}
+
+TEST_CASE("what is no readable file is told apart") {
+  const auto folder = std::filesystem::temp_directory_path();
+  CHECK_THROWS_WITH(files::read_recording(folder.string()),
+                    ContainsSubstring("is a directory; expected a CSV file"));
+  CHECK_THROWS_WITH(files::read_recording((folder / "there is no such file").string()),
+                    ContainsSubstring("cannot be read: No such file"));
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "../catch.hpp"
+
+#include "input_error.hpp"
+#include "model_file.hpp"
+
+#include <thermopower/plant/standard_catalogue.hpp>
+
+using namespace thermopower::gap;
+
+namespace {
+
+const std::string ohmic =
+    R"("current": {"law": "ohmic", "resistance_ohm": 8.2, "tempco_per_K": 0.00393, "reference_C": 25.0})";
+const std::string lumped =
+    R"("thermal": {"law": "lumped", "heat_capacity_J_per_K": 60.0, "conductance_W_per_K": 0.11})";
+
+std::string model_text(const std::string& body) {
+  return "{\"format\": \"thermopower-model/1\", " + body + "}";
+}
+Model parse(const std::string& text) { return files::parse_model("model.json", text, standard_catalogue()); }
+
+std::string error_of(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const files::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("a model file gives the model it says") {
+  const Model model = parse(
+      model_text("\"name\": \"m\", \"supply\": {\"nominal_V\": 13}, " + ohmic + ", " + lumped +
+                 ", \"axis\": {\"law\": \"rigid\", \"inertia_kgm2\": 1e-3, \"viscous_Nms_per_rad\": 0, "
+                 "\"torque_constant_Nm_per_A\": -0.2}, \"effects\": {\"coulomb_friction\": {\"Nm\": 0.01}}"));
+  CHECK(model.name == "m");
+  CHECK(model.get("nominal_V") == 13.0);
+  CHECK(model.get("resistance_ohm") == 8.2);
+  CHECK(model.get("conductance_W_per_K") == 0.11);
+  CHECK(model.get("torque_constant_Nm_per_A") == -0.2);
+  CHECK(model.effects.at("coulomb_friction").at("Nm") == 0.01);
+  CHECK(model.effects.at("coulomb_friction").at("transition_rad_per_s") ==
+        0.01);  // its standard value: it was left out
+}
+
+TEST_CASE("the thesis's laws are read for current and temperature") {
+  const Model model = parse(model_text(
+      R"("current": {"law": "thesis", "slope_V2_mA_per_K": -0.0134, "slope_V1_mA_per_K": 0.0156, "slope_V0_mA_per_K": 0.0167,
+          "base_mA": 0.1551, "exponent": 3.4591},
+         "thermal": {"law": "thesis", "cooling_per_min": 0.11, "rinv_slope_V1": -0.0002, "rinv_slope_V0": 0.0062,
+          "rinv_offset_V1": 0.0255, "rinv_offset_V0": -0.105, "minimum_V_rms": 1.0})"));
+  CHECK(model.get("current.minimum_V_rms") == 1.0);
+  CHECK(model.get("slope_V2_mA_per_K") == -0.0134);
+  CHECK(model.get("rinv_offset_V0") == -0.105);
+}
+
+TEST_CASE("writing and reading gives back the same numbers, bit by bit") {
+  Model model = parse(model_text(ohmic + ", " + lumped));
+  model.set("resistance_ohm", 8.2000000000000028);
+  model.effects["second_thermal_mass"] = {{"winding_share", 0.1 + 0.2}, {"coupling", 1.0 / 3.0}};
+  const Model again = parse(files::to_json(model));
+  CHECK(again.get("resistance_ohm") == 8.2000000000000028);
+  CHECK(again.effects == model.effects);
+  CHECK(files::to_json(again) == files::to_json(model));
+}
+
+TEST_CASE("what a model file may not hold is named by its JSON pointer") {
+  struct Case {
+    std::string text;
+    std::vector<std::string> parts;
+  };
+  const std::vector<Case> cases = {
+      {"", {"model.json:1:1: not JSON"}},
+      {"{\n \"format\": 1,,\n}", {"model.json:2:14: not JSON"}},
+      {"[]", {"model.json: ", "array at the top", "expected an object"}},
+      {"{}", {"/format: is missing", "\"thermopower-model/1\""}},
+      {R"({"format": "thermopower-model/2"})",
+       {"/format: is \"thermopower-model/2\"", "expected \"thermopower-model/1\""}},
+      {model_text(ohmic + ", \"thermals\": {}"), {"/thermals: unknown key", "expected one of", "thermal"}},
+      {model_text("\"name\": 3, " + ohmic), {"/name: is 3; expected text"}},
+      {model_text("\"supply\": 12, " + ohmic), {"/supply: is 12; expected an object"}},
+      {model_text("\"supply\": {\"nominal_V\": 0}, " + ohmic),
+       {"/supply/nominal_V: is 0; expected a number above 0"}},
+      {model_text(R"("current": {"law": "cubic"})"),
+       {"/current/law: is \"cubic\"", "\"ohmic\" or \"thesis\""}},
+      {model_text(R"("current": {"resistance_ohm": 8})"), {"/current/law: is missing"}},
+      {model_text(R"("current": {"law": "ohmic", "resistance_ohm": -3})"),
+       {"/current/resistance_ohm: is -3; expected a number above 0"}},
+      {model_text(R"("current": {"law": "ohmic", "resistance_ohm": "8"})"),
+       {"/current/resistance_ohm: is \"8\"; expected a number above 0"}},
+      {model_text(R"("current": {"law": "ohmic"})"), {"/current/resistance_ohm: is missing"}},
+      {model_text(R"("current": {"law": "ohmic", "resistance_ohm": 8, "resistanse": 8})"),
+       {"/current/resistanse: unknown key"}},
+      {model_text(R"("current": {"law": "ohmic", "resistance_ohm": 8, "resistance_ohm": 9})"),
+       {"'resistance_ohm' appears twice"}},
+      {model_text(R"("thermal": {"law": "lumped", "heat_capacity_J_per_K": 60, "conductance_W_per_K": 0})"),
+       {"/thermal/conductance_W_per_K: is 0; expected a number above 0"}},
+      {model_text(
+           R"("axis": {"law": "rigid", "inertia_kgm2": 1, "viscous_Nms_per_rad": -1, "torque_constant_Nm_per_A": 1})"),
+       {"/axis/viscous_Nms_per_rad: is -1; expected a number, 0 or more"}},
+      {model_text(
+           R"("axis": {"law": "rigid", "inertia_kgm2": 1, "viscous_Nms_per_rad": 1, "torque_constant_Nm_per_A": 0})"),
+       {"/axis/torque_constant_Nm_per_A: is 0; expected a number other than 0"}},
+      {model_text(ohmic + R"(, "effects": {"gremlins": {}})"),
+       {"/effects/gremlins: no such effect", "thermopower-gap effects"}},
+      {model_text(ohmic + R"(, "effects": {"a/b": {}})"), {"/effects/a~1b: no such effect"}},
+      {model_text(ohmic + R"(, "effects": {"coulomb_friction": {}})"),
+       {"/effects/coulomb_friction/Nm: is missing"}},
+      {model_text(ohmic + R"(, "effects": {"coulomb_friction": {"Nm": 1e9}})"),
+       {"/effects/coulomb_friction/Nm: is 1e+09; expected 0 to"}},
+      {model_text(ohmic + R"(, "effects": {"coulomb_friction": {"Nm": 0.1, "nm": 0.1}})"),
+       {"/effects/coulomb_friction/nm: unknown key"}},
+      {model_text(R"("current": {"law": "ohmic", "resistance_ohm": 1e999})"),
+       {"model.json: not usable JSON: number overflow", "expected finite numbers"}},
+      {model_text("\"name\": \"nothing in it\""), {"model.json: ", "none of the blocks"}},
+  };
+  for (const auto& one : cases) {
+    const std::string message = error_of(one.text);
+    CAPTURE(one.text, message);
+    CHECK_THAT(message, ContainsSubstring("model.json"));
+    for (const auto& part : one.parts) CHECK_THAT(message, ContainsSubstring(part));
+  }
+}
+
+TEST_CASE("what is no readable model file is told apart") {
+  CHECK_THROWS_WITH(files::read_model("/", standard_catalogue()),
+                    ContainsSubstring("is a directory; expected a model file"));
+  CHECK_THROWS_WITH(files::read_model("/no such file", standard_catalogue()),
+                    ContainsSubstring("cannot be read"));
+}
