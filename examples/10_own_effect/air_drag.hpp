@@ -9,14 +9,18 @@
 //! [own effect]
 /// Air drag on something that the axis turns: a torque against the motion, with the square of the rate.
 struct AirDrag {
+  /// Its parameters, in this order.
+  enum Parameters { drag };
+
   /// What it is, for people and for the engine.
   static thermopower::plant::EffectInfo info() {
+    using namespace thermopower::plant;
     return {"air_drag",
-            "mechanical.friction",
+            Submodel::mechanical_friction,
             "torque -= c rate |rate|",
             "What the axis turns beats the air: the drag grows with the square of the rate.",
-            {{"Nm_s2_per_rad2", "N m s^2/rad^2", 0.0, 1.0, {1e-5}, false}},
-            {"axis"},
+            {parameter(drag, "Nm_s2_per_rad2").unit("N m s^2/rad^2").within(0.0, 1.0).starts({1e-5})},
+            {Need::axis_model},
             "fast turns at a steady rate, in both directions"};
   }
 
@@ -24,7 +28,7 @@ struct AirDrag {
   template <class Scalar>
   static void act(const Scalar* p, thermopower::plant::AxisTerms<Scalar>& terms) {
     using thermopower::plant::magnitude;
-    terms.load_Nm -= p[0] * terms.rate_rad_per_s * magnitude(terms.rate_rad_per_s);
+    terms.load_Nm -= p[drag] * terms.rate_rad_per_s * magnitude(terms.rate_rad_per_s);
   }
 };
 //! [own effect]

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 the thermopower authors
 
-# A source that compiles as it stands must fail, for the stated reason, when MISUSE is defined.
+# A source that compiles as it stands must fail, for the stated reason, when MISUSE is defined. What runs on a desk only
+# says '// standard: 17'.
 file(READ ${SOURCE} text)
 if(NOT text MATCHES "\n// expect: ([^\n]+)\n")
   message(FATAL_ERROR "${SOURCE} does not say '// expect: ...'")
 endif()
 set(expected "${CMAKE_MATCH_1}")
+if(text MATCHES "\n// standard: ([0-9]+)\n")
+  set(STANDARD ${CMAKE_MATCH_1})
+endif()
 set(compile ${COMPILER} -std=c++${STANDARD} -fsyntax-only -Wall -Wextra -I${INCLUDE} ${SOURCE})
 
 execute_process(COMMAND ${compile} RESULT_VARIABLE result ERROR_VARIABLE errors)

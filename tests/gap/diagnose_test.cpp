@@ -202,18 +202,19 @@ namespace {
 
 /// A user's effect: the supply's ripple heats the motor with a constant power.
 struct StandbyHeat {
+  enum Parameters { heat_W };
   static EffectInfo info() {
     return {"standby_heat",
-            "thermal.heating",
+            Submodel::thermal_heating,
             "P += W",
             "A constant heat while nothing is driven.",
-            {{"W", "W", 0.0, 10.0, {0.0}, false}},
-            {"thermal", "motor_C"},
+            {parameter(heat_W, "W").unit("W").within(0.0, 10.0).starts({0.0})},
+            {Need::thermal_model, Need::motor_C},
             "a long rest"};
   }
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    terms.heat_W += p[0];
+    terms.heat_W += p[heat_W];
   }
 };
 

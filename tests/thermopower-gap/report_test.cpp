@@ -174,7 +174,7 @@ TEST_CASE("outputs appear together and complete, or not at all") {
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a header names every effect, with a policy where there is one") {
+TEST_CASE("a header holds the equation of every effect of the catalogue, and lists what it has none for") {
   Model model;
   model.name = "two\nlines */";
   model.current = OhmicCurrentModel{};
@@ -182,9 +182,11 @@ TEST_CASE("a header names every effect, with a policy where there is one") {
   model.effects["natural_convection"] = {{"exponent", 0.25}, {"reference_K", 20.0}};
   model.effects["dead_time"] = {{"duty_lost", 0.02}};
   model.effects["my own/effect"] = {{"a b", 2.0}};
-  const std::string header = files::motor_model_header(model, "origin");
-  CHECK_THAT(header,
-             ContainsSubstring("thermopower::NaturalConvection<float>") && ContainsSubstring("0.25f, 20.0f"));
-  CHECK_THAT(header, ContainsSubstring("duty > 0.02f"));
-  CHECK_THAT(header, ContainsSubstring("static float my_own_effect_a_b() { return 2.0f; }"));
+  const files::MotorModelHeader header = files::motor_model_header(model, "origin");
+  CHECK_THAT(header.text, ContainsSubstring("struct Cooling") && ContainsSubstring("/ 20.0f, 0.25f)"));
+  CHECK_THAT(header.text, ContainsSubstring("duty - 0.02f"));
+  CHECK_THAT(header.text, ContainsSubstring("static float my_own_effect_a_b() { return 2.0f; }"));
+  CHECK_THAT(header.text, ContainsSubstring("// Left out: my own/effect: "));
+  REQUIRE(header.left_out.size() == 1);
+  CHECK_THAT(header.left_out[0], ContainsSubstring("my own/effect"));
 }

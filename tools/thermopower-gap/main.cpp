@@ -183,9 +183,13 @@ int diagnose(const Arguments& arguments) {
                   files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
     }
     if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
-    if (!arguments.header.empty())
-      outputs.put(arguments.header,
-                  files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis)));
+    if (!arguments.header.empty()) {
+      const files::MotorModelHeader header =
+          files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis), catalogue);
+      for (const std::string& one : header.left_out)
+        std::fprintf(stderr, "%s: left out: %s\n", arguments.header.c_str(), one.c_str());
+      outputs.put(arguments.header, header.text);
+    }
     outputs.commit();
   }
   std::fputs(files::summary(diagnosis).c_str(), stdout);

@@ -150,7 +150,7 @@ std::string one_sentence(const Diagnosis& diagnosis) {
 std::string catalogue_text(const std::vector<EffectInfo>& effects) {
   std::string out;
   for (const auto& effect : effects) {
-    out += effect.id + "  (" + effect.submodel + ")\n";
+    out += effect.id + "  (" + to_string(effect.submodel) + ")\n";
     out += "    " + wrapped(effect.prose, 4) + "\n";
     if (!effect.equation.empty()) out += "    equation    " + wrapped(effect.equation, 16) + "\n";
     bool first = true;
@@ -163,7 +163,7 @@ std::string catalogue_text(const std::vector<EffectInfo>& effects) {
       first = false;
     }
     std::string needs;
-    for (const auto& need : effect.needs) needs += (needs.empty() ? "" : ", ") + need;
+    for (const Need need : effect.needs) needs += std::string(needs.empty() ? "" : ", ") + to_string(need);
     if (!needs.empty()) out += "    needs       " + wrapped(needs, 16) + "\n";
     out += "\n";
   }

@@ -51,15 +51,15 @@ public:
     }
   }
 
-  /// Torque of the drive at a row, from the command of row `commanded` (of none where that lies before the run).
-  Scalar torque(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
+  /// The drive at a row, from the command of row `commanded` (of none where that lies before the run).
+  AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
     DriveTerms<Scalar> terms;
     terms.t_s = t_s;
     terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
     terms.drive_A = constant<Scalar>(commanded >= run.begin ? inputs_.drive_A[commanded] : 0.0);
     terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
     for (const auto& effect : instance_.drive) effect(terms);
-    return terms.torque_constant_Nm_per_A * terms.drive_A;
+    return {Scalar(terms.torque_constant_Nm_per_A * terms.drive_A), terms.motor_C};
   }
 
   /// The equations of motion.
@@ -75,7 +75,7 @@ private:
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,
                 const RunSpan& run, AxisState<Scalar>& state) const {
     if (!instance_.axis_structure.delayed) {
-      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), torque(row, run, row, from_s));
+      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), drive(row, run, row, from_s));
       return;
     }
     // The command switches inside the interval, at its stamp plus the delay: any delay acts smoothly.
@@ -85,11 +85,11 @@ private:
       const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
       if (!(value_of(switch_s) < to_s)) break;
       step_.advance(state, value_of(now_s), Scalar(switch_s - now_s),
-                    torque(commanded, run, row, value_of(now_s)));
+                    drive(commanded, run, row, value_of(now_s)));
       if (value_of(switch_s) > value_of(now_s)) now_s = switch_s;
       ++commanded;
     }
-    step_.advance(state, value_of(now_s), Scalar(to_s - now_s), torque(commanded, run, row, value_of(now_s)));
+    step_.advance(state, value_of(now_s), Scalar(to_s - now_s), drive(commanded, run, row, value_of(now_s)));
   }
 
   const Instance<Scalar>& instance_;

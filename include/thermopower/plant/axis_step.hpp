@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/plant/instance.hpp>
+#include <thermopower/plant/rows.hpp>
 
 #include <cmath>
 
@@ -15,6 +16,13 @@ struct AxisState {
   Scalar rate_rad_per_s;        ///< its derivative
   Scalar twist_rad;             ///< far side minus near side; unused on a rigid axis
   Scalar twist_rate_rad_per_s;  ///< its derivative
+};
+
+/// What drives the axis over an interval.
+template <class Scalar>
+struct AxisDrive {
+  Scalar torque_Nm;          ///< after the drive's own effects
+  double motor_C = missing;  ///< recorded; NaN where it is not
 };
 
 /// Integrates the axis under a constant drive, with dry friction.
@@ -45,20 +53,20 @@ public:
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
     const Scalar zero = constant<Scalar>(0.0);
-    soft_ = value_of(torques({zero, zero, zero, zero}, 0.0, zero).transition_rad_per_s) >
+    soft_ = value_of(torques({zero, zero, zero, zero}, 0.0, {zero}).transition_rad_per_s) >
             1.001 * friction_sticks_below_rad_per_s;
   }
 
-  /// Moves the state by `h_s` under the drive torque `drive_Nm`.
-  void advance(AxisState<Scalar>& state, double t_s, Scalar h_s, const Scalar& drive_Nm) const {
+  /// Moves the state by `h_s` under a drive that stays the same.
+  void advance(AxisState<Scalar>& state, double t_s, Scalar h_s, const AxisDrive<Scalar>& drive) const {
     const double length = value_of(h_s);
     if (!(length > 0.0)) return;
     const int pieces = static_cast<int>(std::fmin(2000.0, std::ceil(length / longest_s_)));
     for (int i = 0; i < pieces; ++i) {
       const double from_s = t_s + length * i / pieces;
       const Scalar piece_s = h_s * (1.0 / pieces);
-      if (instance_.axis_structure.compliant) smooth<true>(state, from_s, piece_s, drive_Nm, 6);
-      else smooth<false>(state, from_s, piece_s, drive_Nm, 6);
+      if (instance_.axis_structure.compliant) smooth<true>(state, from_s, piece_s, drive, 6);
+      else smooth<false>(state, from_s, piece_s, drive, 6);
     }
   }
 
@@ -70,20 +78,27 @@ public:
     Scalar transition_rad_per_s;  ///< of dry friction; 0: it sticks
   };
 
-  /// The torques in a state under the drive torque `drive_Nm`; a spring's is not among them.
-  Torques torques(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
+  /// The torques in a state under a drive; a spring's is not among them.
+  Torques torques(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
     const Scalar zero = constant<Scalar>(0.0);
-    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, zero, zero, zero, zero};
+    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive.torque_Nm, zero};
     for (const auto& effect : instance_.axis) effect(terms);
-    terms.load_Nm += drive_Nm;
-    terms.load_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
-    return {terms.load_Nm, terms.friction_forward_Nm, terms.friction_backward_Nm, terms.transition_rad_per_s};
+    Scalar torque_Nm = drive.torque_Nm + terms.load_Nm;
+    torque_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+    if (instance_.friction.empty()) return {torque_Nm, zero, zero, zero};
+    FrictionTerms<Scalar> dry{
+        t_s,  drive.motor_C, state.angle_rad,      state.rate_rad_per_s, drive.torque_Nm, terms.load_Nm, zero,
+        zero, zero,          constant<Scalar>(1.0)};
+    for (const auto& effect : instance_.friction) effect(dry);
+    return {torque_Nm, Scalar(dry.forward_Nm * dry.factor), Scalar(dry.backward_Nm * dry.factor),
+            dry.transition_rad_per_s};
   }
 
 private:
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
   };
+
   /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
   static Scalar soft_friction(const Torques& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
     using std::tanh;
@@ -105,16 +120,16 @@ private:
 
   /// @param direction  +1 or -1: which way friction acts against; 0: sticking
   template <bool compliant>
-  void slope(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm, int direction, Slope& rate,
-             Scalar* stiffness = nullptr) const {
+  void slope(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive, int direction,
+             Slope& rate, Scalar* stiffness = nullptr) const {
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
     } else {
       rate.angle = state.rate_rad_per_s;
-      if (instance_.axis.empty()) {
-        rate.rate = drive_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+      if (instance_.axis.empty() && instance_.friction.empty()) {
+        rate.rate = drive.torque_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
       } else {
-        const Torques now = torques(state, t_s, drive_Nm);
+        const Torques now = torques(state, t_s, drive);
         rate.rate = now.torque_Nm;
         if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, stiffness);
         else if (direction > 0) rate.rate -= now.forward_Nm;
@@ -145,17 +160,18 @@ private:
   /// from a straight line, as a rate.
   template <bool compliant>
   AxisState<Scalar> runge_kutta(const AxisState<Scalar>& from, double t_s, const Scalar& h_s,
-                                const Scalar& drive_Nm, int direction, const Slope& k1, double& bend) const {
+                                const AxisDrive<Scalar>& drive, int direction, const Slope& k1,
+                                double& bend) const {
     const double h = value_of(h_s);
     const Scalar half_s = h_s * 0.5;
     Slope k2, k3, k4;
     AxisState<Scalar> point = from;
     move<compliant>(from, k1, half_s, point);
-    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k2);
+    slope<compliant>(point, t_s + 0.5 * h, drive, direction, k2);
     move<compliant>(from, k2, half_s, point);
-    slope<compliant>(point, t_s + 0.5 * h, drive_Nm, direction, k3);
+    slope<compliant>(point, t_s + 0.5 * h, drive, direction, k3);
     move<compliant>(from, k3, h_s, point);
-    slope<compliant>(point, t_s + h, drive_Nm, direction, k4);
+    slope<compliant>(point, t_s + h, drive, direction, k4);
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
     // A transition of friction between the second and the third slope shows in their difference only.
     if (soft_) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
@@ -175,10 +191,10 @@ private:
   }
 
   template <bool compliant>
-  int direction_of(const AxisState<Scalar>& state, double t_s, const Scalar& drive_Nm) const {
+  int direction_of(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
     const double rate = value_of(state.rate_rad_per_s);
     if (rate != 0.0) return rate > 0.0 ? 1 : -1;
-    const Torques now = torques(state, t_s, drive_Nm);
+    const Torques now = torques(state, t_s, drive);
     double torque = value_of(now.torque_Nm);
     if constexpr (compliant) torque += value_of(spring(state));
     if (torque > value_of(now.forward_Nm)) return 1;
@@ -187,22 +203,23 @@ private:
   }
 
   template <bool compliant>
-  void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const Scalar& drive_Nm, int depth) const {
+  void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive,
+              int depth) const {
     const double bend_limit_rad_per_s = soft_ ? 1e-4 : 5e-4;
-    const bool dry = !instance_.axis.empty() && !soft_;
+    const bool dry = !instance_.friction.empty() && !soft_;
     for (int event = 0; event < 12; ++event) {
-      const int direction = dry ? direction_of<compliant>(state, t_s, drive_Nm) : 1;
+      const int direction = dry ? direction_of<compliant>(state, t_s, drive) : 1;
       Slope start;
       Scalar stiffness = constant<Scalar>(0.0);
-      slope<compliant>(state, t_s, drive_Nm, direction, start, &stiffness);
-      if (soft_ && creep<compliant>(state, t_s, left_s, drive_Nm, depth, start, stiffness)) return;
+      slope<compliant>(state, t_s, drive, direction, start, &stiffness);
+      if (soft_ && creep<compliant>(state, t_s, left_s, drive, depth, start, stiffness)) return;
       double bend = 0.0;
       const AxisState<Scalar> reached =
-          runge_kutta<compliant>(state, t_s, left_s, drive_Nm, direction, start, bend);
+          runge_kutta<compliant>(state, t_s, left_s, drive, direction, start, bend);
       if (bend > bend_limit_rad_per_s && depth > 0) {
         const Scalar half_s = left_s * 0.5;
-        smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
-        smooth<compliant>(state, t_s + value_of(half_s), half_s, drive_Nm, depth - 1);
+        smooth<compliant>(state, t_s, half_s, drive, depth - 1);
+        smooth<compliant>(state, t_s + value_of(half_s), half_s, drive, depth - 1);
         return;
       }
       if (!dry || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
@@ -213,20 +230,20 @@ private:
       const double before = value_of(state.rate_rad_per_s), after = value_of(reached.rate_rad_per_s);
       if (before == 0.0) {  // would start and turn back at once: it stays
         state.rate_rad_per_s = constant<Scalar>(0.0);
-        slope<compliant>(state, t_s, drive_Nm, 0, start);
-        state = runge_kutta<compliant>(state, t_s, left_s, drive_Nm, 0, start, bend);
+        slope<compliant>(state, t_s, drive, 0, start);
+        state = runge_kutta<compliant>(state, t_s, left_s, drive, 0, start, bend);
         return;
       }
       Scalar cut_s = left_s * (before / (before - after));
-      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
+      AxisState<Scalar> at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive, direction, start, bend);
       Slope there;
-      slope<compliant>(at_cut, t_s, drive_Nm, direction, there);
+      slope<compliant>(at_cut, t_s, drive, direction, there);
       if (value_of(there.rate) * direction < 0.0) {
         const Scalar correction_s = at_cut.rate_rad_per_s / there.rate;
         const double corrected = value_of(cut_s) - value_of(correction_s);
         if (corrected > 0.0 && corrected < value_of(left_s)) {
           cut_s -= correction_s;
-          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive_Nm, direction, start, bend);
+          at_cut = runge_kutta<compliant>(state, t_s, cut_s, drive, direction, start, bend);
         }
       }
       at_cut.rate_rad_per_s = constant<Scalar>(0.0);
@@ -242,8 +259,8 @@ private:
   /// @param now, stiffness  what `slope` says of the start
   /// @return false: not stiff here, nothing was done
   template <bool compliant>
-  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const Scalar& drive_Nm, int depth,
-             const Slope& now, const Scalar& stiffness) const {
+  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const AxisDrive<Scalar>& drive,
+             int depth, const Slope& now, const Scalar& stiffness) const {
     constexpr double error_limit_rad_per_s = 1e-4;
     using std::exp;
     const Scalar decay = stiffness * (h_s * per_near_inertia_);
@@ -260,13 +277,13 @@ private:
       reached.twist_rad += h_s * reached.twist_rate_rad_per_s;
     }
     Slope there;
-    slope<compliant>(reached, t_s + h, drive_Nm, 1, there);
+    slope<compliant>(reached, t_s + h, drive, 1, there);
     const double missed =
         value_of(there.rate) - value_of(now.rate) + value_of(decay) / h * value_of(gain_rad_per_s);
     if (std::abs(missed) * h * value_of(phi_2) > error_limit_rad_per_s && depth > 0) {
       const Scalar half_s = h_s * 0.5;
-      smooth<compliant>(state, t_s, half_s, drive_Nm, depth - 1);
-      smooth<compliant>(state, t_s + 0.5 * h, half_s, drive_Nm, depth - 1);
+      smooth<compliant>(state, t_s, half_s, drive, depth - 1);
+      smooth<compliant>(state, t_s + 0.5 * h, half_s, drive, depth - 1);
     } else {
       state = reached;
     }

@@ -159,7 +159,12 @@ public:
     terms.current_A = electrical.current_A;
     terms.supply_V = electrical.supply_V;
     terms.v_rms_V = electrical.v_rms_V;
-    terms.ambient_C = constant<Scalar>(terms.measured_ambient_C);
+    AirTerms<Scalar> air;
+    air.t_s = t_s;
+    air.measured_ambient_C = terms.measured_ambient_C;
+    air.ambient_C = constant<Scalar>(terms.measured_ambient_C);
+    for (const auto& effect : instance_.air) effect(air);
+    terms.ambient_C = air.ambient_C;
     terms.heat_W = electrical.winding_W;
     terms.conductance_factor = constant<Scalar>(1.0);
     terms.extra_loss_W = constant<Scalar>(0.0);

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
 
@@ -20,18 +21,20 @@ namespace thermopower::plant {
 /// Which hooks an effect has; the engine calls no others.
 struct HookSet {
   bool electrical = false;         ///< overload of `act` for ElectricalTerms
+  bool air = false;                ///< for AirTerms
   bool thermal = false;            ///< for ThermalTerms
   bool thermal_structure = false;  ///< for ThermalStructure
   bool bench_readings = false;     ///< for BenchReadings
   bool drive = false;              ///< for DriveTerms
   bool axis = false;               ///< for AxisTerms
+  bool friction = false;           ///< for FrictionTerms
   bool axis_structure = false;     ///< for AxisStructure
   bool axis_readings = false;      ///< for AxisReadings
 
   /// Whether it can show in a recording of a motor on a bench.
-  bool any_bench() const { return electrical || thermal || thermal_structure || bench_readings; }
+  bool any_bench() const { return electrical || air || thermal || thermal_structure || bench_readings; }
   /// Whether it can show in a recording of a moving axis.
-  bool any_axis() const { return drive || axis || axis_structure || axis_readings; }
+  bool any_axis() const { return drive || axis || friction || axis_structure || axis_readings; }
 };
 
 namespace detail {
@@ -42,11 +45,13 @@ class Hooks {
 public:
   virtual ~Hooks() = default;
   virtual void call(const Scalar*, ElectricalTerms<Scalar>&) const {}
+  virtual void call(const Scalar*, AirTerms<Scalar>&) const {}
   virtual void call(const Scalar*, ThermalTerms<Scalar>&) const {}
   virtual void call(const Scalar*, ThermalStructure<Scalar>&) const {}
   virtual void call(const Scalar*, BenchReadings<Scalar>&) const {}
   virtual void call(const Scalar*, DriveTerms<Scalar>&) const {}
   virtual void call(const Scalar*, AxisTerms<Scalar>&) const {}
+  virtual void call(const Scalar*, FrictionTerms<Scalar>&) const {}
   virtual void call(const Scalar*, AxisStructure<Scalar>&) const {}
   virtual void call(const Scalar*, AxisReadings<Scalar>&) const {}
 };
@@ -59,16 +64,33 @@ struct HasHook<
     std::void_t<decltype(Effect::act(std::declval<const Scalar*>(), std::declval<Terms<Scalar>&>()))>>
     : std::true_type {};
 
+template <class Effect, class = void>
+struct HasInfo : std::false_type {};
+template <class Effect>
+struct HasInfo<Effect, std::enable_if_t<std::is_same_v<decltype(Effect::info()), EffectInfo>>>
+    : std::true_type {};
+
+/// Whether an effect has a hook for any of the terms.
+template <class Effect>
+inline constexpr bool has_any_hook =
+    HasHook<Effect, ElectricalTerms<double>>::value || HasHook<Effect, AirTerms<double>>::value ||
+    HasHook<Effect, ThermalTerms<double>>::value || HasHook<Effect, ThermalStructure<double>>::value ||
+    HasHook<Effect, BenchReadings<double>>::value || HasHook<Effect, DriveTerms<double>>::value ||
+    HasHook<Effect, AxisTerms<double>>::value || HasHook<Effect, FrictionTerms<double>>::value ||
+    HasHook<Effect, AxisStructure<double>>::value || HasHook<Effect, AxisReadings<double>>::value;
+
 /// Forwards each type-erased hook to `Effect::act` where the effect has that overload.
 template <class Effect, class Scalar>
 class HooksOf : public Hooks<Scalar> {
 public:
   void call(const Scalar* p, ElectricalTerms<Scalar>& terms) const final { forward(p, terms); }
+  void call(const Scalar* p, AirTerms<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, ThermalTerms<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, ThermalStructure<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, BenchReadings<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, DriveTerms<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, AxisTerms<Scalar>& terms) const final { forward(p, terms); }
+  void call(const Scalar* p, FrictionTerms<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, AxisStructure<Scalar>& terms) const final { forward(p, terms); }
   void call(const Scalar* p, AxisReadings<Scalar>& terms) const final { forward(p, terms); }
 
@@ -83,15 +105,17 @@ private:
 
 /// An effect of the catalogue: what it is, and its hooks for both scalars.
 struct CatalogueEntry {
-  EffectInfo info;                                     ///< id, prose, parameters, needs
-  HookSet hooks;                                       ///< where it acts
-  std::shared_ptr<const detail::Hooks<double>> plain;  ///< its hooks for simulations
-  std::shared_ptr<const detail::Hooks<Dual>> dual;     ///< and for fits, with derivatives
+  EffectInfo info;                                          ///< id, prose, parameters, needs
+  HookSet hooks;                                            ///< where it acts
+  std::shared_ptr<const detail::Hooks<double>> plain;       ///< its hooks for simulations
+  std::shared_ptr<const detail::Hooks<Dual>> dual;          ///< and for fits, with derivatives
+  std::shared_ptr<const detail::Hooks<Expression>> traced;  ///< and for writing its equation down
 
   /// The hooks for a scalar.
   template <class Scalar>
   const detail::Hooks<Scalar>& of() const {
     if constexpr (std::is_same_v<Scalar, double>) return *plain;
+    else if constexpr (std::is_same_v<Scalar, Expression>) return *traced;
     else return *dual;
   }
 };
@@ -104,27 +128,18 @@ struct CatalogueEntry {
 /// by automatic differentiation), compared and exported because it exists: `catalogue.add<MyEffect>()`.
 class Catalogue {
 public:
-  /// Adds an effect. @throws InvalidInput where its info is unusable or its id is taken.
+  /// Adds an effect; a type that is none is a compile-time error in one sentence. @throws InvalidInput where its info is unusable or its id is taken.
   template <class Effect>
   Catalogue& add() {
-    CatalogueEntry entry;
-    entry.info = Effect::info();
-    check(entry.info);
-    entry.hooks.electrical = detail::HasHook<Effect, ElectricalTerms<double>>::value;
-    entry.hooks.thermal = detail::HasHook<Effect, ThermalTerms<double>>::value;
-    entry.hooks.thermal_structure = detail::HasHook<Effect, ThermalStructure<double>>::value;
-    entry.hooks.bench_readings = detail::HasHook<Effect, BenchReadings<double>>::value;
-    entry.hooks.drive = detail::HasHook<Effect, DriveTerms<double>>::value;
-    entry.hooks.axis = detail::HasHook<Effect, AxisTerms<double>>::value;
-    entry.hooks.axis_structure = detail::HasHook<Effect, AxisStructure<double>>::value;
-    entry.hooks.axis_readings = detail::HasHook<Effect, AxisReadings<double>>::value;
-    entry.plain = std::make_shared<detail::HooksOf<Effect, double>>();
-    entry.dual = std::make_shared<detail::HooksOf<Effect, Dual>>();
-    infos_.push_back(entry.info);
-    entries_.push_back(std::move(entry));
+    static_assert(detail::HasInfo<Effect>::value,
+                  "thermopower: an effect needs 'static thermopower::plant::EffectInfo info()'");
+    static_assert(
+        detail::has_any_hook<Effect>,
+        "thermopower: an effect needs a hook 'template <class Scalar> static void act(const Scalar* p, "
+        "XTerms<Scalar>& terms)' where XTerms is one of plant/terms.hpp");
+    if constexpr (detail::HasInfo<Effect>::value && detail::has_any_hook<Effect>) add_checked<Effect>();
     return *this;
   }
-
   /// What there is, in the order added.
   const std::vector<EffectInfo>& list() const { return infos_; }
 
@@ -139,21 +154,69 @@ public:
   }
 
 private:
-  void check(const EffectInfo& info) const {
+  template <class Effect>
+  void add_checked() {
+    CatalogueEntry entry;
+    entry.info = Effect::info();
+    entry.hooks.electrical = detail::HasHook<Effect, ElectricalTerms<double>>::value;
+    entry.hooks.air = detail::HasHook<Effect, AirTerms<double>>::value;
+    entry.hooks.thermal = detail::HasHook<Effect, ThermalTerms<double>>::value;
+    entry.hooks.thermal_structure = detail::HasHook<Effect, ThermalStructure<double>>::value;
+    entry.hooks.bench_readings = detail::HasHook<Effect, BenchReadings<double>>::value;
+    entry.hooks.drive = detail::HasHook<Effect, DriveTerms<double>>::value;
+    entry.hooks.axis = detail::HasHook<Effect, AxisTerms<double>>::value;
+    entry.hooks.friction = detail::HasHook<Effect, FrictionTerms<double>>::value;
+    entry.hooks.axis_structure = detail::HasHook<Effect, AxisStructure<double>>::value;
+    entry.hooks.axis_readings = detail::HasHook<Effect, AxisReadings<double>>::value;
+    check(entry.info, entry.hooks);
+    entry.plain = std::make_shared<detail::HooksOf<Effect, double>>();
+    entry.dual = std::make_shared<detail::HooksOf<Effect, Dual>>();
+    entry.traced = std::make_shared<detail::HooksOf<Effect, Expression>>();
+    infos_.push_back(entry.info);
+    entries_.push_back(std::move(entry));
+  }
+
+  void check(const EffectInfo& info, const HookSet& hooks) const {
+    const std::string effect = "effect '" + info.id + "'";
     if (info.id.empty()) throw InvalidInput("an effect has no id");
-    if (find(info.id) != nullptr) throw InvalidInput("effect '" + info.id + "' is in the catalogue already");
+    if (find(info.id) != nullptr) throw InvalidInput(effect + " is in the catalogue already");
     if (info.id.rfind("calibration.", 0) == 0)
-      throw InvalidInput("effect '" + info.id + "': ids that start with calibration. belong to the engine");
-    for (const Parameter& parameter : info.parameters) {
-      const std::string where = "effect '" + info.id + "', parameter '" + parameter.name + "': ";
-      if (!(parameter.lower < parameter.upper)) throw InvalidInput(where + "lower must be below upper");
-      if (parameter.logarithmic && !(parameter.lower > 0.0))
-        throw InvalidInput(where + "a logarithmic parameter needs a lower bound above 0");
-      if (parameter.starts.empty()) throw InvalidInput(where + "expected at least one start");
-      for (double start : parameter.starts)
-        if (!(start >= parameter.lower && start <= parameter.upper))
-          throw InvalidInput(where + "a start lies outside the bounds");
+      throw InvalidInput(effect + ": ids that start with calibration. belong to the engine");
+    for (const Need need : info.needs) {
+      const bool bench_only = need == Need::thermal_model || need == Need::current_model ||
+                              need == Need::ohmic_without_tempco || need == Need::supply_not_logged ||
+                              need == Need::current_A || need == Need::power_param ||
+                              need == Need::airspeed_mps || need == Need::neighbour_C;
+      const bool axis_only = need == Need::axis_model || need == Need::angle_deg;
+      if ((bench_only && !hooks.any_bench()) || (axis_only && !hooks.any_axis()))
+        throw InvalidInput(effect + ": needs '" + to_string(need) +
+                           "', which none of its hooks has to do with");
     }
+    int place = 0;
+    for (const Parameter& parameter : info.parameters) check(parameter, place++, effect, hooks);
+  }
+
+  static void check(const Parameter& parameter, int place, const std::string& effect, const HookSet& hooks) {
+    const std::string where = effect + ", parameter '" + parameter.name + "': ";
+    if (parameter.name.empty()) throw InvalidInput(effect + ": a parameter has no name");
+    if (parameter.index >= 0 && parameter.index != place)
+      throw InvalidInput(where + "the effect reads it as number " + std::to_string(parameter.index) +
+                         ", but it is number " + std::to_string(place) + " of the list (from 0)");
+    if (!(parameter.lower < parameter.upper)) throw InvalidInput(where + "lower must be below upper");
+    if (parameter.logarithmic && !(parameter.lower > 0.0))
+      throw InvalidInput(where + "a logarithmic parameter needs a lower bound above 0");
+    if (parameter.starts.empty()) throw InvalidInput(where + "expected at least one start");
+    for (double start : parameter.starts)
+      if (!(start >= parameter.lower && start <= parameter.upper))
+        throw InvalidInput(where + "a start lies outside the bounds");
+    if (parameter.standard &&
+        !(*parameter.standard >= parameter.lower && *parameter.standard <= parameter.upper))
+      throw InvalidInput(where + "its standard value lies outside the bounds");
+    if ((parameter.starts_relative_to == Input::drive_A && !hooks.any_axis()) ||
+        ((parameter.starts_relative_to == Input::power_param ||
+          parameter.starts_relative_to == Input::supply_V) &&
+         !hooks.any_bench()))
+      throw InvalidInput(where + "its starts are shares of an input that none of the effect's hooks has");
   }
 
   std::vector<EffectInfo> infos_;

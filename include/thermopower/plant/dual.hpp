@@ -154,10 +154,16 @@ Scalar magnitude(const Scalar& x) {
   return value_of(x) < 0.0 ? Scalar(-x) : x;
 }
 
-/// The larger of x and a number.
+/// The larger of x and a number, with the derivative of the one that holds.
 template <class Scalar>
 Scalar at_least(const Scalar& x, double floor) {
   return value_of(x) > floor ? x : constant<Scalar>(floor);
+}
+
+/// The larger of two, with its derivative.
+template <class Scalar>
+Scalar larger(const Scalar& a, const Scalar& b) {
+  return value_of(b) > value_of(a) ? b : a;
 }
 
 }  // namespace thermopower::plant

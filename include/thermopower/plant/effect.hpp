@@ -2,13 +2,72 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/submodel.hpp>
+
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::plant {
 
-/// One parameter of an effect.
+/// What must be there before an effect can be judged: a block of the model, or a column of the recordings.
+enum class Need {
+  current_model,         ///< the model says how much current flows
+  thermal_model,         ///< the model says how the body warms, and `motor_C` is recorded
+  axis_model,            ///< the model says how the axis moves, and its motion is recorded
+  ohmic_without_tempco,  ///< the model's winding is ohmic and has no temperature coefficient
+  current_A,             ///< recorded
+  motor_C,               ///< recorded
+  angle_deg,             ///< recorded
+  rate_dps,              ///< recorded
+  power_param,           ///< recorded
+  airspeed_mps,          ///< recorded
+  neighbour_C,           ///< recorded
+  supply_not_logged      ///< there is no column `supply_V`
+};
+
+/// As lists of effects print it.
+inline const char* to_string(Need need) {
+  switch (need) {
+    case Need::current_model:
+      return "current";
+    case Need::thermal_model:
+      return "thermal";
+    case Need::axis_model:
+      return "axis";
+    case Need::ohmic_without_tempco:
+      return "ohmic current without tempco";
+    case Need::current_A:
+      return "current_A";
+    case Need::motor_C:
+      return "motor_C";
+    case Need::angle_deg:
+      return "angle_deg";
+    case Need::rate_dps:
+      return "rate_dps";
+    case Need::power_param:
+      return "power_param";
+    case Need::airspeed_mps:
+      return "airspeed_mps";
+    case Need::neighbour_C:
+      return "neighbour_C";
+    case Need::supply_not_logged:
+      return "no supply_V";
+  }
+  return "?";
+}
+
+/// An input by whose largest magnitude the starts of a parameter may be scaled.
+enum class Input {
+  none,         ///< the starts are in the parameter's unit
+  drive_A,      ///< shares of the largest command
+  power_param,  ///< shares of the largest power parameter
+  supply_V      ///< shares of the largest supply voltage
+};
+
+/// One parameter of an effect. `parameter()` builds one.
 struct Parameter {
   std::string name;                 ///< as in model files and reports
   std::string unit;                 ///< "1" for a pure number
@@ -16,20 +75,62 @@ struct Parameter {
   double upper = 1.0;               ///< physical bound
   std::vector<double> starts = {};  ///< where fits begin, inside the bounds, at least one
   bool logarithmic = false;  ///< positive and known by order of magnitude only: fitted as its logarithm
-  std::string starts_relative_to = {};  ///< a column: the starts are fractions of its largest magnitude
-  std::optional<double> standard = {};  ///< its value where a model leaves it out; none: it must be given
+  Input starts_relative_to = Input::none;  ///< the starts are fractions of its largest magnitude
+  std::optional<double> standard = {};     ///< its value where a model leaves it out; none: it must be given
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   bool degenerate_at_bounds = false;
+  int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
 };
+
+/// Builds a Parameter, each property by its name.
+class ParameterBuilder {
+public:
+  /// @param index  by which the effect reads it, an enumerator: the catalogue checks it against the list
+  /// @param name   as in model files and reports
+  ParameterBuilder(int index, std::string name) {
+    parameter_.index = index;
+    parameter_.name = std::move(name);
+    parameter_.unit = "1";
+  }
+  /// Of its value; "1" (a pure number) unless said otherwise.
+  ParameterBuilder& unit(std::string text) { return parameter_.unit = std::move(text), *this; }
+  /// Physical bounds, lower < upper.
+  ParameterBuilder& within(double lower, double upper) {
+    return parameter_.lower = lower, parameter_.upper = upper, *this;
+  }
+  /// Positive, and known by order of magnitude only: fits move its logarithm.
+  ParameterBuilder& logarithmic() { return parameter_.logarithmic = true, *this; }
+  /// Where fits begin, within the bounds.
+  ParameterBuilder& starts(std::initializer_list<double> values) { return parameter_.starts = values, *this; }
+  /// Where fits begin, as shares of the largest magnitude of an input.
+  ParameterBuilder& starts_as_shares_of(Input input, std::initializer_list<double> values) {
+    return parameter_.starts_relative_to = input, parameter_.starts = values, *this;
+  }
+  /// Its value where a model leaves it out.
+  ParameterBuilder& standard(double value) { return parameter_.standard = value, *this; }
+  /// At its bounds the effect is another one: a fit that ends there explains nothing.
+  ParameterBuilder& degenerate_at_bounds() { return parameter_.degenerate_at_bounds = true, *this; }
+
+  /// What was built.
+  operator Parameter() const { return parameter_; }  // NOLINT: lists of parameters are lists of these
+
+private:
+  Parameter parameter_;
+};
+
+/// Begins a parameter: `parameter(lag_s, "lag_s").unit("s").within(0.05, 3000.0).logarithmic().starts({3.0})`.
+/// @param index  by which the effect reads it: `enum Parameters { lag_s };` and `p[lag_s]`
+/// @param name   as in model files and reports
+inline ParameterBuilder parameter(int index, std::string name) { return {index, std::move(name)}; }
 
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.
 struct EffectInfo {
   std::string id;                     ///< stable, snake_case
-  std::string submodel;               ///< `thermal.loss`, `mechanical.friction`, ...
+  SubmodelName submodel;              ///< where it acts
   std::string equation;               ///< one line of text
   std::string prose;                  ///< one line: what it is and how it shows
   std::vector<Parameter> parameters;  ///< in the order the hooks see them
-  std::vector<std::string> needs;     ///< columns and model blocks without which it cannot be judged
+  std::vector<Need> needs;            ///< without which it cannot be judged
   std::string experiment;             ///< the excitation that shows it best
 };
 

@@ -7,18 +7,16 @@
 
 namespace thermopower::plant {
 
-/// The parameter that every dry friction has last: the rate in rad/s within which it turns over, 0.0005 (where
-/// the axis sticks) to 0.3; 0.01 where a model leaves it out.
-inline Parameter friction_transition() {
-  Parameter transition;
-  transition.name = "transition_rad_per_s";
-  transition.unit = "rad/s";
-  transition.lower = friction_sticks_below_rad_per_s;
-  transition.upper = 0.3;
-  transition.starts = {0.01, 0.06};
-  transition.logarithmic = true;
-  transition.standard = 0.01;
-  return transition;
+/// The parameter that every dry friction has: the rate in rad/s within which it turns over, 0.0005 (where the
+/// axis sticks) to 0.3; 0.01 where a model leaves it out.
+/// @param index  by which the effect reads it
+inline Parameter friction_transition(int index) {
+  return parameter(index, "transition_rad_per_s")
+      .unit("rad/s")
+      .within(friction_sticks_below_rad_per_s, 0.3)
+      .logarithmic()
+      .starts({0.01, 0.06})
+      .standard(0.01);
 }
 
 }  // namespace thermopower::plant

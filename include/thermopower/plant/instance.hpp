@@ -56,10 +56,12 @@ struct Instance {
   AxisStructure<Scalar> axis_structure;        ///< after the effects that shape it
 
   std::vector<Bound<Scalar>> electrical;      ///< effects on ElectricalTerms, in the catalogue's order
-  std::vector<Bound<Scalar>> thermal;         ///< on ThermalTerms
+  std::vector<Bound<Scalar>> air;             ///< on AirTerms
+  std::vector<Bound<Scalar>> thermal;         ///< on ThermalTerms, after those on AirTerms
   std::vector<Bound<Scalar>> bench_readings;  ///< on BenchReadings
   std::vector<Bound<Scalar>> drive;           ///< on DriveTerms
   std::vector<Bound<Scalar>> axis;            ///< on AxisTerms
+  std::vector<Bound<Scalar>> friction;        ///< on FrictionTerms, after those on AxisTerms
   std::vector<Bound<Scalar>> axis_readings;   ///< on AxisReadings
 
   /// @param factors  one per entry of `model.calibrated()`: multiplies that constant
@@ -177,10 +179,12 @@ private:
   void bind(const CatalogueEntry& entry, const Scalar* parameters) {
     const Bound<Scalar> bound{&entry.of<Scalar>(), parameters};
     if (entry.hooks.electrical) electrical.push_back(bound);
+    if (entry.hooks.air) air.push_back(bound);
     if (entry.hooks.thermal) thermal.push_back(bound);
     if (entry.hooks.bench_readings) bench_readings.push_back(bound);
     if (entry.hooks.drive) drive.push_back(bound);
     if (entry.hooks.axis) axis.push_back(bound);
+    if (entry.hooks.friction) friction.push_back(bound);
     if (entry.hooks.axis_readings) axis_readings.push_back(bound);
     if (entry.hooks.thermal_structure) bound(thermal_structure);
     if (entry.hooks.axis_structure) bound(axis_structure);

@@ -2,6 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/given.hpp>
+
 namespace thermopower::plant {
 
 /// @file terms.hpp
@@ -9,15 +12,16 @@ namespace thermopower::plant {
 ///
 /// Members above the line "to change" are given: states, inputs, covariates (NaN where not recorded). A hook
 /// adds to or multiplies the members below it, so that several effects act together. Scalar is double in a
-/// simulation and an automatic-differentiation number in a fit.
+/// simulation, an automatic-differentiation number in a fit, and an Expression where the equation writes itself
+/// down for firmware and pages.
 
 /// Before the current law is evaluated: I = (supply_V sqrt(duty) - counter_V) / (R(T) factor + series + sag).
 template <class Scalar>
 struct ElectricalTerms {
-  double t_s = 0.0;       ///< time since the start of the run
-  double rate_dps = 0.0;  ///< recorded rotation of the motor, deg/s
-  Scalar winding_C;       ///< temperature of the winding
-  Scalar charge_Ah;       ///< charge drawn since the start of the run
+  Given<Scalar> t_s = 0.0;       ///< time since the start of the run
+  Given<Scalar> rate_dps = 0.0;  ///< recorded rotation of the motor, deg/s
+  Scalar winding_C;              ///< temperature of the winding
+  Scalar charge_Ah;              ///< charge drawn since the start of the run
   // to change
   Scalar supply_V;      ///< open-circuit supply
   Scalar source_ohm;    ///< resistance between the supply and the bridge: sags with the motor's current
@@ -27,21 +31,31 @@ struct ElectricalTerms {
   Scalar counter_V;     ///< voltage against the drive
 };
 
+/// The air that the body feels. Hooks on these terms act before all hooks on ThermalTerms, so that every loss
+/// sees the same air whatever the order of the effects.
+template <class Scalar>
+struct AirTerms {
+  Given<Scalar> t_s = 0.0;                 ///< time since the start of the run
+  Given<Scalar> measured_ambient_C = 0.0;  ///< as recorded; `ambient_C` starts from it
+  // to change
+  Scalar ambient_C;  ///< air temperature that the body feels
+};
+
 /// Heat balance of the body: what comes in, what goes out, W.
 template <class Scalar>
 struct ThermalTerms {
-  double t_s = 0.0;                 ///< time since the start of the run
-  double airspeed_mps = 0.0;        ///< covariate
-  double neighbour_C = 0.0;         ///< covariate
-  double rate_dps = 0.0;            ///< covariate
-  double measured_ambient_C = 0.0;  ///< as recorded; `ambient_C` starts from it
-  Scalar winding_C;                 ///< node that the heat enters
-  Scalar surface_C;                 ///< node that loses it; the same where there is one node
-  Scalar current_A;                 ///< motor current
-  Scalar supply_V;                  ///< supply at the bridge
-  Scalar v_rms_V;                   ///< voltage at the motor
+  Given<Scalar> t_s = 0.0;                 ///< time since the start of the run
+  Given<Scalar> airspeed_mps = 0.0;        ///< covariate
+  Given<Scalar> neighbour_C = 0.0;         ///< covariate
+  Given<Scalar> rate_dps = 0.0;            ///< covariate
+  Given<Scalar> measured_ambient_C = 0.0;  ///< as recorded
+  Scalar ambient_C;  ///< air temperature that the body feels, after the hooks on AirTerms
+  Scalar winding_C;  ///< node that the heat enters
+  Scalar surface_C;  ///< node that loses it; the same where there is one node
+  Scalar current_A;  ///< motor current
+  Scalar supply_V;   ///< supply at the bridge
+  Scalar v_rms_V;    ///< voltage at the motor
   // to change
-  Scalar ambient_C;           ///< air temperature that the body feels
   Scalar heat_W;              ///< into the winding node
   Scalar conductance_factor;  ///< multiplies the baseline's loss
   Scalar extra_loss_W;        ///< out of the surface node
@@ -60,8 +74,8 @@ struct ThermalStructure {
 /// Drive path, evaluated once per interval.
 template <class Scalar>
 struct DriveTerms {
-  double t_s = 0.0;      ///< time since the start of the run
-  double motor_C = 0.0;  ///< recorded; NaN where it is not
+  Given<Scalar> t_s = 0.0;      ///< time since the start of the run
+  Given<Scalar> motor_C = 0.0;  ///< recorded; NaN where it is not
   // to change
   Scalar drive_A;                   ///< command, delayed where there is a delay
   Scalar torque_constant_Nm_per_A;  ///< as in the model file, to be multiplied
@@ -70,24 +84,41 @@ struct DriveTerms {
 /// A transition of dry friction at or below this, in rad/s, is none: the axis sticks at rest.
 inline constexpr double friction_sticks_below_rad_per_s = 5e-4;
 
-/// Torques on the driven inertia.
+/// Torques on the driven inertia, dry friction left out.
 template <class Scalar>
 struct AxisTerms {
-  double t_s;                    ///< time since the start of the run
+  Given<Scalar> t_s;             ///< time since the start of the run
   const Scalar& angle_rad;       ///< of the driven inertia
   const Scalar& rate_rad_per_s;  ///< its derivative
   const Scalar& drive_Nm;        ///< torque of the drive, after its own effects
   // to change
-  Scalar load_Nm;               ///< added to the drive
-  Scalar friction_forward_Nm;   ///< magnitude of dry friction while the rate is positive, >= 0
-  Scalar friction_backward_Nm;  ///< magnitude of dry friction while the rate is negative, >= 0
-  Scalar transition_rad_per_s;  ///< dry friction turns with the rate as tanh(rate / this); 0: sticks at rest
+  Scalar load_Nm;  ///< added to the drive
+};
+
+/// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
+/// friction sees every load whatever the order of the effects.
+template <class Scalar>
+struct FrictionTerms {
+  Given<Scalar> t_s;             ///< time since the start of the run
+  Given<Scalar> motor_C;         ///< recorded; NaN where it is not
+  const Scalar& angle_rad;       ///< of the driven inertia
+  const Scalar& rate_rad_per_s;  ///< its derivative
+  const Scalar& drive_Nm;        ///< torque of the drive, after its own effects
+  const Scalar& load_Nm;         ///< all that the effects add to it, such as gravity and springs
+  // to change
+  Scalar forward_Nm;            ///< magnitude while the rate is positive, >= 0
+  Scalar backward_Nm;           ///< magnitude while the rate is negative, >= 0
+  Scalar transition_rad_per_s;  ///< it turns with the rate as tanh(rate / this); 0: sticks at rest
+  Scalar factor;                ///< multiplies the sum of all dry frictions, >= 0
+
+  /// Torque that the gears transmit, N m: |drive - load|. A drive that holds a load against it passes both.
+  Scalar transmitted_Nm() const { return magnitude(Scalar(drive_Nm - load_Nm)); }
 
   /// Adds dry friction of a magnitude for each direction. The widest transition among all frictions holds.
-  void add_friction(const Scalar& forward_Nm, const Scalar& backward_Nm, const Scalar& transition) {
-    friction_forward_Nm += forward_Nm;
-    friction_backward_Nm += backward_Nm;
-    if (transition > transition_rad_per_s) transition_rad_per_s = transition;
+  void add_friction(const Scalar& forward, const Scalar& backward, const Scalar& transition) {
+    forward_Nm += forward;
+    backward_Nm += backward;
+    transition_rad_per_s = larger(transition_rad_per_s, transition);
   }
 };
 
@@ -105,8 +136,8 @@ struct AxisStructure {
 /// What the instruments say of the bench.
 template <class Scalar>
 struct BenchReadings {
-  double t_s = 0.0;                 ///< time since the start of the run
-  double measured_ambient_C = 0.0;  ///< as recorded
+  Given<Scalar> t_s = 0.0;                 ///< time since the start of the run
+  Given<Scalar> measured_ambient_C = 0.0;  ///< as recorded
   // to change
   Scalar current_A;  ///< what the ammeter shows; given as the true current
   Scalar motor_C;    ///< what the thermometer shows; given as its node's temperature
@@ -115,7 +146,7 @@ struct BenchReadings {
 /// What the instruments say of the axis.
 template <class Scalar>
 struct AxisReadings {
-  double t_s = 0.0;  ///< time since the start of the run
+  Given<Scalar> t_s = 0.0;  ///< time since the start of the run
   // to change
   Scalar angle_deg;  ///< what the encoder or IMU shows; given as the true angle
   Scalar rate_dps;   ///< what the gyroscope shows; given as the true rate

@@ -227,7 +227,7 @@ private:
     for (const Eigen::VectorXd& point : points)
       for (double start : parameter.starts) {
         Eigen::VectorXd one = point;
-        if (!parameter.starts_relative_to.empty()) start *= scale_of(parameter.starts_relative_to);
+        if (parameter.starts_relative_to != Input::none) start *= scale_of(parameter.starts_relative_to);
         one[index] =
             std::clamp(parameter.logarithmic ? std::log(start) : start, coordinate.lower, coordinate.upper);
         wider.push_back(one);
@@ -236,14 +236,14 @@ private:
   }
 
   /// Largest magnitude of an input over the data of the fit.
-  double scale_of(const std::string& column) const {
+  double scale_of(Input input) const {
     double largest = 0.0;
     for (const Segment& segment : problem_.segments) {
       const Inputs& inputs = *segment.inputs;
-      const Eigen::VectorXd* values = column == "drive_A"       ? &inputs.drive_A
-                                      : column == "power_param" ? &inputs.power_param
-                                      : column == "supply_V"    ? &inputs.supply_V
-                                                                : nullptr;
+      const Eigen::VectorXd* values = input == Input::drive_A       ? &inputs.drive_A
+                                      : input == Input::power_param ? &inputs.power_param
+                                      : input == Input::supply_V    ? &inputs.supply_V
+                                                                    : nullptr;
       if (values != nullptr && values->size() > 0)
         largest = std::max(largest,
                            values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
@@ -256,35 +256,56 @@ private:
   unsigned threads_;
 };
 
-/// Whether a recording has what an effect needs; the ids of `needs` that are no columns speak of model and
-/// inputs.
+/// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
                           const std::vector<Inputs>& recordings) {
   bool bench = false, axis = false;
   for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
   if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;
   if (model.effects.count(entry.info.id) > 0) return false;
-  for (const std::string& need : entry.info.needs) {
+  for (const Need need : entry.info.needs) {
     bool met = false;
     for (const Inputs& inputs : recordings) {
       const auto judged = [&](Signal signal) { return inputs.judged(signal); };
+      const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current);
       bool here = true;
-      if (need == "current_A") here = judged(Signal::current_A);
-      else if (need == "motor_C")
-        here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
-      else if (need == "power_param") here = inputs.power_param.size() > 0;
-      else if (need == "airspeed_mps") here = inputs.airspeed_mps.size() > 0;
-      else if (need == "neighbour_C") here = inputs.neighbour_C.size() > 0;
-      else if (need == "rate_dps")
-        here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
-      else if (need == "angle_deg") here = judged(Signal::angle_deg);
-      else if (need == "no supply_V") here = inputs.supply_V.size() == 0;
-      else if (need == "thermal") here = model.has_thermal() && judged(Signal::motor_C);
-      else if (need == "current") here = model.has_current();
-      else if (need == "axis") here = model.has_axis() && axis;
-      else if (need == "ohmic current without tempco") {
-        const auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current);
-        here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;
+      switch (need) {
+        case Need::current_A:
+          here = judged(Signal::current_A);
+          break;
+        case Need::motor_C:
+          here = entry.hooks.any_axis() ? inputs.covariate_motor_C.size() > 0 : judged(Signal::motor_C);
+          break;
+        case Need::power_param:
+          here = inputs.power_param.size() > 0;
+          break;
+        case Need::airspeed_mps:
+          here = inputs.airspeed_mps.size() > 0;
+          break;
+        case Need::neighbour_C:
+          here = inputs.neighbour_C.size() > 0;
+          break;
+        case Need::rate_dps:
+          here = entry.hooks.any_axis() ? judged(Signal::rate_dps) : inputs.covariate_rate_dps.size() > 0;
+          break;
+        case Need::angle_deg:
+          here = judged(Signal::angle_deg);
+          break;
+        case Need::supply_not_logged:
+          here = inputs.supply_V.size() == 0;
+          break;
+        case Need::thermal_model:
+          here = model.has_thermal() && judged(Signal::motor_C);
+          break;
+        case Need::current_model:
+          here = model.has_current();
+          break;
+        case Need::axis_model:
+          here = model.has_axis() && axis;
+          break;
+        case Need::ohmic_without_tempco:
+          here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;
+          break;
       }
       met = met || here;
     }

@@ -10,14 +10,17 @@ namespace thermopower::plant {
 
 /// A pure delay between command and torque; any value, not only multiples of the sampling step.
 struct ActuationDelay {
+  /// Its parameters, in this order.
+  enum Parameters { delay_s };
+
   /// What it is.
   static EffectInfo info() {
     return {"actuation_delay",
-            "mechanical.drive",
+            Submodel::mechanical_drive,
             "drive(t) = u(t - s)",
             "The torque comes later than the command.",
-            {{"s", "s", 0.0, 1.0, {0.002, 0.01, 0.03, 0.08}, false}},
-            {"axis"},
+            {parameter(delay_s, "s").unit("s").within(0.0, 1.0).starts({0.002, 0.01, 0.03, 0.08})},
+            {Need::axis_model},
             "fast reversals, recorded at a high rate"};
   }
 
@@ -25,7 +28,7 @@ struct ActuationDelay {
   template <class Scalar>
   static void act(const Scalar* p, AxisStructure<Scalar>& shape) {
     shape.delayed = true;
-    shape.delay_s = shape.delay_s + p[0];
+    shape.delay_s = shape.delay_s + p[delay_s];
   }
 };
 

@@ -10,22 +10,25 @@ namespace thermopower::plant {
 
 /// A constant error of the recorded air temperature.
 struct AmbientBias {
+  /// Its parameters, in this order.
+  enum Parameters { bias_K };
+
   /// What it is.
   static EffectInfo info() {
     return {
         "ambient_bias",
-        "thermal.loss",
+        Submodel::thermal_loss,
         "loss = G (T - (Ta + bias))",
         "The air around the motor is not what its sensor says: the motor cools towards another temperature.",
-        {{"bias_K", "K", -40.0, 40.0, {0.0}, false}},
-        {"thermal", "motor_C"},
+        {parameter(bias_K, "bias_K").unit("K").within(-40.0, 40.0).starts({0.0})},
+        {Need::thermal_model, Need::motor_C},
         "a long rest with the power off, until the motor is at air temperature"};
   }
 
   /// Shifts the air temperature.
   template <class Scalar>
-  static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    terms.ambient_C += p[0];
+  static void act(const Scalar* p, AirTerms<Scalar>& terms) {
+    terms.ambient_C += p[bias_K];
   }
 };
 

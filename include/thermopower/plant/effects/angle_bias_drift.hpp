@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A drift of the angle in proportion to time.
 struct AngleBiasDrift {
+  /// Its parameters, in this order.
+  enum Parameters { deg_per_s };
+
   /// What it is.
   static EffectInfo info() {
     return {"angle_bias_drift",
-            "sensing.angle",
+            Submodel::sensing_angle,
             "reading = angle + drift t",
             "The angle sensor drifts away while nothing moves.",
-            {{"deg_per_s", "deg/s", -1e3, 1e3, {0.0}, false}},
-            {"axis", "angle_deg"},
+            {parameter(deg_per_s, "deg_per_s").unit("deg/s").within(-1e3, 1e3).starts({0.0})},
+            {Need::axis_model, Need::angle_deg},
             "a long recording with standstill at its end"};
   }
 
   /// Adds a drift.
   template <class Scalar>
   static void act(const Scalar* p, AxisReadings<Scalar>& read) {
-    read.angle_deg += p[0] * read.t_s;
+    read.angle_deg += p[deg_per_s] * read.t_s;
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A wrong factor of the angle (a unit, a gear, a sign).
 struct AngleScale {
+  /// Its parameters, in this order.
+  enum Parameters { gain };
+
   /// What it is.
   static EffectInfo info() {
     return {"angle_scale",
-            "sensing.angle",
+            Submodel::sensing_angle,
             "reading = gain angle",
             "The angle is in another unit, or its sensor is off by a factor or a sign.",
-            {{"gain", "1", -400.0, 400.0, {1.0}, false}},
-            {"axis", "angle_deg"},
+            {parameter(gain, "gain").unit("1").within(-400.0, 400.0).starts({1.0})},
+            {Need::axis_model, Need::angle_deg},
             "any motion, angle and rate recorded together"};
   }
 
   /// Scales the reading.
   template <class Scalar>
   static void act(const Scalar* p, AxisReadings<Scalar>& read) {
-    read.angle_deg *= p[0];
+    read.angle_deg *= p[gain];
   }
 };
 

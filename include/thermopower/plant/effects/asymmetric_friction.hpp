@@ -11,23 +11,26 @@ namespace thermopower::plant {
 
 /// Dry friction with a magnitude for each direction.
 struct AsymmetricFriction {
+  /// Its parameters, in this order.
+  enum Parameters { forward_Nm, backward_Nm, transition };
+
   /// What it is.
   static EffectInfo info() {
     return {"asymmetric_friction",
-            "mechanical.friction",
+            Submodel::mechanical_friction,
             "torque -= (forward where w > 0, else backward) tanh(w / transition)",
             "Dry friction that differs between the two directions.",
-            {{"forward_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"backward_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             friction_transition()},
-            {"axis"},
+            {parameter(forward_Nm, "forward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             parameter(backward_Nm, "backward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             friction_transition(transition)},
+            {Need::axis_model},
             "slow motion at constant rate in both directions, and standstill"};
   }
 
   /// Adds dry friction by direction.
   template <class Scalar>
-  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    terms.add_friction(p[0], p[1], p[2]);
+  static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
+    terms.add_friction(p[forward_Nm], p[backward_Nm], p[transition]);
   }
 };
 

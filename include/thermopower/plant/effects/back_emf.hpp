@@ -10,22 +10,25 @@ namespace thermopower::plant {
 
 /// Voltage induced by the recorded rate.
 struct BackEmf {
+  /// Its parameters, in this order.
+  enum Parameters { V_s_per_rad };
+
   /// What it is.
   static EffectInfo info() {
     return {"back_emf",
-            "electrical",
+            Submodel::electrical,
             "I = (V_rms - k |rate|) / R(T)",
             "A turning motor pushes back: less current at the same voltage.",
-            {{"V_s_per_rad", "V s/rad", 0.0, 100.0, {0.0}, false}},
-            {"current", "current_A", "power_param", "rate_dps"},
+            {parameter(V_s_per_rad, "V_s_per_rad").unit("V s/rad").within(0.0, 100.0).starts({0.0})},
+            {Need::current_model, Need::current_A, Need::power_param, Need::rate_dps},
             "the same power at rest and turning fast"};
   }
 
   /// Sets a voltage against the drive.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    const double rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
-    terms.counter_V += p[0] * (rate_rad_per_s < 0.0 ? -rate_rad_per_s : rate_rad_per_s);
+    const auto rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
+    terms.counter_V += p[V_s_per_rad] * magnitude(rate_rad_per_s);
   }
 };
 

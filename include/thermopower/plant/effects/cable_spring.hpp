@@ -10,23 +10,30 @@ namespace thermopower::plant {
 
 /// A linear spring to a rest position.
 struct CableSpring {
+  /// Its parameters, in this order.
+  enum Parameters { Nm_per_rad, centre_rad };
+
   /// What it is.
   static EffectInfo info() {
     return {"cable_spring",
-            "mechanical.load",
+            Submodel::mechanical_load,
             "torque -= k (theta - centre)",
             "A cable pulls back towards its rest position.",
-            // From far enough away the pull is a constant torque.
-            {{"Nm_per_rad", "N m/rad", 0.0, 1e3, {0.0}, false},
-             {"centre_rad", "rad", -60.0, 60.0, {0.0}, false, {}, {}, true}},
-            {"axis", "angle_deg"},
+            {parameter(Nm_per_rad, "Nm_per_rad").unit("N m/rad").within(0.0, 1e3).starts({0.0}),
+             // From far enough away the pull is a constant torque.
+             parameter(centre_rad, "centre_rad")
+                 .unit("rad")
+                 .within(-60.0, 60.0)
+                 .starts({0.0})
+                 .degenerate_at_bounds()},
+            {Need::axis_model, Need::angle_deg},
             "slow motion over the full travel"};
   }
 
   /// Adds the spring's torque.
   template <class Scalar>
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    terms.load_Nm -= p[0] * (terms.angle_rad - p[1]);
+    terms.load_Nm -= p[Nm_per_rad] * (terms.angle_rad - p[centre_rad]);
   }
 };
 

@@ -10,22 +10,24 @@ namespace thermopower::plant {
 
 /// A torque that repeats several times a turn.
 struct Cogging {
+  /// Its parameters, in this order.
+  enum Parameters { sin_Nm, cos_Nm, cycles_per_turn };
+
   /// What it is.
   static EffectInfo info() {
     return {"cogging",
-            "mechanical.load",
+            Submodel::mechanical_load,
             "torque -= sin_Nm sin(cycles theta) + cos_Nm cos(cycles theta)",
             "Magnets hold the rotor at preferred angles, several times a turn.",
-            {{"sin_Nm", "N m", -1e3, 1e3, {0.0}, false},
-             {"cos_Nm", "N m", -1e3, 1e3, {0.0}, false},
-             {"cycles_per_turn",
-              "1",
-              1.6,
-              400.0,
-              {2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24,
-               25, 26, 27, 28, 29, 30, 32, 34, 36, 38, 40, 42, 44, 46, 48, 52, 56, 60, 66, 72, 84, 96, 120},
-              false}},
-            {"axis", "angle_deg"},
+            {parameter(sin_Nm, "sin_Nm").unit("N m").within(-1e3, 1e3).starts({0.0}),
+             parameter(cos_Nm, "cos_Nm").unit("N m").within(-1e3, 1e3).starts({0.0}),
+             parameter(cycles_per_turn, "cycles_per_turn")
+                 .unit("1")
+                 .within(1.6, 400.0)
+                 .starts({2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+                          18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 32, 34, 36,
+                          38, 40, 42, 44, 46, 48, 52, 56, 60, 66, 72, 84, 96, 120})},
+            {Need::axis_model, Need::angle_deg},
             "slow motion through a full turn in both directions"};
   }
 
@@ -34,8 +36,8 @@ struct Cogging {
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
     using std::cos;
     using std::sin;
-    const Scalar phase = p[2] * terms.angle_rad;
-    terms.load_Nm -= p[0] * sin(phase) + p[1] * cos(phase);
+    const Scalar phase = p[cycles_per_turn] * terms.angle_rad;
+    terms.load_Nm -= p[sin_Nm] * sin(phase) + p[cos_Nm] * cos(phase);
   }
 };
 

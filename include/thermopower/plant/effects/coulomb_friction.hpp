@@ -11,21 +11,25 @@ namespace thermopower::plant {
 
 /// Dry friction of constant magnitude.
 struct CoulombFriction {
+  /// Its parameters, in this order.
+  enum Parameters { size_Nm, transition };
+
   /// What it is.
   static EffectInfo info() {
     return {"coulomb_friction",
-            "mechanical.friction",
+            Submodel::mechanical_friction,
             "torque -= Nm tanh(w / transition)",
             "Dry friction: a constant torque against the motion, and sticking at rest.",
-            {{"Nm", "N m", 0.0, 1e3, {0.0}, false}, friction_transition()},
-            {"axis"},
+            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             friction_transition(transition)},
+            {Need::axis_model},
             "slow reversals at small torque"};
   }
 
   /// Adds dry friction.
   template <class Scalar>
-  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    terms.add_friction(p[0], p[0], p[1]);
+  static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
+    terms.add_friction(p[size_Nm], p[size_Nm], p[transition]);
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A wrong factor of the current sensor.
 struct CurrentSensorGain {
+  /// Its parameters, in this order.
+  enum Parameters { gain };
+
   /// What it is.
   static EffectInfo info() {
     return {"current_sensor_gain",
-            "sensing.current",
+            Submodel::sensing_current,
             "reading = gain I",
             "The current sensor is off by a factor; the heat is not.",
-            {{"gain", "1", 0.2, 5.0, {1.0}, false}},
-            {"current", "current_A", "power_param"},
+            {parameter(gain, "gain").unit("1").within(0.2, 5.0).starts({1.0})},
+            {Need::current_model, Need::current_A, Need::power_param},
             "current and temperature recorded together over a long run"};
   }
 
   /// Scales the reading.
   template <class Scalar>
   static void act(const Scalar* p, BenchReadings<Scalar>& read) {
-    read.current_A *= p[0];
+    read.current_A *= p[gain];
   }
 };
 

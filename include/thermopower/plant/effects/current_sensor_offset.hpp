@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A constant error of the current sensor.
 struct CurrentSensorOffset {
+  /// Its parameters, in this order.
+  enum Parameters { offset_A };
+
   /// What it is.
   static EffectInfo info() {
     return {"current_sensor_offset",
-            "sensing.current",
+            Submodel::sensing_current,
             "reading = I + offset",
             "The current sensor does not read zero at zero.",
-            {{"A", "A", -100.0, 100.0, {0.0}, false}},
-            {"current", "current_A", "power_param"},
+            {parameter(offset_A, "A").unit("A").within(-100.0, 100.0).starts({0.0})},
+            {Need::current_model, Need::current_A, Need::power_param},
             "a rest with the power off"};
   }
 
   /// Shifts the reading.
   template <class Scalar>
   static void act(const Scalar* p, BenchReadings<Scalar>& read) {
-    read.current_A += p[0];
+    read.current_A += p[offset_A];
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A constant loss of duty.
 struct DeadTime {
+  /// Its parameters, in this order.
+  enum Parameters { duty_lost };
+
   /// What it is.
   static EffectInfo info() {
     return {"dead_time",
-            "electrical",
+            Submodel::electrical,
             "duty = max(0, power_param / 255 - lost)",
             "The bridge loses a fixed part of each period: low powers suffer most.",
-            {{"duty_lost", "1", 0.0, 0.5, {0.0, 0.01, 0.03, 0.08}, false}},
-            {"current", "current_A", "power_param"},
+            {parameter(duty_lost, "duty_lost").unit("1").within(0.0, 0.5).starts({0.0, 0.01, 0.03, 0.08})},
+            {Need::current_model, Need::current_A, Need::power_param},
             "holds at low power parameters"};
   }
 
   /// Takes a fixed part of the duty.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    const Scalar left = terms.duty - p[0];
+    const Scalar left = terms.duty - p[duty_lost];
     if (value_of(terms.duty) > 0.0) terms.duty = value_of(left) > 0.0 ? left : constant<Scalar>(0.0);
   }
 };

@@ -10,23 +10,29 @@ namespace thermopower::plant {
 
 /// A dead band of the drive; beyond it the command counts from its edge.
 struct DriveDeadband {
+  /// Its parameters, in this order.
+  enum Parameters { band_A };
+
   /// What it is.
   static EffectInfo info() {
     return {"drive_deadband",
-            "mechanical.drive",
+            Submodel::mechanical_drive,
             "drive = sign(u) max(0, |u| - A)",
             "Small commands do nothing.",
-            {{"A", "A", 0.0, 1e3, {0.02, 0.1, 0.3}, false, "drive_A"}},
-            {"axis"},
+            {parameter(band_A, "A")
+                 .unit("A")
+                 .within(0.0, 1e3)
+                 .starts_as_shares_of(Input::drive_A, {0.02, 0.1, 0.3})},
+            {Need::axis_model},
             "small commands in both directions"};
   }
 
   /// Takes a fixed amount off the command.
   template <class Scalar>
   static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
-    const double command = value_of(terms.drive_A);
-    if (command > value_of(p[0])) terms.drive_A -= p[0];
-    else if (command < -value_of(p[0])) terms.drive_A += p[0];
+    const auto command = value_of(terms.drive_A);
+    if (command > value_of(p[band_A])) terms.drive_A -= p[band_A];
+    else if (command < -value_of(p[band_A])) terms.drive_A += p[band_A];
     else terms.drive_A = constant<Scalar>(0.0);
   }
 };

@@ -11,22 +11,26 @@ namespace thermopower::plant {
 
 /// The conductance grows with the recorded airspeed; `gain` is its relative growth at 1 m/s.
 struct ForcedAirflowEffect {
+  /// Its parameters, in this order.
+  enum Parameters { gain, exponent };
+
   /// What it is.
   static EffectInfo info() {
     return {"forced_airflow",
-            "thermal.loss",
+            Submodel::thermal_loss,
             "loss = G (1 + gain v^n) (T - Ta)",
             "Moving air takes more heat away than still air.",
-            {{"gain", "1", 0.0, 50.0, {0.1}, false}, {"exponent", "1", 0.2, 1.2, {0.7}, false}},
-            {"thermal", "motor_C", "airspeed_mps"},
+            {parameter(gain, "gain").unit("1").within(0.0, 50.0).starts({0.1}),
+             parameter(exponent, "exponent").unit("1").within(0.2, 1.2).starts({0.7})},
+            {Need::thermal_model, Need::motor_C, Need::airspeed_mps},
             "the same power with the air still and moving"};
   }
 
   /// Scales the baseline's conductance.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    const Surroundings<Scalar> around{constant<Scalar>(0.0), constant<Scalar>(terms.airspeed_mps)};
-    const ForcedAirflow<Scalar> law{constant<Scalar>(1.0), p[0], p[1]};
+    const Surroundings<Scalar> around{constant<Scalar>(0.0), Scalar(terms.airspeed_mps)};
+    const ForcedAirflow<Scalar> law{constant<Scalar>(1.0), p[gain], p[exponent]};
     terms.conductance_factor *= law.loss_W(constant<Scalar>(1.0), around);
   }
 };

@@ -10,15 +10,21 @@ namespace thermopower::plant {
 
 /// Gravity on a centre of mass off the axis.
 struct Imbalance {
+  /// Its parameters, in this order.
+  enum Parameters { size_Nm, phase_rad };
+
   /// What it is.
   static EffectInfo info() {
     return {"imbalance",
-            "mechanical.load",
+            Submodel::mechanical_load,
             "torque -= Nm sin(theta + phase)",
             "The load's centre of mass is off the axis: gravity pulls with the angle.",
-            {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"phase_rad", "rad", -6.4, 6.4, {0.0, 1.5708, 3.1416, -1.5708}, false}},
-            {"axis", "angle_deg"},
+            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             parameter(phase_rad, "phase_rad")
+                 .unit("rad")
+                 .within(-6.4, 6.4)
+                 .starts({0.0, 1.5708, 3.1416, -1.5708})},
+            {Need::axis_model, Need::angle_deg},
             "slow motion through a full turn"};
   }
 
@@ -26,7 +32,7 @@ struct Imbalance {
   template <class Scalar>
   static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
     using std::sin;
-    terms.load_Nm -= p[0] * sin(terms.angle_rad + p[1]);
+    terms.load_Nm -= p[size_Nm] * sin(terms.angle_rad + p[phase_rad]);
   }
 };
 

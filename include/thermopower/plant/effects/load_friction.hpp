@@ -11,22 +11,26 @@ namespace thermopower::plant {
 
 /// Dry friction in proportion to the transmitted torque.
 struct LoadFriction {
+  /// Its parameters, in this order.
+  enum Parameters { share, transition };
+
   /// What it is.
   static EffectInfo info() {
     return {"load_friction",
-            "mechanical.friction",
-            "torque -= share |drive torque| tanh(w / transition)",
+            Submodel::mechanical_friction,
+            "torque -= share |drive - load| tanh(w / transition)",
             "Friction that grows with the torque transmitted (gears, screws).",
-            {{"share", "1", 0.0, 0.95, {0.0}, false}, friction_transition()},
-            {"axis"},
+            {parameter(share, "share").unit("1").within(0.0, 0.95).starts({0.0}),
+             friction_transition(transition)},
+            {Need::axis_model},
             "fast and slow motion at large and at small torque"};
   }
 
-  /// Adds dry friction in proportion to the drive.
+  /// Adds dry friction in proportion to what the gears transmit.
   template <class Scalar>
-  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
-    const Scalar friction_Nm = p[0] * magnitude(terms.drive_Nm);
-    terms.add_friction(friction_Nm, friction_Nm, p[1]);
+  static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
+    const Scalar friction_Nm = p[share] * terms.transmitted_Nm();
+    terms.add_friction(friction_Nm, friction_Nm, p[transition]);
   }
 };
 

@@ -10,22 +10,25 @@ namespace thermopower::plant {
 
 /// Heat from turning, with the square of the recorded rate.
 struct MotionHeating {
+  /// Its parameters, in this order.
+  enum Parameters { W_s2_per_rad2 };
+
   /// What it is.
   static EffectInfo info() {
     return {"motion_heating",
-            "thermal.heating",
+            Submodel::thermal_heating,
             "P += c rate^2",
             "Turning heats the motor (iron, bearing and windage losses).",
-            {{"W_s2_per_rad2", "W s^2/rad^2", 0.0, 100.0, {0.0}, false}},
-            {"thermal", "motor_C", "rate_dps"},
+            {parameter(W_s2_per_rad2, "W_s2_per_rad2").unit("W s^2/rad^2").within(0.0, 100.0).starts({0.0})},
+            {Need::thermal_model, Need::motor_C, Need::rate_dps},
             "the same power at rest and turning fast"};
   }
 
   /// Adds heat that grows with the square of the rate.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    const double rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
-    terms.heat_W += p[0] * (rate_rad_per_s * rate_rad_per_s);
+    const auto rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
+    terms.heat_W += p[W_s2_per_rad2] * (rate_rad_per_s * rate_rad_per_s);
   }
 };
 

@@ -11,14 +11,22 @@ namespace thermopower::plant {
 
 /// Natural convection in place of Newton's law; at a rise of `reference_K` both lose the same.
 struct NaturalConvectionEffect {
+  /// Its parameters, in this order.
+  enum Parameters { exponent, reference_K };
+
   /// What it is.
   static EffectInfo info() {
     return {"natural_convection",
-            "thermal.loss",
+            Submodel::thermal_loss,
             "loss = G (T - Ta) (|T - Ta| / reference)^n",
             "Warm air rises faster the warmer it is: the loss grows faster than the temperature rise.",
-            {{"exponent", "1", 0.0, 1.0, {0.2}, false}, {"reference_K", "K", 1.0, 300.0, {15.0, 40.0}, true}},
-            {"thermal", "motor_C"},
+            {parameter(exponent, "exponent").unit("1").within(0.0, 1.0).starts({0.2}),
+             parameter(reference_K, "reference_K")
+                 .unit("K")
+                 .within(1.0, 300.0)
+                 .logarithmic()
+                 .starts({15.0, 40.0})},
+            {Need::thermal_model, Need::motor_C},
             "holds at several powers and a long cooling curve in still air"};
   }
 
@@ -26,7 +34,7 @@ struct NaturalConvectionEffect {
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
     const Surroundings<Scalar> around{terms.ambient_C, constant<Scalar>(0.0)};
-    const NaturalConvection<Scalar> law{constant<Scalar>(1.0), p[0], p[1]};
+    const NaturalConvection<Scalar> law{constant<Scalar>(1.0), p[exponent], p[reference_K]};
     const Scalar rise_K = terms.surface_C - terms.ambient_C;
     if (value_of(rise_K) != 0.0) terms.conductance_factor *= law.loss_W(terms.surface_C, around) / rise_K;
   }

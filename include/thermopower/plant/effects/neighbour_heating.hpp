@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// Heat conducted from a neighbour whose temperature was recorded.
 struct NeighbourHeating {
+  /// Its parameters, in this order.
+  enum Parameters { coupling_W_per_K };
+
   /// What it is.
   static EffectInfo info() {
     return {"neighbour_heating",
-            "thermal.heating",
+            Submodel::thermal_heating,
             "P += g (Tn - T)",
             "A warm neighbour heats the motor, or a cool one cools it.",
-            {{"coupling", "W/K", 0.0, 100.0, {0.0}, false}},
-            {"thermal", "motor_C", "neighbour_C"},
+            {parameter(coupling_W_per_K, "coupling").unit("W/K").within(0.0, 100.0).starts({0.0})},
+            {Need::thermal_model, Need::motor_C, Need::neighbour_C},
             "the neighbour hot while the motor is cold, and the other way round"};
   }
 
   /// Adds the heat that flows from the neighbour.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    terms.extra_loss_W += p[0] * (terms.surface_C - terms.neighbour_C);
+    terms.extra_loss_W += p[coupling_W_per_K] * (terms.surface_C - terms.neighbour_C);
   }
 };
 

@@ -11,14 +11,17 @@ namespace thermopower::plant {
 
 /// Radiation to surroundings at air temperature; emissivity and area only show as their product.
 struct Radiation {
+  /// Its parameters, in this order.
+  enum Parameters { emissive_area_m2 };
+
   /// What it is.
   static EffectInfo info() {
     return {"radiation",
-            "thermal.loss",
+            Submodel::thermal_loss,
             "loss += sigma A eps (T^4 - Ta^4), in kelvin",
             "Hot surfaces lose more than in proportion to their temperature rise.",
-            {{"emissive_area_m2", "m^2", 0.0, 10.0, {0.0}, false}},
-            {"thermal", "motor_C"},
+            {parameter(emissive_area_m2, "emissive_area_m2").unit("m^2").within(0.0, 10.0).starts({0.0})},
+            {Need::thermal_model, Need::motor_C},
             "long holds at the highest and at a low temperature"};
   }
 
@@ -26,7 +29,7 @@ struct Radiation {
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
     const Surroundings<Scalar> around{terms.ambient_C, constant<Scalar>(0.0)};
-    const RadiationCooling<Scalar> law{p[0], constant<Scalar>(1.0)};
+    const RadiationCooling<Scalar> law{p[emissive_area_m2], constant<Scalar>(1.0)};
     terms.extra_loss_W += law.loss_W(terms.surface_C, around);
   }
 };

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A constant error of the rate sensor.
 struct RateBias {
+  /// Its parameters, in this order.
+  enum Parameters { bias_dps };
+
   /// What it is.
   static EffectInfo info() {
     return {"rate_bias",
-            "sensing.rate",
+            Submodel::sensing_rate,
             "reading = rate + bias",
             "The gyro does not read zero at rest.",
-            {{"dps", "deg/s", -1e3, 1e3, {0.0}, false}},
-            {"axis", "rate_dps"},
+            {parameter(bias_dps, "dps").unit("deg/s").within(-1e3, 1e3).starts({0.0})},
+            {Need::axis_model, Need::rate_dps},
             "a standstill of a few seconds"};
   }
 
   /// Shifts the reading.
   template <class Scalar>
   static void act(const Scalar* p, AxisReadings<Scalar>& read) {
-    read.rate_dps += p[0];
+    read.rate_dps += p[bias_dps];
   }
 };
 

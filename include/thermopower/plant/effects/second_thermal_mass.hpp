@@ -10,16 +10,23 @@ namespace thermopower::plant {
 
 /// A heated node (the thermometer is on it) coupled to a housing that loses the heat.
 struct SecondThermalMass {
+  /// Its parameters, in this order.
+  enum Parameters { winding_share, coupling_W_per_K };
+
   /// What it is.
   static EffectInfo info() {
     return {"second_thermal_mass",
-            "thermal.storage",
+            Submodel::thermal_storage,
             "s C dT/dt = P - k (T - H), (1 - s) C dH/dt = k (T - H) - G (H - Ta)",
             "The heated winding is coupled to a housing that loses the heat: steps begin and end faster than "
             "one mass allows.",
-            {{"winding_share", "1", 0.01, 0.97, {0.12, 0.4}, false},
-             {"coupling", "W/K", 1e-3, 1e3, {0.1, 1.0, 8.0}, true}},
-            {"thermal", "motor_C"},
+            {parameter(winding_share, "winding_share").unit("1").within(0.01, 0.97).starts({0.12, 0.4}),
+             parameter(coupling_W_per_K, "coupling")
+                 .unit("W/K")
+                 .within(1e-3, 1e3)
+                 .logarithmic()
+                 .starts({0.1, 1.0, 8.0})},
+            {Need::thermal_model, Need::motor_C},
             "power steps sampled every few seconds, followed by cooling from hot"};
   }
 
@@ -27,8 +34,8 @@ struct SecondThermalMass {
   template <class Scalar>
   static void act(const Scalar* p, ThermalStructure<Scalar>& shape) {
     shape.two_nodes = true;
-    shape.winding_share = p[0];
-    shape.coupling_W_per_K = p[1];
+    shape.winding_share = p[winding_share];
+    shape.coupling_W_per_K = p[coupling_W_per_K];
   }
 };
 

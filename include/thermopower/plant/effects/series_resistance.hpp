@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// Resistance in the circuit that neither warms with the winding nor heats it.
 struct SeriesResistance {
+  /// Its parameters, in this order.
+  enum Parameters { ohm };
+
   /// What it is.
   static EffectInfo info() {
     return {"series_resistance",
-            "electrical",
+            Submodel::electrical,
             "I = V_rms / (R(T) + series)",
             "Leads and switches take part of the voltage and heat something else.",
-            {{"ohm", "ohm", 0.0, 1e3, {0.0}, false}},
-            {"current", "current_A", "power_param"},
+            {parameter(ohm, "ohm").unit("ohm").within(0.0, 1e3).starts({0.0})},
+            {Need::current_model, Need::current_A, Need::power_param},
             "a cold and a hot run with current and temperature recorded"};
   }
 
   /// Adds to the circuit, not to the heat.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    terms.series_ohm += p[0];
+    terms.series_ohm += p[ohm];
   }
 };
 

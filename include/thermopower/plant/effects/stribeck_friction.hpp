@@ -11,27 +11,34 @@ namespace thermopower::plant {
 
 /// Dry friction with a Stribeck rise near standstill.
 struct StribeckFriction {
+  /// Its parameters, in this order.
+  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition };
+
   /// What it is.
   static EffectInfo info() {
     return {"stribeck_friction",
-            "mechanical.friction",
+            Submodel::mechanical_friction,
             "torque -= (Nm + rise exp(-(w / knee)^2)) tanh(w / transition)",
             "Dry friction that is larger near standstill than in motion.",
-            {{"Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"rise_Nm", "N m", 0.0, 1e3, {0.0}, false},
-             {"knee_rad_per_s", "rad/s", 0.005, 100.0, {0.1, 0.5, 2.0}, true},
-             friction_transition()},
-            {"axis"},
+            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             parameter(rise_Nm, "rise_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+             parameter(knee_rad_per_s, "knee_rad_per_s")
+                 .unit("rad/s")
+                 .within(0.005, 100.0)
+                 .logarithmic()
+                 .starts({0.1, 0.5, 2.0}),
+             friction_transition(transition)},
+            {Need::axis_model},
             "very slow motion through standstill in both directions"};
   }
 
   /// Adds dry friction with a rise near standstill.
   template <class Scalar>
-  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+  static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
     using std::exp;
-    const Scalar ratio = terms.rate_rad_per_s / p[2];
-    const Scalar friction_Nm = p[0] + p[1] * exp(-ratio * ratio);
-    terms.add_friction(friction_Nm, friction_Nm, p[3]);
+    const Scalar ratio = terms.rate_rad_per_s / p[knee_rad_per_s];
+    const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * exp(-ratio * ratio);
+    terms.add_friction(friction_Nm, friction_Nm, p[transition]);
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// Heat by the supply's voltage in place of the effective one; a share of 1 is all of it.
 struct SupplyPowerHeating {
+  /// Its parameters, in this order.
+  enum Parameters { share };
+
   /// What it is.
   static EffectInfo info() {
     return {"supply_power_heating",
-            "thermal.heating",
+            Submodel::thermal_heating,
             "P = V_rms I + share (V_supply - V_rms) I",
             "The measured current is drawn at the supply: the heat is V_supply I and not V_rms I.",
-            {{"share", "1", 0.0, 1.5, {0.0}, false}},
-            {"thermal", "motor_C", "power_param"},
+            {parameter(share, "share").unit("1").within(0.0, 1.5).starts({0.0})},
+            {Need::thermal_model, Need::motor_C, Need::power_param},
             "the same current at low and at full duty"};
   }
 
   /// Adds the power between supply and V_rms.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    terms.heat_W += p[0] * (terms.supply_V - terms.v_rms_V) * terms.current_A;
+    terms.heat_W += p[share] * (terms.supply_V - terms.v_rms_V) * terms.current_A;
   }
 };
 

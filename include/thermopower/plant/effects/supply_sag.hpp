@@ -10,22 +10,26 @@ namespace thermopower::plant {
 
 /// Internal resistance and discharge of a supply whose voltage was not recorded.
 struct SupplySag {
+  /// Its parameters, in this order.
+  enum Parameters { internal_ohm, V_per_Ah };
+
   /// What it is.
   static EffectInfo info() {
     return {"supply_sag",
-            "electrical",
+            Submodel::electrical,
             "V = V0 - internal I_supply - slope Q, I_supply = I sqrt(duty)",
             "The supply is not logged and gives way under load and as it discharges.",
-            {{"internal_ohm", "ohm", 0.0, 1e3, {0.0}, false}, {"V_per_Ah", "V/Ah", 0.0, 1e3, {0.0}, false}},
-            {"current", "current_A", "power_param", "no supply_V"},
+            {parameter(internal_ohm, "internal_ohm").unit("ohm").within(0.0, 1e3).starts({0.0}),
+             parameter(V_per_Ah, "V_per_Ah").unit("V/Ah").within(0.0, 1e3).starts({0.0})},
+            {Need::current_model, Need::current_A, Need::power_param, Need::supply_not_logged},
             "log the supply voltage; or high and low power in turn, early and late in a discharge"};
   }
 
   /// Lowers the supply by load and charge.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    terms.source_ohm += p[0];
-    terms.supply_V -= p[1] * terms.charge_Ah;
+    terms.source_ohm += p[internal_ohm];
+    terms.supply_V -= p[V_per_Ah] * terms.charge_Ah;
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A thermometer that scales the rise over air temperature.
 struct ThermometerGain {
+  /// Its parameters, in this order.
+  enum Parameters { gain };
+
   /// What it is.
   static EffectInfo info() {
     return {"thermometer_gain",
-            "sensing.temperature",
+            Submodel::sensing_temperature,
             "reading = Ta + gain (T - Ta)",
             "The thermometer shows only part of the temperature rise (a wrong emissivity, a poor contact).",
-            {{"gain", "1", 0.2, 2.0, {1.0}, false}},
-            {"thermal", "motor_C"},
+            {parameter(gain, "gain").unit("1").within(0.2, 2.0).starts({1.0})},
+            {Need::thermal_model, Need::motor_C},
             "runs with the current recorded: the winding's resistance knows the true temperature"};
   }
 
   /// Scales the rise over the air.
   template <class Scalar>
   static void act(const Scalar* p, BenchReadings<Scalar>& read) {
-    read.motor_C = p[0] * (read.motor_C - read.measured_ambient_C) + read.measured_ambient_C;
+    read.motor_C = p[gain] * (read.motor_C - read.measured_ambient_C) + read.measured_ambient_C;
   }
 };
 

@@ -10,22 +10,26 @@ namespace thermopower::plant {
 
 /// A first-order lag of the thermometer.
 struct ThermometerLag {
+  /// Its parameters, in this order.
+  enum Parameters { lag_s };
+
   /// What it is.
   static EffectInfo info() {
-    return {"thermometer_lag",
-            "sensing.temperature",
-            "lag dS/dt = T - S, S is read",
-            "The thermometer follows late: corners of the temperature curve are rounded and shifted.",
-            {{"lag_s", "s", 0.05, 3000.0, {3.0, 20.0, 100.0}, true}},
-            {"thermal", "motor_C"},
-            "power steps sampled faster than the lag"};
+    return {
+        "thermometer_lag",
+        Submodel::sensing_temperature,
+        "lag dS/dt = T - S, S is read",
+        "The thermometer follows late: corners of the temperature curve are rounded and shifted.",
+        {parameter(lag_s, "lag_s").unit("s").within(0.05, 3000.0).logarithmic().starts({3.0, 20.0, 100.0})},
+        {Need::thermal_model, Need::motor_C},
+        "power steps sampled faster than the lag"};
   }
 
   /// Puts a first-order lag between body and reading.
   template <class Scalar>
   static void act(const Scalar* p, ThermalStructure<Scalar>& shape) {
     shape.lagged = true;
-    shape.thermometer_lag_s = p[0];
+    shape.thermometer_lag_s = p[lag_s];
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A torque constant that falls with the recorded motor temperature.
 struct TorqueFade {
+  /// Its parameters, in this order.
+  enum Parameters { per_K };
+
   /// What it is.
   static EffectInfo info() {
     return {"torque_fade",
-            "mechanical.drive",
+            Submodel::mechanical_drive,
             "Kt(T) = Kt (1 - per_K (T - 25))",
             "Magnets weaken as the motor warms: the same current gives less torque.",
-            {{"per_K", "1/K", -0.02, 0.05, {0.0}, false}},
-            {"axis", "motor_C"},
+            {parameter(per_K, "per_K").unit("1/K").within(-0.02, 0.05).starts({0.0})},
+            {Need::axis_model, Need::motor_C},
             "the same motion cold and hot"};
   }
 
   /// Lowers the torque constant.
   template <class Scalar>
   static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
-    terms.torque_constant_Nm_per_A *= 1.0 - p[0] * (terms.motor_C - 25.0);
+    terms.torque_constant_Nm_per_A *= 1.0 - p[per_K] * (terms.motor_C - 25.0);
   }
 };
 

@@ -10,22 +10,28 @@ namespace thermopower::plant {
 
 /// A limit of the drive, stated in the command's unit.
 struct TorqueSaturation {
+  /// Its parameters, in this order.
+  enum Parameters { limit_A };
+
   /// What it is.
   static EffectInfo info() {
     return {"torque_saturation",
-            "mechanical.drive",
+            Submodel::mechanical_drive,
             "drive = clamp(u, -A, A)",
             "The drive cannot deliver more than a limit.",
-            {{"A", "A", 1e-6, 1e3, {0.25, 0.5, 0.75, 0.9}, false, "drive_A"}},
-            {"axis"},
+            {parameter(limit_A, "A")
+                 .unit("A")
+                 .within(1e-6, 1e3)
+                 .starts_as_shares_of(Input::drive_A, {0.25, 0.5, 0.75, 0.9})},
+            {Need::axis_model},
             "short pulses at the largest command"};
   }
 
   /// Limits the command.
   template <class Scalar>
   static void act(const Scalar* p, DriveTerms<Scalar>& terms) {
-    if (value_of(terms.drive_A) > value_of(p[0])) terms.drive_A = p[0];
-    else if (value_of(terms.drive_A) < -value_of(p[0])) terms.drive_A = -p[0];
+    if (value_of(terms.drive_A) > value_of(p[limit_A])) terms.drive_A = p[limit_A];
+    else if (value_of(terms.drive_A) < -value_of(p[limit_A])) terms.drive_A = -p[limit_A];
   }
 };
 

@@ -10,21 +10,24 @@ namespace thermopower::plant {
 
 /// A temperature coefficient where the simulation has none.
 struct WindingTempco {
+  /// Its parameters, in this order.
+  enum Parameters { tempco_per_K };
+
   /// What it is.
   static EffectInfo info() {
     return {"winding_tempco",
-            "electrical",
+            Submodel::electrical,
             "R(T) = R (1 + (a + tempco) (T - T_ref))",
             "The winding's resistance rises with temperature; the simulation had it constant.",
-            {{"tempco_per_K", "1/K", 0.0, 0.02, {0.0}, false}},
-            {"ohmic current without tempco", "motor_C"},
+            {parameter(tempco_per_K, "tempco_per_K").unit("1/K").within(0.0, 0.02).starts({0.0})},
+            {Need::ohmic_without_tempco, Need::motor_C},
             "the same power cold and hot, current recorded"};
   }
 
   /// Adds to the temperature coefficient.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    terms.tempco_per_K += p[0];
+    terms.tempco_per_K += p[tempco_per_K];
   }
 };
 

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Firmware around an exported motor model, C++11: reads rows of inputs, steps the model and prints what it
+// computes. It knows the library's firmware types and the names of the header's functions, nothing else.
+#pragma once
+
+#include <math.h>
+#include <stdio.h>
+
+struct Row {
+  double t_s, power, supply_V, ambient_C, airspeed_mps, neighbour_C, rate_dps, drive_A, motor_C;
+};
+
+template <class M>
+struct Has {
+  template <class T>
+  static char lag(decltype(&T::thermometer_lag_s));
+  template <class T>
+  static long lag(...);
+  template <class T>
+  static char delay(decltype(&T::delay_s));
+  template <class T>
+  static long delay(...);
+  template <class T>
+  static char spring(decltype(&T::spring_rad_per_s));
+  template <class T>
+  static long spring(...);
+  template <class T>
+  static char current(decltype(&T::true_current_A));
+  template <class T>
+  static long current(...);
+  template <class T>
+  static char motor(decltype(&T::true_motor_C));
+  template <class T>
+  static long motor(...);
+  template <class T>
+  static char angle(decltype(&T::true_angle_deg));
+  template <class T>
+  static long angle(...);
+  template <class T>
+  static char rate(decltype(&T::true_rate_dps));
+  template <class T>
+  static long rate(...);
+};
+
+template <bool>
+struct If {};
+template <class M>
+double lag_of(If<true>) {
+  return M::thermometer_lag_s();
+}
+template <class M>
+double lag_of(If<false>) {
+  return 0.0;
+}
+template <class M>
+double delay_of(If<true>) {
+  return M::delay_s();
+}
+template <class M>
+double delay_of(If<false>) {
+  return 0.0;
+}
+template <class M>
+double far_of(If<true>) {
+  return M::far_share();
+}
+template <class M>
+double far_of(If<false>) {
+  return 0.0;
+}
+template <class M>
+double frequency_of(If<true>) {
+  return M::spring_rad_per_s();
+}
+template <class M>
+double frequency_of(If<false>) {
+  return 0.0;
+}
+template <class M>
+double damping_of(If<true>) {
+  return M::spring_damping();
+}
+template <class M>
+double damping_of(If<false>) {
+  return 0.0;
+}
+
+// A reading is undone by the header's function, where it has one; time is the last argument where it is taken.
+inline double undone(float (*f)(float), double x, double, double) { return f(static_cast<float>(x)); }
+inline double undone(float (*f)(float, float), double x, double air_C, double) {
+  return f(static_cast<float>(x), static_cast<float>(air_C));
+}
+template <class M>
+double current_of(If<true>, double x) {
+  return undone(&M::true_current_A, x, 0.0, 0.0);
+}
+template <class M>
+double current_of(If<false>, double x) {
+  return x;
+}
+template <class M>
+double motor_of(If<true>, double x, double air_C) {
+  return M::true_motor_C(static_cast<float>(x), static_cast<float>(air_C));
+}
+template <class M>
+double motor_of(If<false>, double x, double) {
+  return x;
+}
+inline double timed(float (*f)(float), double x, double) { return f(static_cast<float>(x)); }
+inline double timed(float (*f)(float, float), double x, double t_s) {
+  return f(static_cast<float>(x), static_cast<float>(t_s));
+}
+template <class M>
+double angle_of(If<true>, double x, double t_s) {
+  return timed(&M::true_angle_deg, x, t_s);
+}
+template <class M>
+double angle_of(If<false>, double x, double) {
+  return x;
+}
+template <class M>
+double rate_of(If<true>, double x, double t_s) {
+  return timed(&M::true_rate_dps, x, t_s);
+}
+template <class M>
+double rate_of(If<false>, double x, double) {
+  return x;
+}
+
+template <class Heating, class Cooling, class Step>
+double winding_C(const thermopower::ThermalModel<Heating, Cooling, Step>& model) {
+  return model.hottest_C();
+}
+inline double winding_C(const thermopower::TwoNodeThermalModel<float>& model) {
+  return model.state().winding_C;
+}
+
+/// Current and temperature over rows from the first reading. Prints for each row the current, what the
+/// simulation's reading of it says with the sensor's errors undone, and the same of the temperature.
+template <class M>
+void run_bench(const Row* rows, int count, const double* current_readings, const double* motor_readings) {
+  const typename M::Current::Config law = M::current();
+  const double start_C =
+      motor_of<M>(If<sizeof(Has<M>::template motor<M>(0)) == 1>(), motor_readings[0], rows[0].ambient_C);
+  typename M::Thermal thermal(M::thermal(), static_cast<float>(start_C));
+  const double lag_s = lag_of<M>(If<sizeof(Has<M>::template lag<M>(0)) == 1>());
+  double charge_Ah = 0.0, thermometer_C = start_C;
+  for (int i = 0; i < count; ++i) {
+    const Row& at = rows[i];
+    const float duty = static_cast<float>(at.power / 255.0), supply = static_cast<float>(at.supply_V),
+                rate = static_cast<float>(at.rate_dps * 0.017453292519943295);
+    const double shown_C = lag_s > 0.0 ? thermometer_C : winding_C(thermal);
+    {
+      const float motor = static_cast<float>(winding_C(thermal));
+      const float v = M::v_rms_V(duty, supply, motor, static_cast<float>(charge_Ah), rate);
+      const double amperes = law.current_A(v, motor);
+      printf("%.9g %.9g %.9g %.9g\n", amperes,
+             current_of<M>(If<sizeof(Has<M>::template current<M>(0)) == 1>(), current_readings[i]), shown_C,
+             motor_of<M>(If<sizeof(Has<M>::template motor<M>(0)) == 1>(), motor_readings[i], at.ambient_C));
+    }
+    if (i + 1 == count) break;
+    const int steps = 40;
+    const double h_s = (rows[i + 1].t_s - at.t_s) / steps;
+    for (int k = 0; k < steps; ++k) {
+      const double before_C = winding_C(thermal);
+      const float motor = static_cast<float>(before_C);
+      const float v = M::v_rms_V(duty, supply, motor, static_cast<float>(charge_Ah), rate);
+      const float amperes = law.current_A(v, motor);
+      const float bridge = M::bridge_V(duty, supply, amperes, motor, static_cast<float>(charge_Ah), rate);
+      const float air = M::air_C(static_cast<float>(at.ambient_C));
+      typename M::Thermal::Inputs inputs;
+      inputs.power_W = M::heat_W(v, amperes, bridge, motor, static_cast<float>(at.neighbour_C), rate, air);
+      inputs.v_rms_V = v;
+      inputs.around.air_C = air;
+      inputs.around.airspeed_mps = static_cast<float>(at.airspeed_mps);
+      thermal.step(inputs, static_cast<float>(h_s));
+      charge_Ah += amperes * sqrt(static_cast<double>(duty)) * h_s / 3600.0;
+      if (lag_s > 0.0)
+        thermometer_C += (0.5 * (before_C + winding_C(thermal)) - thermometer_C) * (1.0 - exp(-h_s / lag_s));
+    }
+  }
+}
+
+/// Angle and rate over rows from the first readings, printed as run_bench() prints.
+template <class M>
+void run_axis(const Row* rows, int count, const double* angle_readings, const double* rate_readings) {
+  const bool springy = sizeof(Has<M>::template spring<M>(0)) == 1;
+  const double delay_s = delay_of<M>(If<sizeof(Has<M>::template delay<M>(0)) == 1>());
+  const double far = far_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
+  const double frequency = frequency_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
+  const double damping = damping_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
+  const double inertia = M::inertia_kgm2(), near = inertia * (1.0 - far);
+  const double spring = near * far * frequency * frequency, damper = 2.0 * near * far * frequency * damping;
+  const double rad = 0.017453292519943295;
+  double angle = rad * angle_of<M>(If<sizeof(Has<M>::template angle<M>(0)) == 1>(), angle_readings[0], 0.0);
+  double rate = rad * rate_of<M>(If<sizeof(Has<M>::template rate<M>(0)) == 1>(), rate_readings[0], 0.0);
+  double twist = 0.0, twist_rate = 0.0;
+  for (int i = 0; i < count; ++i) {
+    printf("%.12g %.12g %.12g %.12g\n", angle / rad,
+           angle_of<M>(If<sizeof(Has<M>::template angle<M>(0)) == 1>(), angle_readings[i], rows[i].t_s),
+           rate / rad,
+           rate_of<M>(If<sizeof(Has<M>::template rate<M>(0)) == 1>(), rate_readings[i], rows[i].t_s));
+    if (i + 1 == count) break;
+    const int steps = 200;
+    const double h = (rows[i + 1].t_s - rows[i].t_s) / steps;
+    for (int k = 0; k < steps; ++k) {
+      const double now_s = rows[i].t_s + h * (k + 0.5) - delay_s;
+      int from = i;
+      while (from >= 0 && rows[from].t_s > now_s) --from;
+      const float motor = static_cast<float>(rows[i].motor_C);
+      const float drive = M::drive_Nm(static_cast<float>(from >= 0 ? rows[from].drive_A : 0.0), motor);
+      const auto slope = [&](double a, double w, double s, double u, double& dw, double& du) {
+        const float fa = static_cast<float>(a), fw = static_cast<float>(w);
+        const double pull = springy ? spring * s + damper * u : 0.0;
+        const double torque = static_cast<double>(drive) + M::load_Nm(fa, fw, drive) -
+                              static_cast<double>(M::viscous_Nms_per_rad()) * w -
+                              M::dry_friction_Nm(fa, fw, drive, motor) + pull;
+        dw = torque / near;
+        du = springy ? -pull / (inertia * far) - dw : 0.0;
+      };
+      double w1, u1, w2, u2, w3, u3, w4, u4;
+      slope(angle, rate, twist, twist_rate, w1, u1);
+      slope(angle + 0.5 * h * rate, rate + 0.5 * h * w1, twist + 0.5 * h * twist_rate,
+            twist_rate + 0.5 * h * u1, w2, u2);
+      slope(angle + 0.5 * h * (rate + 0.5 * h * w1), rate + 0.5 * h * w2,
+            twist + 0.5 * h * (twist_rate + 0.5 * h * u1), twist_rate + 0.5 * h * u2, w3, u3);
+      slope(angle + h * (rate + 0.5 * h * w2), rate + h * w3, twist + h * (twist_rate + 0.5 * h * u2),
+            twist_rate + h * u3, w4, u4);
+      angle += h * (rate + h * (w1 + w2 + w3) / 6.0);
+      twist += h * (twist_rate + h * (u1 + u2 + u3) / 6.0);
+      rate += h * (w1 + 2.0 * (w2 + w3) + w4) / 6.0;
+      twist_rate += h * (u1 + 2.0 * (u2 + u3) + u4) / 6.0;
+    }
+  }
+}
