@@ -12,9 +12,9 @@ thermopower_version(${root} version)
 
 set(package ${OUT}/thermopower)
 file(REMOVE_RECURSE ${package})
-file(GLOB umbrella ${root}/include/thermopower/*.hpp)
-list(FILTER umbrella EXCLUDE REGEX "/desktop\\.hpp$")
-file(COPY ${umbrella} DESTINATION ${package}/src/thermopower)
+file(COPY ${root}/include/thermopower/config_error.hpp ${root}/include/thermopower/thermopower.hpp
+          ${root}/include/thermopower/version.hpp
+     DESTINATION ${package}/src/thermopower)
 foreach(part actuator control detail fixed_point motors sbgc)
   file(COPY ${root}/include/thermopower/${part} DESTINATION ${package}/src/thermopower)
 endforeach()

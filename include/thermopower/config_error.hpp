@@ -9,8 +9,8 @@
 
 namespace thermopower {
 
-/// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger, a log
-/// of the number or `name_of()` tell what to mend. Numbers are stable: they are never reused, new ones are
+/// The first field that a `validate()` refused. The enumerator is the field's own name, so a debugger or a log
+/// of the number tell what to mend. Numbers are stable: they are never reused, new ones are
 /// added at the end.
 /// @ingroup control
 enum class ConfigError : uint8_t {

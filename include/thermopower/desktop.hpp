@@ -4,7 +4,7 @@
 
 /// @file desktop.hpp
 /// Everything that needs a desk: the firmware's models and policies, and the simulation they are tried on.
-/// The identification and the diagnosis of gaps have umbrellas of their own.
+/// The diagnosis of gaps is in gap.hpp.
 
 #include "simulation/axis_batch.hpp"
 #include "simulation/rig_ours.hpp"

@@ -17,7 +17,7 @@
 
 namespace tp = thermopower;
 
-// One model, four scalars: what a firmware steps in float, a simulation steps in lanes and an identification
+// One model, four scalars: what a firmware steps in float, a simulation steps in lanes and a fit
 // differentiates.
 
 namespace {

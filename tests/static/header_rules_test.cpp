@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Rules for headers that run in firmware which no compiler enforces.
+// Rules for the headers, those that run in firmware above all, which no compiler enforces.
 
 #include "../catch.hpp"
 
@@ -60,7 +60,8 @@ bool is_firmware(const std::string& name) {
   return !std::regex_search(name, upstairs);
 }
 
-const std::map<std::string, Header>& headers() {
+/// Every header, of both floors.
+const std::map<std::string, Header>& every_header() {
   static const std::map<std::string, Header> all = [] {
     std::map<std::string, Header> found;
     const fs::path root = THERMOPOWER_INCLUDE;
@@ -68,7 +69,6 @@ const std::map<std::string, Header>& headers() {
       if (entry.path().extension() != ".hpp") continue;
       Header header;
       header.name = fs::relative(entry.path(), root).generic_string();
-      if (!is_firmware(header.name)) continue;
       header.text = read(entry.path());
       header.code = code_of(header.text);
       static const std::regex include(R"re(#include\s*([<"])([^>"]+)[>"])re"), word("[A-Za-z0-9_]+");
@@ -84,13 +84,41 @@ const std::map<std::string, Header>& headers() {
   return all;
 }
 
-/// Everything a header includes of ours, itself among it.
+/// Those that run in firmware.
+const std::map<std::string, Header>& headers() {
+  static const std::map<std::string, Header> firmware = [] {
+    std::map<std::string, Header> found;
+    for (const auto& [name, header] : every_header())
+      if (is_firmware(name)) found[name] = header;
+    return found;
+  }();
+  return firmware;
+}
+
+/// What a header includes of ours, as names relative to include/thermopower.
+std::set<std::string> included_by(const Header& header) {
+  std::set<std::string> ours;
+  for (const std::string& included : header.quoted)
+    ours.insert((fs::path(header.name).parent_path() / included).lexically_normal().generic_string());
+  const std::string prefix = "thermopower/";
+  for (const std::string& included : header.angled)
+    if (included.rfind(prefix, 0) == 0) ours.insert(included.substr(prefix.size()));
+  return ours;
+}
+
+/// Everything a header includes of ours, however indirectly, itself among it.
 void reach(const std::string& name, std::set<std::string>& reached) {
   if (!reached.insert(name).second) return;
-  const auto found = headers().find(name);
-  if (found == headers().end()) return;
-  for (const std::string& included : found->second.quoted)
-    reach((fs::path(name).parent_path() / included).lexically_normal().generic_string(), reached);
+  const auto found = every_header().find(name);
+  if (found == every_header().end()) return;
+  for (const std::string& included : included_by(found->second)) reach(included, reached);
+}
+
+/// The room a header lives in: its folder below include/thermopower, of the diagnosis its stage.
+std::string room_of(const std::string& name) {
+  static const std::regex room("^gap/(data|localise|fit|decide|report|detail)/|^[a-z_]+/");
+  std::smatch found;
+  return std::regex_search(name, found, room) ? found.str() : std::string();
 }
 
 /// Names in a list as `-dM -E` prints it.
@@ -110,7 +138,8 @@ std::set<std::string> macros_in(const std::string& path) {
 TEST_CASE("there are firmware headers to check") { CHECK(headers().size() > 40); }
 
 TEST_CASE("every header begins with its licence and is included once") {
-  for (const auto& [name, header] : headers()) {
+  CHECK(every_header().size() > headers().size() + 50);
+  for (const auto& [name, header] : every_header()) {
     CAPTURE(name);
     CHECK(header.text.rfind(
               "// SPDX-License-Identifier: MIT\n// Copyright (c) 2026 the thermopower authors\n", 0) == 0);
@@ -135,7 +164,7 @@ TEST_CASE("firmware headers reach nothing upstairs, however indirectly") {
     for (const std::string& other : reached) {
       CAPTURE(name, other);
       CHECK(is_firmware(other));
-      CHECK(headers().count(other) == 1);  // an include that leads nowhere
+      CHECK(every_header().count(other) == 1);  // an include that leads nowhere
     }
   }
 }
@@ -153,6 +182,52 @@ TEST_CASE("dependencies point one way: the actuator knows no control, the wire k
     for (const std::string& other : reached) {
       CAPTURE(name, other);
       CHECK_FALSE(std::regex_search(other, std::regex(rule->second)));
+    }
+  }
+}
+
+TEST_CASE("upstairs no include runs back up, and each leads somewhere") {
+  // What each room must not reach. The check of the data asks for the same balances as localisation does.
+  const std::map<std::string, std::string> forbidden = {
+      {"plant/", "^(control|sbgc|simulation|gap)/|^(desktop|gap)\\.hpp"},
+      {"simulation/", "^gap/|^(desktop|gap)\\.hpp"},
+      {"gap/", "^(control|sbgc|simulation)/|^(desktop|gap)\\.hpp"},
+      {"gap/data/", "^gap/(fit|decide|report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
+      {"gap/localise/", "^gap/(fit|decide|report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
+      {"gap/fit/", "^gap/(decide|report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
+      {"gap/decide/", "^gap/(report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
+      {"gap/report/", "^gap/detail/|^gap/(diagnose|definitions)\\.hpp"}};
+  std::set<std::string> seen;
+  for (const auto& [name, header] : every_header()) {
+    std::set<std::string> reached;
+    reach(name, reached);
+    const std::string room = room_of(name);
+    seen.insert(room);
+    for (const std::string& other : reached) {
+      CAPTURE(name, other);
+      CHECK(every_header().count(other) == 1);
+      for (const auto& [from, to] : forbidden)
+        if (room.rfind(from, 0) == 0) CHECK_FALSE(std::regex_search(other, std::regex(to)));
+    }
+  }
+  for (const auto& [from, to] : forbidden) {
+    CAPTURE(from);
+    CHECK(seen.count(from) == 1);  // a rule for a room that is gone checks nothing
+  }
+}
+
+TEST_CASE(
+    "nothing public lives in a detail/: what users include reaches it only to define what it declares") {
+  const std::regex detail("(^|/)detail/"), definitions("^(gap|plant)/detail/");
+  for (const auto& [name, header] : every_header()) {
+    if (is_firmware(name) || std::regex_search(name, detail)) continue;
+    for (const std::string& other : included_by(header)) {
+      if (!std::regex_search(other, definitions)) continue;
+      CAPTURE(name, other);
+      // gap/x.hpp takes its definitions from gap/detail/x.hpp, and nobody else does.
+      const bool own =
+          fs::path(name).filename() == fs::path(other).filename() || name == "gap/definitions.hpp";
+      CHECK(own);
     }
   }
 }
@@ -219,8 +294,8 @@ long code_lines(const std::string& code) {
   return count;
 }
 
-TEST_CASE("a firmware header has one idea: at most 450 lines of code") {
-  for (const auto& [name, header] : headers()) {
+TEST_CASE("a header has one idea: at most 450 lines of code") {
+  for (const auto& [name, header] : every_header()) {
     CAPTURE(name);
     CHECK(code_lines(header.code) <= 450);
   }

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/decide/diagnoser.hpp>
+#include <thermopower/gap/detail/diagnoser.hpp>
 #include <thermopower/gap/diagnose.hpp>
 
 #include <vector>

@@ -4,13 +4,12 @@
 
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/fit/in_parallel.hpp>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace thermopower::gap {
@@ -37,23 +36,6 @@ struct Candidate {
   double probability = 0.0;      ///< among the candidates weighed together, 0..1
   bool on_bounds = false;        ///< a cause ended on the bounds of its range, and is none
 };
-
-/// Runs `work(i)` for i in [0, count) on some threads; each i writes only to its own place, so that the
-/// result does not depend on how many there are.
-template <class Work>
-void in_parallel(std::size_t count, unsigned threads, Work&& work) {
-  if (threads <= 1 || count <= 1) {
-    for (std::size_t i = 0; i < count; ++i) work(i);
-    return;
-  }
-  std::atomic<std::size_t> next{0};
-  std::vector<std::thread> pool;
-  for (unsigned t = 0; t < threads; ++t)
-    pool.emplace_back([&] {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    });
-  for (std::thread& thread : pool) thread.join();
-}
 
 /// Fits explanations to training data.
 class Attribution {
