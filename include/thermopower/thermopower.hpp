@@ -26,6 +26,7 @@
 #include "actuator/temperature_observer.hpp"
 #include "actuator/thermal_model.hpp"
 #include "actuator/thesis_current.hpp"
+#include "actuator/two_node_rates.hpp"
 #include "actuator/two_node_thermal_model.hpp"
 #include "control/adaptive_holding_law.hpp"
 #include "control/air_temperature.hpp"

@@ -252,3 +252,19 @@ TEST_CASE("an observer that steps every n-th time sees the same heat, at equal a
   for (int i = 0; i < 3; ++i) thermal.step({detail::not_a_number(), 0.0f, {25.0f, 0.0f}}, 0.01f);
   CHECK(std::isnan(thermal.hottest_C()));
 }
+
+TEST_CASE("no network gives the observer NaN, also where the eigenvalues nearly meet") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> small(-8.0f, -2.0f), near_one(0.999999f, 1.000001f);
+  for (int trial = 0; trial < 5000; ++trial) {
+    // Winding and body with the same own rate, all but uncoupled: the discriminant is lost in rounding.
+    const float coupling = std::pow(10.0f, small(random));
+    const TwoNodeThermalModel<float>::Config config = {
+        coupling, near_one(random), coupling, {near_one(random)}};
+    TemperatureObserver observer(TemperatureObserverConfig::standard(config), 110.0f, 25.0f);
+    observer.start(25.0f, 25.0f, 0.5f, 0.5f, 0.0f);
+    observer.step(coupling, 25.0f, 0.5f);
+    REQUIRE(std::isfinite(observer.state().winding_C));
+    REQUIRE(std::isfinite(observer.state().body_C));
+  }
+}

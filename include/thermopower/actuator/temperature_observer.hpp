@@ -44,7 +44,7 @@ struct TemperatureObserverConfig {
 /// sure. A measurement that is hotter than expected is believed sooner than one that is colder: a wrong "hot"
 /// costs power, a wrong "cold" costs the motor.
 class TemperatureObserver {
- public:
+public:
   typedef TemperatureObserverConfig Config;  ///< What one tunes.
 
   /// What one logs.
@@ -153,7 +153,7 @@ class TemperatureObserver {
   const State& state() const noexcept { return state_; }     ///< After the last call.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   // exp(A dt) - 1: what a step adds. The difference to 1 is kept, because a float near 1 would lose a short
   // step.
   struct Transition {
@@ -165,9 +165,8 @@ class TemperatureObserver {
     const float in = config_.thermal.coupling_W_per_K / config_.thermal.body_heat_capacity_J_per_K;
     const float air =
         config_.thermal.cooling.conductance_W_per_K / config_.thermal.body_heat_capacity_J_per_K;
-    const float half_trace = 0.5f * (out + in + air);
-    const float fast = half_trace + sqrtf(half_trace * half_trace - out * air);
-    const float slow = out * air / fast;
+    const TwoNodeRates<float> rates = two_node_rates(out, in, air);
+    const float fast = rates.fast_per_s, slow = rates.slow_per_s;
     const float slow_change = -slow * dt_s * detail::mean_decay(slow * dt_s);
     const float mix = (1.0f + slow_change) * dt_s * detail::mean_decay((fast - slow) * dt_s);
     const Transition way = {slow_change + mix * (slow - out), mix * out, mix * in,

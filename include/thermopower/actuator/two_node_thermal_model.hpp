@@ -4,6 +4,7 @@
 
 #include "../detail/numeric.hpp"
 #include "newton_cooling.hpp"
+#include "two_node_rates.hpp"
 
 /// @file two_node_thermal_model.hpp
 /// The temperature of an actuator with two nodes: a winding that is heated, and a body that loses the heat.
@@ -21,7 +22,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 class TwoNodeThermalModel {
- public:
+public:
   typedef Number Scalar;  ///< What it computes in.
 
   /// What one tunes.
@@ -59,22 +60,15 @@ class TwoNodeThermalModel {
   /// @param config   constants; call `validate()` once
   /// @param motor_C  temperature to start from, of both nodes
   TwoNodeThermalModel(const Config& config, const Number& motor_C) noexcept : config_(config) {
-    typedef detail::Numeric<Number> Math;
     start(motor_C);
     // Rates in 1/s of the 2 x 2 system and its eigenvalues -fast, -slow, once: the step then costs two
     // exponentials.
     winding_to_body_ = config.coupling_W_per_K / config.winding_heat_capacity_J_per_K;
     body_to_winding_ = config.coupling_W_per_K / config.body_heat_capacity_J_per_K;
     const Number to_air = config.cooling.conductance_W_per_K / config.body_heat_capacity_J_per_K;
-    const Number half_trace = (winding_to_body_ + body_to_winding_ + to_air) * Real(0.5);
-    // A sum of squares: half_trace^2 less the determinant could come out negative where the eigenvalues
-    // nearly meet.
-    const Number half_difference = (winding_to_body_ - body_to_winding_ - to_air) * Real(0.5);
-    const Number half_gap =
-        Math::square_root(Number(half_difference * half_difference + winding_to_body_ * body_to_winding_));
-    fast_per_s_ = half_trace + half_gap;
-    // Not half_trace - half_gap, which cancels when the nodes' time constants lie far apart.
-    slow_per_s_ = winding_to_body_ * to_air / fast_per_s_;
+    const TwoNodeRates<Number> rates = two_node_rates(winding_to_body_, body_to_winding_, to_air);
+    fast_per_s_ = rates.fast_per_s;
+    slow_per_s_ = rates.slow_per_s;
   }
 
   /// First constant out of its range, or ConfigError::none.
@@ -116,7 +110,7 @@ class TwoNodeThermalModel {
   Number hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
   const Config& config() const noexcept { return config_; }                             ///< The constants.
 
- private:
+private:
   typedef typename detail::Numeric<Number>::Real Real;
   Config config_;
   State state_;

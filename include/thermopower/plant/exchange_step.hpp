@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/actuator/two_node_rates.hpp>
 #include <thermopower/plant/dual.hpp>
 
 #include <cmath>
@@ -28,10 +29,9 @@ public:
   /// @param loss_per_s     loss to the air, relative to the surface's, >= 0
   ExchangeStep(const Scalar& winding_per_s, const Scalar& surface_per_s, const Scalar& loss_per_s)
       : ww_(-winding_per_s), ws_(winding_per_s), sw_(surface_per_s), ss_(-surface_per_s - loss_per_s) {
-    using std::sqrt;
-    const Scalar mean = 0.5 * (ww_ + ss_), half = 0.5 * (ww_ - ss_);
-    fast_per_s_ = mean - sqrt(half * half + ws_ * sw_);
-    slow_per_s_ = winding_per_s * loss_per_s / fast_per_s_;  // the determinant, without its cancellation
+    const TwoNodeRates<Scalar> rates = two_node_rates(winding_per_s, surface_per_s, loss_per_s);
+    fast_per_s_ = -rates.fast_per_s;
+    slow_per_s_ = -rates.slow_per_s;
   }
 
   /// Sets the length of the step, > 0.
