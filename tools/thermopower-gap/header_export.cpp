@@ -637,6 +637,11 @@ private:
   }
 
   void leftovers() {
+    if (m_.own)
+      for (const PlantConstant& constant : m_.own->constants)
+        body_ += "  /// Of " + one_line(constant.block) + ", " + one_line(constant.unit) +
+                 ".\n  static float " + identifier(constant.name) + "() { return " + literal(constant.value) +
+                 "; }\n";
     for (const std::string& id : unwritten_) {
       body_ += "  // Not in the functions above; its constants: " + one_line(id) + "\n";
       for (const auto& [name, value] : m_.effects.at(id))

@@ -5,11 +5,13 @@
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -245,6 +247,25 @@ inline std::unique_ptr<Rollout> ActuatorPlant::rollout(const Model& model, const
 inline const Plant& plant_of(const Model& model) {
   static const ActuatorPlant actuator;
   return model.own ? *model.own->equations : static_cast<const Plant&>(actuator);
+}
+
+/// The effects that may act in a model: those of its plant where it has its own, else those `given`.
+inline const Catalogue& catalogue_of(const Model& model, const Catalogue& given) {
+  const Catalogue* own = model.own ? model.own->equations->effects() : nullptr;
+  return own != nullptr ? *own : given;
+}
+
+/// What a signal of a model's plant is called.
+inline SignalName signal_name(const Model& model, Signal signal) {
+  const PlantInfo* own = plant_of(model).info();
+  if (own == nullptr) return signal;
+  return SignalName(own->signals[static_cast<std::size_t>(signal)].name);
+}
+
+/// Unit of a signal of a model's plant, as reports spell it.
+inline std::string signal_unit(const Model& model, Signal signal) {
+  const PlantInfo* own = plant_of(model).info();
+  return own == nullptr ? std::string(unit_of(signal)) : own->signals[static_cast<std::size_t>(signal)].unit;
 }
 
 }  // namespace thermopower::plant

@@ -140,6 +140,18 @@ public:
     if constexpr (detail::HasInfo<Effect>::value && detail::has_any_hook<Effect>) add_checked<Effect>();
     return *this;
   }
+
+  /// Adds an effect whose equation a plant of one's own holds itself.
+  /// @throws InvalidInput where its info is unusable or its id is taken
+  Catalogue& declare(const EffectInfo& info) {
+    check(info, HookSet());
+    CatalogueEntry entry;
+    entry.info = info;
+    infos_.push_back(entry.info);
+    entries_.push_back(std::move(entry));
+    return *this;
+  }
+
   /// What there is, in the order added.
   const std::vector<EffectInfo>& list() const { return infos_; }
 

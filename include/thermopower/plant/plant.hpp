@@ -18,6 +18,8 @@
 
 namespace thermopower::plant {
 
+struct PlantInfo;
+
 /// A point in the space that a fit moves in: factors on a model's constants, and parameters of effects that act
 /// besides the model's own.
 struct ParameterPoint {
@@ -120,6 +122,11 @@ public:
 class Plant {
 public:
   virtual ~Plant() = default;
+
+  /// What a plant of one's own is made of; null for the library's.
+  virtual const PlantInfo* info() const { return nullptr; }
+  /// The effects that a plant of one's own may have, in place of the library's; null for the library's.
+  virtual const Catalogue* effects() const { return nullptr; }
 
   /// The signals that a segment is simulated for, in the order of its readings.
   virtual const std::vector<Signal>& signals(const Segment& segment) const = 0;

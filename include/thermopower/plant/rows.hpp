@@ -44,19 +44,21 @@ struct Inputs {
   Eigen::VectorXd t_s;        ///< stamps of the rows, strictly increasing in a run
   std::vector<RunSpan> runs;  ///< rows between which time passes
   // Held inputs and covariates by row; empty where not recorded. Holes hold the value before them.
-  Eigen::VectorXd power_param;                         ///< POWER, 0..255
-  Eigen::VectorXd drive_A;                             ///< commanded current of the axis
-  Eigen::VectorXd supply_V;                            ///< supply voltage
-  Eigen::VectorXd ambient_C;                           ///< air temperature
-  Eigen::VectorXd airspeed_mps;                        ///< of the air past the motor
-  Eigen::VectorXd neighbour_C;                         ///< temperature of what is mounted next to it
-  Eigen::VectorXd covariate_rate_dps;                  ///< rotation as an input of the bench models
-  Eigen::VectorXd covariate_motor_C;                   ///< motor temperature as an input of the axis
-  Eigen::VectorXd held_current_A;                      ///< current as an input of the thermal model
-  Eigen::VectorXd held_motor_C;                        ///< temperature as an input of the electrical model
-  double nominal_V = 12.0;                             ///< stands in for `supply_V` where that is empty
-  Eigen::VectorXd repeats;                             ///< samples averaged in each row; empty: one
-  HeatSource heat = HeatSource::none;                  ///< what drives the thermal model
+  Eigen::VectorXd power_param;              ///< POWER, 0..255
+  Eigen::VectorXd drive_A;                  ///< commanded current of the axis
+  Eigen::VectorXd supply_V;                 ///< supply voltage
+  Eigen::VectorXd ambient_C;                ///< air temperature
+  Eigen::VectorXd airspeed_mps;             ///< of the air past the motor
+  Eigen::VectorXd neighbour_C;              ///< temperature of what is mounted next to it
+  Eigen::VectorXd covariate_rate_dps;       ///< rotation as an input of the bench models
+  Eigen::VectorXd covariate_motor_C;        ///< motor temperature as an input of the axis
+  Eigen::VectorXd held_current_A;           ///< current as an input of the thermal model
+  Eigen::VectorXd held_motor_C;             ///< temperature as an input of the electrical model
+  double nominal_V = 12.0;                  ///< stands in for `supply_V` where that is empty
+  std::vector<Eigen::VectorXd> own_inputs;  ///< of a plant of one's own, in its order; held, complete
+  bool own = false;                         ///< the signals are those of a plant of one's own
+  Eigen::VectorXd repeats;                  ///< samples averaged in each row; empty: one
+  HeatSource heat = HeatSource::none;       ///< what drives the thermal model
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   std::vector<std::string> not_judged;                 ///< one sentence each
 
@@ -67,9 +69,9 @@ struct Inputs {
   /// Measured values of a judged signal.
   const Eigen::VectorXd& of(Signal signal) const { return measured[static_cast<std::size_t>(signal)]; }
   /// Whether temperature or current is judged.
-  bool bench() const { return judged(Signal::current_A) || judged(Signal::motor_C); }
+  bool bench() const { return !own && (judged(Signal::current_A) || judged(Signal::motor_C)); }
   /// Whether angle or rate is judged.
-  bool axis() const { return judged(Signal::angle_deg) || judged(Signal::rate_dps); }
+  bool axis() const { return !own && (judged(Signal::angle_deg) || judged(Signal::rate_dps)); }
 };
 
 }  // namespace thermopower::plant

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/own_inputs.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/rows.hpp>
 
 #include <cmath>
@@ -65,6 +67,11 @@ inline Eigen::VectorXd unwrapped(const Eigen::VectorXd& angle_deg, const std::ve
 inline Inputs prepare(const Model& model, const Recording& recording) {
   if (const auto problem = recording.validate())
     throw InvalidInput("recording '" + recording.name + "': " + *problem);
+  if (model.own)
+    return detail::prepare_own(*model.own->equations->info(), recording,
+                               [](const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+                                 return detail::held(values, runs);
+                               });
   Inputs inputs;
   inputs.name = recording.name;
   inputs.t_s = recording.t_s;

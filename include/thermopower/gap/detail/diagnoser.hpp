@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/data_gate.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/gap/localise/own_plant.hpp>
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/parts.hpp>
@@ -28,7 +29,7 @@ namespace detail {
 class Diagnoser {
 public:
   Diagnoser(const Model& model, const Options& options, const Catalogue& catalogue)
-      : model_(model), options_(options), catalogue_(catalogue) {
+      : model_(model), options_(options), catalogue_(catalogue_of(model, catalogue)) {
     options.validate();
     if (const auto problem = model.validate()) throw InvalidInput("model '" + model.name + "': " + *problem);
     slack_.fraction = options.slack;
@@ -38,7 +39,9 @@ public:
     gather(train, held_out);
     stage("data gate");
     if (!enough()) return std::move(result_);
-    Localisation found = localise(model_, train_recordings_, LocalisationOptions{options_.slack});
+    Localisation found;
+    if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
+    else found = localise(model_, train_recordings_, LocalisationOptions{options_.slack});
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
@@ -203,6 +206,7 @@ private:
 
   /// Whether the constant's block is judged.
   bool acts(const CalibratedConstant& constant) const {
+    if (model_.own) return true;
     for (const Inputs& one : train_inputs_)
       if (constant.block == "axis"      ? one.axis()
           : constant.block == "thermal" ? one.judged(Signal::motor_C)
@@ -314,7 +318,7 @@ private:
              simulate(result_.augmented, train_recordings_[i],
                       {SimulationMode::free_running, options_.horizon_s}, catalogue_))
           simulated[i].set(to_string(signal.signal), std::move(signal.values));
-      draw_effect(model_, simulated, result_.missing_quantities);
+      if (!model_.own) draw_effect(model_, simulated, result_.missing_quantities);
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
   }

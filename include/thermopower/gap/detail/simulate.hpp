@@ -14,7 +14,8 @@ namespace thermopower::gap {
 
 THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model, const Recording& recording,
                                                              const SimulationOptions& options,
-                                                             const Catalogue& catalogue) {
+                                                             const Catalogue& given) {
+  const Catalogue& catalogue = catalogue_of(model, given);
   const std::vector<Inputs> inputs{prepare(model, recording)};
   std::vector<SimulatedSignal> results;
   std::array<int, signal_count> column;
@@ -22,7 +23,8 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
   for (int i = 0; i < signal_count; ++i)
     if (inputs[0].judged(static_cast<Signal>(i))) {
       column[static_cast<std::size_t>(i)] = static_cast<int>(results.size());
-      results.push_back({static_cast<Signal>(i), Eigen::VectorXd::Constant(recording.rows(), missing)});
+      results.push_back(
+          {signal_name(model, static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
   const Plant& plant = plant_of(model);
   const std::vector<Segment> segments = cut(inputs, options.horizon_s, plant);

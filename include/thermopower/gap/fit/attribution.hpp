@@ -241,6 +241,7 @@ private:
 /// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
                           const std::vector<Inputs>& recordings) {
+  if (model.own) return model.effects.count(entry.info.id) == 0;
   bool bench = false, axis = false;
   for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
   if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;

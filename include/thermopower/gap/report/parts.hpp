@@ -154,9 +154,9 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);
     GapScore gap;
-    gap.signal = signal;
-    gap.unit = unit_of(signal);
-    if (i >= 2) gap.horizon_s = options.horizon_s;
+    gap.signal = signal_name(model, signal);
+    gap.unit = signal_unit(model, signal);
+    if (segments[static_cast<std::size_t>(before.segment[i].front())].axis) gap.horizon_s = options.horizon_s;
     gap.before = before.rms(signal);
     gap.recalibrated = recalibrated.rms(signal);
     gap.after = after.rms(signal);

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::plant {
+
+/// What all plants of one's own have in common: states of which some are measured, and signals.
+class OwnPlant : public Plant {
+public:
+  /// @throws InvalidInput where the info or an effect's is unusable
+  OwnPlant(PlantInfo info, const std::vector<EffectInfo>& effects) : info_(std::move(info)) {
+    info_.validate();
+    for (std::size_t i = 0; i < info_.signals.size(); ++i) signals_.push_back(static_cast<Signal>(i));
+    for (const EffectInfo& effect : effects) effects_.declare(effect);
+  }
+
+  const PlantInfo* info() const override { return &info_; }
+  const Catalogue* effects() const override { return &effects_; }
+  const std::vector<Signal>& signals(const Segment&) const override { return signals_; }
+  int start_size(const Segment&) const override { return static_cast<int>(info_.states.size()); }
+
+  void cut(const Inputs& inputs, double horizon_s, std::vector<Segment>& segments) const override {
+    const bool windows = info_.windowed && horizon_s > 0.0 && std::isfinite(horizon_s);
+    for (const RunSpan& run : inputs.runs) {
+      Eigen::Index begin = run.begin;
+      while (begin < run.end && !measured_at(inputs, begin)) ++begin;
+      for (bool first = true; begin + 1 < run.end; first = false) {
+        Eigen::Index end = run.end;
+        if (windows) {
+          end = begin + 1;
+          const double until_s = inputs.t_s[begin] + horizon_s;
+          const double rounding_s = 1e-9 * (1.0 + std::abs(until_s));
+          while (end < run.end && (inputs.t_s[end] < until_s - rounding_s || !measured_at(inputs, end)))
+            ++end;
+        }
+        if (begin + 1 < end) segments.push_back({&inputs, run, begin, end, windows, !first, false});
+        begin = end;
+      }
+    }
+  }
+
+  Start start_weight(const Segment& segment, const std::array<double, signal_count>& sigma) const override {
+    Start weight(start_size(segment));
+    for (std::size_t i = 0; i < info_.states.size(); ++i) {
+      const PlantState& state = info_.states[i];
+      // The row itself is among the data where it is judged: the prior only has to keep the start bounded.
+      weight[static_cast<Eigen::Index>(i)] = judged(*segment.inputs, state)
+                                                 ? 0.01 / sigma[static_cast<std::size_t>(state.measured_by)]
+                                                 : 1.0 / state.spread;
+    }
+    return weight;
+  }
+
+  /// The starts of a segment that nobody measures.
+  std::vector<HiddenStart> hidden_starts(const Segment& segment) const {
+    std::vector<HiddenStart> list;
+    for (std::size_t i = 0; i < info_.states.size(); ++i) {
+      const PlantState& state = info_.states[i];
+      if (judged(*segment.inputs, state) || segment.carries_on) continue;
+      HiddenStart hidden;
+      hidden.coordinate = static_cast<int>(i);
+      hidden.shows_in = static_cast<Signal>(state.shows_in);
+      hidden.trial = 0.1 * state.spread;
+      hidden.noise_per_spread = 0.002;  // relative to the trial: a fiftieth of the spread
+      hidden.farthest = 20.0 * state.spread;
+      list.push_back(hidden);
+    }
+    return list;
+  }
+
+  /// Standard deviation of a start that is taken from measured values.
+  Start measured_start_sd(const Segment& segment, const std::array<double, signal_count>& sigma) const {
+    Start sd = Start::Zero(start_size(segment));
+    for (std::size_t i = 0; i < info_.states.size(); ++i)
+      if (judged(*segment.inputs, info_.states[i]))
+        sd[static_cast<Eigen::Index>(i)] = sigma[static_cast<std::size_t>(info_.states[i].measured_by)];
+    return sd;
+  }
+
+  /// Where a segment starts as far as it is measured; `carried` of the states that are not, where it carries on.
+  std::vector<double> measured_start(const Segment& segment, const std::vector<double>& carried) const {
+    std::vector<double> start;
+    for (std::size_t i = 0; i < info_.states.size(); ++i) {
+      const PlantState& state = info_.states[i];
+      if (judged(*segment.inputs, state))
+        start.push_back(segment.inputs->of(static_cast<Signal>(state.measured_by))[segment.begin]);
+      else start.push_back(segment.carries_on && i < carried.size() ? carried[i] : state.initial);
+    }
+    return start;
+  }
+
+  /// The model of this plant as its author gives it.
+  static Model model(std::shared_ptr<const OwnPlant> plant, std::string name) {
+    Model result;
+    result.name = std::move(name);
+    const PlantInfo& info = *plant->info();
+    result.own = PlantModel{info.type, plant, info.constants};
+    return result;
+  }
+
+protected:
+  /// A model's constants times a point's factors, and how each moves with its factor.
+  struct Constants {
+    std::vector<double> value, per_factor;
+    std::vector<int> index;  ///< of the factor in the point; -1: none
+  };
+  static Constants constants_of(const Model& model, const ParameterPoint& point) {
+    Constants result;
+    int next = 0;
+    for (const PlantConstant& constant : model.own->constants) {
+      const bool calibrated = constant.may_be_cause && constant.value != 0.0;
+      const bool moves = calibrated && static_cast<std::size_t>(next) < point.factors.size();
+      result.index.push_back(moves ? next : -1);
+      result.per_factor.push_back(constant.value);
+      result.value.push_back(moves ? constant.value * point.factors[static_cast<std::size_t>(next)]
+                                   : constant.value);
+      if (calibrated) ++next;
+    }
+    return result;
+  }
+
+  /// Parameters of an effect of the model in the effect's order.
+  static std::vector<double> parameters_of(const Model& model, const EffectInfo& info) {
+    const EffectParameters& given = model.effects.at(info.id);
+    std::vector<double> values;
+    for (const Parameter& parameter : info.parameters) {
+      const auto found = given.find(parameter.name);
+      if (found == given.end() && !parameter.standard)
+        throw InvalidInput("model '" + model.name + "', effect '" + info.id + "': parameter '" +
+                           parameter.name + "' is missing");
+      values.push_back(found == given.end() ? *parameter.standard : found->second);
+    }
+    return values;
+  }
+
+  /// @throws InvalidInput for an effect of the model that this plant does not have
+  void check_effects(const Model& model) const {
+    for (const auto& effect : model.effects)
+      if (effects_.find(effect.first) == nullptr)
+        throw InvalidInput("model '" + model.name + "': plant '" + info_.type + "' has no effect '" +
+                           effect.first + "'");
+  }
+
+  PlantInfo info_;     ///< as its author gave it
+  Catalogue effects_;  ///< its own
+
+private:
+  static bool judged(const Inputs& inputs, const PlantState& state) {
+    return state.measured_by >= 0 && inputs.judged(static_cast<Signal>(state.measured_by));
+  }
+
+  bool measured_at(const Inputs& inputs, Eigen::Index row) const {
+    for (const PlantState& state : info_.states)
+      if (judged(inputs, state) && !std::isfinite(inputs.of(static_cast<Signal>(state.measured_by))[row]))
+        return false;
+    return true;
+  }
+
+  std::vector<Signal> signals_;
+};
+
+}  // namespace thermopower::plant
