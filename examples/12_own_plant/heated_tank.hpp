@@ -27,14 +27,14 @@ struct HeatedTank {
   template <class Scalar>
   struct Terms {
     Scalar level_m, water_C;  ///< given
-    double room_C;            ///< given
+    Scalar room_C;            ///< given
     Scalar outflow_m3_per_s;  ///< to change
     Scalar loss_W;            ///< to change
   };
 
   /// d(state)/dt.
   template <class Scalar, class Effects>
-  static void flow(const Scalar* constants, const Scalar* states, const double* inputs,
+  static void flow(const Scalar* constants, const Scalar* states, const Scalar* inputs,
                    const Effects& effects, Scalar* rates) {
     using std::sqrt;
     constexpr double J_per_m3_K = 998.0 * 4182.0;  // water
@@ -49,7 +49,7 @@ struct HeatedTank {
 
   /// What its instruments show.
   template <class Scalar, class Effects>
-  static void read(const Scalar*, const Scalar* states, const double*, const Effects&, Scalar* signals) {
+  static void read(const Scalar*, const Scalar* states, const Scalar*, const Effects&, Scalar* signals) {
     signals[0] = states[0];
     signals[1] = states[1];
   }

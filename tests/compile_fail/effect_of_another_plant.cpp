@@ -16,14 +16,14 @@ struct Tank {
     Scalar outflow_m3_per_s;
   };
   template <class Scalar, class Effects>
-  static void flow(const Scalar*, const Scalar* states, const double*, const Effects& effects,
+  static void flow(const Scalar*, const Scalar* states, const Scalar*, const Effects& effects,
                    Scalar* rates) {
     Terms<Scalar> terms{states[0]};
     effects(terms);
     rates[0] = -terms.outflow_m3_per_s;
   }
   template <class Scalar, class Effects>
-  static void read(const Scalar*, const Scalar* states, const double*, const Effects&, Scalar* signals) {
+  static void read(const Scalar*, const Scalar* states, const Scalar*, const Effects&, Scalar* signals) {
     signals[0] = states[0];
   }
 };

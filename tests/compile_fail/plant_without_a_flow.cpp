@@ -22,12 +22,12 @@ struct Tank {
   }
 #else
   template <class Scalar, class Effects>
-  static void flow(const Scalar*, const Scalar* states, const double*, const Effects&, Scalar* rates) {
+  static void flow(const Scalar*, const Scalar* states, const Scalar*, const Effects&, Scalar* rates) {
     rates[0] = -states[0];
   }
 #endif
   template <class Scalar, class Effects>
-  static void read(const Scalar*, const Scalar* states, const double*, const Effects&, Scalar* signals) {
+  static void read(const Scalar*, const Scalar* states, const Scalar*, const Effects&, Scalar* signals) {
     signals[0] = states[0];
   }
 };

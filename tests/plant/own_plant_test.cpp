@@ -38,16 +38,16 @@ struct Carriage {
     Scalar force_N;
   };
   template <class Scalar, class Effects>
-  static void flow(const Scalar* constants, const Scalar* states, const double* inputs,
+  static void flow(const Scalar* constants, const Scalar* states, const Scalar* inputs,
                    const Effects& effects, Scalar* rates) {
-    Terms<Scalar> terms{states[0], states[1], Scalar(inputs[0])};
+    Terms<Scalar> terms{states[0], states[1], inputs[0]};
     terms.force_N -= constants[1] * states[0] + constants[2] * states[1];
     effects(terms);
     rates[0] = states[1];
     rates[1] = terms.force_N / constants[0];
   }
   template <class Scalar, class Effects>
-  static void read(const Scalar*, const Scalar* states, const double*, const Effects&, Scalar* signals) {
+  static void read(const Scalar*, const Scalar* states, const Scalar*, const Effects&, Scalar* signals) {
     signals[0] = states[0];
   }
 };

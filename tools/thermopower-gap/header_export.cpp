@@ -9,6 +9,7 @@
 #include <thermopower/actuator/thesis_current.hpp>
 
 #include <thermopower/plant/expression.hpp>
+#include <thermopower/plant/own_plant.hpp>
 #include <thermopower/plant/terms.hpp>
 
 #include <algorithm>
@@ -81,6 +82,7 @@ class Writer {
 public:
   Writer(const Model& model, const std::string& origin, const Catalogue& catalogue)
       : m_(model), origin_(origin), ohmic_(std::get_if<OhmicCurrentModel>(&model.current)) {
+    if (m_.own) return;  // writes itself, its effects included
     for (const CatalogueEntry& entry : catalogue.entries()) {
       const auto found = model.effects.find(entry.info.id);
       if (found != model.effects.end()) take(entry, found->second);
@@ -636,12 +638,28 @@ private:
                       {argument}, (trace.symbol(argument) - at_0) / (at_1 - at_0));
   }
 
+  void own_plant() {
+    const auto* plant = dynamic_cast<const plant::OwnPlant*>(m_.own->equations.get());
+    Trace trace;
+    try {
+      std::vector<plant::WrittenEquation> equations;
+      if (plant != nullptr) equations = plant->written(m_, trace);
+      if (equations.empty()) throw NotTraceable("a simulator behind a function call shows no equation");
+      for (const plant::WrittenEquation& one : equations)
+        body_ += function(one_line(one.comment), identifier(one.name), one.arguments, one.value);
+    } catch (const NotTraceable& why) {
+      left_out_.push_back(m_.own->type + ": " + why.what() + "; its constants are constants of the header");
+      for (const auto& effect : m_.effects) leave(effect.first, why.what());
+    }
+  }
+
   void leftovers() {
     if (m_.own)
       for (const PlantConstant& constant : m_.own->constants)
         body_ += "  /// Of " + one_line(constant.block) + ", " + one_line(constant.unit) +
                  ".\n  static float " + identifier(constant.name) + "() { return " + literal(constant.value) +
                  "; }\n";
+    if (m_.own) own_plant();
     for (const std::string& id : unwritten_) {
       body_ += "  // Not in the functions above; its constants: " + one_line(id) + "\n";
       for (const auto& [name, value] : m_.effects.at(id))

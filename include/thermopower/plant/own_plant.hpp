@@ -2,17 +2,27 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/plant_info.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace thermopower::plant {
+
+/// An equation of a plant of one's own, written down with numbers for its constants.
+struct WrittenEquation {
+  std::string name;                    ///< an identifier
+  std::string comment;                 ///< one sentence: what it gives, and its unit
+  std::vector<std::string> arguments;  ///< identifiers of what it is given
+  Expression value;                    ///< of the trace it was written with, in symbols of these names
+};
 
 /// What all plants of one's own have in common: states of which some are measured, and signals.
 class OwnPlant : public Plant {
@@ -98,6 +108,10 @@ public:
     }
     return start;
   }
+
+  /// Its equations with a model's constants and effects, written with `trace`; none where it has none to show.
+  /// @throws NotTraceable where one cannot be written down
+  virtual std::vector<WrittenEquation> written(const Model&, Trace&) const { return {}; }
 
   /// The model of this plant as its author gives it.
   static Model model(std::shared_ptr<const OwnPlant> plant, std::string name) {

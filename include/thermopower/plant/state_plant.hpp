@@ -68,7 +68,7 @@ struct HasFlow : std::false_type {};
 template <class P, class Scalar, class Acting>
 struct HasFlow<P, Scalar, Acting,
                std::void_t<decltype(P::flow(std::declval<const Scalar*>(), std::declval<const Scalar*>(),
-                                            std::declval<const double*>(), std::declval<const Acting&>(),
+                                            std::declval<const Scalar*>(), std::declval<const Acting&>(),
                                             std::declval<Scalar*>()))>> : std::true_type {};
 
 template <class P, class Scalar, class Acting, class = void>
@@ -76,7 +76,7 @@ struct HasRead : std::false_type {};
 template <class P, class Scalar, class Acting>
 struct HasRead<P, Scalar, Acting,
                std::void_t<decltype(P::read(std::declval<const Scalar*>(), std::declval<const Scalar*>(),
-                                            std::declval<const double*>(), std::declval<const Acting&>(),
+                                            std::declval<const Scalar*>(), std::declval<const Acting&>(),
                                             std::declval<Scalar*>()))>> : std::true_type {};
 
 template <class E, class = void>
@@ -113,10 +113,10 @@ public:
     const int signals = static_cast<int>(info_.signals.size());
     out.reset(segment.begin, segment.end, signals, directions_);
     States state = started(segment, start);
-    std::array<Scalar, signal_count> read;
-    std::vector<double> fed(info_.inputs.size());
+    std::array<Scalar, signal_count> read{};
+    std::vector<Scalar> fed(info_.inputs.size());
     for (Eigen::Index row = segment.begin; row < segment.end; ++row) {
-      for (std::size_t i = 0; i < fed.size(); ++i) fed[i] = inputs.own_inputs[i][row];
+      for (std::size_t i = 0; i < fed.size(); ++i) fed[i] = constant<Scalar>(inputs.own_inputs[i][row]);
       P::read(constants_.data(), state.data(), fed.data(), effects_, read.data());
       for (int k = 0; k < signals; ++k) out.put(row, k, read[static_cast<std::size_t>(k)]);
       if (row + 1 < segment.run.end)
@@ -156,7 +156,7 @@ private:
     return state;
   }
 
-  void flow(const States& state, const double* fed, States& rate) const {
+  void flow(const States& state, const Scalar* fed, States& rate) const {
     P::flow(constants_.data(), state.data(), fed, effects_, rate.data());
   }
 
@@ -165,8 +165,8 @@ private:
   }
 
   /// One step of the classical Runge-Kutta rule, in halves where the rates bend too much over it.
-  void advance(States& state, const double* fed, double h_s, int depth) const {
-    States k1, k2, k3, k4, point = state;
+  void advance(States& state, const Scalar* fed, double h_s, int depth) const {
+    States k1{}, k2{}, k3{}, k4{}, point = state;  // a rate that the plant leaves out is 0
     flow(state, fed, k1);
     moved(state, k1, 0.5 * h_s, point);
     flow(point, fed, k2);
@@ -211,6 +211,47 @@ public:
     check_effects(model);
     if (directions.count > 0) return made<Dual>(model, point, directions);
     return made<double>(model, point, directions);
+  }
+
+  std::vector<WrittenEquation> written(const Model& model, Trace& trace) const override {
+    check_effects(model);
+    std::vector<Expression> constants, states, inputs;
+    std::vector<std::string> arguments;
+    const auto given = [&](const std::string& column, std::vector<Expression>& list) {
+      std::string name = column.empty() || (column[0] >= '0' && column[0] <= '9') ? "x" + column : column;
+      for (char& c : name)  // an identifier, whatever the column is called
+        if (!(c >= '0' && c <= '9') && !(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z')) c = '_';
+      arguments.push_back(name);
+      list.push_back(trace.symbol(name));
+    };
+    for (const PlantConstant& constant : model.own->constants) constants.push_back(constant.value);
+    for (const PlantState& state : info_.states) given(state.name, states);
+    for (const PlantInput& input : info_.inputs) given(input.name, inputs);
+    ActingEffects<Expression, Effects...> effects;
+    for (const auto& effect : model.effects) {
+      const std::size_t place = place_of(effect.first);
+      const std::vector<double> values = parameters_of(model, effects_.entries()[place].info);
+      effects.set(place, std::vector<Expression>(values.begin(), values.end()));
+    }
+    const std::vector<Expression> rates = trace.every_branch([&] {
+      std::vector<Expression> result(info_.states.size());
+      P::flow(constants.data(), states.data(), inputs.data(), effects, result.data());
+      return result;
+    });
+    const std::vector<Expression> signals = trace.every_branch([&] {
+      std::vector<Expression> result(info_.signals.size());
+      P::read(constants.data(), states.data(), inputs.data(), effects, result.data());
+      return result;
+    });
+    std::vector<WrittenEquation> list;
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      list.push_back({info_.states[i].name + "_rate",
+                      "Derivative of " + info_.states[i].name + ", " + info_.states[i].unit + "/s.",
+                      arguments, rates[i]});
+    for (std::size_t i = 0; i < signals.size(); ++i)
+      list.push_back({info_.signals[i].name, "What the instrument shows, " + info_.signals[i].unit + ".",
+                      arguments, signals[i]});
+    return list;
   }
 
 private:
@@ -272,14 +313,16 @@ private:
 ///     template <class Scalar> struct Terms { ... };        // of its equations, what effects see and change
 ///     // d(state)/dt; calls effects(terms) with its Terms before it adds them up
 ///     template <class Scalar, class Effects>
-///     static void flow(const Scalar* constants, const Scalar* states, const double* inputs,
+///     static void flow(const Scalar* constants, const Scalar* states, const Scalar* inputs,
 ///                      const Effects& effects, Scalar* rates);
 ///     // what the instruments show
 ///     template <class Scalar, class Effects>
-///     static void read(const Scalar* constants, const Scalar* states, const double* inputs,
+///     static void read(const Scalar* constants, const Scalar* states, const Scalar* inputs,
 ///                      const Effects& effects, Scalar* signals);
 ///
-/// constants, states, inputs and signals in the order of `info()`. Inputs are held over an interval, which is
+/// constants, states, inputs and signals in the order of `info()`. Scalar is `double`, a Dual in fits, and an
+/// Expression where the equations are written down for firmware: use operators, and the functions of <cmath>
+/// after a using-declaration. Inputs are held over an interval, which is
 /// integrated with the classical Runge-Kutta rule in as many steps as it takes; derivatives are exact (by
 /// automatic differentiation). Each of Effects is a type with `static plant::EffectInfo info()` and
 /// `template <class Scalar> static void act(const Scalar* p, P::Terms<Scalar>& terms)`. Errors in these are
@@ -305,11 +348,11 @@ Model adapt(std::string name) {
                 "equations that an effect sees and changes");
   static_assert(flows,
                 "thermopower: a plant needs 'template <class Scalar, class Effects> static void flow(const "
-                "Scalar* constants, const Scalar* states, const double* inputs, const Effects& effects, "
+                "Scalar* constants, const Scalar* states, const Scalar* inputs, const Effects& effects, "
                 "Scalar* rates)'");
   static_assert(reads,
                 "thermopower: a plant needs 'template <class Scalar, class Effects> static void read(const "
-                "Scalar* constants, const Scalar* states, const double* inputs, const Effects& effects, "
+                "Scalar* constants, const Scalar* states, const Scalar* inputs, const Effects& effects, "
                 "Scalar* signals)'");
   static_assert(effects, "thermopower: an effect needs 'static thermopower::plant::EffectInfo info()'");
   static_assert(fit,
