@@ -88,12 +88,12 @@ AdaptiveGimbal ours(const Scenario& scenario) {
 // Constant power at the stiffness of ours, to show what the gain alone does.
 ConstantPower stiff_constant(const Scenario&) {
   std::array<std::uint8_t, 3> gains{};
-  gains[0] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(0, tuning).gain)
-                 .step(standard_power);
-  gains[1] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm2606_90t>(1, tuning).gain)
-                 .step(standard_power);
-  gains[2] = EasedGain<GainScheduler<VoltageGain>>(adaptive_axis<motors::Bgm5208_200_12>(2, tuning).gain)
-                 .step(standard_power);
+  gains[0] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(0, tuning).gain)
+                 .step(standard_power, AxisFacts::unknown());
+  gains[1] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(1, tuning).gain)
+                 .step(standard_power, AxisFacts::unknown());
+  gains[2] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm5208_200_12>(2, tuning).gain)
+                 .step(standard_power, AxisFacts::unknown());
   return ConstantPower({standard_power, standard_power, standard_power}, gains);
 }
 

@@ -13,7 +13,7 @@
 #include <thermopower/control/air_temperature.hpp>
 #include <thermopower/control/axis_controller.hpp>
 #include <thermopower/control/certified/limiter.hpp>
-#include <thermopower/control/node_limits.hpp>
+#include <thermopower/control/node_limiter.hpp>
 #include <thermopower/motors/bgm2606_90t.hpp>
 
 using namespace thermopower;
@@ -36,7 +36,7 @@ TEST_CASE("full torque when the root of the limit is negative") {
   CHECK(highest_current_A(1.0f, 0.0f) == 0.0f);
   CHECK(highest_current_A(nan_C, 0.1f) == 0.0f);
   // The same for limiters: far beyond the limit, where a budget is negative, the power is the least.
-  SafetyLimiter<PerNode> nodes;
+  NodeLimiter nodes;
   for (const float body_C : {60.0f, 61.0f, 100.0f, 1000.0f})
     CHECK(nodes.step({255, body_C, body_C, 20.0f}).power == 1);
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
@@ -56,7 +56,7 @@ TEST_CASE("a disconnected sensor read as cold") {
   AirTemperature air;
   CHECK(std::isnan(air.step(-128.0f, nan_C).air_C));
   CHECK(std::isnan(air.step(-99.0f, -99.0f).air_C));
-  SafetyLimiter<PerNode> nodes;
+  NodeLimiter nodes;
   for (const float gone_C : {nan_C, -300.0f, static_cast<float>(INFINITY), -static_cast<float>(INFINITY)}) {
     CHECK(nodes.step({255, gone_C, 30.0f, 20.0f}).power == 1);
     CHECK(nodes.step({255, 30.0f, gone_C, 20.0f}).power == 1);
@@ -80,7 +80,7 @@ TEST_CASE("a disconnected sensor read as cold") {
 }
 
 TEST_CASE("a jump at the derating threshold") {
-  SafetyLimiter<PerNode> nodes;
+  NodeLimiter nodes;
   int last = nodes.step({255, 30.0f, 30.0f, 20.0f}).power;
   for (float body_C = 30.0f; body_C < 62.0f; body_C += 0.002f) {
     const int power = nodes.step({255, body_C, body_C, 20.0f}).power;
@@ -96,9 +96,9 @@ TEST_CASE("all-zero parameters accepted") {
   CertifiedLimiter<CertifiedOneNode>::Config one_node = {};
   CHECK(is_error(one_node.validate()));
   CHECK(CertifiedLimiter<CertifiedOneNode>(one_node).step({255, 13.0f, 25.0f}, 0.01f).power == 1);
-  SafetyLimiter<PerNode>::Config nodes = {};
+  NodeLimiter::Config nodes = {};
   CHECK(is_error(nodes.validate()));
-  CHECK(SafetyLimiter<PerNode>(nodes).step({255, 25.0f, 25.0f, 25.0f}).power == 1);
+  CHECK(NodeLimiter(nodes).step({255, 25.0f, 25.0f, 25.0f}).power == 1);
   TemperatureObserverConfig observer = {};
   CHECK(is_error(observer.validate()));
   WindingResistance::Config winding = {};

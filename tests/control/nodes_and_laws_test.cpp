@@ -9,7 +9,7 @@
 #include <thermopower/control/axis_controller.hpp>
 #include <thermopower/control/certified/limiter.hpp>
 #include <thermopower/control/eased_gain.hpp>
-#include <thermopower/control/node_limits.hpp>
+#include <thermopower/control/node_limiter.hpp>
 #include <thermopower/control/reserve_law.hpp>
 #include <thermopower/control/sag_aware_law.hpp>
 #include <thermopower/control/voltage_gain.hpp>
@@ -28,7 +28,15 @@ struct Motor {
   static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 };
 
-AxisFacts at_supply(float supply_V) { return {0, 25.0f, 25.0f, 0.0f, 25.0f, supply_V, 0.0f}; }
+AxisFacts at_supply(float supply_V) {
+  return {1, 25.0f, 25.0f, 0.0f, 25.0f, supply_V, 0.0f, detail::not_a_number(), LimitReason::none};
+}
+AxisFacts at_pose(float pose_deg, LimitReason last_reason = LimitReason::none) {
+  AxisFacts facts = at_supply(13.0f);
+  facts.pose_deg = pose_deg;
+  facts.last_reason = last_reason;
+  return facts;
+}
 
 /// An axis that must hold a weight: a pose-dependent torque against an authority that grows with the square
 /// root of power.
@@ -46,24 +54,24 @@ struct Joint {
 }  // namespace
 
 TEST_CASE("each node limits at its own temperature, and the state says which") {
-  SafetyLimiter<PerNode> limiter;
+  NodeLimiter limiter;
   REQUIRE(limiter.validate() == ConfigError::none);
   CHECK(limiter.step({255, 40.0f, 35.0f, 20.0f}).reason == LimitReason::none);
-  CHECK(limiter.state().node == PerNode::none);
+  CHECK(limiter.state().node == NodeLimiter::none);
   CHECK(limiter.step({255, 70.0f, 56.0f, 20.0f}).reason == LimitReason::node_limit);
-  CHECK(limiter.state().node == PerNode::bracket);
+  CHECK(limiter.state().node == NodeLimiter::bracket);
   CHECK(limiter.step({255, 118.0f, 40.0f, 20.0f}).reason == LimitReason::node_limit);
-  CHECK(limiter.state().node == PerNode::winding);
-  SafetyLimiter<PerNode>::Config glass = SafetyLimiter<PerNode>::Config::standard();
-  glass.node[PerNode::bracket] = {150.0f, 0.5f};  // metal, half way to the air
-  SafetyLimiter<PerNode> magnets(glass);
+  CHECK(limiter.state().node == NodeLimiter::winding);
+  NodeLimiter::Config glass = NodeLimiter::Config::standard();
+  glass.node[NodeLimiter::bracket] = {150.0f, 0.5f};  // metal, half way to the air
+  NodeLimiter magnets(glass);
   CHECK(magnets.step({255, 90.0f, 77.0f, 20.0f}).reason == LimitReason::node_limit);
-  CHECK(magnets.state().node == PerNode::magnets);
-  CHECK(magnets.state().node_C[PerNode::bracket] == Approx(48.5f));
+  CHECK(magnets.state().node == NodeLimiter::magnets);
+  CHECK(magnets.state().node_C[NodeLimiter::bracket] == Approx(48.5f));
 }
 
 TEST_CASE("authority falls continuously with temperature: no threshold, no jump, monotone") {
-  SafetyLimiter<PerNode> limiter;
+  NodeLimiter limiter;
   int last = 255;
   for (int i = 0; i <= 40000; ++i) {
     const float body_C = 30.0f + 0.001f * static_cast<float>(i);
@@ -75,7 +83,7 @@ TEST_CASE("authority falls continuously with temperature: no threshold, no jump,
 }
 
 TEST_CASE("per-node limits compose with an axis and hold every limit of its model") {
-  typedef AxisController<Motor, StepPowerLaw<>, SafetyLimiter<PerNode>, NoGain> Axis;
+  typedef AxisController<Motor, StepPowerLaw<>, NodeLimiter, NoGain> Axis;
   Axis axis;
   REQUIRE(axis.validate() == ConfigError::none);
   float hottest_body_C = 0.0f;
@@ -125,10 +133,9 @@ TEST_CASE("the holding law learns the lowest power that holds each pose") {
   int late = 0;
   for (int i = 0; i < 400000; ++i) {
     const double pose_deg = -78.75 + 22.5 * ((i / 2000) % 8);
-    law.at_pose(static_cast<float>(pose_deg));
     static int power = 10;
     const double error_deg = joint.error_deg(pose_deg, power);
-    power = law.step(static_cast<float>(error_deg), at_supply(13.0f), 0.01f);
+    power = law.step(static_cast<float>(error_deg), at_pose(static_cast<float>(pose_deg)), 0.01f);
     if (i > 300000) {
       ++late;
       error_sum += error_deg > 0.12 ? 1.0 : 0.0;
@@ -149,20 +156,43 @@ TEST_CASE("the holding law learns the lowest power that holds each pose") {
 
 TEST_CASE("the holding law: a bump is answered at once and hardly remembered; a limiter teaches nothing") {
   AdaptiveHoldingLaw<4> law;
-  law.at_pose(0.0f);
-  CHECK(law.step(1.0f, at_supply(13.0f), 0.01f) == 250);  // the full error gets full power in the same step
+  CHECK(law.step(1.0f, at_pose(0.0f), 0.01f) == 250);  // the full error gets full power in the same step
   const uint8_t bin = law.state().bin;
   CHECK(law.learned_power(bin) < 12.0f);
-  law.hold_memory(true);
   const float before = law.learned_power(bin);
-  for (int i = 0; i < 10000; ++i) law.step(1.0f, at_supply(13.0f), 0.01f);
+  for (int i = 0; i < 10000; ++i) law.step(0.5f, at_pose(0.0f, LimitReason::body_limit), 0.01f);
   CHECK(law.learned_power(bin) == before);
-  law.hold_memory(false);
-  CHECK(law.step(detail::not_a_number(), at_supply(13.0f), 0.01f) == 10);
-  law.at_pose(detail::not_a_number());
+  CHECK(law.state().is_held);
+  law.step(0.5f, at_pose(0.0f), 0.01f);
+  CHECK(law.learned_power(bin) > before);
+  CHECK(law.step(detail::not_a_number(), at_pose(0.0f), 0.01f) == 10);
+  law.step(0.0f, at_pose(detail::not_a_number()), 0.01f);
   CHECK(law.state().bin == bin);
-  law.at_pose(1.0e9f);
+  law.step(0.0f, at_pose(1.0e9f), 0.01f);
   CHECK(law.state().bin == 3);
+}
+
+TEST_CASE(
+    "an axis tells its law where it stands and what was granted last, however deep the law is wrapped") {
+  typedef AxisController<Motor, SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<4>>>, NodeLimiter, NoGain> Axis;
+  static_assert(Axis::takes_pose(), "");
+  static_assert(!AxisController<Motor, StepPowerLaw<>, NodeLimiter, NoGain>::takes_pose(), "");
+  Axis axis;
+  REQUIRE(axis.validate() == ConfigError::none);
+  const AdaptiveHoldingLaw<4>& law = axis.power_law().law().law();
+  axis.start(25.0f);
+  axis.step({0.0f, 13.0f, 25.0f, LimitReason::none}, 80.0f, 0.01f);
+  CHECK(law.state().bin == 3);
+  CHECK(law.state().is_held);  // nothing was granted before the first step
+  axis.step({0.0f, 13.0f, 25.0f, LimitReason::none}, -80.0f, 0.01f);
+  CHECK(law.state().bin == 0);
+  CHECK_FALSE(law.state().is_held);
+  axis.step({0.0f, 13.0f, 25.0f, LimitReason::none}, 0.01f);  // no pose: the range stays
+  CHECK(law.state().bin == 0);
+  axis.step({0.0f, 13.0f, 25.0f, LimitReason::link_silent}, 0.01f);
+  CHECK_FALSE(law.state().is_held);
+  axis.step({0.0f, 13.0f, 25.0f, LimitReason::none}, 0.01f);
+  CHECK(law.state().is_held);
 }
 
 TEST_CASE("learning does not depend on the loop rate") {
@@ -190,11 +220,11 @@ TEST_CASE("the torque stays what the law meant when the supply sags, within boun
   CHECK(law.step(10.0f, at_supply(9.0f), 0.01f) == 255);
   CHECK(law.step(0.35f, at_supply(detail::not_a_number()), 0.01f) == 75);
   CHECK(law.step(0.35f, at_supply(0.0f), 0.01f) == 75);
-  CHECK(law.step(0.35f) == 75);
+  CHECK(law.step(0.35f, AxisFacts::unknown(), 0.01f) == 75);
 }
 
 TEST_CASE("a sag-aware law never gets past the limiter") {
-  typedef AxisController<Motor, SagAwareLaw<>, SafetyLimiter<PerNode>, NoGain> Axis;
+  typedef AxisController<Motor, SagAwareLaw<>, NodeLimiter, NoGain> Axis;
   Axis axis;
   axis.start(59.0f);
   const Axis::State& state = axis.step({5.0f, 9.0f, 25.0f, LimitReason::none}, 0.01f);
@@ -204,11 +234,11 @@ TEST_CASE("a sag-aware law never gets past the limiter") {
 }
 
 TEST_CASE("gain times authority stays constant over power, supply and temperature") {
-  GainScheduler<VoltageGain>::Config config = GainScheduler<VoltageGain>::Config::standard();
+  VoltageGain::Config config = VoltageGain::Config::standard();
   CHECK(config.validate() == ConfigError::gain_low_power);
   config.gain_low_power = 60.0f;
   REQUIRE(config.validate() == ConfigError::none);
-  GainScheduler<VoltageGain> gain(config);
+  VoltageGain gain(config);
   const auto authority = [](double power, double supply_V, double winding_C, double body_C) {
     return supply_V * std::sqrt(power / 255.0) / (1.0 + 0.00393 * (winding_C - 25.0)) *
            (1.0 - 0.0011 * (body_C - 25.0));
@@ -218,15 +248,15 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
     for (const float supply_V : {9.0f, 13.0f, 16.0f})
       for (const float winding_C : {0.0f, 25.0f, 100.0f}) {
         const float body_C = 0.5f * (winding_C + 25.0f);
-        const AxisFacts facts = {0, winding_C, body_C, 0.0f, 25.0f, supply_V, 0.0f};
+        AxisFacts facts = at_supply(supply_V);
+        facts.motor_C = winding_C, facts.body_C = body_C;
         const int p = gain.step(static_cast<uint8_t>(power), facts);
         const double exact = tuned / authority(power, static_cast<double>(supply_V),
                                                static_cast<double>(winding_C), static_cast<double>(body_C));
         CHECK(std::abs(p - std::min(exact, 255.0)) <= 0.51);
       }
   CHECK(gain.step(100) == 60);
-  const float nan = detail::not_a_number();
-  CHECK(gain.step(100, {0, nan, nan, 0.0f, 25.0f, nan, nan}) == 60);
+  CHECK(gain.step(100, AxisFacts::unknown()) == 60);
 }
 
 TEST_CASE("a reserve rises with a disturbance, stays while they last, and an axis at rest pays for none") {
@@ -330,7 +360,7 @@ TEST_CASE("laws with a wrong field are refused by name") {
   CHECK(reserve.validate() == ConfigError::fall_per_s);
   reserve.law.power_step = 0;
   CHECK(reserve.validate() == ConfigError::power_step);
-  SafetyLimiter<PerNode>::Config nodes = SafetyLimiter<PerNode>::Config::standard();
+  NodeLimiter::Config nodes = NodeLimiter::Config::standard();
   nodes.node[1].fraction = 3.0f;
   CHECK(nodes.validate() == ConfigError::offset_fraction);
 }

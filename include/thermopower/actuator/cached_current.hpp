@@ -15,7 +15,11 @@ namespace thermopower {
 /// @tparam Law  as for CurrentModel, with float as its scalar
 template <class Law>
 class CachedCurrent {
- public:
+  static_assert(
+      detail::IsCurrentLaw<Law>::value,
+      "thermopower: the parameter of CurrentModel and CachedCurrent must be a current law: a type with Scalar, current_A(v_rms_V, motor_C) and validate(), such as OhmicCurrent");
+
+public:
   typedef Law Config;                               ///< The law's constants are the configuration.
   typedef float Scalar;                             ///< Firmware only.
   typedef typename CurrentModel<Law>::State State;  ///< Every intermediate of one evaluation.
@@ -57,7 +61,7 @@ class CachedCurrent {
 
   const Config& config() const noexcept { return model_.config(); }  ///< The law with its constants.
 
- private:
+private:
   // Most steps ask for the very temperature that was asked for last: that is seen by its bits.
   bool is_near(float motor_C) noexcept {
     if (detail::is_same(motor_C, asked_C_)) return is_near_;

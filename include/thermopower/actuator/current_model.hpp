@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "detail/composition.hpp"
 #include "../config_error.hpp"
 #include "duty.hpp"
 
@@ -24,15 +25,19 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Law>
 class CurrentModel {
- public:
-  typedef Law Config;                    ///< The law's constants are the configuration.
+  static_assert(
+      detail::IsCurrentLaw<Law>::value,
+      "thermopower: the parameter of CurrentModel and CachedCurrent must be a current law: a type with Scalar, current_A(v_rms_V, motor_C) and validate(), such as OhmicCurrent");
+
+public:
+  typedef Law Config;                   ///< The law's constants are the configuration.
   typedef typename Law::Scalar Scalar;  ///< What it computes in.
 
   /// Every intermediate of one evaluation.
   struct State {
-    Scalar v_rms_V;            ///< eq 3.11
-    Scalar current_A;          ///< by the law
-    Scalar winding_power_W;    ///< V_rms I, eq 4.13: what the thesis calls the motor's power
+    Scalar v_rms_V;          ///< eq 3.11
+    Scalar current_A;        ///< by the law
+    Scalar winding_power_W;  ///< V_rms I, eq 4.13: what the thesis calls the motor's power
   };
 
   /// @param config  constants; ask `validate()` once
@@ -57,7 +62,7 @@ class CurrentModel {
 
   const Config& config() const noexcept { return config_; }  ///< The law with its constants.
 
- private:
+private:
   Config config_;
 };
 

@@ -21,7 +21,7 @@ struct ForcedAirflow {
   Number airflow_gain;         ///< g: relative growth at 1 m/s, >= 0.
   Number exponent;             ///< n, 0.2 .. 1.
 
-  static constexpr bool is_linear() { return true; }  ///< The airspeed is constant over a step.
+  static constexpr bool is_linear() { return true; }    ///< The airspeed is constant over a step.
   static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
@@ -37,6 +37,11 @@ struct ForcedAirflow {
                      const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * conductance_at(around);
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.conductance_W_per_K, self.airflow_gain, self.exponent);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(
@@ -45,7 +50,7 @@ struct ForcedAirflow {
                     detail::require_within(exponent, Number(0.2), Number(1), ConfigError::exponent)));
   }
 
- private:
+private:
   Number conductance_at(const Surroundings<Number>& around) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;

@@ -42,6 +42,11 @@ struct HeatCapacityHeating {
     return Math::constant(typename Math::Real(0));
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.heat_capacity_J_per_K);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return detail::require_positive(heat_capacity_J_per_K, ConfigError::heat_capacity_J_per_K);
@@ -97,6 +102,12 @@ struct ThesisHeating {
     return where_heating(v_rms_V, capacity, -capacity_slope_J_per_K2(v_rms_V) / (capacity * capacity));
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.slope_V1_J_per_K2, self.slope_V0_J_per_K2, self.offset_V1_J_per_K, self.offset_V0_J_per_K,
+            self.minimum_V_rms);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(

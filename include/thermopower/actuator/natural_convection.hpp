@@ -21,7 +21,7 @@ struct NaturalConvection {
   Number exponent;             ///< n, 0 .. 1.
   Number reference_K;          ///< Temperature difference at which G holds, above 0.
 
-  static constexpr bool is_linear() { return false; }  ///< Grows faster than T - T_air.
+  static constexpr bool is_linear() { return false; }   ///< Grows faster than T - T_air.
   static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
@@ -38,6 +38,11 @@ struct NaturalConvection {
     typedef typename detail::Numeric<Number>::Real Real;
     return rise_K_per_J * conductance_at(motor_C, around) * (Real(1) + exponent);
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.conductance_W_per_K, self.exponent, self.reference_K);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(
@@ -46,7 +51,7 @@ struct NaturalConvection {
                     detail::require_positive(reference_K, ConfigError::reference_K)));
   }
 
- private:
+private:
   Number conductance_at(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
     typedef detail::Numeric<Number> Math;
     typedef typename Math::Real Real;

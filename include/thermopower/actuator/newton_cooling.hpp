@@ -24,7 +24,7 @@ struct RateCooling {
     return RateCooling{cooling_per_min * (Real(1) / Real(60))};
   }
 
-  static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  static constexpr bool is_linear() { return true; }     ///< Proportional to T - T_air.
   static constexpr bool is_in_watts() { return false; }  ///< A rate by itself: goes with every heating law.
   /// Cooling rate, K/s.
   Number rate_K_per_s(const Number& motor_C, const Surroundings<Number>& around,
@@ -34,6 +34,11 @@ struct RateCooling {
   /// d rate / dT, 1/s.
   Number slope_per_s(const Number&, const Surroundings<Number>&, const Number&) const noexcept {
     return cooling_per_s;
+  }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.cooling_per_s);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -49,7 +54,7 @@ struct NewtonCooling {
 
   Number conductance_W_per_K;  ///< G, above 0.
 
-  static constexpr bool is_linear() { return true; }  ///< Proportional to T - T_air.
+  static constexpr bool is_linear() { return true; }    ///< Proportional to T - T_air.
   static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
@@ -63,6 +68,11 @@ struct NewtonCooling {
   /// d rate / dT, 1/s.
   Number slope_per_s(const Number&, const Surroundings<Number>&, const Number& rise_K_per_J) const noexcept {
     return rise_K_per_J * conductance_W_per_K;
+  }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.conductance_W_per_K);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {

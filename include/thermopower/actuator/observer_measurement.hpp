@@ -20,7 +20,7 @@ struct MeasuredTemperature {
 
 /// Winding temperature from V_rms and current. A lost or broken reading is not valid; it never reads as cold.
 class WindingResistance {
- public:
+public:
   /// What one tunes.
   struct Config {
     float resistance_ohm;  ///< At `reference_C`, between the terminals that see V_rms. Above 0.
@@ -38,6 +38,12 @@ class WindingResistance {
     static Config standard() noexcept {
       const Config config = {detail::not_a_number(), 0.00393f, 20.0f, 3.0f, 0.005f, 0.001f, 0.01f};
       return config;
+    }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.resistance_ohm, self.tempco_per_K, self.reference_C, self.minimum_V_rms,
+              self.current_std_A, self.current_step_A, self.voltage_std_fraction);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -91,7 +97,7 @@ class WindingResistance {
 
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
   float per_ohm_, per_tempco_, current_variance_, voltage_variance_;
 };

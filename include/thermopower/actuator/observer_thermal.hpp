@@ -14,7 +14,7 @@ namespace thermopower {
 /// and it starts worst case instead of as warm as the air. Measurements go in through
 /// `axis.thermal().observer()`.
 class ObservedThermal {
- public:
+public:
   typedef float Scalar;  ///< As the other thermal models have it.
 
   /// What one tunes.
@@ -24,6 +24,11 @@ class ObservedThermal {
     uint8_t every;    ///< Step the observer in every n-th step only, with the mean heat. At least 1.
     uint8_t phase;    ///< In which of them, below `every`: give each axis its own, and they take turns.
 
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.observer, self.maximum_C, self.every, self.phase);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (every < 1 || phase >= every) return ConfigError::every;
@@ -55,10 +60,8 @@ class ObservedThermal {
 
   /// Sets both nodes to a temperature that is known to 2 K. NaN: at the limit, and not sure.
   void start(float motor_C) noexcept {
-    if (detail::is_finite(motor_C))
-      observer_.start(motor_C, motor_C, 2.0f, 2.0f, 0.5f);
-    else
-      observer_.start_unknown(maximum_C_, 0.0f);
+    if (detail::is_finite(motor_C)) observer_.start(motor_C, motor_C, 2.0f, 2.0f, 0.5f);
+    else observer_.start_unknown(maximum_C_, 0.0f);
     store(0.0f);
   }
   /// What an axis calls when nobody told it a temperature: worst case. @param air_C  the coolest it can be
@@ -102,12 +105,12 @@ class ObservedThermal {
   TemperatureObserver& observer() noexcept { return observer_; }  ///< To take in measurements.
   const TemperatureObserver& observer() const noexcept {
     return observer_;
-  }                                                       ///< Estimates and their uncertainty.
-  const State& state() const noexcept { return state_; }  ///< After the last step.
+  }                                                        ///< Estimates and their uncertainty.
+  const State& state() const noexcept { return state_; }   ///< After the last step.
   float hottest_C() const noexcept { return hottest_C_; }  ///< The node that decides.
   float hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
 
- private:
+private:
   void store(float rate_K_per_s) noexcept {
     state_.winding_C = observer_.state().winding_C;
     state_.body_C = observer_.state().body_C;

@@ -43,6 +43,11 @@ struct OhmicCurrent {
     return Real(1) / resistance_at(winding_C);
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.resistance_ohm, self.tempco_per_K, self.reference_C);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(

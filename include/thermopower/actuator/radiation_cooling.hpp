@@ -20,7 +20,7 @@ struct RadiationCooling {
   Number radiating_area_m2;  ///< A, above 0.
   Number emissivity;         ///< eps, 0 .. 1.
 
-  static constexpr bool is_linear() { return false; }  ///< Grows with the fourth power.
+  static constexpr bool is_linear() { return false; }   ///< Grows with the fourth power.
   static constexpr bool is_in_watts() { return true; }  ///< Needs a heat capacity to become a rate.
   /// Loss, W.
   Number loss_W(const Number& motor_C, const Surroundings<Number>& around) const noexcept {
@@ -38,13 +38,18 @@ struct RadiationCooling {
     typedef typename detail::Numeric<Number>::Real Real;
     return rise_K_per_J * strength() * Real(4) * squared_kelvin(motor_C) * (motor_C + Real(273.15));
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.radiating_area_m2, self.emissivity);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(detail::require_positive(radiating_area_m2, ConfigError::radiating_area_m2),
                        detail::require_within(emissivity, Number(0), Number(1), ConfigError::emissivity));
   }
 
- private:
+private:
   static Number squared_kelvin(const Number& celsius) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
     const Number kelvin = celsius + Real(273.15);

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../detail/crc16.hpp"
+
 /// @file record_ring.hpp
 /// Records through a loss of power: a ring of slots in a memory that keeps them, and one record in a memory
 /// that only a reset leaves as it was.
@@ -12,17 +14,6 @@
 namespace thermopower {
 
 namespace detail {
-
-inline uint16_t record_crc(const uint8_t* bytes, uint8_t count) noexcept {
-  uint16_t sum = 0xffffu;
-  for (uint8_t i = 0; i < count; ++i) {
-    sum = static_cast<uint16_t>(sum ^ static_cast<uint16_t>(static_cast<uint16_t>(bytes[i]) << 8));
-    for (uint8_t step = 0; step < 8; ++step)
-      sum = static_cast<uint16_t>((sum & 0x8000u) != 0 ? static_cast<uint16_t>(sum << 1) ^ 0x1021u
-                                                       : static_cast<uint16_t>(sum << 1));
-  }
-  return sum;
-}
 
 template <class Memory>
 auto is_memory_ready(Memory& memory, int) noexcept -> decltype(memory.is_ready()) {

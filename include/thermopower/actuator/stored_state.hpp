@@ -81,9 +81,7 @@ struct StoredState {
   }
 
   /// CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xffff; of "123456789" it is 0x29b1.
-  static uint16_t crc(const uint8_t* bytes, uint8_t count) noexcept {
-    return detail::record_crc(bytes, count);
-  }
+  static uint16_t crc(const uint8_t* bytes, uint8_t count) noexcept { return detail::crc16(bytes, count); }
 
 private:
   static bool is_near(float left, float right, float change_K) noexcept {
@@ -151,6 +149,12 @@ public:
     /// @return years of operation
     float years() const noexcept {
       return static_cast<float>(endurance) * static_cast<float>(slots) * interval_s / 31557600.0f;
+    }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.start, self.slots, self.interval_s, self.change_K, self.endurance, self.longest_s,
+              self.step_s);
     }
     /// First constant out of its range, or ConfigError::none. A ring that would not last a year is refused as
     /// `interval_s`.

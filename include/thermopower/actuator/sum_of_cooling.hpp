@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "detail/composition.hpp"
 #include "surroundings.hpp"
 
 /// @file sum_of_cooling.hpp
@@ -14,6 +15,9 @@ namespace thermopower {
 /// @ingroup actuator
 template <class First, class Second>
 struct SumOfCooling {
+  static_assert(detail::IsCoolingLaw<First>::value && detail::IsCoolingLaw<Second>::value,
+                "thermopower: both parameters of SumOfCooling must be cooling laws, such as NewtonCooling");
+
   typedef typename First::Scalar Scalar;  ///< What it computes in.
 
   First first;    ///< One path.
@@ -37,6 +41,11 @@ struct SumOfCooling {
                      const Scalar& rise_K_per_J) const noexcept {
     return first.slope_per_s(motor_C, around, rise_K_per_J) +
            second.slope_per_s(motor_C, around, rise_K_per_J);
+  }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.first, self.second);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return first_error(first.validate(), second.validate()); }

@@ -5,6 +5,7 @@
 #include "../detail/check.hpp"
 #include "../detail/constexpr_math.hpp"
 #include "../detail/flash.hpp"
+#include "detail/composition.hpp"
 
 /// @file tabulated_current.hpp
 /// A current law as a table in flash: no `pow` at run time, no RAM, and the table is computed by the
@@ -74,6 +75,10 @@ constexpr float CurrentNodes<Source, node_count, Indices<node...> >::slopes[node
 /// @ingroup actuator
 template <class Source, int node_count = 65>
 struct TabulatedCurrent {
+  static_assert(
+      detail::IsCurrentSource<Source>::value,
+      "thermopower: the first parameter of TabulatedCurrent must be a source: a type with constexpr intercept_A(v), slope_A_per_K(v), minimum_V_rms() and maximum_V_rms(), such as ThesisCurrentSource<Motor>");
+
   static_assert(node_count >= 2 && node_count <= 255, "thermopower: a current table has 2 to 255 nodes");
   typedef float Scalar;  ///< What it computes in.
 
@@ -92,10 +97,13 @@ struct TabulatedCurrent {
     return detail::at_least(slope * motor_C + intercept, 0.0f);
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self&, Archive&) {}
   /// The table is checked where it is made; there is nothing to set.
   ConfigError validate() const noexcept { return ConfigError::none; }
 
- private:
+private:
   static float between(const float* node, float share) noexcept {
     const float below = detail::read_flash(node), above = detail::read_flash(node + 1);
     return below + share * (above - below);

@@ -25,6 +25,11 @@ struct TemperatureObserverConfig {
     const TemperatureObserverConfig config = {thermal, 0.2f, 2.0f, 4.0f, 1.0f};
     return config;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.thermal, self.heat_error, self.air_error_K, self.gate_sigma, self.variance_s);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(thermal.validate())) return thermal.validate();

@@ -4,6 +4,7 @@
 
 #include "../detail/numeric.hpp"
 #include "cooling.hpp"
+#include "detail/composition.hpp"
 #include "heating.hpp"
 #include "thermal_step.hpp"
 
@@ -23,6 +24,18 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {
+  static_assert(
+      detail::IsHeatingLaw<Heating>::value,
+      "thermopower: the first parameter of ThermalModel must be a heating law, such as HeatCapacityHeating");
+
+  static_assert(
+      detail::IsCoolingLaw<Cooling>::value,
+      "thermopower: the second parameter of ThermalModel must be a cooling law, such as NewtonCooling");
+
+  static_assert(
+      detail::IsThermalStep<Step>::value,
+      "thermopower: the third parameter of ThermalModel must be EulerStep, ExactStep or LinearizedStep");
+
 public:
   typedef typename Heating::Scalar Scalar;  ///< What it computes in.
   static_assert(!Step::needs_linear_laws() || (Heating::is_linear() && Cooling::is_linear()),
@@ -37,6 +50,11 @@ public:
     Heating heating;  ///< How a watt warms it.
     Cooling cooling;  ///< How it loses heat.
 
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.heating, self.cooling);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept { return first_error(heating.validate(), cooling.validate()); }
   };

@@ -36,8 +36,9 @@ struct ThesisCurrent {
                                                   Number base, Number exponent,
                                                   Number minimum_V_rms) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    return ThesisCurrent{slope_V2 * Real(0.001), slope_V1 * Real(0.001), slope_V0 * Real(0.001),
-                         base * Real(0.001),     exponent,               minimum_V_rms};
+    return ThesisCurrent{
+        slope_V2 * Real(0.001), slope_V1 * Real(0.001), slope_V0 * Real(0.001), base * Real(0.001), exponent,
+        minimum_V_rms};
   }
 
   /// m(V): how much the current changes with temperature. @return A/K
@@ -63,6 +64,12 @@ struct ThesisCurrent {
     return Math::choose_if_greater(v_rms_V, minimum_V_rms, detail::at_least(linear, zero), zero);
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.slope_V2_A_per_K, self.slope_V1_A_per_K, self.slope_V0_A_per_K, self.base_A, self.exponent,
+            self.minimum_V_rms);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(

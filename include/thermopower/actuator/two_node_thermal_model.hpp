@@ -32,6 +32,12 @@ public:
     Number coupling_W_per_K;               ///< K, above 0.
     NewtonCooling<Number> cooling;         ///< G, from the body to the air.
 
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.winding_heat_capacity_J_per_K, self.body_heat_capacity_J_per_K, self.coupling_W_per_K,
+              self.cooling);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       return first_error(

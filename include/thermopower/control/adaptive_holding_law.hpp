@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "step_power_law.hpp"
 #include "detail/policy_call.hpp"
+#include "step_power_law.hpp"
 
 /// @file adaptive_holding_law.hpp
 /// Learns how much power each pose needs to be held, instead of waiting for an error to ask for it.
@@ -34,6 +34,12 @@ struct AdaptiveHoldingConfig {
     const AdaptiveHoldingConfig config = {0.1f, 1.0f, 40.0f, 1.0f, 10, 250, -90.0f, 90.0f};
     return config;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.tolerance_deg, self.full_power_error_deg, self.learning_per_s, self.forgetting_per_s,
+            self.least_power, self.highest_power, self.first_pose_deg, self.last_pose_deg);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(detail::require_positive(tolerance_deg, ConfigError::tolerance_deg)))
@@ -58,8 +64,8 @@ struct AdaptiveHoldingConfig {
 /// @tparam bins  ranges of poses, 1 .. 64; each costs two bytes
 ///
 /// The power is the memory of this pose plus what the error beyond its tolerance is worth. It never exceeds
-/// `highest_power`, and at a limiter's mercy it stops learning (`hold_memory`): what was not granted is no
-/// evidence that it was not enough.
+/// `highest_power`, and at a limiter's mercy it learns nothing: what was not granted is no evidence that
+/// it was not enough. The pose and what was granted come with the axis's facts.
 template <uint8_t bins = 8>
 class AdaptiveHoldingLaw {
   static_assert(bins >= 1 && bins <= 64, "thermopower: AdaptiveHoldingLaw takes 1 .. 64 ranges of poses");
@@ -72,7 +78,7 @@ public:
     uint16_t learned[bins];  ///< Power that held each range, in 1/128 count.
     float rest;              ///< Part of a 1/128 count that has not been learned yet.
     uint8_t bin;             ///< The range of the present pose.
-    bool is_held;            ///< Nothing is being learned.
+    bool is_held;            ///< Nothing was learned in the last step: less was granted than was asked for.
   };
 
   /// Every range starts from the least power: what holds it has to be learned.
@@ -90,21 +96,13 @@ public:
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
 
-  /// Where the axis stands. Outside the configured poses the nearest range counts; NaN changes nothing.
-  void at_pose(float pose_deg) noexcept {
-    const float place = (pose_deg - config_.first_pose_deg) * per_bin_;
-    if (!detail::is_finite(place)) return;
-    const uint8_t bin = place >= static_cast<float>(bins) ? static_cast<uint8_t>(bins - 1)
-                                                          : static_cast<uint8_t>(place > 0.0f ? place : 0.0f);
-    if (bin != state_.bin) state_.rest = 0.0f;
-    state_.bin = bin;
-  }
-  /// Stops or resumes learning. @param is_held  true while the limiter grants less than was asked for
-  void hold_memory(bool is_held) noexcept { state_.is_held = is_held; }
-
   /// @param error_deg  folded position error; NaN and Inf ask for the least power and teach nothing
+  /// @param facts      read are the pose (beyond the configured ones the nearest range counts; NaN changes nothing)
+  ///                   and why less was granted last time
   /// @param dt_s       time since the last step; a bad one teaches nothing
-  uint8_t step(float error_deg, const AxisFacts&, float dt_s) noexcept {
+  uint8_t step(float error_deg, const AxisFacts& facts, float dt_s) noexcept {
+    at_pose(facts.pose_deg);
+    state_.is_held = facts.last_reason != LimitReason::none;
     if (!detail::is_finite(error_deg)) return config_.least_power;
     const float beyond_deg = detail::magnitude(error_deg) - config_.tolerance_deg;
     // An axis that was thrown this far teaches nothing about what its pose needs.
@@ -114,11 +112,6 @@ public:
     const float power = held + (beyond_deg > 0.0f ? beyond_deg * boost_ : 0.0f) + 0.5f;
     const float highest = static_cast<float>(config_.highest_power);
     return power >= highest ? config_.highest_power : static_cast<uint8_t>(power);
-  }
-  /// The same without a time: asks, and learns nothing.
-  uint8_t step(float error_deg) noexcept {
-    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-    return step(error_deg, none, 0.0f);
   }
 
   /// Power that holds a range of poses, as learned. @param bin  0 .. bins - 1
@@ -130,6 +123,15 @@ public:
 
 private:
   static uint16_t units(float power) noexcept { return static_cast<uint16_t>(power * 128.0f); }
+
+  void at_pose(float pose_deg) noexcept {
+    const float place = (pose_deg - config_.first_pose_deg) * per_bin_;
+    if (!detail::is_finite(place)) return;
+    const uint8_t bin = place >= static_cast<float>(bins) ? static_cast<uint8_t>(bins - 1)
+                                                          : static_cast<uint8_t>(place > 0.0f ? place : 0.0f);
+    if (bin != state_.bin) state_.rest = 0.0f;
+    state_.bin = bin;
+  }
 
   void learn(float beyond_deg, float dt_s) noexcept {
     // Up in proportion, but no faster than at four times the tolerance: one bump must not teach a pose to

@@ -38,6 +38,11 @@ public:
       Config config = {-40.0f, 85.0f, 15.0f};
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.minimum_plausible_C, self.maximum_plausible_C, self.maximum_difference_K);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (!detail::is_finite(minimum_plausible_C)) return ConfigError::minimum_plausible_C;

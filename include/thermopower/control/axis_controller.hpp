@@ -37,14 +37,13 @@ class AxisController {
                 "Current and Thermal");
   static_assert(detail::IsPowerLaw<PowerLaw>::value,
                 "thermopower: the second parameter of AxisController must be a power law: a type with Config "
-                "and step(error_deg)");
+                "and step(error_deg) or step(error_deg, facts, dt_s)");
   static_assert(detail::IsLimiter<Limiter>::value,
-                "thermopower: the third parameter of AxisController must be a limiter: a type with Inputs, "
+                "thermopower: the third parameter of AxisController must be a limiter: a type with Config, "
                 "step, cut and ceiling");
   static_assert(detail::IsGain<Gain>::value,
                 "thermopower: the fourth parameter of AxisController must be a gain: a type with Config and "
-                "step(power) const, such "
-                "as GainScheduler or NoGain");
+                "step(power), such as GainScheduler or NoGain");
 
 public:
   typedef typename Motor::Current Current;  ///< Current model.
@@ -70,12 +69,18 @@ public:
       config.gain = gain;
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.current, self.thermal, self.power_law, self.limiter, self.gain);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      return first_error(
-          current.validate(),
-          first_error(thermal.validate(),
-                      first_error(power_law.validate(), first_error(limiter.validate(), gain.validate()))));
+      ConfigError error = current.validate();
+      if (!is_error(error)) error = thermal.validate();
+      if (!is_error(error)) error = power_law.validate();
+      if (!is_error(error)) error = limiter.validate();
+      return is_error(error) ? error : gain.validate();
     }
   };
 
@@ -120,7 +125,7 @@ public:
                          least_power(),
                          limiter_.ceiling(),
                          least_power(),
-                         gain_.step(least_power()),
+                         detail::first_gain(gain_, 0),
                          LimitReason::no_telemetry_yet};
     state_ = state;
   }
@@ -139,6 +144,25 @@ public:
 
   /// One control cycle. @param dt_s  time since the last one, >= 0
   const State& step(const Inputs& inputs, float dt_s) noexcept {
+    return decide(inputs, detail::not_a_number(), dt_s);
+  }
+  /// The same for a law that asks where the axis stands, such as AdaptiveHoldingLaw.
+  /// @param pose_deg  in degrees of the law's choice; NaN when it is not known
+  const State& step(const Inputs& inputs, float pose_deg, float dt_s) noexcept {
+    return decide(inputs, pose_deg, dt_s);
+  }
+  /// Whether the power law asks where the axis stands.
+  static constexpr bool takes_pose() { return detail::TakesFacts<PowerLaw>::value; }
+
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+  Limiter& limiter() noexcept { return limiter_; }  ///< To tell a limiter what was measured; its own state.
+  const Limiter& limiter() const noexcept { return limiter_; }       ///< Its own state.
+  const PowerLaw& power_law() const noexcept { return power_law_; }  ///< Its own state.
+  Thermal& thermal() noexcept { return thermal_; }              ///< To tell an observer what was measured.
+  const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
+
+private:
+  [[gnu::always_inline]] const State& decide(const Inputs& inputs, float pose_deg, float dt_s) noexcept {
     // What has not changed since the last step is known to be good: comparing bits is cheap on a small chip,
     // comparing floats is not.
     const bool is_air_new = !detail::is_same(inputs.air_C, last_air_C_);
@@ -156,18 +180,14 @@ public:
       fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
 
-    AxisFacts facts = {0,
-                       state_.motor_C,
-                       detail::body_of(thermal_, 0),
-                       state_.rate_K_per_s,
-                       last_air_C_,
-                       last_supply_V_,
-                       state_.error_deg};
+    AxisFacts facts = {least_power(),       state_.motor_C, detail::body_of(thermal_, 0),
+                       state_.rate_K_per_s, last_air_C_,    last_supply_V_,
+                       state_.error_deg,    pose_deg,       state_.reason};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
     const LimitedPower granted = is_fault(fault)
                                      ? detail::cut_limiter(limiter_, fault, state_.demand, dt_s, 0)
-                                     : limiter_.step(detail::limiter_inputs<Limiter>(facts, 0), dt_s);
+                                     : detail::limited_power(limiter_, facts, dt_s, 0);
     state_.ceiling = limiter_.ceiling();
     state_.power = granted.power;
     state_.reason = granted.reason;
@@ -175,13 +195,6 @@ public:
     return state_;
   }
 
-  const State& state() const noexcept { return state_; }  ///< After the last step.
-  Limiter& limiter() noexcept { return limiter_; }  ///< To tell a limiter what was measured; its own state.
-  PowerLaw& power_law() noexcept { return power_law_; }  ///< To tell a law what was measured; its own state.
-  Thermal& thermal() noexcept { return thermal_; }       ///< To tell an observer what was measured.
-  const Thermal& thermal() const noexcept { return thermal_; }  ///< Every temperature of the model.
-
-private:
   LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad,
                          bool is_time_good) const noexcept {
     if (!is_time_good) return LimitReason::time_invalid;

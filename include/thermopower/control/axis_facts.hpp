@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../detail/numeric.hpp"
 #include "limit_reason.hpp"
 
 /// @file axis_facts.hpp
@@ -9,15 +10,28 @@
 
 namespace thermopower {
 
-/// What an axis knows when it asks its policies.
+/// What an axis knows when it asks its policies. A power law may take `step(error_deg, facts, dt_s)` instead of
+/// `step(error_deg)`, a gain `step(power, facts)` instead of `step(power)`, and a limiter `step(facts, dt_s)`
+/// instead of `step(inputs, dt_s)`. NaN stands for what is not known.
+/// @ingroup control
 struct AxisFacts {
-  uint8_t demand;      ///< Power parameter asked for.
-  float motor_C;       ///< Estimated temperature of the hottest node.
-  float body_C;        ///< Estimated temperature of the coolest node that the thermal model has.
-  float rate_K_per_s;  ///< dT/dt of the hottest node.
-  float air_C;         ///< Air temperature; NaN when it is not known.
-  float supply_V;      ///< Supply; NaN when it is not known.
-  float error_deg;     ///< Folded position error; NaN when it is not known.
+  uint8_t demand;           ///< Power parameter asked for; the least power while the law is being asked.
+  float motor_C;            ///< Estimated temperature of the hottest node.
+  float body_C;             ///< Estimated temperature of the coolest node that the thermal model has.
+  float rate_K_per_s;       ///< dT/dt of the hottest node.
+  float air_C;              ///< Air temperature.
+  float supply_V;           ///< Supply.
+  float error_deg;          ///< Folded position error.
+  float pose_deg;           ///< Where the axis stands, in degrees of the caller's choice.
+  LimitReason last_reason;  ///< Why the last power was below what the law asked for.
+
+  /// An axis of which nothing is known: the least power, NaN, no reason. Set what you know.
+  static AxisFacts unknown() noexcept {
+    const float unknown = detail::not_a_number();
+    const AxisFacts facts = {least_power(), unknown, unknown, unknown,          unknown,
+                             unknown,       unknown, unknown, LimitReason::none};
+    return facts;
+  }
 };
 
 }  // namespace thermopower

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
 #include "gain_scheduler.hpp"
 
@@ -11,7 +12,7 @@
 namespace thermopower {
 
 /// Any gain, eased for errors that no tracking makes.
-/// @tparam Gain  the gain for small errors: `GainScheduler<...>`
+/// @tparam Gain  the gain for small errors: `GainScheduler<...>` or `VoltageGain`
 ///
 /// A stiff gain times a large error asks for the whole torque until the camera flies through its target:
 /// damping then has nothing left to act with. Beyond `ease_from_deg` the gain falls in proportion, so that
@@ -20,6 +21,11 @@ namespace thermopower {
 /// @ingroup control
 template <class Gain = GainScheduler<> >
 class EasedGain {
+  static_assert(
+      detail::IsGain<Gain>::value,
+      "thermopower: the parameter of EasedGain must be a gain: a type with Config and step(power), such as "
+      "GainScheduler");
+
 public:
   /// What one tunes.
   struct Config {
@@ -31,6 +37,11 @@ public:
     static Config standard() noexcept {
       const Config config = {Gain::Config::standard(), 1.5f, 3};
       return config;
+    }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.gain, self.ease_from_deg, self.far_gain);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -46,9 +57,8 @@ public:
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
 
-  /// For an axis on its target. @param power  granted power parameter  @return P, 0 .. 255
-  uint8_t step(uint8_t power) const noexcept { return gain_.step(power); }
-  /// @param power  granted power parameter  @param facts  the error is read; what else the gain itself reads
+  /// @param power  granted power parameter
+  /// @param facts  the error is read (NaN: as if on target), and what the gain itself reads  @return P, 0 .. 255
   uint8_t step(uint8_t power, const AxisFacts& facts) noexcept {
     const uint8_t near = detail::gain_for(gain_, power, facts, 0);
     const float error_deg = detail::magnitude(facts.error_deg);

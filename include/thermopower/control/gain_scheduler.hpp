@@ -4,6 +4,7 @@
 
 #include "../detail/check.hpp"
 #include "../detail/flash.hpp"
+#include "detail/composition.hpp"
 
 /// @file control/gain_scheduler.hpp
 /// The proportional gain that keeps an axis's response the same when its power changes, eq 4.27.
@@ -13,7 +14,9 @@
 /// | `RoundedGain` | eq 4.27 to the nearest count | the default |
 /// | `TruncatedGain` | eq 4.27 as programmed, cut to a whole count | the original program |
 /// | `TableGain<Table>` | from a table in flash | the gain is not linear, or has been tuned per level |
-/// | `NoGain` | none: the actuator has no gain to schedule | anything but a gimbal board |
+///
+/// `NoGain` takes the scheduler's place for an actuator that has no gain, `VoltageGain` where the supply sags or the
+/// motor gets warm.
 ///
 /// A rule of your own has `Config` with `validate()`, and `static uint8_t gain(power, config)`.
 
@@ -30,6 +33,11 @@ struct GainConfig {
   static GainConfig standard() noexcept {
     GainConfig config = {detail::not_a_number(), detail::not_a_number()};
     return config;
+  }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.gain_low_power, self.gain_high_power);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -78,6 +86,9 @@ struct TableGain {
   /// The table is the configuration.
   struct Config {
     static Config standard() noexcept { return Config(); }  ///< Nothing to set.
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self&, Archive&) {}
     /// Sizes are checked at compile time.
     ConfigError validate() const noexcept { return ConfigError::none; }
   };
@@ -108,23 +119,16 @@ private:
   }
 };
 
-/// No gain to schedule: always 0, which the caller ignores.
-/// @ingroup control
-struct NoGainRule {
-  /// Nothing to tune.
-  struct Config {
-    static Config standard() noexcept { return Config(); }               ///< Nothing to set.
-    ConfigError validate() const noexcept { return ConfigError::none; }  ///< Nothing can be wrong.
-  };
-  /// @return P, 0 .. 255
-  static uint8_t gain(uint8_t, const Config&) noexcept { return 0; }
-};
-
 /// The proportional gain for a power.
 /// @tparam Rule  one of the rules above
 /// @ingroup control
 template <class Rule = RoundedGain>
 class GainScheduler {
+  static_assert(
+      detail::IsGainRule<Rule>::value,
+      "thermopower: the parameter of GainScheduler must be a rule: a type with Config and static gain(power, "
+      "config), such as RoundedGain; NoGain and VoltageGain are gains, not rules: take them in its place");
+
 public:
   typedef typename Rule::Config Config;  ///< What one tunes.
 
@@ -142,8 +146,22 @@ private:
   Config config_;
 };
 
-/// For actuators without a gain.
+/// For actuators without a gain: always 0, which the caller ignores. It stands in the place of a `GainScheduler`.
 /// @ingroup control
-typedef GainScheduler<NoGainRule> NoGain;
+class NoGain {
+public:
+  /// Nothing to tune.
+  struct Config {
+    static Config standard() noexcept { return Config(); }  ///< Nothing to set.
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self&, Archive&) {}
+    ConfigError validate() const noexcept { return ConfigError::none; }  ///< Nothing can be wrong.
+  };
+  /// @param config  nothing
+  explicit NoGain(const Config& config = Config::standard()) noexcept { static_cast<void>(config); }
+  ConfigError validate() const noexcept { return ConfigError::none; }  ///< Nothing can be wrong.
+  uint8_t step(uint8_t) const noexcept { return 0; }                   ///< @return 0
+};
 
 }  // namespace thermopower

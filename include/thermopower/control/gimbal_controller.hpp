@@ -54,6 +54,11 @@ struct GimbalConfig {
     GimbalConfig config = {13.0f, 3.0f, 0.5f, AirTemperature::Config::standard()};
     return config;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.supply_V, self.minimum_supply_V, self.timeout_s, self.air);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(detail::require_positive(supply_V, ConfigError::supply_V))) return ConfigError::supply_V;
@@ -75,6 +80,56 @@ struct GimbalInputs {
 };
 
 namespace detail {
+
+/// Where an axis stands, from a telemetry that says so; NaN from one that does not.
+template <class Telemetry>
+auto pose_of(const Telemetry& telemetry, uint8_t axis, int) noexcept
+    -> decltype(telemetry.imu_angle_deg(axis)) {
+  return telemetry.imu_angle_deg(axis);
+}
+template <class Telemetry>
+float pose_of(const Telemetry&, uint8_t, long) noexcept {
+  return not_a_number();
+}
+
+/// Whether any axis has a law that asks for its pose.
+template <class... Axes>
+struct AnyTakesPose {
+  static constexpr bool value = false;
+};
+template <class First, class... Rest>
+struct AnyTakesPose<First, Rest...> {
+  static constexpr bool value = First::takes_pose() || AnyTakesPose<Rest...>::value;
+};
+
+/// The poses of a gimbal's axes; nothing at all where no law asks for them.
+template <uint8_t axis_count, bool is_asked>
+struct GimbalPoses {
+  template <class Telemetry>
+  void read_poses(const Telemetry&) noexcept {}
+  void clear_poses() noexcept {}
+  template <class Axis>
+  const typename Axis::State& step_axis(Axis& axis, const typename Axis::Inputs& inputs, uint8_t,
+                                        float dt_s) noexcept {
+    return axis.step(inputs, dt_s);
+  }
+};
+template <uint8_t axis_count>
+struct GimbalPoses<axis_count, true> {
+  float pose_deg[axis_count];
+  template <class Telemetry>
+  void read_poses(const Telemetry& telemetry) noexcept {
+    for (uint8_t index = 0; index < axis_count; ++index) pose_deg[index] = pose_of(telemetry, index, 0);
+  }
+  void clear_poses() noexcept {
+    for (uint8_t index = 0; index < axis_count; ++index) pose_deg[index] = not_a_number();
+  }
+  template <class Axis>
+  const typename Axis::State& step_axis(Axis& axis, const typename Axis::Inputs& inputs, uint8_t index,
+                                        float dt_s) noexcept {
+    return axis.step(inputs, pose_deg[index], dt_s);
+  }
+};
 
 /// The axes one after the other; a tuple that C++11 without a standard library can have.
 template <uint8_t index, class... Axes>
@@ -116,7 +171,11 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 /// @tparam Axes    one AxisController per axis
 /// @ingroup control
 template <class Supply, class... Axes>
-class BasicGimbalController {
+class BasicGimbalController : detail::GimbalPoses<sizeof...(Axes), detail::AnyTakesPose<Axes...>::value> {
+  static_assert(
+      detail::IsSupply<Supply>::value,
+      "thermopower: the first parameter of BasicGimbalController must be NominalSupply or MeasuredSupply, or a type with static supply_V(nominal_V, measured_V)");
+
 public:
   /// Number of axes.
   static constexpr uint8_t axis_count() { return static_cast<uint8_t>(sizeof...(Axes)); }
@@ -149,7 +208,7 @@ public:
 
   /// One control cycle from a telemetry message.
   /// @param telemetry  offers `error_deg(axis)`, `imu_C()`, `frame_imu_C()` and `battery_V()`, as
-  /// `sbgc::RealtimeData` does
+  /// `sbgc::RealtimeData` does; a law that asks where its axis stands is told `imu_angle_deg(axis)` where there is one
   /// @param dt_s       time since the last step, >= 0
   template <class Telemetry>
   const Command& step(const Telemetry& telemetry, float dt_s) noexcept {
@@ -159,19 +218,14 @@ public:
     inputs.camera_C = static_cast<float>(telemetry.imu_C());
     inputs.frame_C = static_cast<float>(telemetry.frame_imu_C());
     inputs.supply_V = telemetry.battery_V();
-    return step(inputs, dt_s);
+    this->read_poses(telemetry);
+    return decide(inputs, dt_s);
   }
 
-  /// One control cycle. @param dt_s  time since the last step, >= 0
+  /// One control cycle; no law is told where its axis stands. @param dt_s  time since the last step, >= 0
   const Command& step(const Inputs& inputs, float dt_s) noexcept {
-    air_.step(inputs.camera_C, inputs.frame_C);
-    state_.silent_s = 0.0f;
-    last_ = inputs;
-    has_telemetry_ = true;
-    telemetry_fault_ = LimitReason::none;
-    if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
-    else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
-    return step_axes(telemetry_fault_, dt_s);
+    this->clear_poses();
+    return decide(inputs, dt_s);
   }
 
   /// One cycle in which no telemetry came. The temperatures go on; what the last telemetry asked for, or its
@@ -201,6 +255,17 @@ public:
   }
 
 private:
+  const Command& decide(const Inputs& inputs, float dt_s) noexcept {
+    air_.step(inputs.camera_C, inputs.frame_C);
+    state_.silent_s = 0.0f;
+    last_ = inputs;
+    has_telemetry_ = true;
+    telemetry_fault_ = LimitReason::none;
+    if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
+    else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
+    return step_axes(telemetry_fault_, dt_s);
+  }
+
   struct StepVisitor {
     BasicGimbalController& gimbal;
     LimitReason fault;
@@ -210,7 +275,7 @@ private:
       const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
                                             Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
                                             gimbal.state_.air_C, fault};
-      gimbal.store(index, controller.step(inputs, dt_s));
+      gimbal.store(index, gimbal.step_axis(controller, inputs, index, dt_s));
     }
   };
 
@@ -238,6 +303,7 @@ private:
     config_error_.field = config_.validate();
     for (uint8_t index = 0; index < axis_count(); ++index) last_.error_deg[index] = detail::not_a_number();
     last_.camera_C = last_.frame_C = last_.supply_V = detail::not_a_number();
+    this->clear_poses();
     state_.air_C = detail::not_a_number();
     state_.air_source = AirSource::neither;
     state_.silent_s = 0.0f;

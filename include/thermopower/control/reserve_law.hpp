@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
 #include "step_power_law.hpp"
 
@@ -18,8 +19,13 @@ namespace thermopower {
 /// the next gust. Here an error beyond `moving_error_deg` lifts the power to a steady reserve, which stays
 /// until there was none for `calm_s`, and then sinks slowly. An axis at rest pays for none of it.
 /// @ingroup control
-template <class Law = StepPowerLaw<> >
+template <class Law = StepPowerLaw<>>
 class ReserveLaw {
+  static_assert(
+      detail::IsPowerLaw<Law>::value,
+      "thermopower: the parameter of ReserveLaw must be a power law: a type with Config and step(error_deg) or "
+      "step(error_deg, facts, dt_s)");
+
 public:
   /// What one tunes.
   struct Config {
@@ -36,6 +42,12 @@ public:
       const Config config = {Law::Config::standard(), 50, 0.08f, 4.0f, 200.0f, 2.0f};
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.law, self.reserve_power, self.moving_error_deg, self.calm_s, self.rise_per_s,
+              self.fall_per_s);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (is_error(law.validate())) return law.validate();
@@ -43,8 +55,8 @@ public:
       if (is_error(detail::require_positive(moving_error_deg, ConfigError::moving_error_deg)))
         return ConfigError::moving_error_deg;
       return first_error(detail::require_not_negative(calm_s, ConfigError::calm_s),
-                         first_error(detail::require_positive(rise_per_s, ConfigError::rise_per_s),
-                                     detail::require_positive(fall_per_s, ConfigError::fall_per_s)));
+                         detail::require_positive(rise_per_s, ConfigError::rise_per_s),
+                         detail::require_positive(fall_per_s, ConfigError::fall_per_s));
     }
   };
 
@@ -75,13 +87,8 @@ public:
     const uint8_t floor = static_cast<uint8_t>(state_.reserve);
     return state_.asked > floor ? state_.asked : floor;
   }
-  /// The same without a time: the reserve stays as it is.
-  uint8_t step(float error_deg) noexcept {
-    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f};
-    return step(error_deg, none, 0.0f);
-  }
 
-  Law& law() noexcept { return law_; }                       ///< The law inside.
+  const Law& law() const noexcept { return law_; }           ///< The law inside.
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "detail/composition.hpp"
 #include "limit_reason.hpp"
 
 /// @file control/safety_limiter.hpp
@@ -33,11 +34,16 @@ struct SafetyLimiterConfig {
     SafetyLimiterConfig config = {60.0f, 30.0f, 1.0f / 0.03f};
     return config;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.maximum_C, self.safety_time_s, self.rate_per_s);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(detail::require_within(maximum_C, 0.0f, 200.0f, ConfigError::maximum_C),
-                       first_error(detail::require_positive(safety_time_s, ConfigError::safety_time_s),
-                                   detail::require_positive(rate_per_s, ConfigError::rate_per_s)));
+                       detail::require_positive(safety_time_s, ConfigError::safety_time_s),
+                       detail::require_positive(rate_per_s, ConfigError::rate_per_s));
   }
 };
 
@@ -91,6 +97,10 @@ struct PerSecond {
 /// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {
+  static_assert(
+      detail::IsCeilingRule<Rule>::value,
+      "thermopower: the parameter of SafetyLimiter must be a rule: a type with State, lower, raise, cut and ceiling, such as PerSecond");
+
 public:
   typedef SafetyLimiterConfig Config;  ///< What one tunes.
   typedef typename Rule::State State;  ///< The ceiling.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
 #include "step_power_law.hpp"
 
@@ -18,6 +19,11 @@ namespace thermopower {
 /// power is never granted than the actuator bears. A supply that is not finite, or 0, is not corrected for.
 template <class Law = StepPowerLaw<>>
 class SagAwareLaw {
+  static_assert(
+      detail::IsPowerLaw<Law>::value,
+      "thermopower: the parameter of SagAwareLaw must be a power law: a type with Config and step(error_deg) or "
+      "step(error_deg, facts, dt_s)");
+
 public:
   /// What one tunes.
   struct Config {
@@ -30,6 +36,11 @@ public:
     static Config standard() noexcept {
       const Config config = {Law::Config::standard(), 13.0f, 9.0f};
       return config;
+    }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.law, self.nominal_supply_V, self.minimum_supply_V);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -67,13 +78,8 @@ public:
     if (power >= 255.0f) return 255;
     return power < 1.0f ? least_power() : static_cast<uint8_t>(power);
   }
-  /// Without a supply: the law alone.
-  uint8_t step(float error_deg) noexcept {
-    const AxisFacts none = {0, 0.0f, 0.0f, 0.0f, 0.0f, detail::not_a_number(), 0.0f};
-    return step(error_deg, none, 0.0f);
-  }
 
-  Law& law() noexcept { return law_; }                       ///< The law inside.
+  const Law& law() const noexcept { return law_; }           ///< The law inside.
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 

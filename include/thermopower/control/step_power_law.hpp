@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "detail/composition.hpp"
 #include "limit_reason.hpp"
 
 /// @file control/step_power_law.hpp
@@ -33,6 +34,11 @@ struct StepPowerConfig {
   static StepPowerConfig standard() noexcept {
     StepPowerConfig config = {1.0f, 25, 0.025f};
     return config;
+  }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.full_power_error_deg, self.power_step, self.hysteresis_deg);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -126,6 +132,10 @@ struct ContinuousPower {
 /// @ingroup control
 template <class Rule = ProgrammedLevels>
 class StepPowerLaw {
+  static_assert(
+      detail::IsPowerRule<Rule>::value,
+      "thermopower: the parameter of StepPowerLaw must be a rule: a type with Config, State and static power(magnitude_deg, config, state), such as ProgrammedLevels");
+
 public:
   typedef typename Rule::Config Config;  ///< What one tunes.
   typedef typename Rule::State State;    ///< What the rule remembers.

@@ -2,16 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "detail/policy_call.hpp"
-#include "gain_scheduler.hpp"
+#include "../detail/check.hpp"
+#include "axis_facts.hpp"
 
 /// @file voltage_gain.hpp
 /// The proportional gain from the torque that is really there: V_rms, winding resistance and torque constant.
 
 namespace thermopower {
-
-/// Selects `GainScheduler<VoltageGain>`.
-struct VoltageGain {};
 
 /// Keeps gain times torque authority constant. Authority is torque per count of the inner loop: k(T) V_rms /
 /// R(T), with V_rms = V_supply sqrt(POWER / 255), R rising and k falling with temperature. So, against the
@@ -22,8 +19,8 @@ struct VoltageGain {};
 /// Eq 4.27 draws a straight line between two tuned powers instead, at one supply and temperature. Take this
 /// one when the supply sags or the motor gets warm. Without facts (`step(power)`) the supply and temperature
 /// of the tuning are assumed.
-template <>
-class GainScheduler<VoltageGain> {
+/// @ingroup control
+class VoltageGain {
 public:
   /// What one tunes.
   struct Config {
@@ -42,6 +39,12 @@ public:
       const Config config = {detail::not_a_number(), 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255};
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.gain_low_power, self.tuned_power, self.nominal_supply_V, self.reference_C,
+              self.tempco_per_K, self.magnet_tempco_per_K, self.highest_gain);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       if (is_error(detail::require_within(gain_low_power, 0.0f, 255.0f, ConfigError::gain_low_power)))
@@ -58,7 +61,7 @@ public:
   };
 
   /// @param config  constants; ask `validate()` once
-  explicit GainScheduler(const Config& config = Config::standard()) noexcept : config_(config) {}
+  explicit VoltageGain(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }

@@ -19,9 +19,8 @@ namespace thermopower::simulation {
 
 /// One axis of it.
 template <class Motor>
-using AdaptiveAxis =
-    AxisController<Motor, SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<8>>>,
-                   CertifiedLimiter<CertifiedTwoNode, SquareHeat>, EasedGain<GainScheduler<VoltageGain>>>;
+using AdaptiveAxis = AxisController<Motor, SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<8>>>,
+                                    CertifiedLimiter<CertifiedTwoNode, SquareHeat>, EasedGain<VoltageGain>>;
 
 /// What was tuned for the rig, on draws (see `standard_scenarios`) that no table in the documentation uses.
 struct AdaptiveTuning {
@@ -83,8 +82,7 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
   return config;
 }
 
-/// The gimbal of three such axes. It tells each law where its axis stands, and not to learn while the limiter
-/// holds it back.
+/// The gimbal of three such axes.
 class AdaptiveGimbal {
   using Small = AdaptiveAxis<motors::Bgm2606_90t>;
   using Large = AdaptiveAxis<motors::Bgm5208_200_12>;
@@ -107,9 +105,6 @@ public:
   /// One control cycle, as `GimbalController::step`.
   template <class Telemetry>
   const GimbalCommand<3>& step(const Telemetry& telemetry, float dt_s) noexcept {
-    tell(gimbal_.axis<0>(), telemetry.imu_angle_deg(0));
-    tell(gimbal_.axis<1>(), telemetry.imu_angle_deg(1));
-    tell(gimbal_.axis<2>(), telemetry.imu_angle_deg(2));
     return gimbal_.step(telemetry, dt_s);
   }
   /// One silent cycle.
@@ -121,13 +116,6 @@ public:
   }
 
 private:
-  template <class Axis>
-  static void tell(Axis& axis, float pose_deg) noexcept {
-    auto& holding = axis.power_law().law().law();
-    holding.at_pose(pose_deg);
-    holding.hold_memory(axis.state().reason != LimitReason::none);
-  }
-
   BasicGimbalController<MeasuredSupply, Small, Small, Large> gimbal_;
 };
 

@@ -17,7 +17,7 @@
 #include <thermopower/control/certified/limiter.hpp>
 #include <thermopower/control/axis_controller.hpp>
 #include <thermopower/control/eased_gain.hpp>
-#include <thermopower/control/node_limits.hpp>
+#include <thermopower/control/node_limiter.hpp>
 #include <thermopower/control/reserve_law.hpp>
 #include <thermopower/control/sag_aware_law.hpp>
 #include <thermopower/control/voltage_gain.hpp>
@@ -72,13 +72,13 @@ static void work() { result = law.step(error_deg); }
 #elif THERMOPOWER_POLICY == 2
 static AdaptiveHoldingLaw<8> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
   result = law.step(error_deg * 0.2f, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 3
 static SagAwareLaw<> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
   result = law.step(error_deg, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 4
@@ -88,9 +88,9 @@ static void work() {
   result = limiter.step(inputs, cycle_s).power;
 }
 #elif THERMOPOWER_POLICY == 5
-static SafetyLimiter<PerNode> limiter;
+static NodeLimiter limiter;
 static void work() {
-  const SafetyLimiter<PerNode>::Inputs inputs = {demand, winding_C, body_C, air_C};
+  const NodeLimiter::Inputs inputs = {demand, winding_C, body_C, air_C};
   result = limiter.step(inputs, cycle_s).power;
 }
 #elif THERMOPOWER_POLICY == 6
@@ -129,9 +129,9 @@ static void work() { result = observer.correct_winding(winding.measure(8.0f, cur
 static GainScheduler<> gain(GainConfig{20.0f, 4.0f});
 static void work() { result = gain.step(demand); }
 #elif THERMOPOWER_POLICY == 13
-static GainScheduler<VoltageGain> gain({60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255});
+static VoltageGain gain({60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255});
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
   result = gain.step(demand, facts);
 }
 #elif THERMOPOWER_POLICY == 14
@@ -144,15 +144,14 @@ static void work() {
 #elif THERMOPOWER_POLICY == 15
 static ReserveLaw<AdaptiveHoldingLaw<8>> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f};
+  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
   result = law.step(error_deg * 0.2f, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 16
-static EasedGain<GainScheduler<VoltageGain>> gain({{60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255},
-                                                   1.5f,
-                                                   3});
+static EasedGain<VoltageGain> gain({{60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255}, 1.5f, 3});
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 4.0f * error_deg};
+  const AxisFacts facts = {demand,           winding_C, body_C,           0.0f, air_C, supply_V,
+                           4.0f * error_deg, 0.0f,      LimitReason::none};
   result = gain.step(demand, facts);
 }
 #else                         // the whole: three axes, each with observer and certified limiter

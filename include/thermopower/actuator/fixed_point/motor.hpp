@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../../detail/constexpr_math.hpp"
+#include "../../detail/probe.hpp"
 
 /// @file actuator/fixed_point/motor.hpp
 /// Motors as the fixed-point models take them: constants as types, so that the compiler makes tables of them
@@ -20,6 +21,22 @@
 
 namespace thermopower {
 namespace fixed_point {
+namespace detail {
+
+/// A motor as the fixed-point models take it.
+template <class Candidate, class = int>
+struct IsMotor {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsMotor<Candidate,
+               typename thermopower::detail::Exists<
+                   decltype(Candidate::supply_V()), decltype(Candidate::power_W(1.0)),
+                   decltype(Candidate::capacity_J_per_K(1.0)), decltype(Candidate::cooling_per_s())>::Type> {
+  static constexpr bool value = true;
+};
+
+}  // namespace detail
 
 /// The thesis's supply, 13 V. A supply of your own is such a struct.
 /// @ingroup actuator

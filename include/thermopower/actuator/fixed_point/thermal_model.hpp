@@ -80,6 +80,10 @@ private:
 /// @ingroup actuator
 template <class Source>
 class ThermalModel : public ThermalCore {
+  static_assert(
+      detail::IsMotor<Source>::value,
+      "thermopower: the parameter of fixed_point::ThermalModel must be a motor of constants: fixed_point::ThesisMotor<Motor> or fixed_point::OhmicMotor<Constants>");
+
 public:
   typedef ThermalCore Core;  ///< What models of all motors share.
   /// k in 2^-32 per tick: what `Core::step()` needs to know of the motor.

@@ -23,6 +23,11 @@ struct Bounds {
     const Bounds bounds = {value * (1.0f - fraction), value * (1.0f + fraction)};
     return bounds;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.lowest, self.highest);
+  }
   /// `field` unless 0 < lowest <= highest < infinity.
   ConfigError validate(ConfigError field) const noexcept {
     return first_error(detail::require_positive(lowest, field),
@@ -60,6 +65,12 @@ struct HeatBounds {
     return heat;
   }
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.highest_supply_V, self.supply_error, self.coldest_C, self.heat_when_cold_W,
+            self.heat_when_hot_W);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     if (is_error(detail::require_positive(highest_supply_V, ConfigError::highest_supply_V)))
@@ -93,6 +104,12 @@ struct CertifiedUse {
                     ///< `hold_s`.
   uint8_t every;    ///< Plan in every n-th step only, at least 1; `hold_s` must cover that many steps.
   uint8_t phase;    ///< In which of them, below `every`: give each axis its own, and they take turns.
+
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.heat, self.highest_air_C, self.hold_s, self.horizon_s, self.every, self.phase);
+  }
 };
 
 /// Carries a step's length through the network's two time constants: the part of the way to its final value

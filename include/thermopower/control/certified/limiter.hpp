@@ -4,6 +4,7 @@
 
 #include "one_node.hpp"
 #include "two_node.hpp"
+#include "../detail/composition.hpp"
 #include "../detail/policy_call.hpp"
 
 /// @file control/certified/limiter.hpp
@@ -62,6 +63,14 @@ struct SquareHeat {
 /// nothing.
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
+  static_assert(
+      detail::IsCertifiedNetwork<Network>::value,
+      "thermopower: the first parameter of CertifiedLimiter must be a network: CertifiedTwoNode or CertifiedOneNode");
+
+  static_assert(
+      detail::IsHeatCount<Heat>::value,
+      "thermopower: the second parameter of CertifiedLimiter must be LinearHeat or SquareHeat, or a type with static count(power) and power(count)");
+
 public:
   /// What is declared, and how gently authority falls.
   struct Config {
@@ -76,6 +85,11 @@ public:
       const Config config = {
           Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f, 1, 0}, 5.0f};
       return config;
+    }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.network, self.use, self.air_error_K);
     }
     /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the
     /// actuator would be too hot in that air at the least power: no limiter could help.
@@ -152,7 +166,9 @@ public:
   /// Says how hot the actuator can be at most after a loss of power or a reset.
   /// @param bounds  has `winding_upper_C` and `body_upper_C`, such as StartBounds
   template <class Bounds>
-  void start(const Bounds& bounds) noexcept { start(bounds.winding_upper_C, bounds.body_upper_C); }
+  void start(const Bounds& bounds) noexcept {
+    start(bounds.winding_upper_C, bounds.body_upper_C);
+  }
   /// Lowers the bounds to a measurement, for instance an observer's estimate plus its uncertainty.
   /// @param winding_C, body_C  never below the truth; NaN where nothing was measured
   void tighten(float winding_C, float body_C) noexcept { network_.tighten(winding_C, body_C); }

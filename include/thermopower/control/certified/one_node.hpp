@@ -27,6 +27,11 @@ public:
       const Config config = {{unset, unset}, unset, unset};
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.heat_capacity_J_per_K, self.least_conductance_W_per_K, self.maximum_C);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       return first_error(

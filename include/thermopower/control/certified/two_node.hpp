@@ -43,6 +43,12 @@ struct CertifiedTwoNodeConfig {
                                            maximum_body_C};
     return config;
   }
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.winding_heat_capacity_J_per_K, self.body_heat_capacity_J_per_K, self.least_coupling_W_per_K,
+            self.least_conductance_W_per_K, self.maximum_winding_C, self.maximum_body_C);
+  }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(

@@ -5,23 +5,36 @@
 #include "../axis_facts.hpp"
 
 /// @file control/detail/policy_call.hpp
-/// Hands an axis's facts to its policies in the form they ask for. A limiter whose `Inputs` are a demand, a
-/// temperature and a rate gets these; one that needs more has `static Inputs read(const AxisFacts&)`. A
-/// limiter that must know how long a fault lasted has `cut_after(reason, demand, dt_s)` beside `cut(reason,
-/// demand)`. A power law may take `step(error_deg, facts, dt_s)` and a gain `step(power, facts)`.
+/// Hands an axis's facts to its policies in the form they ask for. A limiter takes `step(facts, dt_s)`, or
+/// `step(inputs, dt_s)`: one whose `Inputs` are a demand, a temperature and a rate gets these; one that needs
+/// others has `static Inputs read(const AxisFacts&)`. A limiter that must know how long a fault lasted has
+/// `cut_after(reason, demand, dt_s)` beside `cut(reason, demand)`. A power law takes `step(error_deg)` or
+/// `step(error_deg, facts, dt_s)`, a gain `step(power)` or `step(power, facts)`.
 
 namespace thermopower {
 
 namespace detail {
 
 template <class Limiter>
-auto limiter_inputs(const AxisFacts& facts, int) noexcept -> decltype(Limiter::read(facts)) {
+[[gnu::always_inline]] inline auto limiter_inputs(const AxisFacts& facts, int) noexcept
+    -> decltype(Limiter::read(facts)) {
   return Limiter::read(facts);
 }
 template <class Limiter>
-typename Limiter::Inputs limiter_inputs(const AxisFacts& facts, long) noexcept {
+[[gnu::always_inline]] inline typename Limiter::Inputs limiter_inputs(const AxisFacts& facts, long) noexcept {
   const typename Limiter::Inputs inputs = {facts.demand, facts.motor_C, facts.rate_K_per_s};
   return inputs;
+}
+
+template <class Limiter>
+[[gnu::always_inline]] inline auto limited_power(Limiter& limiter, const AxisFacts& facts, float dt_s,
+                                                 int) noexcept -> decltype(limiter.step(facts, dt_s)) {
+  return limiter.step(facts, dt_s);
+}
+template <class Limiter>
+[[gnu::always_inline]] inline LimitedPower limited_power(Limiter& limiter, const AxisFacts& facts, float dt_s,
+                                                         long) noexcept {
+  return limiter.step(limiter_inputs<Limiter>(facts, 0), dt_s);
 }
 
 template <class Limiter>
@@ -35,23 +48,36 @@ LimitedPower cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, f
 }
 
 template <class Law>
-auto demanded_power(Law& law, float error_deg, const AxisFacts& facts, float dt_s, int) noexcept
+[[gnu::always_inline]] inline auto demanded_power(Law& law, float error_deg, const AxisFacts& facts,
+                                                  float dt_s, int) noexcept
     -> decltype(law.step(error_deg, facts, dt_s)) {
   return law.step(error_deg, facts, dt_s);
 }
 template <class Law>
-uint8_t demanded_power(Law& law, float error_deg, const AxisFacts&, float, long) noexcept {
+[[gnu::always_inline]] inline uint8_t demanded_power(Law& law, float error_deg, const AxisFacts&, float,
+                                                     long) noexcept {
   return law.step(error_deg);
 }
 
 template <class Gain>
-auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept
+[[gnu::always_inline]] inline auto gain_for(Gain& gain, uint8_t power, const AxisFacts& facts, int) noexcept
     -> decltype(gain.step(power, facts)) {
   return gain.step(power, facts);
 }
 template <class Gain>
-uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
+[[gnu::always_inline]] inline uint8_t gain_for(Gain& gain, uint8_t power, const AxisFacts&, long) noexcept {
   return gain.step(power);
+}
+
+/// The gain before anything is known of an axis.
+template <class Gain>
+[[gnu::always_inline]] inline auto first_gain(Gain& gain, int) noexcept
+    -> decltype(gain.step(least_power())) {
+  return gain.step(least_power());
+}
+template <class Gain>
+[[gnu::always_inline]] inline uint8_t first_gain(Gain& gain, long) noexcept {
+  return gain.step(least_power(), AxisFacts::unknown());
 }
 
 /// What a motor draws at a POWER; a model that remembers may take it as the byte it is, and spare the

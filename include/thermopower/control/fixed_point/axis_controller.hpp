@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "detail/composition.hpp"
 #include "gain_scheduler.hpp"
 #include "step_power_law.hpp"
 #include "safety_limiter.hpp"
@@ -56,6 +57,22 @@ public:
 template <class Thermal, class PowerLaw = ProgrammedLevels<>, class Limiter = SafetyLimiter<>,
           class Gain = NoGain>
 class AxisController {
+  static_assert(
+      detail::IsThermalModel<Thermal>::value,
+      "thermopower: the first parameter of fixed_point::AxisController must be a fixed_point::ThermalModel of a motor");
+
+  static_assert(
+      detail::IsPowerLaw<PowerLaw>::value,
+      "thermopower: the second parameter of fixed_point::AxisController must be a power law: a type with step(error_units)");
+
+  static_assert(
+      detail::IsLimiter<Limiter>::value,
+      "thermopower: the third parameter of fixed_point::AxisController must be a limiter: a type with step(demand, motor, rate, ticks), cut and ceiling");
+
+  static_assert(
+      detail::IsGain<Gain>::value,
+      "thermopower: the fourth parameter of fixed_point::AxisController must be a gain: a type with static gain(power), such as fixed_point::RoundedGain<24, 4>");
+
 public:
   typedef AxisInputs Inputs;   ///< What the axis decides on.
   typedef LimitedPower State;  ///< The power granted, to be sent as POWER, and why it is below the demand.

@@ -36,6 +36,9 @@ struct AxisChain {
 
 template <uint8_t index, class First, class... Rest>
 struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
+  static_assert(
+      IsAxis<First>::value,
+      "thermopower: every parameter of fixed_point::GimbalController must be a fixed_point::AxisController");
   typedef AxisChain<index + 1, Rest...> Next;
   template <class Visitor>
   void visit(Visitor& visitor) noexcept {
@@ -64,6 +67,10 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 /// @ingroup control
 template <class Constants, class... Axes>
 class BasicGimbalController {
+  static_assert(
+      detail::IsGimbalConstants<Constants>::value,
+      "thermopower: the first parameter of fixed_point::BasicGimbalController must be its constants, such as fixed_point::StandardGimbal; take fixed_point::GimbalController for these");
+
   static_assert(sizeof...(Axes) >= 1 && sizeof...(Axes) < 255,
                 "thermopower: a GimbalController needs at least one AxisController");
   static_assert(Constants::minimum_supply_V() >= 0.0 && Constants::minimum_supply_V() <= 600.0,

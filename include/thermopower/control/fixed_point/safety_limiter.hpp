@@ -4,6 +4,7 @@
 
 #include "../../fixed_point/units.hpp"
 #include "../limit_reason.hpp"
+#include "detail/composition.hpp"
 
 /// @file control/fixed_point/safety_limiter.hpp
 /// Keeps an actuator below its limit temperature in whole numbers, eq 4.23: T + t_safety dT/dt <= T_max.
@@ -97,6 +98,10 @@ private:
 /// @ingroup control
 template <class Constants = ThesisLimit, template <class> class Rule = PerSecond>
 class SafetyLimiter {
+  static_assert(
+      detail::IsLimit<Constants>::value,
+      "thermopower: the first parameter of fixed_point::SafetyLimiter must be its constants, such as fixed_point::ThesisLimit: a type with constexpr maximum_C(), safety_time_s() and rate_per_s()");
+
   static_assert(Constants::maximum_C() >= 0.0 && Constants::maximum_C() <= 170.0,
                 "thermopower: maximum_C must be within 0 .. 170 degC for a fixed-point limiter");
   static_assert(Constants::safety_time_s() >= 0.1 && Constants::safety_time_s() <= 240.0,

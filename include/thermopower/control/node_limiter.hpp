@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "detail/policy_call.hpp"
-#include "safety_limiter.hpp"
+#include "../detail/check.hpp"
+#include "axis_facts.hpp"
 
-/// @file node_limits.hpp
+/// @file node_limiter.hpp
 /// A limit for every part of an actuator that has one: a printed bracket softens at 60 degC, magnets weaken
 /// at 80, enamel ends at 120.
 
@@ -17,25 +17,16 @@ struct NodeLimit {
   float fraction;   ///< Place between the two, 0 .. 1; above 1 beyond the second (a hot spot in the winding),
                     ///< at most 2.
 
+  /// Hands each field to an archive, in the order of a record: config_record.hpp.
+  template <class Self, class Archive>
+  static void each_field(Self& self, Archive& archive) {
+    archive(self.maximum_C, self.fraction);
+  }
   /// `maximum_C` or `offset_fraction` out of range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(detail::require_within(maximum_C, 0.0f, 250.0f, ConfigError::maximum_C),
                        detail::require_within(fraction, 0.0f, 2.0f, ConfigError::offset_fraction));
   }
-};
-
-/// Selects `SafetyLimiter<PerNode>`: a limit for each of four parts, and an authority that falls
-/// continuously.
-struct PerNode {
-  /// Which part.
-  enum Node : uint8_t {
-    bracket = 0,  ///< between air (0) and body (1)
-    body = 1,     ///< the body itself; its fraction is between air and body, 1
-    magnets = 2,  ///< between body (0) and winding (1)
-    winding = 3,  ///< the winding; above 1 its hottest spot
-    count = 4,
-    none = 255  ///< no part is near its limit
-  };
 };
 
 /// Limits each part of an actuator to its own temperature.
@@ -45,13 +36,23 @@ struct PerNode {
 /// the actuator settles inside the band, on one power. Take it when parts have limits of their own and no
 /// bounds can be declared; with bounds, `CertifiedLimiter` needs no band. A temperature that is NaN or
 /// infinite counts as too hot.
-template <>
-class SafetyLimiter<PerNode> {
+/// @ingroup control
+class NodeLimiter {
 public:
+  /// Which part.
+  enum Node : uint8_t {
+    bracket = 0,  ///< between air (0) and body (1)
+    body = 1,     ///< the body itself; its fraction is between air and body, 1
+    magnets = 2,  ///< between body (0) and winding (1)
+    winding = 3,  ///< the winding; above 1 its hottest spot
+    count = 4,    ///< parts in all
+    none = 255    ///< no part is near its limit
+  };
+
   /// What one tunes.
   struct Config {
-    NodeLimit node[PerNode::count];  ///< In the order of `PerNode::Node`.
-    float derating_K;                ///< Width of the band below each limit. Above 0.
+    NodeLimit node[count];  ///< In the order of `Node`.
+    float derating_K;       ///< Width of the band below each limit. Above 0.
 
     /// Bracket 60, body 80, magnets 80, winding 120 degC; a band of 8 K. The bracket is taken as warm as the
     /// body.
@@ -59,9 +60,14 @@ public:
       const Config config = {{{60.0f, 1.0f}, {80.0f, 1.0f}, {80.0f, 0.1f}, {120.0f, 1.0f}}, 8.0f};
       return config;
     }
+    /// Hands each field to an archive, in the order of a record: config_record.hpp.
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.node, self.derating_K);
+    }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
-      for (uint8_t i = 0; i < PerNode::count; ++i)
+      for (uint8_t i = 0; i < count; ++i)
         if (is_error(node[i].validate())) return node[i].validate();
       return detail::require_positive(derating_K, ConfigError::derating_K);
     }
@@ -77,18 +83,18 @@ public:
 
   /// What one logs.
   struct State {
-    float node_C[PerNode::count];  ///< Temperature of each part.
-    float margin_K;                ///< Least distance to a limit; negative above it.
-    PerNode::Node node;            ///< The part with that distance, when it is inside its band.
-    uint8_t ceiling;               ///< Highest power granted.
+    float node_C[count];  ///< Temperature of each part.
+    float margin_K;       ///< Least distance to a limit; negative above it.
+    Node node;            ///< The part with that distance, when it is inside its band.
+    uint8_t ceiling;      ///< Highest power granted.
   };
 
   /// Grants the least power until the first step.
   /// @param config  constants; ask `validate()` once
-  explicit SafetyLimiter(const Config& config = Config::standard()) noexcept : config_(config) {
-    for (uint8_t i = 0; i < PerNode::count; ++i) state_.node_C[i] = detail::not_a_number();
+  explicit NodeLimiter(const Config& config = Config::standard()) noexcept : config_(config) {
+    for (uint8_t i = 0; i < count; ++i) state_.node_C[i] = detail::not_a_number();
     state_.margin_K = detail::not_a_number();
-    state_.node = PerNode::none;
+    state_.node = none;
     state_.ceiling = least_power();
     slope_ = 254.0f / config.derating_K;
   }
@@ -109,18 +115,18 @@ public:
       return cut(LimitReason::temperature_not_finite, inputs.demand);
     const float air_C = is_possible(inputs.air_C) ? inputs.air_C : inputs.body_C;
     state_.margin_K = 1.0e9f;
-    for (uint8_t i = 0; i < PerNode::count; ++i) {
-      const bool is_outside = i <= PerNode::body;
+    for (uint8_t i = 0; i < count; ++i) {
+      const bool is_outside = i <= body;
       const float from_C = is_outside ? air_C : inputs.body_C,
                   to_C = is_outside ? inputs.body_C : inputs.winding_C;
       state_.node_C[i] = from_C + config_.node[i].fraction * (to_C - from_C);
       const float margin_K = config_.node[i].maximum_C - state_.node_C[i];
       if (margin_K < state_.margin_K) {
         state_.margin_K = margin_K;
-        state_.node = static_cast<PerNode::Node>(i);
+        state_.node = static_cast<Node>(i);
       }
     }
-    if (state_.margin_K >= config_.derating_K) state_.node = PerNode::none;
+    if (state_.margin_K >= config_.derating_K) state_.node = none;
     const float above_least = state_.margin_K * slope_;
     state_.ceiling =
         above_least >= 254.0f

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Several limiters over one actuator, and limiters of either kind of step().
+
+#include "../catch.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include <thermopower/actuator/ohmic_current.hpp>
+#include <thermopower/actuator/current_model.hpp>
+#include <thermopower/actuator/two_node_thermal_model.hpp>
+#include <thermopower/control/axis_controller.hpp>
+#include <thermopower/control/certified/limiter.hpp>
+#include <thermopower/control/limiter_chain.hpp>
+#include <thermopower/control/node_limiter.hpp>
+
+using namespace thermopower;
+
+namespace {
+
+const float not_known = detail::not_a_number();
+
+/// Grants what it is told to, whatever it is asked.
+template <int number>
+struct Puppet {
+  struct Config {
+    uint8_t ceiling;
+    LimitReason reason;
+    static Config standard() { return {255, LimitReason::none}; }
+    ConfigError validate() const { return ceiling == 0 ? ConfigError::user_defined : ConfigError::none; }
+  };
+  explicit Puppet(const Config& config) : config_(config) {}
+  LimitedPower step(const AxisFacts& facts, float) noexcept {
+    asked = facts.demand;
+    if (facts.demand <= config_.ceiling && !is_fault(config_.reason))
+      return {facts.demand, LimitReason::none};
+    return {config_.ceiling < facts.demand ? config_.ceiling : facts.demand, config_.reason};
+  }
+  LimitedPower cut(LimitReason, uint8_t = 255) noexcept {
+    ++cuts;
+    return {1, LimitReason::none};
+  }
+  uint8_t ceiling() const noexcept { return config_.ceiling; }
+  Config config_;
+  uint8_t asked = 0;
+  int cuts = 0;
+};
+
+typedef LimiterChain<Puppet<0>, Puppet<1>, Puppet<2>> Three;
+
+Three three(Puppet<0>::Config first, Puppet<1>::Config second, Puppet<2>::Config third) {
+  return Three(Three::Config{first, {second, {third}}});
+}
+
+AxisFacts at(float motor_C, uint8_t demand = 255) {
+  AxisFacts facts = AxisFacts::unknown();
+  facts.demand = demand;
+  facts.motor_C = facts.body_C = motor_C;
+  facts.rate_K_per_s = 0.0f;
+  facts.air_C = 25.0f;
+  facts.supply_V = 13.0f;
+  return facts;
+}
+
+}  // namespace
+
+TEST_CASE("the strictest limiter of a chain wins in every order, and its reason is kept") {
+  const LimitReason reasons[] = {LimitReason::winding_limit, LimitReason::body_limit,
+                                 LimitReason::node_limit};
+  const uint8_t ceilings[] = {40, 90, 200};
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) {
+      if (a == b) continue;
+      const int c = 3 - a - b;
+      Three chain = three({ceilings[a], reasons[a]}, {ceilings[b], reasons[b]}, {ceilings[c], reasons[c]});
+      for (int demand = 1; demand <= 255; ++demand) {
+        const LimitedPower granted = chain.step(at(30.0f, static_cast<uint8_t>(demand)), 0.01f);
+        CHECK(granted.power == (demand < 40 ? demand : 40));
+        CHECK(granted.reason == (demand <= 40 ? LimitReason::none : LimitReason::winding_limit));
+      }
+      CHECK(chain.ceiling() == 40);
+    }
+}
+
+TEST_CASE("of two limiters that grant the same the first is named; a fault always") {
+  Three same = three({40, LimitReason::body_limit}, {40, LimitReason::node_limit}, {255, LimitReason::none});
+  CHECK(same.step(at(30.0f), 0.01f).reason == LimitReason::body_limit);
+  Three broken =
+      three({1, LimitReason::body_limit}, {1, LimitReason::temperature_not_finite}, {255, LimitReason::none});
+  CHECK(broken.step(at(30.0f), 0.01f).reason == LimitReason::temperature_not_finite);
+  CHECK(broken.step(at(30.0f), 0.01f).power == 1);
+  // Each is asked with what those before it left.
+  Three asked =
+      three({100, LimitReason::body_limit}, {60, LimitReason::node_limit}, {255, LimitReason::none});
+  asked.step(at(30.0f), 0.01f);
+  CHECK(asked.limiter<0>().asked == 255);
+  CHECK(asked.limiter<1>().asked == 100);
+  CHECK(asked.limiter<2>().asked == 60);
+}
+
+TEST_CASE("a fault found elsewhere cuts every limiter of a chain, with a time or without") {
+  Three chain =
+      three({100, LimitReason::body_limit}, {60, LimitReason::node_limit}, {255, LimitReason::none});
+  CHECK(chain.cut(LimitReason::link_silent).power == 1);
+  CHECK(chain.cut_after(LimitReason::link_silent, 0, 0.1f).power == 0);
+  CHECK(chain.cut_after(LimitReason::link_silent, 9, 0.1f).reason == LimitReason::link_silent);
+  CHECK(chain.limiter<0>().cuts == 3);
+  CHECK(chain.limiter<1>().cuts == 3);
+  CHECK(chain.limiter<2>().cuts == 3);
+}
+
+TEST_CASE("a wrong field anywhere in a chain is named and keeps the power at its least") {
+  Three chain = three({100, LimitReason::none}, {0, LimitReason::none}, {255, LimitReason::none});
+  CHECK(chain.validate() == ConfigError::user_defined);
+  CHECK(chain.step(at(30.0f), 0.01f).power == 1);
+  CHECK(chain.step(at(30.0f), 0.01f).reason == LimitReason::config_invalid);
+}
+
+TEST_CASE("what is not a number counts as hot for the whole chain") {
+  typedef LimiterChain<SafetyLimiter<>, NodeLimiter> Chain;
+  for (const float bad : {not_known, -300.0f, static_cast<float>(INFINITY), -static_cast<float>(INFINITY)}) {
+    Chain chain;
+    REQUIRE(chain.validate() == ConfigError::none);
+    CHECK(chain.step(at(30.0f), 0.01f).power == 255);
+    AxisFacts facts = at(30.0f);
+    facts.motor_C = bad;
+    CHECK(chain.step(facts, 0.01f).power == 1);
+    CHECK(is_fault(chain.step(facts, 0.01f).reason));
+    facts = at(30.0f);
+    facts.body_C = bad;  // the second limiter's alone
+    CHECK(chain.step(facts, 0.01f).power == 1);
+    CHECK(is_fault(chain.step(facts, 0.01f).reason));
+    CHECK(chain.step(at(30.0f), bad < 0.0f || bad != bad || bad > 1e30f ? bad : -1.0f).power == 1);
+  }
+}
+
+TEST_CASE(
+    "a chain on an axis holds the limits of each: a hotter motor never gets more than each alone grants") {
+  struct Motor {
+    typedef CurrentModel<OhmicCurrent<float>> Current;
+    typedef TwoNodeThermalModel<float> Thermal;
+    static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+    static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
+  };
+  typedef LimiterChain<NodeLimiter, CertifiedLimiter<>> Chain;
+  typedef AxisController<Motor, StepPowerLaw<>, Chain, NoGain> Axis;
+  Axis::Config config = Axis::Config::standard();
+  auto& certified = config.limiter.rest.first;
+  certified.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
+  certified.use.heat =
+      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  certified.use.highest_air_C = 35.0f;
+  REQUIRE(config.validate() == ConfigError::none);
+  Axis axis(config);
+  axis.start(25.0f);
+  axis.limiter().limiter<1>().start(25.0f, 25.0f);
+  bool by_node = false, by_proof = false;
+  double body_C = 25.0, winding_C = 25.0;  // a plant of its own
+  for (int i = 0; i < 400000; ++i) {
+    const Axis::State& state = axis.step({5.0f, 13.0f, 25.0f, LimitReason::none}, 0.02f);
+    by_node = by_node || state.reason == LimitReason::node_limit;
+    by_proof =
+        by_proof || state.reason == LimitReason::body_limit || state.reason == LimitReason::winding_limit;
+    const double heat_W = 13.0 * 13.0 * state.power / 255.0 / (8.0 * (1.0 + 0.0039 * (winding_C - 20.0)));
+    const double across_W = 1.0 * (winding_C - body_C);
+    winding_C += 0.02 * (heat_W - across_W) / 8.0;
+    body_C += 0.02 * (across_W - 0.2 * (body_C - 25.0)) / 80.0;
+    REQUIRE(body_C < 60.0);
+    REQUIRE(winding_C < 110.0);
+    REQUIRE(body_C <= static_cast<double>(axis.limiter().limiter<1>().body_upper_C()) + 1e-3);
+    CHECK(state.power <= axis.limiter().limiter<0>().ceiling());
+  }
+  CHECK((by_node || by_proof));
+  CHECK(body_C > 45.0);
+}
