@@ -184,7 +184,11 @@ void check_named(const gap::Model& model) {
   CHECK(to_string(diagnosis.where[0].submodel) == "spring.force");
   CHECK(to_string(diagnosis.where[0].signal) == "position_m");
   REQUIRE(!diagnosis.missing_quantities.empty());
-  CHECK(diagnosis.missing_quantities[0].unit == "m/s");
+  const gap::MissingQuantity& picture = diagnosis.missing_quantities[0];
+  CHECK(picture.unit == "m/s");
+  REQUIRE(picture.effect.size() ==
+          picture.value.size());  // what hardening supplies is drawn, and is what lacks
+  CHECK((picture.effect - picture.value).norm() < 0.5 * picture.value.norm());
   REQUIRE(diagnosis.gap.size() == 1);
   CHECK(diagnosis.gap[0].unit == "m");
   CHECK(diagnosis.gap[0].after < 1.2 * diagnosis.gap[0].noise_floor);

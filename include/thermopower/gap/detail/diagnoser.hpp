@@ -318,7 +318,13 @@ private:
              simulate(result_.augmented, train_recordings_[i],
                       {SimulationMode::free_running, options_.horizon_s}, catalogue_))
           simulated[i].set(to_string(signal.signal), std::move(signal.values));
-      if (!model_.own) draw_effect(model_, simulated, result_.missing_quantities);
+      if (model_.own) {
+        std::vector<Inputs> inputs;
+        for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
+        draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
+      } else {
+        draw_effect(model_, simulated, result_.missing_quantities);
+      }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
   }

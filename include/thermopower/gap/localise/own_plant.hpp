@@ -102,25 +102,30 @@ inline double noise_of_smooth(const Eigen::VectorXd& values, const std::vector<R
   return *middle / (0.6745 * std::sqrt(6.0));
 }
 
-/// Where a plant of one's own and recordings part, from its own short simulations: each starts from the measured
-/// state, and what it misses at its end, over its length, is the rate that the equations lack.
-///
-/// It asks nothing but a rollout, so that a simulator behind a function call is localised, too. What `found`
-/// receives is a location and a picture for each signal that misses more than its noise explains.
-template <class Found>
-void localise_own_plant(const Model& model, const Catalogue& catalogue, const std::vector<Inputs>& recordings,
-                        Found& found) {
+/// The rates that the equations of a plant of one's own lack, with what may order them.
+struct MissingRates {
+  /// Of one signal.
+  struct Samples {
+    std::vector<double> rate;                    ///< in the signal's unit per second
+    std::vector<std::vector<double>> variables;  ///< as many values each, in the order of `names`
+    double interval_s = 0.0;                     ///< length of the last window
+    double noise = 0.0;                          ///< standard deviation of the measured signal
+  };
+  std::vector<Samples> of;                ///< by signal
+  std::vector<std::string> names, units;  ///< of the variables: inputs, signals, time
+};
+
+/// Simulates short windows from the measured states: what each misses at its end, over its length.
+inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue,
+                                  const std::vector<Inputs>& recordings) {
   const Plant& plant = plant_of(model);
   const PlantInfo& info = *plant.info();
   const std::size_t signals = info.signals.size();
-  struct Samples {
-    std::vector<double> rate, at_end;
-    std::vector<std::vector<double>> variables;
-    double interval_s = 0.0;
-    double noise = 0.0;
-  };
-  std::vector<Samples> of(signals);
-  std::vector<std::string> names, units;
+  using Samples = MissingRates::Samples;
+  MissingRates result;
+  std::vector<Samples>& of = result.of;
+  std::vector<std::string>&names = result.names, &units = result.units;
+  of.resize(signals);
   for (const PlantInput& one : info.inputs) names.push_back(one.name), units.push_back(one.unit);
   for (const PlantSignal& one : info.signals) names.push_back(one.name), units.push_back(one.unit);
   names.push_back("t_s"), units.push_back("s");
@@ -166,8 +171,22 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
         of[k].noise = std::max(of[k].noise, noise_of_smooth(values, inputs.runs));
       }
   }
-  for (std::size_t k = 0; k < signals; ++k) {
-    const Samples& samples = of[k];
+  return result;
+}
+
+/// Where a plant of one's own and recordings part, from its own short simulations: each starts from the measured
+/// state, and what it misses at its end, over its length, is the rate that the equations lack.
+///
+/// It asks nothing but a rollout, so that a simulator behind a function call is localised, too. What `found`
+/// receives is a location and a picture for each signal that misses more than its noise explains.
+template <class Found>
+void localise_own_plant(const Model& model, const Catalogue& catalogue, const std::vector<Inputs>& recordings,
+                        Found& found) {
+  const PlantInfo& info = *plant_of(model).info();
+  const MissingRates rates = missing_rates(model, catalogue, recordings);
+  const std::vector<std::string>&names = rates.names, &units = rates.units;
+  for (std::size_t k = 0; k < rates.of.size(); ++k) {
+    const MissingRates::Samples& samples = rates.of[k];
     if (samples.rate.size() < 30) continue;
     double squares = 0.0;
     for (double rate : samples.rate) squares += rate * rate;
@@ -211,6 +230,33 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
   }
   std::stable_sort(found.where.begin(), found.where.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
+}
+
+/// Draws what the causes of an augmented model supply into pictures of missing rates.
+/// @param simulated   the recordings, their signals replaced by the augmented model's
+/// @param quantities  their `effect` is written
+inline void draw_own_effect(const Model& baseline, const Catalogue& catalogue,
+                            const std::vector<Inputs>& simulated, std::vector<MissingQuantity>& quantities) {
+  const PlantInfo& info = *plant_of(baseline).info();
+  const MissingRates rates = missing_rates(baseline, catalogue, simulated);
+  for (MissingQuantity& picture : quantities) {
+    const Eigen::Index bins = picture.x.size();
+    const auto variable = std::find(rates.names.begin(), rates.names.end(), picture.variable);
+    for (std::size_t k = 0; k < info.signals.size() && variable != rates.names.end(); ++k) {
+      if (to_string(picture.signal) != info.signals[k].name) continue;
+      const auto& values = rates.of[k].variables[static_cast<std::size_t>(variable - rates.names.begin())];
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero(bins), count = Eigen::VectorXd::Zero(bins);
+      for (std::size_t i = 0; i < values.size() && bins > 0; ++i) {
+        Eigen::Index nearest = 0;
+        (picture.x.array() - values[i]).abs().minCoeff(&nearest);
+        sum[nearest] += rates.of[k].rate[i];
+        count[nearest] += 1.0;
+      }
+      picture.effect = Eigen::VectorXd::Constant(bins, missing);
+      for (Eigen::Index bin = 0; bin < bins; ++bin)
+        if (count[bin] > 0.0) picture.effect[bin] = sum[bin] / count[bin];
+    }
+  }
 }
 
 }  // namespace thermopower::gap::detail
