@@ -4,6 +4,13 @@
 #include "../gap/fixture.hpp"
 
 #include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/plant/effects/ambient_bias.hpp>
+#include <thermopower/plant/effects/constant_torque.hpp>
+#include <thermopower/plant/effects/drive_lag.hpp>
+#include <thermopower/plant/effects/imbalance.hpp>
+#include <thermopower/plant/effects/load_friction.hpp>
+#include <thermopower/plant/effects/radiation.hpp>
+#include <thermopower/plant/effects/warm_friction.hpp>
 
 #include <set>
 
@@ -106,4 +113,78 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
       CHECK(std::abs(fitted.fit.at[k] - truth[k]) < 5.0 * sd[k] + 1e-4 * std::abs(truth[k]));
     }
   }
+}
+
+TEST_CASE("effects see each other's terms whatever their order in the catalogue") {
+  Catalogue one, other;
+  one.add<LoadFriction>()
+      .add<WarmFriction>()
+      .add<Imbalance>()
+      .add<DriveLag>()
+      .add<Radiation>()
+      .add<AmbientBias>();
+  other.add<AmbientBias>()
+      .add<Radiation>()
+      .add<DriveLag>()
+      .add<Imbalance>()
+      .add<WarmFriction>()
+      .add<LoadFriction>();
+  Model joint = axis_model();
+  joint.effects["load_friction"] = {{"share", 0.3}, {"transition_rad_per_s", 0.05}};
+  joint.effects["warm_friction"] = {{"per_K", 0.02}};
+  joint.effects["imbalance"] = {{"Nm", 0.006}, {"phase_rad", 0.5}};
+  joint.effects["drive_lag"] = {{"lag_s", 0.03}};
+  Model body = bench_model();
+  body.effects["radiation"] = {{"emissive_area_m2", 0.02}};
+  body.effects["ambient_bias"] = {{"bias_K", 5.0}};
+  for (const auto& [model, recording] :
+       {std::pair{joint, axis_inputs(300, 0.01, 3)}, std::pair{body, bench_inputs(200, 2.0, 3, true)}}) {
+    Recording first = recording, second = recording;
+    measure(first, model, 7, one);
+    measure(second, model, 7, other);
+    for (const Column& column : first.columns) {
+      const Eigen::VectorXd* same = second.find(column.name);
+      REQUIRE(same != nullptr);
+      INFO(column.name);
+      CHECK((column.values - *same).cwiseAbs().maxCoeff() <
+            1e-9 * (1.0 + column.values.cwiseAbs().maxCoeff()));
+    }
+  }
+}
+
+TEST_CASE("the catalogue refuses what does not fit together, in a sentence that names it") {
+  struct Wrong : ConstantTorque {
+    static EffectInfo info() {
+      EffectInfo one = ConstantTorque::info();
+      one.parameters[0].index = 1;
+      return one;
+    }
+  };
+  struct Needy : ConstantTorque {
+    static EffectInfo info() {
+      EffectInfo one = ConstantTorque::info();
+      one.needs = {Need::thermal_model};
+      return one;
+    }
+  };
+  struct Scaled : ConstantTorque {
+    static EffectInfo info() {
+      EffectInfo one = ConstantTorque::info();
+      one.parameters[0].starts_relative_to = Input::power_param;
+      return one;
+    }
+  };
+  struct Stateful : Imbalance {
+    static EffectInfo info() {
+      EffectInfo one = Imbalance::info();
+      one.states = {{"a", "1"}, {"b", "1"}, {"c", "1"}};
+      return one;
+    }
+  };
+  Catalogue catalogue;
+  CHECK_THROWS_WITH(catalogue.add<Wrong>(), ContainsSubstring("'Nm'") && ContainsSubstring("number 1"));
+  CHECK_THROWS_WITH(catalogue.add<Needy>(), ContainsSubstring("needs 'thermal'"));
+  CHECK_THROWS_WITH(catalogue.add<Scaled>(),
+                    ContainsSubstring("'Nm'") && ContainsSubstring("shares of an input"));
+  CHECK_THROWS_WITH(catalogue.add<Stateful>(), ContainsSubstring("states"));
 }

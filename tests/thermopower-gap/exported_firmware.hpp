@@ -27,6 +27,14 @@ struct Has {
   template <class T>
   static long spring(...);
   template <class T>
+  static char lagged(decltype(&T::lagged_Nm_per_s));
+  template <class T>
+  static long lagged(...);
+  template <class T>
+  static char bend(decltype(&T::bent_rad_per_s));
+  template <class T>
+  static long bend(...);
+  template <class T>
   static char current(decltype(&T::true_current_A));
   template <class T>
   static long current(...);
@@ -183,6 +191,55 @@ void run_bench(const Row* rows, int count, const double* current_readings, const
   }
 }
 
+// The axis' functions take the effects' own states, where there are some, in the catalogue's order.
+template <class M, bool lagged, bool bent>
+struct Axis {  // none
+  static double load(float a, float w, float d, const double*) { return M::load_Nm(a, w, d); }
+  static double dry(float a, float w, float d, float C, const double*) {
+    return M::dry_friction_Nm(a, w, d, C);
+  }
+  static void slopes(float, float, float, float, const double*, double* out) { out[0] = out[1] = 0.0; }
+};
+template <class M>
+struct Axis<M, true, false> {
+  static double load(float a, float w, float d, const double* z) {
+    return M::load_Nm(a, w, d, static_cast<float>(z[0]));
+  }
+  static double dry(float a, float w, float d, float C, const double* z) {
+    return M::dry_friction_Nm(a, w, d, C, static_cast<float>(z[0]));
+  }
+  static void slopes(float a, float w, float d, float C, const double* z, double* out) {
+    out[0] = M::lagged_Nm_per_s(a, w, d, C, static_cast<float>(z[0]));
+    out[1] = 0.0;
+  }
+};
+template <class M>
+struct Axis<M, false, true> {
+  static double load(float a, float w, float d, const double* z) {
+    return M::load_Nm(a, w, d, static_cast<float>(z[1]));
+  }
+  static double dry(float a, float w, float d, float C, const double* z) {
+    return M::dry_friction_Nm(a, w, d, C, static_cast<float>(z[1]));
+  }
+  static void slopes(float a, float w, float d, float C, const double* z, double* out) {
+    out[0] = 0.0;
+    out[1] = M::bent_rad_per_s(a, w, d, C, static_cast<float>(z[1]));
+  }
+};
+template <class M>
+struct Axis<M, true, true> {
+  static double load(float a, float w, float d, const double* z) {
+    return M::load_Nm(a, w, d, static_cast<float>(z[0]), static_cast<float>(z[1]));
+  }
+  static double dry(float a, float w, float d, float C, const double* z) {
+    return M::dry_friction_Nm(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
+  }
+  static void slopes(float a, float w, float d, float C, const double* z, double* out) {
+    out[0] = M::lagged_Nm_per_s(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
+    out[1] = M::bent_rad_per_s(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
+  }
+};
+
 /// Angle and rate over rows from the first readings, printed as run_bench() prints.
 template <class M>
 void run_axis(const Row* rows, int count, const double* angle_readings, const double* rate_readings) {
@@ -196,7 +253,8 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
   const double rad = 0.017453292519943295;
   double angle = rad * angle_of<M>(If<sizeof(Has<M>::template angle<M>(0)) == 1>(), angle_readings[0], 0.0);
   double rate = rad * rate_of<M>(If<sizeof(Has<M>::template rate<M>(0)) == 1>(), rate_readings[0], 0.0);
-  double twist = 0.0, twist_rate = 0.0;
+  double twist = 0.0, twist_rate = 0.0, own[2] = {0.0, 0.0};
+  typedef Axis<M, sizeof(Has<M>::template lagged<M>(0)) == 1, sizeof(Has<M>::template bend<M>(0)) == 1> Joint;
   for (int i = 0; i < count; ++i) {
     printf("%.12g %.12g %.12g %.12g\n", angle / rad,
            angle_of<M>(If<sizeof(Has<M>::template angle<M>(0)) == 1>(), angle_readings[i], rows[i].t_s),
@@ -214,12 +272,19 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
       const auto slope = [&](double a, double w, double s, double u, double& dw, double& du) {
         const float fa = static_cast<float>(a), fw = static_cast<float>(w);
         const double pull = springy ? spring * s + damper * u : 0.0;
-        const double torque = static_cast<double>(drive) + M::load_Nm(fa, fw, drive) -
+        const double torque = static_cast<double>(drive) + Joint::load(fa, fw, drive, own) -
                               static_cast<double>(M::viscous_Nms_per_rad()) * w -
-                              M::dry_friction_Nm(fa, fw, drive, motor) + pull;
+                              Joint::dry(fa, fw, drive, motor, own) + pull;
         dw = torque / near;
         du = springy ? -pull / (inertia * far) - dw : 0.0;
       };
+      double z1[2], z2[2];
+      const double at_start[2] = {own[0], own[1]};
+      Joint::slopes(static_cast<float>(angle), static_cast<float>(rate), drive, motor, own, z1);
+      for (int s = 0; s < 2; ++s)
+        own[s] = at_start[s] + 0.5 * h * z1[s];  // held there for the torques of this step
+      Joint::slopes(static_cast<float>(angle + 0.5 * h * rate), static_cast<float>(rate), drive, motor, own,
+                    z2);
       double w1, u1, w2, u2, w3, u3, w4, u4;
       slope(angle, rate, twist, twist_rate, w1, u1);
       slope(angle + 0.5 * h * rate, rate + 0.5 * h * w1, twist + 0.5 * h * twist_rate,
@@ -231,6 +296,7 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
       angle += h * (rate + h * (w1 + w2 + w3) / 6.0);
       twist += h * (twist_rate + h * (u1 + u2 + u3) / 6.0);
       rate += h * (w1 + 2.0 * (w2 + w3) + w4) / 6.0;
+      for (int s = 0; s < 2; ++s) own[s] = at_start[s] + h * z2[s];
       twist_rate += h * (u1 + 2.0 * (u2 + u3) + u4) / 6.0;
     }
   }

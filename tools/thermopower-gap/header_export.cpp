@@ -75,7 +75,8 @@ struct Heat {
 
 /// Torques on the axis.
 struct Torques {
-  Expression load_Nm, friction_Nm;
+  Expression delivered_Nm, load_Nm, friction_Nm;
+  std::vector<Expression> own_slopes;  ///< of the effects' own states, per second
 };
 
 class Writer {
@@ -138,7 +139,7 @@ private:
     trace.every_branch(
         [&] { return std::vector<Expression>{readings(trace, alone, trace.symbol("x")).motor_C}; });
     trace.every_branch([&] { return std::vector<Expression>{drive(trace, alone)}; });
-    trace.every_branch([&] { return std::vector<Expression>{torques(trace, alone).friction_Nm}; });
+    torques_in_every_branch(trace, alone);
     trace.every_branch(
         [&] { return std::vector<Expression>{axis_readings(trace, alone, trace.symbol("x")).angle_deg}; });
   }
@@ -248,22 +249,51 @@ private:
     return terms.torque_constant_Nm_per_A * terms.drive_A;
   }
 
-  static Torques torques(Trace& trace, const std::vector<Written>& effects) {
+  static Torques torques(Trace& trace, const std::vector<Written>& effects, double viscous_Nms_per_rad) {
     const Expression angle = trace.symbol("angle_rad"), rate = trace.symbol("rate_rad_per_s"),
                      drive = trace.symbol("drive_torque_Nm");
     const GivenExpression t_s(trace.symbol("t_s")), motor_C(trace.symbol("motor_C"));
-    plant::AxisTerms<Expression> terms{t_s, angle, rate, drive, 0.0};
-    for (const Written& one : effects) one.act(terms);
-    const Expression load = terms.load_Nm;
-    plant::FrictionTerms<Expression> dry{t_s, motor_C, angle, rate, drive, load, 0.0, 0.0, 0.0, 1.0};
-    for (const Written& one : effects) one.act(dry);
+    std::vector<plant::OwnState<Expression>> own;
+    std::vector<std::size_t> first;
+    for (const Written& one : effects) {
+      first.push_back(own.size());
+      for (const plant::HiddenState& state : one.entry->info.states)
+        own.push_back({trace.symbol(state.name), 0.0, 0.0});
+    }
+    plant::AxisTerms<Expression> terms{t_s, angle, rate, drive, 0.0, drive};
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      terms.own = own.data() + first[i];
+      effects[i].act(terms);
+    }
+    const Expression load = terms.load_Nm, delivered = terms.delivered_Nm;
+    plant::FrictionTerms<Expression> dry{t_s, motor_C, angle, rate, delivered, load, 0.0, 0.0, 0.0, 1.0, 0.0};
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      dry.own = own.data() + first[i];
+      effects[i].act(dry);
+    }
     const Expression size = dry.forward_Nm.is_constant() && dry.backward_Nm.is_constant() &&
                                     dry.forward_Nm.constant_value() == dry.backward_Nm.constant_value()
                                 ? dry.forward_Nm
                                 : Trace::choice(rate < 0.0, dry.backward_Nm, dry.forward_Nm);
     const bool none =
         dry.transition_rad_per_s.is_constant() && !(dry.transition_rad_per_s.constant_value() > 0.0);
-    return {load, none ? Expression(0.0) : size * dry.factor * tanh(rate / dry.transition_rad_per_s)};
+    // What friction there is besides the header's viscous one; a factor works on that one, too.
+    Expression friction = dry.torque_Nm * dry.factor + viscous_Nms_per_rad * (dry.factor - 1.0) * rate;
+    if (!none) friction += size * dry.factor * tanh(rate / dry.transition_rad_per_s);
+    Torques result{delivered, load, friction, {}};
+    for (const plant::OwnState<Expression>& state : own)
+      result.own_slopes.push_back(state.slope - state.per_s * state.value);
+    return result;
+  }
+  Torques torques_in_every_branch(Trace& trace, const std::vector<Written>& effects) const {
+    const double viscous = m_.axis ? m_.axis->viscous_Nms_per_rad : 0.0;
+    auto all = trace.every_branch([&] {
+      const Torques one = torques(trace, effects, viscous);
+      std::vector<Expression> list{one.delivered_Nm, one.load_Nm, one.friction_Nm};
+      list.insert(list.end(), one.own_slopes.begin(), one.own_slopes.end());
+      return list;
+    });
+    return {all[0], all[1], all[2], std::vector<Expression>(all.begin() + 3, all.end())};
   }
 
   // --- code
@@ -604,17 +634,30 @@ private:
         trace.every_branch([&] { return std::vector<Expression>{drive(trace, written_)}; })[0];
     body_ += function("Torque of the drive, N m." + with([](const HookSet& hooks) { return hooks.drive; }),
                       "drive_Nm", {"command_A", "motor_C"}, drive_Nm);
-    const auto all = trace.every_branch([&] {
-      const Torques one = torques(trace, written_);
-      return std::vector<Expression>{one.load_Nm, one.friction_Nm};
-    });
-    body_ += function("Torque of all that pulls besides drive and friction, N m, added to the drive's." +
-                          with([](const HookSet& hooks) { return hooks.axis; }),
-                      "load_Nm", {"angle_rad", "rate_rad_per_s", "drive_torque_Nm"}, all[0]);
-    body_ +=
-        function("Dry friction, N m, to be taken off the other torques: positive while the rate is." +
-                     with([](const HookSet& hooks) { return hooks.friction; }),
-                 "dry_friction_Nm", {"angle_rad", "rate_rad_per_s", "drive_torque_Nm", "motor_C"}, all[1]);
+    const Torques all = torques_in_every_branch(trace, written_);
+    std::vector<std::string> load_takes = {"angle_rad", "rate_rad_per_s", "drive_torque_Nm"},
+                             friction_takes = load_takes;
+    friction_takes.emplace_back("motor_C");
+    for (const Written& one : written_)
+      for (const plant::HiddenState& state : one.entry->info.states) {
+        load_takes.push_back(state.name);
+        friction_takes.push_back(state.name);
+      }
+    // A drive that something comes between is told from the torque that is asked of it.
+    body_ += function(
+        "What pulls besides drive and friction, N m, added to the drive's torque; and what does not arrive of that." +
+            with([](const HookSet& hooks) { return hooks.axis; }),
+        "load_Nm", load_takes, all.load_Nm + (all.delivered_Nm - trace.symbol("drive_torque_Nm")));
+    body_ += function(
+        "Friction besides the viscous one, N m, to be taken off the other torques: positive while the rate is." +
+            with([](const HookSet& hooks) { return hooks.friction; }),
+        "dry_friction_Nm", friction_takes, all.friction_Nm);
+    std::size_t place = 0;
+    for (const Written& one : written_)
+      for (const plant::HiddenState& state : one.entry->info.states)
+        body_ += function("How fast the state " + state.name + " moves that " + one.entry->info.id +
+                              " brings, " + state.unit + "/s. It starts at 0, or where this is 0.",
+                          state.name + "_per_s", friction_takes, all.own_slopes[place++]);
     undo_axis(
         "true_angle_deg", "The true angle behind a reading, deg.",
         [](const plant::AxisReadings<Expression>& read) { return read.angle_deg; }, "reading_deg");

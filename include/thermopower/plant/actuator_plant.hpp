@@ -121,7 +121,7 @@ public:
         directions_(directions.count),
         isolated_(mode == SimulationMode::measured_inputs) {
     const Scalar still = constant<Scalar>(0.0);
-    carried_ = {still, still, still, still};
+    carried_ = {still, still, still, still, {}};
   }
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
@@ -196,6 +196,7 @@ private:
     if (segment.carries_on) {
       state.twist_rad = carried_.twist_rad;
       state.twist_rate_rad_per_s = carried_.twist_rate_rad_per_s;
+      state.own = carried_.own;
     }
     rollout.window(segment.run, segment.begin, segment.end, state,
                    [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
@@ -206,6 +207,7 @@ private:
     carried_ = state;
     forget(carried_.twist_rad, starts_from_);
     forget(carried_.twist_rate_rad_per_s, starts_from_);
+    for (int i = 0; i < carried_.own.count; ++i) forget(carried_.own.at[i], starts_from_);
   }
 
   /// The measured state of the axis at a row; an unrecorded rate is the angle's difference, an unrecorded

@@ -25,7 +25,7 @@ public:
     const AxisReadings<Scalar> at_0 = read(t_s, constant<Scalar>(0.0), constant<Scalar>(0.0));
     const AxisReadings<Scalar> at_1 = read(t_s, constant<Scalar>(1.0), constant<Scalar>(1.0));
     const Scalar zero = constant<Scalar>(0.0);
-    AxisState<Scalar> state{zero, zero, zero, zero};
+    AxisState<Scalar> state{zero, zero, zero, zero, {}};
     state.angle_rad = (angle_deg - at_0.angle_deg) / (at_1.angle_deg - at_0.angle_deg) * rad_per_deg;
     state.rate_rad_per_s = (rate_dps - at_0.rate_dps) / (at_1.rate_dps - at_0.rate_dps) * rad_per_deg;
     return state;
@@ -42,6 +42,10 @@ public:
     // Row whose command reaches the drive now; before its first row a run is idle.
     Eigen::Index commanded = begin;
     while (commanded >= run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
+    // What is not carried on starts as the command before has left it.
+    if (state.own.count != instance_.own_states)
+      step_.settle(state, inputs_.t_s[begin] - start_s,
+                   drive(commanded - 1, run, begin, inputs_.t_s[begin] - start_s));
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;
       sink(row, read(t_s, Scalar(state.angle_rad * (1.0 / rad_per_deg)),

@@ -9,6 +9,23 @@
 
 namespace thermopower::plant {
 
+/// The values of the states that effects bring to the joint. Copies no more than there are.
+template <class Scalar>
+struct OwnValues {
+  int count = 0;               ///< of the states that there are
+  Scalar at[most_own_states];  ///< in the order of the effects; beyond `count` unset
+
+  OwnValues() {}  // NOLINT: what is beyond the count stays unset
+  /// Copies what is set.
+  OwnValues(const OwnValues& other) { *this = other; }
+  /// Copies what is set.
+  OwnValues& operator=(const OwnValues& other) {
+    count = other.count;
+    for (int i = 0; i < count; ++i) at[i] = other.at[i];
+    return *this;
+  }
+};
+
 /// What the axis remembers. The far side is stated relative to the near one: 0 while the spring is relaxed.
 template <class Scalar>
 struct AxisState {
@@ -16,6 +33,7 @@ struct AxisState {
   Scalar rate_rad_per_s;        ///< its derivative
   Scalar twist_rad;             ///< far side minus near side; unused on a rigid axis
   Scalar twist_rate_rad_per_s;  ///< its derivative
+  OwnValues<Scalar> own = {};   ///< states of the effects' own
 };
 
 /// What drives the axis over an interval.
@@ -53,8 +71,22 @@ public:
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
     const Scalar zero = constant<Scalar>(0.0);
-    soft_ = value_of(torques({zero, zero, zero, zero}, 0.0, {zero}).transition_rad_per_s) >
-            1.001 * friction_sticks_below_rad_per_s;
+    AxisState<Scalar> rest{zero, zero, zero, zero, {}};
+    settle(rest, 0.0, {zero});
+    const Torques at_rest = torques(rest, 0.0, {zero});
+    soft_ = value_of(at_rest.transition_rad_per_s) > 1.001 * friction_sticks_below_rad_per_s;
+    dry_ = at_rest.dry && !soft_;
+  }
+
+  /// Lets the effects' own states start: settled where they settle, else at 0.
+  void settle(AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
+    state.own.count = instance_.own_states;
+    for (int i = 0; i < state.own.count; ++i) state.own.at[i] = constant<Scalar>(0.0);
+    if (state.own.count == 0) return;
+    OwnState<Scalar> own[most_own_states];
+    torques(state, t_s, drive, own);
+    for (int i = 0; i < state.own.count; ++i)
+      if (value_of(own[i].per_s) > 0.0) state.own.at[i] = own[i].slope / own[i].per_s;
   }
 
   /// Moves the state by `h_s` under a drive that stays the same.
@@ -76,27 +108,58 @@ public:
     Scalar forward_Nm;            ///< dry friction while the rate is positive, >= 0
     Scalar backward_Nm;           ///< dry friction while the rate is negative, >= 0
     Scalar transition_rad_per_s;  ///< of dry friction; 0: it sticks
+    bool dry;                     ///< there is dry friction
   };
 
   /// The torques in a state under a drive; a spring's is not among them.
   Torques torques(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
+    OwnState<Scalar> own[most_own_states];
+    return torques(state, t_s, drive, own);
+  }
+
+  /// The same.
+  /// @param own  receives how the effects' own states move; room for `most_own_states`
+  Torques torques(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive,
+                  OwnState<Scalar>* own) const {
     const Scalar zero = constant<Scalar>(0.0);
-    AxisTerms<Scalar> terms{t_s, state.angle_rad, state.rate_rad_per_s, drive.torque_Nm, zero};
-    for (const auto& effect : instance_.axis) effect(terms);
-    Scalar torque_Nm = drive.torque_Nm + terms.load_Nm;
-    torque_Nm -= instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
-    if (instance_.friction.empty()) return {torque_Nm, zero, zero, zero};
-    FrictionTerms<Scalar> dry{
-        t_s,  drive.motor_C, state.angle_rad,      state.rate_rad_per_s, drive.torque_Nm, terms.load_Nm, zero,
-        zero, zero,          constant<Scalar>(1.0)};
-    for (const auto& effect : instance_.friction) effect(dry);
+    for (int i = 0; i < instance_.own_states; ++i)
+      own[i] = {i < state.own.count ? state.own.at[i] : zero, zero, zero};
+    AxisTerms<Scalar> terms{t_s,  state.angle_rad, state.rate_rad_per_s, drive.torque_Nm,
+                            zero, drive.torque_Nm};
+    for (const auto& effect : instance_.axis) {
+      terms.own = own + effect.own_states;
+      effect(terms);
+    }
+    Scalar torque_Nm = terms.delivered_Nm + terms.load_Nm;
+    const Scalar viscous_Nm = instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+    if (instance_.friction.empty()) {
+      torque_Nm -= viscous_Nm;
+      return {torque_Nm, zero, zero, zero, false};
+    }
+    FrictionTerms<Scalar> dry{t_s,
+                              drive.motor_C,
+                              state.angle_rad,
+                              state.rate_rad_per_s,
+                              terms.delivered_Nm,
+                              terms.load_Nm,
+                              zero,
+                              zero,
+                              zero,
+                              constant<Scalar>(1.0),
+                              zero};
+    for (const auto& effect : instance_.friction) {
+      dry.own = own + effect.own_states;
+      effect(dry);
+    }
+    torque_Nm -= (viscous_Nm + dry.torque_Nm) * dry.factor;
     return {torque_Nm, Scalar(dry.forward_Nm * dry.factor), Scalar(dry.backward_Nm * dry.factor),
-            dry.transition_rad_per_s};
+            dry.transition_rad_per_s, dry.dry};
   }
 
 private:
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
+    OwnState<Scalar> own[most_own_states];  ///< how the effects' own states move
   };
 
   /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
@@ -124,16 +187,17 @@ private:
              Slope& rate, Scalar* stiffness = nullptr) const {
     if (direction == 0) {
       rate.angle = rate.rate = constant<Scalar>(0.0);
+      if (state.own.count > 0) torques(state, t_s, drive, rate.own);
     } else {
       rate.angle = state.rate_rad_per_s;
       if (instance_.axis.empty() && instance_.friction.empty()) {
         rate.rate = drive.torque_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
       } else {
-        const Torques now = torques(state, t_s, drive);
+        const Torques now = torques(state, t_s, drive, rate.own);
         rate.rate = now.torque_Nm;
         if (soft_) rate.rate -= soft_friction(now, state.rate_rad_per_s, stiffness);
-        else if (direction > 0) rate.rate -= now.forward_Nm;
-        else rate.rate += now.backward_Nm;
+        else if (dry_ && direction > 0) rate.rate -= now.forward_Nm;
+        else if (dry_) rate.rate += now.backward_Nm;
       }
       if constexpr (compliant) rate.rate += spring(state);
       rate.rate *= per_near_inertia_;
@@ -154,6 +218,21 @@ private:
       to.twist_rad = from.twist_rad + rate.twist * h_s;
       to.twist_rate_rad_per_s = from.twist_rate_rad_per_s + rate.twist_rate * h_s;
     }
+    move_own(from, rate, h_s, to);
+  }
+
+  /// The effects' own states, each solved exactly for a slope and a decay that stay as they are.
+  void move_own(const AxisState<Scalar>& from, const Slope& rate, const Scalar& h_s,
+                AxisState<Scalar>& to) const {
+    using std::exp;
+    constexpr double series_below = 1e-3;  // where the quotient would lose half its digits
+    for (int i = 0; i < from.own.count; ++i) {
+      const OwnState<Scalar>& own = rate.own[i];
+      const Scalar decay = own.per_s * h_s;
+      const Scalar share = value_of(decay) > series_below ? Scalar((1.0 - exp(Scalar(-decay))) / decay)
+                                                          : Scalar(1.0 - decay * (0.5 - decay * (1.0 / 6.0)));
+      to.own.at[i] = from.own.at[i] + h_s * share * (own.slope - own.per_s * from.own.at[i]);
+    }
   }
 
   /// One Runge-Kutta step from `from`, where the slope is `k1`; `bend` is how far the acceleration strays
@@ -173,8 +252,9 @@ private:
     move<compliant>(from, k3, h_s, point);
     slope<compliant>(point, t_s + h, drive, direction, k4);
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
-    // A transition of friction between the second and the third slope shows in their difference only.
-    if (soft_) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
+    // A transition of friction between the second and the third slope shows in their difference only, and so
+    // does a state of an effect's own that moves fast.
+    if (soft_ || from.own.count > 0) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
     const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, Scalar& d) {
       d += a;
       d += 2.0 * (b + c);
@@ -185,6 +265,10 @@ private:
     if constexpr (compliant) {
       mean(k1.twist, k2.twist, k3.twist, k4.twist);
       mean(k1.twist_rate, k2.twist_rate, k3.twist_rate, k4.twist_rate);
+    }
+    for (int i = 0; i < from.own.count; ++i) {
+      mean(k1.own[i].slope, k2.own[i].slope, k3.own[i].slope, k4.own[i].slope);
+      mean(k1.own[i].per_s, k2.own[i].per_s, k3.own[i].per_s, k4.own[i].per_s);
     }
     move<compliant>(from, k4, h_s, point);
     return point;
@@ -205,10 +289,9 @@ private:
   template <bool compliant>
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive,
               int depth) const {
-    const double bend_limit_rad_per_s = soft_ ? 1e-4 : 5e-4;
-    const bool dry = !instance_.friction.empty() && !soft_;
+    const double bend_limit_rad_per_s = soft_ || state.own.count > 0 ? 1e-4 : 5e-4;
     for (int event = 0; event < 12; ++event) {
-      const int direction = dry ? direction_of<compliant>(state, t_s, drive) : 1;
+      const int direction = dry_ ? direction_of<compliant>(state, t_s, drive) : 1;
       Slope start;
       Scalar stiffness = constant<Scalar>(0.0);
       slope<compliant>(state, t_s, drive, direction, start, &stiffness);
@@ -222,7 +305,7 @@ private:
         smooth<compliant>(state, t_s + value_of(half_s), half_s, drive, depth - 1);
         return;
       }
-      if (!dry || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
+      if (!dry_ || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
         state = reached;
         return;
       }
@@ -276,6 +359,7 @@ private:
       reached.twist_rate_rad_per_s += h_s * now.twist_rate;
       reached.twist_rad += h_s * reached.twist_rate_rad_per_s;
     }
+    move_own(state, now, h_s, reached);
     Slope there;
     slope<compliant>(reached, t_s + h, drive, 1, there);
     const double missed =
@@ -294,6 +378,7 @@ private:
   Scalar per_near_inertia_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
   double longest_s_ = 1e9;
   bool soft_ = false;  ///< dry friction has a transition
+  bool dry_ = false;   ///< dry friction has none: the axis sticks
 };
 
 }  // namespace thermopower::plant

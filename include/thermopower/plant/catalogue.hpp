@@ -204,6 +204,10 @@ private:
         throw InvalidInput(effect + ": needs '" + to_string(need) +
                            "', which none of its hooks has to do with");
     }
+    if (!info.states.empty() && !hooks.axis && !hooks.friction)
+      throw InvalidInput(effect + ": has states, but no hook on AxisTerms or FrictionTerms that moves them");
+    if (static_cast<int>(info.states.size()) > most_own_states)
+      throw InvalidInput(effect + ": has more than " + std::to_string(most_own_states) + " states");
     int place = 0;
     for (const Parameter& parameter : info.parameters) check(parameter, place++, effect, hooks);
   }

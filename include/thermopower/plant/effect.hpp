@@ -123,6 +123,12 @@ private:
 /// @param name   as in model files and reports
 inline ParameterBuilder parameter(int index, std::string name) { return {index, std::move(name)}; }
 
+/// A state of the joint that an effect brings: its hooks find it in `terms.own`.
+struct HiddenState {
+  std::string name;  ///< as exports call it, with its unit: `bristle_rad`
+  std::string unit;  ///< of its value
+};
+
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.
 struct EffectInfo {
   std::string id;                     ///< stable, snake_case
@@ -132,6 +138,9 @@ struct EffectInfo {
   std::vector<Parameter> parameters;  ///< in the order the hooks see them
   std::vector<Need> needs;            ///< without which it cannot be judged
   std::string experiment;             ///< the excitation that shows it best
+  /// What the joint remembers because of it; only with hooks on AxisTerms or FrictionTerms, at most
+  /// `most_own_states` in a model.
+  std::vector<HiddenState> states = {};
 };
 
 }  // namespace thermopower::plant

@@ -18,6 +18,7 @@ template <class Scalar>
 struct Bound {
   const detail::Hooks<Scalar>* hooks = nullptr;  ///< not owned: the catalogue's
   const Scalar* parameters = nullptr;            ///< not owned: the instance's, in the effect's order
+  int own_states = 0;                            ///< place of its first state among those of the joint
 
   /// Lets the effect act on the terms of a hook it has.
   template <class Terms>
@@ -54,6 +55,7 @@ struct Instance {
 
   ThermalStructure<Scalar> thermal_structure;  ///< after the effects that shape it
   AxisStructure<Scalar> axis_structure;        ///< after the effects that shape it
+  int own_states = 0;                          ///< that the effects bring to the joint
 
   std::vector<Bound<Scalar>> electrical;      ///< effects on ElectricalTerms, in the catalogue's order
   std::vector<Bound<Scalar>> air;             ///< on AirTerms
@@ -177,7 +179,12 @@ private:
   }
 
   void bind(const CatalogueEntry& entry, const Scalar* parameters) {
-    const Bound<Scalar> bound{&entry.of<Scalar>(), parameters};
+    const Bound<Scalar> bound{&entry.of<Scalar>(), parameters, own_states};
+    own_states += static_cast<int>(entry.info.states.size());
+    if (own_states > most_own_states)
+      throw InvalidInput("effect '" + entry.info.id +
+                         "': together with the other effects it brings more than " +
+                         std::to_string(most_own_states) + " states to the joint");
     if (entry.hooks.electrical) electrical.push_back(bound);
     if (entry.hooks.air) air.push_back(bound);
     if (entry.hooks.thermal) thermal.push_back(bound);

@@ -84,15 +84,30 @@ struct DriveTerms {
 /// A transition of dry friction at or below this, in rad/s, is none: the axis sticks at rest.
 inline constexpr double friction_sticks_below_rad_per_s = 5e-4;
 
+/// A state that an effect brings to the joint, by the equation dz/dt = slope - per_s z: a hook reads the value
+/// and sets the two. Where nothing is known of it, it starts settled: at slope / per_s, or at 0 where per_s is 0.
+template <class Scalar>
+struct OwnState {
+  Scalar value;  ///< z, in the unit that the effect's info says
+  // to change
+  Scalar slope;  ///< in that unit per second
+  Scalar per_s;  ///< 1/s, >= 0
+};
+
+/// States of their own that the effects of one model may bring together.
+inline constexpr int most_own_states = 2;
+
 /// Torques on the driven inertia, dry friction left out.
 template <class Scalar>
 struct AxisTerms {
   Given<Scalar> t_s;             ///< time since the start of the run
   const Scalar& angle_rad;       ///< of the driven inertia
   const Scalar& rate_rad_per_s;  ///< its derivative
-  const Scalar& drive_Nm;        ///< torque of the drive, after its own effects
+  const Scalar& drive_Nm;        ///< torque that is asked of the drive, after its own effects
   // to change
-  Scalar load_Nm;  ///< added to the drive
+  Scalar load_Nm;                   ///< added to the drive
+  Scalar delivered_Nm;              ///< what arrives of the drive's torque; starts from all of it
+  OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
 };
 
 /// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
@@ -103,19 +118,23 @@ struct FrictionTerms {
   Given<Scalar> motor_C;         ///< recorded; NaN where it is not
   const Scalar& angle_rad;       ///< of the driven inertia
   const Scalar& rate_rad_per_s;  ///< its derivative
-  const Scalar& drive_Nm;        ///< torque of the drive, after its own effects
+  const Scalar& drive_Nm;        ///< torque that arrives of the drive
   const Scalar& load_Nm;         ///< all that the effects add to it, such as gravity and springs
   // to change
-  Scalar forward_Nm;            ///< magnitude while the rate is positive, >= 0
-  Scalar backward_Nm;           ///< magnitude while the rate is negative, >= 0
-  Scalar transition_rad_per_s;  ///< it turns with the rate as tanh(rate / this); 0: sticks at rest
-  Scalar factor;                ///< multiplies the sum of all dry frictions, >= 0
+  Scalar forward_Nm;                ///< magnitude while the rate is positive, >= 0
+  Scalar backward_Nm;               ///< magnitude while the rate is negative, >= 0
+  Scalar transition_rad_per_s;      ///< it turns with the rate as tanh(rate / this); 0: sticks at rest
+  Scalar factor;                    ///< multiplies all friction, the viscous one too, >= 0
+  Scalar torque_Nm;                 ///< friction of other kinds than the dry one, taken off the other torques
+  bool dry = false;                 ///< some effect has dry friction
+  OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
 
   /// Torque that the gears transmit, N m: |drive - load|. A drive that holds a load against it passes both.
   Scalar transmitted_Nm() const { return magnitude(Scalar(drive_Nm - load_Nm)); }
 
   /// Adds dry friction of a magnitude for each direction. The widest transition among all frictions holds.
   void add_friction(const Scalar& forward, const Scalar& backward, const Scalar& transition) {
+    dry = true;
     forward_Nm += forward;
     backward_Nm += backward;
     transition_rad_per_s = larger(transition_rad_per_s, transition);

@@ -7,21 +7,25 @@
 #include <thermopower/plant/effects/angle_bias_drift.hpp>
 #include <thermopower/plant/effects/angle_scale.hpp>
 #include <thermopower/plant/effects/asymmetric_friction.hpp>
+#include <thermopower/plant/effects/asymmetric_viscous.hpp>
 #include <thermopower/plant/effects/back_emf.hpp>
 #include <thermopower/plant/effects/cable_spring.hpp>
 #include <thermopower/plant/effects/cogging.hpp>
 #include <thermopower/plant/effects/compliance.hpp>
+#include <thermopower/plant/effects/constant_torque.hpp>
 #include <thermopower/plant/effects/coulomb_friction.hpp>
 #include <thermopower/plant/effects/current_sensor_gain.hpp>
 #include <thermopower/plant/effects/current_sensor_offset.hpp>
 #include <thermopower/plant/effects/dead_time.hpp>
 #include <thermopower/plant/effects/drive_deadband.hpp>
+#include <thermopower/plant/effects/drive_lag.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
 #include <thermopower/plant/effects/motion_heating.hpp>
 #include <thermopower/plant/effects/natural_convection.hpp>
 #include <thermopower/plant/effects/neighbour_heating.hpp>
+#include <thermopower/plant/effects/presliding_friction.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
@@ -32,7 +36,9 @@
 #include <thermopower/plant/effects/thermometer_gain.hpp>
 #include <thermopower/plant/effects/thermometer_lag.hpp>
 #include <thermopower/plant/effects/torque_fade.hpp>
+#include <thermopower/plant/effects/torque_ripple.hpp>
 #include <thermopower/plant/effects/torque_saturation.hpp>
+#include <thermopower/plant/effects/warm_friction.hpp>
 #include <thermopower/plant/effects/winding_tempco.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
@@ -70,6 +76,12 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<ActuationDelay>();
     all.add<TorqueSaturation>();
     all.add<TorqueFade>();
+    all.add<ConstantTorque>();
+    all.add<AsymmetricViscous>();
+    all.add<TorqueRipple>();
+    all.add<WarmFriction>();
+    all.add<DriveLag>();
+    all.add<PreslidingFriction>();
     all.add<AngleScale>();
     all.add<AngleBiasDrift>();
     all.add<RateBias>();

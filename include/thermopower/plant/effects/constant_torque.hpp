@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::plant {
+
+/// A torque that is always there.
+struct ConstantTorque {
+  /// Its parameters, in this order.
+  enum Parameters { size_Nm };
+
+  /// What it is.
+  static EffectInfo info() {
+    return {"constant_torque",
+            Submodel::mechanical_load,
+            "torque += Nm",
+            "A weight on a pulley, a preload, or an offset of the command: a torque that nothing changes.",
+            {parameter(size_Nm, "Nm").unit("N m").within(-1e3, 1e3).starts({0.0})},
+            {Need::axis_model},
+            "slow motion at constant rate in both directions, and rest with the drive off"};
+  }
+
+  /// Adds the torque.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+    terms.load_Nm += p[size_Nm];
+  }
+};
+
+}  // namespace thermopower::plant

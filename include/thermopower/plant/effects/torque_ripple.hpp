@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+#include <cmath>
+
+namespace thermopower::plant {
+
+/// A torque constant that varies with the angle.
+struct TorqueRipple {
+  /// Its parameters, in this order.
+  enum Parameters { sin_share, cos_share, cycles_per_turn };
+
+  /// What it is.
+  static EffectInfo info() {
+    return {"torque_ripple",
+            Submodel::mechanical_drive,
+            "torque = drive (1 + sin_share sin(cycles theta) + cos_share cos(cycles theta))",
+            "The same current gives more torque at some angles than at others, several times a turn.",
+            {parameter(sin_share, "sin_share").within(-1.0, 1.0).starts({0.0}),
+             parameter(cos_share, "cos_share").within(-1.0, 1.0).starts({0.0}),
+             parameter(cycles_per_turn, "cycles_per_turn")
+                 .within(1.6, 400.0)
+                 .starts({2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 16, 18,
+                          20, 21, 22, 24, 28, 30, 33, 36, 40, 42, 44, 48, 54, 60, 72})},
+            {Need::axis_model, Need::angle_deg},
+            "slow motion through a full turn at large and at small current"};
+  }
+
+  /// Scales what arrives of the drive.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisTerms<Scalar>& terms) {
+    using std::cos;
+    using std::sin;
+    const Scalar phase = p[cycles_per_turn] * terms.angle_rad;
+    terms.delivered_Nm += terms.drive_Nm * (p[sin_share] * sin(phase) + p[cos_share] * cos(phase));
+  }
+};
+
+}  // namespace thermopower::plant
