@@ -182,7 +182,6 @@ inline std::vector<Trial> trials() {
       {"torque_ripple", {{"sin_share", 0.2}, {"cos_share", -0.1}, {"cycles_per_turn", 6.0}}, true},
       {"warm_friction", {{"per_K", 0.02}}, true},
       {"drive_lag", {{"lag_s", 0.03}}, true},
-      {"presliding_friction", {{"Nm", 0.008}, {"bend_rad", 0.03}, {"damping_s", 0.003}}, true},
       {"angle_scale", {{"gain", 57.29578}}, true},
       {"angle_bias_drift", {{"deg_per_s", 0.4}}, true},
       {"rate_bias", {{"dps", 1.5}}, true},

@@ -12,6 +12,7 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/effects/presliding_friction.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -28,6 +29,7 @@ namespace {
 const Catalogue& catalogue() {
   static const Catalogue all = [] {
     Catalogue with_own = standard_catalogue();
+    with_own.add<PreslidingFriction>();
     with_own.add<own_effects::HeatPipe>();
     with_own.add<own_effects::Paddle>();
     with_own.add<own_effects::Rounded>();

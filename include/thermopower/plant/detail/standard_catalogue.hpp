@@ -25,7 +25,6 @@
 #include <thermopower/plant/effects/motion_heating.hpp>
 #include <thermopower/plant/effects/natural_convection.hpp>
 #include <thermopower/plant/effects/neighbour_heating.hpp>
-#include <thermopower/plant/effects/presliding_friction.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
@@ -81,7 +80,6 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<TorqueRipple>();
     all.add<WarmFriction>();
     all.add<DriveLag>();
-    all.add<PreslidingFriction>();
     all.add<AngleScale>();
     all.add<AngleBiasDrift>();
     all.add<RateBias>();
