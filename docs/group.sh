@@ -7,7 +7,7 @@
 case $1 in
   */plant/effects/*) group=gap_effects ;;
   */plant/catalogue.hpp | */plant/effect.hpp | */plant/standard_catalogue.hpp | */plant/terms.hpp | \
-    */gap/data/data_gate.hpp | */gap/data/inputs.hpp | */gap/localise/localisation.hpp) group=gap ;;
+    */gap/data/inputs.hpp | */gap/localise/localisation.hpp) group=gap ;;
   */plant/* | */gap/*/*) group=gap_engine ;;
   */gap/*) group=gap ;;
   */simulation/*) group=simulation ;;

@@ -91,7 +91,7 @@ TEST_CASE("a text column nobody knows is left out, and said to be") {
   CHECK(table.ignored_text == std::vector<std::string>{"note"});
   const auto file = files::to_recording(table);
   REQUIRE(file.findings.size() == 1);
-  CHECK(file.findings[0].code == "text_column_ignored");
+  CHECK(file.findings[0].kind == FindingKind::text_column_ignored);
   CHECK(file.findings[0].column == "note");
 }
 
@@ -158,4 +158,45 @@ TEST_CASE("what is no readable file is told apart") {
                     ContainsSubstring("is a directory; expected a CSV file"));
   CHECK_THROWS_WITH(files::read_recording((folder / "there is no such file").string()),
                     ContainsSubstring("cannot be read: No such file"));
+}
+
+TEST_CASE("columns go by other names and units where they are asked for so") {
+  const auto choice = [](const char* text) { return files::parse_column_choice(text); };
+  const std::string text = "stamp,temp,duty,current,motor_C\n0,77,0.5,-250,1\n1000,86,1,-500,2\n";
+  const auto table = files::parse_csv("log.csv", text.data(), text.size(), files::known_columns(),
+                                      {choice("t_s=stamp:ms"), choice("motor_C=temp:degF"),
+                                       choice("power_param=duty:1"), choice("drive_A=current:-mA")});
+  const Recording r = files::to_recording(table).recording;
+  REQUIRE(r.rows() == 2);
+  CHECK(r.t_s[1] == Approx(1.0));
+  CHECK(r.column("motor_C")[0] == Approx(25.0));
+  CHECK(r.column("motor_C")[1] == Approx(30.0));
+  CHECK(r.column("power_param")[0] == Approx(127.5));
+  CHECK(r.column("drive_A")[1] == Approx(0.5));
+  CHECK(r.columns.size() == 3);  // the file's own motor_C gave way
+}
+
+TEST_CASE("what --column cannot mean is said") {
+  const auto said = [](const char* text) {
+    try {
+      files::parse_column_choice(text);
+    } catch (const files::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK_THAT(said("motor_C"), ContainsSubstring("expected NAME=HEADER"));
+  CHECK_THAT(said("motor_C=temp:degX"),
+             ContainsSubstring("'degX' is no unit of motor_C; expected one of degC"));
+  CHECK_THAT(said("wind=fan:rpm"), ContainsSubstring("takes none"));
+  CHECK(said("motor_C=temp") == "nothing");
+  const std::string text = "t_s,a\n0,1\n";
+  try {
+    files::parse_csv("log.csv", text.data(), text.size(), files::known_columns(),
+                     {files::parse_column_choice("motor_C=temp")});
+    FAIL("a column that is not there");
+  } catch (const files::InputError& error) {
+    CHECK_THAT(error.what(),
+               ContainsSubstring("log.csv:1: no column 'temp' in the header row (asked for as motor_C)"));
+  }
 }

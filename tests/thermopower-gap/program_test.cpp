@@ -247,6 +247,42 @@ TEST_CASE("exit statuses and messages, and nothing half-written") {
   CHECK(nlohmann::json::parse(text_of(folder.path / "report.json"))["verdict"] == "insufficient");
 }
 
+TEST_CASE("check says what the data can show, and what would mend them") {
+  const Folder folder("check");
+  folder.bench({});
+  const auto sound = folder.run("check " + inputs + "--report check.json");
+  CAPTURE(sound.out, sound.error);
+  REQUIRE(sound.status == 0);
+  CHECK_THAT(sound.out, ContainsSubstring("heat_capacity"));
+  CHECK_THAT(sound.out, ContainsSubstring("can show"));
+  CHECK_THAT(sound.out, ContainsSubstring("neighbour_heating: neighbour_C"));
+  const auto report = nlohmann::json::parse(text_of(folder.path / "check.json"));
+  CHECK(report["believable"] == true);
+  CHECK(report["constants"]["resistance"]["sd_together"].get<double>() < 0.01);
+  CHECK(report["signals"]["motor_C"]["noise"].get<double>() ==
+        Approx(0.104).epsilon(0.2));  // 0.1 and steps of 0.1
+
+  // The same log in degrees Fahrenheit: refused with the option that mends it, and believed with it.
+  for (const char* file : {"train.csv", "heldout.csv"}) {
+    Recording r = test::bench_recording({}, 900, file[0]);
+    for (const char* column : {"motor_C", "ambient_C"})
+      r.set(column, (r.column(column).array() * 1.8 + 32.0).matrix());
+    write(folder.path / file, csv(r));
+  }
+  for (const char* command : {"check ", "diagnose "}) {
+    const auto refused = folder.run(command + inputs);
+    CHECK(refused.status == 4);
+    CHECK_THAT(refused.out, ContainsSubstring("motor_C=motor_C:degF"));
+  }
+  const std::string mend = "--column motor_C=motor_C:degF --column ambient_C=ambient_C:degF ";
+  CHECK(folder.run("check " + inputs + mend).status == 0);
+  const auto mended = folder.run("diagnose " + inputs + mend + "--report report.json");
+  CHECK(mended.status == 0);
+  CHECK(nlohmann::json::parse(text_of(folder.path / "report.json"))["verdict"] == "no_gap");
+  CHECK(folder.run("check " + inputs + "--column motor_C=temp:degX").status == 2);
+  CHECK(folder.run("check " + inputs + "--column motor_C=temp").status == 3);
+}
+
 TEST_CASE("the catalogue is listed, with every id of the interface") {
   const Folder folder("effects");
   const auto result = folder.run("effects");

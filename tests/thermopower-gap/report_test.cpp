@@ -37,7 +37,7 @@ Diagnosis example() {
   d.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 3.0, 2.0, 0.3, 0.2, 0.9, {0.88, 0.92}});
   d.next_experiment = "heat <hard> & wait";
   d.not_judged = {"angle_deg: not recorded"};
-  d.findings.push_back({"quantum", Severity::note, "a.csv", "motor_C", "steps of 0.1"});
+  d.findings.push_back({FindingKind::coarse_quantum, Severity::note, "a.csv", "motor_C", "steps of 0.1"});
   d.ranking.push_back({{"radiation"},
                        0.61,
                        1.0,

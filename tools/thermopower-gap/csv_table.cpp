@@ -57,7 +57,9 @@ std::string shortest(double value) {
 
 class Parser {
 public:
-  Parser(const std::string& file, const std::vector<std::string>& numeric) : numeric_(numeric) {
+  Parser(const std::string& file, const std::vector<std::string>& numeric,
+         const std::vector<ColumnChoice>& choices)
+      : numeric_(numeric), choices_(choices) {
     table_.file = file;
     if (csv_init(&csv_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL) != 0) throw std::bad_alloc();
     csv_set_blk_size(&csv_, 512);
@@ -107,11 +109,12 @@ public:
   }
 
 private:
-  enum class Kind : unsigned char { undecided, number, text, run };
+  enum class Kind : unsigned char { undecided, number, text, run, unused };
   struct Target {
     Kind kind = Kind::undecided;
     bool must_be_number = false;
     bool power = false;
+    double factor = 1.0, offset = 0.0;
     std::vector<double> values;
   };
 
@@ -196,27 +199,60 @@ private:
     header_.push_back(name);
   }
 
+  // Gives the columns the names that were chosen for them.
+  void choose_columns() {
+    names_ = header_;
+    std::vector<bool> chosen(header_.size(), false);
+    for (const auto& choice : choices_) {
+      const auto found = std::find(header_.begin(), header_.end(), choice.header);
+      if (found == header_.end())
+        fail(1, {},
+             "no column " + excerpt(choice.header) + " in the header row (asked for as " + choice.name +
+                 "); found " + header_list());
+      const auto at = static_cast<std::size_t>(found - header_.begin());
+      if (chosen[at]) fail(1, header_[at], "is asked for twice; expected one name for each column");
+      chosen[at] = true;
+      names_[at] = choice.name;
+      targets_[at].factor = choice.factor;
+      targets_[at].offset = choice.offset;
+    }
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const auto same = [&](const ColumnChoice& choice) { return choice.name == names_[i]; };
+      if (!chosen[i] && std::any_of(choices_.begin(), choices_.end(), same)) {
+        targets_[i].kind = Kind::unused;
+        names_[i].clear();
+      }
+    }
+  }
+
+  std::string header_list() const {
+    std::string found;
+    for (const auto& name : header_) {
+      if (found.size() < 120) found += (found.empty() ? "" : ", ") + excerpt(name);
+    }
+    return found;
+  }
+
   void end_header() {
     header_done_ = true;
     targets_.resize(header_.size());
+    choose_columns();
     for (std::size_t i = 0; i < header_.size(); ++i) {
       Target& target = targets_[i];
-      target.kind = header_[i] == "run" ? Kind::run : Kind::undecided;
-      target.must_be_number = std::find(numeric_.begin(), numeric_.end(), header_[i]) != numeric_.end();
-      target.power = header_[i] == "power_param";
-      if (header_[i] == "t_s") time_ = i;
-      if (header_[i] == "run") run_ = i;
+      if (target.kind == Kind::unused) continue;
+      target.kind = names_[i] == "run" ? Kind::run : Kind::undecided;
+      target.must_be_number = std::find(numeric_.begin(), numeric_.end(), names_[i]) != numeric_.end();
+      target.power = names_[i] == "power_param";
+      if (names_[i] == "t_s") time_ = i;
+      if (names_[i] == "run") run_ = i;
     }
     if (time_ == none) {
-      std::string found;
-      for (const auto& name : header_) {
-        if (found.size() < 120) found += (found.empty() ? "" : ", ") + excerpt(name);
-      }
       const bool other_separator =
           header_.size() == 1 && header_[0].find_first_of(";\t|") != std::string::npos;
       fail(1, {},
-           "no column 't_s' (time in seconds) in the header row; found " + found +
-               (other_separator ? "; expected columns separated by commas" : ""));
+           "no column 't_s' (time in seconds) in the header row; found " + header_list() +
+               (other_separator ? "; expected columns separated by commas"
+                                : "; --column t_s=HEADER says which one it is"));
     }
   }
 
@@ -228,7 +264,7 @@ private:
       label_.assign(text, std::min(size, longest_field));
       return;
     }
-    if (target.kind == Kind::text) return;
+    if (target.kind == Kind::text || target.kind == Kind::unused) return;
     double value = std::numeric_limits<double>::quiet_NaN();
     if (!is_missing(text, size)) {
       const NumberFault fault = parse_number(text, size, value);
@@ -250,6 +286,7 @@ private:
                  "nan for a missing sample");
       }
       target.kind = Kind::number;
+      value = (value - target.offset) * target.factor;
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
         fail(line_ + lines_in_row_, header_[field_],
              excerpt(text, size) + " is outside its range; expected 0..255");
@@ -310,17 +347,19 @@ private:
       Target& target = targets_[i];
       if (target.kind == Kind::text) table_.ignored_text.push_back(header_[i]);
       if (target.kind != Kind::number && target.kind != Kind::undecided) continue;
-      table_.columns.push_back({header_[i], std::move(target.values)});
+      table_.columns.push_back({names_[i], std::move(target.values)});
     }
   }
 
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   const std::vector<std::string>& numeric_;
+  const std::vector<ColumnChoice>& choices_;
   CsvTable table_;
   csv_parser csv_{};
   std::exception_ptr error_;
-  std::vector<std::string> header_;
+  std::vector<std::string> header_;  ///< as in the file
+  std::vector<std::string> names_;   ///< as in the format; empty: left out
   std::vector<Target> targets_;
   std::string label_;
   std::size_t line_ = 1;
@@ -339,21 +378,22 @@ private:
 }  // namespace
 
 CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
-                   const std::vector<std::string>& numeric) {
-  Parser parser(name, numeric);
+                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices) {
+  Parser parser(name, numeric, choices);
   constexpr std::size_t block =
       65536;  // bounded, so that a runaway field is noticed before it fills the memory
   for (std::size_t at = 0; at < size; at += block) parser.feed(bytes + at, std::min(block, size - at));
   return parser.finish();
 }
 
-CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric) {
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric,
+                  const std::vector<ColumnChoice>& choices) {
   std::error_code status;
   if (std::filesystem::is_directory(path, status))
     throw InputError(path + ": is a directory; expected a CSV file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
-  Parser parser(path, numeric);
+  Parser parser(path, numeric, choices);
   std::vector<char> block(65536);
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "column_choice.hpp"
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -45,11 +47,14 @@ struct CsvTable {
 ///
 /// @param path file to read; a directory or an unreadable file is an error, too
 /// @param numeric names of columns that must be numbers
+/// @param choices columns that go by another name or unit in the file; a column of the file whose own name is
+/// taken by another one is left out
 /// @throws InputError with file, line, column and what was expected
-CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric);
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric,
+                  const std::vector<ColumnChoice>& choices = {});
 
 /// @brief The same on bytes in memory; `name` stands in messages where a path would.
 CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
-                   const std::vector<std::string>& numeric);
+                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices = {});
 
 }  // namespace thermopower::gap::files

@@ -16,6 +16,11 @@ Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train,
   return diagnose(model, train, held_out, options, standard_catalogue());
 }
 
+DataReport run_check(const Model& model, const std::vector<Recording>& train,
+                     const std::vector<Recording>& held_out, const Options& options) {
+  return check_data(model, train, held_out, options, standard_catalogue());
+}
+
 std::vector<SimulatedColumn> run_simulation(const Model& model, const Recording& recording,
                                             double horizon_s) {
   SimulationOptions options;

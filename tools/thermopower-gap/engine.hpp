@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/options.hpp>
@@ -16,6 +17,10 @@ namespace thermopower::gap::files {
 /// minutes.
 Diagnosis run_diagnosis(const Model& model, const std::vector<Recording>& train,
                         const std::vector<Recording>& held_out, const Options& options);
+
+/// @brief What data are worth before anything is fitted, with the standard catalogue.
+DataReport run_check(const Model& model, const std::vector<Recording>& train,
+                     const std::vector<Recording>& held_out, const Options& options);
 
 /// @brief One simulated signal, a value per row; NaN where it could not be simulated.
 struct SimulatedColumn {

@@ -5,6 +5,7 @@
 // gap shrinks with it.
 
 #include "atomic_file.hpp"
+#include "check_report.hpp"
 #include "engine.hpp"
 #include "header_export.hpp"
 #include "input_error.hpp"
@@ -51,7 +52,8 @@ struct UsageError : std::runtime_error {
 
 struct Arguments {
   std::string model, report, html, predictions, augmented, header;
-  std::vector<std::string> recordings, held_out, without;
+  std::vector<std::string> recordings, held_out, without, columns;
+  bool as_recorded = false;
   double horizon_s = 0.5;
   double tolerance = 0.05;
   unsigned threads = 0;
@@ -99,11 +101,22 @@ private:
   std::thread thread_;
 };
 
+std::vector<files::ColumnChoice> column_choices(const Arguments& arguments) {
+  std::vector<files::ColumnChoice> choices;
+  try {
+    for (const auto& text : arguments.columns) choices.push_back(files::parse_column_choice(text));
+  } catch (const files::InputError& error) {
+    throw UsageError(error.what());
+  }
+  return choices;
+}
+
 std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
+                                     const std::vector<files::ColumnChoice>& choices,
                                      std::vector<gap::Finding>& findings) {
   std::vector<gap::Recording> list;
   for (const auto& path : paths) {
-    files::RecordingFile file = files::read_recording(path);
+    files::RecordingFile file = files::read_recording(path, choices);
     list.push_back(std::move(file.recording));
     findings.insert(findings.end(), file.findings.begin(), file.findings.end());
   }
@@ -144,6 +157,7 @@ int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
   check_ids(arguments.without, catalogue);
+  const std::vector<files::ColumnChoice> choices = column_choices(arguments);
   files::OutputFiles outputs;
   for (const auto* path : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
                            &arguments.header}) {
@@ -155,8 +169,8 @@ int diagnose(const Arguments& arguments) {
     Progress progress;
     model = files::read_model(arguments.model, catalogue);
     std::vector<gap::Finding> findings;
-    std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
-    std::vector<gap::Recording> held_out = read_all(arguments.held_out, findings);
+    std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
+    std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
     gap::Options options;
     options.horizon_s = arguments.horizon_s;
     options.tolerance = arguments.tolerance;
@@ -164,6 +178,7 @@ int diagnose(const Arguments& arguments) {
     options.threads =
         arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
     options.seed = arguments.seed;
+    options.as_recorded = arguments.as_recorded;
     if (held_out.empty()) {
       for (auto& recording : recordings) {
         auto [first, last] = gap::split(recording, options.held_out_fraction);
@@ -173,7 +188,7 @@ int diagnose(const Arguments& arguments) {
     }
     progress.stage("diagnosing");
     diagnosis = files::run_diagnosis(model, recordings, held_out, options);
-    diagnosis.findings.insert(diagnosis.findings.begin(), findings.begin(), findings.end());
+    diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
     if (!arguments.html.empty())
@@ -196,6 +211,31 @@ int diagnose(const Arguments& arguments) {
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
+int check(const Arguments& arguments) {
+  refuse_overlaps(arguments);
+  const std::vector<files::ColumnChoice> choices = column_choices(arguments);
+  files::OutputFiles outputs;
+  if (!arguments.report.empty()) outputs.expect(arguments.report);
+  gap::DataReport report;
+  {
+    Progress progress;
+    const gap::Model model = files::read_model(arguments.model, gap::standard_catalogue());
+    std::vector<gap::Finding> findings;
+    const std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
+    const std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
+    gap::Options options;
+    options.horizon_s = arguments.horizon_s;
+    options.as_recorded = arguments.as_recorded;
+    progress.stage("checking");
+    report = files::run_check(model, recordings, held_out, options);
+    report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+    if (!arguments.report.empty()) outputs.put(arguments.report, files::check_json(report));
+    outputs.commit();
+  }
+  std::fputs(files::check_text(report).c_str(), stdout);
+  return gap::deciding(report.findings) != nullptr ? too_little_data : made;
+}
+
 int predict(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
@@ -203,7 +243,8 @@ int predict(const Arguments& arguments) {
   outputs.expect(arguments.predictions);
   const gap::Model augmented = files::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
-  const std::vector<gap::Recording> recordings = read_all(arguments.recordings, findings);
+  const std::vector<gap::Recording> recordings =
+      read_all(arguments.recordings, column_choices(arguments), findings);
   gap::Model bare = augmented;
   bare.effects.clear();
   outputs.put(arguments.predictions,
@@ -225,7 +266,7 @@ int run(int count, char** values) {
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data for any statement.");
+      "Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand.");
   Arguments arguments;
 
   CLI::App* const diagnosing = app.add_subcommand("diagnose", "find the missing effect");
@@ -268,6 +309,23 @@ int run(int count, char** values) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
 
+  CLI::App* const checking = app.add_subcommand(
+      "check", "say what is wrong with recordings, and what they can show; nothing is fitted");
+  checking->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
+  checking->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")->required();
+  checking->add_option("--heldout", arguments.held_out, "a recording to judge on; may be repeated");
+  checking->add_option("--report", arguments.report, "write the same for machines (JSON)");
+  checking->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  for (CLI::App* const one : {diagnosing, checking})
+    one->add_flag("--as-recorded", arguments.as_recorded,
+                  "mask and cut nothing: say what is wrong with the data, and use them all the same");
+  for (CLI::App* const one : {diagnosing, predicting, checking})
+    one->add_option("--column", arguments.columns,
+                    "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
+                    "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
+
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
 
   try {
@@ -279,6 +337,7 @@ int run(int count, char** values) {
     std::fputs(files::catalogue_text(gap::standard_catalogue().list()).c_str(), stdout);
     return made;
   }
+  if (*checking) return check(arguments);
   return *predicting ? predict(arguments) : diagnose(arguments);
 }
 

@@ -10,9 +10,10 @@
 namespace thermopower::gap::files {
 
 const std::vector<std::string>& known_columns() {
-  static const std::vector<std::string> names = {"t_s",       "power_param",  "drive_A",     "supply_V",
-                                                 "ambient_C", "airspeed_mps", "neighbour_C", "rate_dps",
-                                                 "current_A", "motor_C",      "angle_deg"};
+  static const std::vector<std::string> names = {"t_s",        "power_param", "drive_A",      "voltage_V",
+                                                 "target_deg", "target_dps",  "torque_Nm",    "heat_W",
+                                                 "supply_V",   "ambient_C",   "airspeed_mps", "neighbour_C",
+                                                 "rate_dps",   "current_A",   "motor_C",      "angle_deg"};
   return names;
 }
 
@@ -36,12 +37,12 @@ RecordingFile to_recording(CsvTable table) {
         {static_cast<Eigen::Index>(table.run_begin[i]), static_cast<Eigen::Index>(end), table.run_labels[i]});
   }
   for (const auto& name : table.ignored_text) {
-    file.findings.push_back({"text_column_ignored", Severity::note, table.file, name,
+    file.findings.push_back({FindingKind::text_column_ignored, Severity::note, table.file, name,
                              "holds text and is no run label; it is not used"});
   }
   if (!table.ends_with_line_break) {
     file.findings.push_back(
-        {"no_final_line_break",
+        {FindingKind::no_final_line_break,
          Severity::note,
          table.file,
          {},
@@ -51,8 +52,8 @@ RecordingFile to_recording(CsvTable table) {
   return file;
 }
 
-RecordingFile read_recording(const std::string& path) {
-  return to_recording(read_csv(path, known_columns()));
+RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices) {
+  return to_recording(read_csv(path, known_columns(), choices));
 }
 
 }  // namespace thermopower::gap::files

@@ -23,7 +23,8 @@ struct RecordingFile {
 };
 
 /// @brief Reads a recording from a CSV file. @throws InputError, see read_csv()
-RecordingFile read_recording(const std::string& path);
+/// @param choices columns that go by another name or unit in the file
+RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices = {});
 
 /// @brief The same from a table already in memory.
 RecordingFile to_recording(CsvTable table);

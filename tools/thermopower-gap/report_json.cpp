@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace thermopower::gap::files {
@@ -18,18 +19,6 @@ Json number(double value) {
 }
 
 Json interval(const Interval& ci) { return Json::array({number(ci.low), number(ci.high)}); }
-
-const char* name_of(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "note";
-}
 
 Json parameters(const std::vector<ParameterEstimate>& list) {
   Json object = Json::object();
@@ -79,7 +68,30 @@ Json ranked(const RankedExplanation& one) {
           {"confusable", confusable}};
 }
 
+// Hundreds of short ranges help nobody: the first ones, and how many rows there are in all.
+Json finding_json(const Finding& finding) {
+  constexpr std::size_t shown = 50;
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < std::min(shown, finding.rows.size()); ++i)
+    rows.push_back({finding.rows[i].begin, finding.rows[i].end});
+  return {{"kind", to_string(finding.kind)},
+          {"severity", to_string(finding.severity)},
+          {"recording", finding.recording},
+          {"column", finding.column},
+          {"message", finding.message},
+          {"rows", rows},
+          {"row_count", finding.row_count()},
+          {"action", to_string(finding.action)},
+          {"mend", finding.mend}};
+}
+
 }  // namespace
+
+std::string findings_json(const std::vector<Finding>& findings) {
+  Json list = Json::array();
+  for (const auto& one : findings) list.push_back(finding_json(one));
+  return list.dump(1, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string report_json(const Diagnosis& diagnosis) {
   Json root;
@@ -102,11 +114,7 @@ std::string report_json(const Diagnosis& diagnosis) {
   root["not_judged"] = diagnosis.not_judged;
   root["findings"] = Json::array();
   for (const auto& finding : diagnosis.findings) {
-    root["findings"].push_back({{"code", finding.code},
-                                {"severity", name_of(finding.severity)},
-                                {"recording", finding.recording},
-                                {"column", finding.column},
-                                {"message", finding.message}});
+    root["findings"].push_back(finding_json(finding));
   }
   root["constants"] = Json::object();
   for (const auto& constant : diagnosis.constants) {

@@ -14,4 +14,7 @@ namespace thermopower::gap::files {
 /// duration: the same diagnosis gives the same bytes.
 std::string report_json(const Diagnosis& diagnosis);
 
+/// @brief The findings as a JSON list, as reports have it under `findings`.
+std::string findings_json(const std::vector<Finding>& findings);
+
 }  // namespace thermopower::gap::files

@@ -69,7 +69,7 @@ const char* headline(Verdict verdict) {
     case Verdict::unexplained:
       return "UNEXPLAINED";
     case Verdict::insufficient:
-      return "TOO LITTLE DATA";
+      return "INSUFFICIENT DATA";
   }
   return "";
 }
@@ -99,6 +99,7 @@ std::string gap_table(const Diagnosis& diagnosis) {
 std::string summary(const Diagnosis& diagnosis) {
   std::string out = std::string(headline(diagnosis.verdict)) + "\n";
   if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
+  out += findings_text(diagnosis.findings, Severity::warning);
   bool first = true;
   for (const auto& where : diagnosis.where) {
     std::string text = to_string(where.signal) + ", " + to_string(where.submodel) + " (" +
@@ -125,17 +126,26 @@ std::string summary(const Diagnosis& diagnosis) {
   for (const auto& one : diagnosis.alternatives) others += (others.empty() ? "" : "; ") + joined(one);
   if (!others.empty()) out += line("or", others + " (this recording cannot tell them apart)");
   out += gap_table(diagnosis);
-  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty() || !diagnosis.findings.empty())
-    out += "\n";
+  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty()) out += "\n";
   if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
   for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
+  return out;
+}
+
+std::string summary_line(const std::string& label, const std::string& text) { return line(label, text); }
+
+std::string findings_text(const std::vector<Finding>& findings, Severity least) {
+  std::string out;
   std::vector<std::string> told;  // the same fault in several recordings is told once
-  for (const auto& finding : diagnosis.findings) {
-    if (finding.severity == Severity::note) continue;
+  for (const auto& finding : findings) {
+    if (finding.severity < least) continue;
     if (std::find(told.begin(), told.end(), finding.column + finding.message) != told.end()) continue;
     told.push_back(finding.column + finding.message);
-    out += line("data", finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) +
-                            ": " + finding.message);
+    std::string text = finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) +
+                       ": " + finding.message;
+    if (finding.action != FindingAction::none) text += std::string(" [") + to_string(finding.action) + "]";
+    if (!finding.mend.empty()) text += ". To mend it: " + finding.mend;
+    out += line(finding.severity == Severity::note ? "note" : "data", text);
   }
   return out;
 }

@@ -17,6 +17,12 @@ std::string summary(const Diagnosis& diagnosis);
 /// @brief Verdict and causes in one line, for places with room for no more.
 std::string one_sentence(const Diagnosis& diagnosis);
 
+/// @brief The findings of at least some severity, one under the other, each with what was done and what would mend it.
+std::string findings_text(const std::vector<Finding>& findings, Severity least);
+
+/// @brief One labelled paragraph of a summary, wrapped and indented.
+std::string summary_line(const std::string& label, const std::string& text);
+
 /// @brief The catalogue as text: id, submodel, equation, parameters with units and bounds, needs.
 std::string catalogue_text(const std::vector<EffectInfo>& effects);
 

@@ -6,6 +6,8 @@
 /// Every definition that the public headers of the diagnosis leave to a library where
 /// THERMOPOWER_GAP_LIBRARY is defined: for the one source file that compiles them.
 
+#include <thermopower/gap/detail/check.hpp>
+#include <thermopower/gap/detail/check_data.hpp>
 #include <thermopower/gap/detail/diagnose.hpp>
 #include <thermopower/gap/detail/simulate.hpp>
 #include <thermopower/plant/detail/standard_catalogue.hpp>

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/plant/quantity.hpp>
 #include <thermopower/plant/signal.hpp>
@@ -92,18 +93,6 @@ struct GapScore {
   Interval ci95;                    ///< of shrunk_by, by a paired block bootstrap
 };
 
-/// Severity of a data-gate finding.
-enum class Severity { note, warning, error };
-
-/// Something about the data itself, found before any physics.
-struct Finding {
-  std::string code;  ///< stable id such as `irregular_stamps`, `frozen_channel`, `clock_shift`
-  Severity severity = Severity::note;  ///< an error: read no further before it is mended
-  std::string recording;               ///< name of the recording it was found in
-  std::string column;                  ///< may be empty
-  std::string message;                 ///< one sentence: what is wrong, where, by how much
-};
-
 /// Measured and simulated curves of one signal over one held-out run, for pictures.
 struct SignalSeries {
   plant::SignalName signal;      ///< which
@@ -174,7 +163,7 @@ struct Diagnosis {
   double none_of_these = 0.0;                          ///< probability of a cause outside the catalogue
 
   std::vector<std::string> not_judged;     ///< one sentence for each signal or block that lacks a column
-  std::vector<Finding> findings;           ///< data gate
+  std::vector<Finding> findings;           ///< of the data, recording by recording
   std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
   std::vector<MovedConstant> constants;    ///< every constant that can be off, moved or not
   std::vector<SignalSeries> series;        ///< curves of every judged signal over the held-out recordings

@@ -18,8 +18,9 @@ struct Options {
   double held_out_fraction = 0.3;  ///< held out where no recording is given for it, 0.05..0.9
   int effects_at_once = 2;         ///< the largest set of effects weighed together, 1..3
   std::vector<std::string> without;  ///< ids removed from the catalogue
-  unsigned threads = 1;              ///< 1 or more, of which at most 1024 are used; the result does not depend on it
-  unsigned seed = 1;                 ///< of the bootstrap; equal seeds give equal reports
+  bool as_recorded = false;  ///< the check says what is wrong with the data, but masks and cuts nothing
+  unsigned threads = 1;      ///< 1 or more, of which at most 1024 are used; the result does not depend on it
+  unsigned seed = 1;         ///< of the bootstrap; equal seeds give equal reports
 
   /// @throws InvalidInput naming the first option that is out of its range
   void validate() const {

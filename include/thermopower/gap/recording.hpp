@@ -29,10 +29,12 @@ struct Column {
 /// Invariants (see validate()): all columns are as long as `t_s`; `t_s` is finite and strictly increasing
 /// inside a run; the runs are in order and do not overlap.
 struct Recording {
-  std::string name;             ///< for messages, usually the file's name
-  Eigen::VectorXd t_s;          ///< time of each row in s
-  std::vector<RunSpan> runs;    ///< independent runs; empty means that all rows are one run
-  std::vector<Column> columns;  ///< everything else, in the order recorded
+  std::string name;                             ///< for messages, usually the file's name
+  Eigen::VectorXd t_s;                          ///< time of each row in s
+  std::vector<RunSpan> runs;                    ///< independent runs; empty means that all rows are one run
+  std::vector<Column> columns;                  ///< everything else, in the order recorded
+  Eigen::Index first_row = 0;                   ///< of a part: which row of the whole its first one is
+  std::vector<std::string> empty_columns = {};  ///< that were there without a sample, and were left out
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }
@@ -48,6 +50,13 @@ struct Recording {
   bool has(std::string_view column_name) const {
     const Eigen::VectorXd* values = find(column_name);
     return values != nullptr && values->array().isFinite().any();
+  }
+
+  /// Whether there was such a column without any sample in it.
+  bool is_empty(std::string_view column_name) const {
+    for (const std::string& one : empty_columns)
+      if (one == column_name) return true;
+    return false;
   }
 
   /// The column of that name. @throws InvalidInput where there is none.
@@ -79,6 +88,7 @@ struct Recording {
   Recording slice(Eigen::Index begin, Eigen::Index end) const {
     Recording part;
     part.name = name;
+    part.first_row = first_row + begin;
     part.t_s = t_s.segment(begin, end - begin);
     for (const RunSpan& run : runs) {
       const Eigen::Index first = run.begin > begin ? run.begin : begin;

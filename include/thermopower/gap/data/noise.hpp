@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/robust.hpp>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -11,48 +13,169 @@
 
 namespace thermopower::gap {
 
-/// Smallest step between different values of a channel: its quantum. 0 where it has only one value.
-inline double quantum_of(const Eigen::VectorXd& values) {
-  double smallest = std::numeric_limits<double>::infinity(), largest = 0.0, previous = std::nan("");
-  for (double value : values) {
-    if (!std::isfinite(value)) continue;
-    const double step = std::abs(value - previous);
-    largest = std::max(largest, std::abs(value));
-    if (step > 1e-9 * largest && step < smallest) smallest = step;
-    previous = value;
-  }
-  return std::isfinite(smallest) ? smallest : 0.0;
+/// How the noise of a residual is told from the error of a model, by the variogram: half the mean square of the
+/// differences over a lag. Noise loses its memory fast (white noise at once, an AR(1) of 0.95 within some 20 samples)
+/// and is rough: its variogram is as steep at the first lag as it ever gets. The error of a model is smooth, its
+/// variogram starts with the square of the lag; or it jumps where an input does, which is rare or slow.
+struct NoiseThresholds {
+  double farthest =
+      8.0;  ///< robust scales of a lag's differences beyond which one counts as a jump of its own
+  int longest_lag = 64;           ///< samples
+  double pairs_per_lag = 4000.0;  ///< differences looked at for one lag
+  std::size_t least_pairs = 12;   ///< a lag with fewer tells nothing
+  std::size_t block = 150;        ///< samples that have a scale of their own (runs differ)
+  double known_shape = 0.03;      ///< relative error of a variogram's values however many samples there are
+  double part_penalty = 2.0;      ///< by which a further part must lower the weighted squares (Akaike)
+  double quanta = 2.5;            ///< quanta up to which a difference is no jump
+};
+
+/// Standard deviation of the noise in a residual: white, coloured up to an AR(1) of 0.97, with heavy tails, other in
+/// other parts of the sequence; without what a wrong model leaves.
+///
+/// A variogram of differences, each scaled by its block's own robust scale, is fitted by non-negative least squares as
+/// a sum of noise (white, AR(1) of 0.5 to 0.97) and of what is none (smooth errors, slow ones); see
+/// @ref NoiseThresholds. Cressie, Statistics for Spatial Data (1993), sections 2.4 and 2.6.
+/// @param sequence  residuals in order
+/// @param gaps      as long; `gaps[i]` true: entry i does not follow on entry i-1
+/// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
+/// @return 0 where there are too few samples; never more than the root mean square of the sequence
+double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0);
+
+namespace engine {
+
+/// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
+inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
+  constexpr int sweeps = 200;
+  const Eigen::MatrixXd gram = columns.transpose() * columns;
+  const Eigen::VectorXd right = columns.transpose() * y;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(columns.cols());
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (Eigen::Index k = 0; k < columns.cols(); ++k)
+      if (gram(k, k) > 0.0) x[k] = std::max(0.0, x[k] + (right[k] - gram.row(k).dot(x)) / gram(k, k));
+  return x;
 }
 
-/// Standard deviation of the white part of a sequence, from its differences.
-///
-/// Differences of order k leave little of anything smooth and sqrt(binomial(2k, k)) of white noise; the least
-/// of the orders 2 to 5 is taken, each from the smaller 97 % of its magnitudes, so that steps do not count.
-/// `gaps[i]` true: entry i does not follow on entry i-1. @return 0 where there are too few samples
-inline double white_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps) {
-  double least = std::numeric_limits<double>::infinity();
-  std::vector<double> differences = sequence, magnitudes;
-  std::vector<int> since_gap(sequence.size(), 0);
-  for (std::size_t i = 1; i < sequence.size(); ++i) since_gap[i] = gaps[i] ? 0 : since_gap[i - 1] + 1;
-  double gain = 1.0;
-  for (int order = 1; order <= 5; ++order) {
-    for (std::size_t i = differences.size(); i-- > 1;) differences[i] -= differences[i - 1];
-    gain *= 2.0 * (2.0 * order - 1.0) / order;  // binomial(2k, k)
-    if (order < 2) continue;
-    magnitudes.clear();
-    for (std::size_t i = 0; i < differences.size(); ++i)
-      if (since_gap[i] >= order) magnitudes.push_back(std::abs(differences[i]));
-    if (magnitudes.size() < 12) continue;
-    const std::size_t kept = static_cast<std::size_t>(0.97 * static_cast<double>(magnitudes.size()));
-    std::nth_element(magnitudes.begin(), magnitudes.begin() + static_cast<std::ptrdiff_t>(kept),
-                     magnitudes.end());
-    double sum = 0.0;
-    for (std::size_t i = 0; i < kept; ++i) sum += magnitudes[i] * magnitudes[i];
-    // 0.911: what the smaller 97 % of a normal distribution have for a standard deviation.
-    const double sd = std::sqrt(sum / static_cast<double>(kept) / gain) / 0.911;
-    least = std::min(least, sd);
+/// Variance of the noise in a variogram: the mean over all sums of white noise, one AR(1) and one error of a model
+/// (smooth of one width, or slow), weighted by how well each fits for its number of parts (Akaike weights).
+/// @param lags       in samples, ascending
+/// @param variogram  there, > 0
+/// @param weights    of the relative errors there
+inline double noise_of_variogram(const std::vector<double>& lags, const std::vector<double>& variogram,
+                                 const std::vector<double>& weights) {
+  constexpr NoiseThresholds limit;
+  const auto rows = static_cast<Eigen::Index>(lags.size());
+  const auto shape = [&](auto&& function) {
+    Eigen::VectorXd column(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      column[i] = function(lags[at]) / variogram[at] * std::sqrt(weights[at]);
+    }
+    return column;
+  };
+  std::vector<Eigen::VectorXd> noises, errors;
+  for (const double memory : {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97})
+    noises.push_back(shape([&](double lag) { return 1.0 - std::pow(memory, lag); }));
+  for (const double width : {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 45.0, 68.0, 100.0, 400.0})
+    errors.push_back(shape([&](double lag) { return 1.0 - std::exp(-lag * lag / (width * width)); }));
+  errors.push_back(shape([](double lag) { return lag; }));
+  const Eigen::VectorXd wanted = shape([&, i = std::size_t{0}](double) mutable { return variogram[i++]; });
+  std::vector<double> costs, variances;
+  for (std::size_t k = 0; k < noises.size(); ++k)
+    for (std::size_t e = 0; e <= errors.size(); ++e) {
+      Eigen::MatrixXd columns(rows, 3);
+      columns << noises[0], noises[k], e < errors.size() ? errors[e] : Eigen::VectorXd::Zero(rows);
+      if (k == 0) columns.col(1).setZero();
+      const Eigen::VectorXd parts = non_negative_fit(columns, wanted);
+      const double cost = (columns * parts - wanted).squaredNorm() +
+                          limit.part_penalty * static_cast<double>((parts.array() > 0.0).count());
+      costs.push_back(cost);
+      variances.push_back(parts[0] + parts[1]);
+    }
+  const double least = *std::min_element(costs.begin(), costs.end());
+  double sum = 0.0, total = 0.0;
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    const double share = std::exp(-0.5 * (costs[i] - least));
+    sum += share * variances[i];
+    total += share;
   }
-  return std::isfinite(least) ? least : 0.0;
+  return sum / total;
+}
+
+/// Squares of the differences over one lag, in units of the blocks' scales, without jumps.
+inline double half_mean_square(const std::vector<double>& scaled, const std::vector<int>& since_gap, int lag,
+                               double least_jump, std::size_t& pairs) {
+  constexpr NoiseThresholds limit;
+  std::vector<double> sizes;
+  const std::size_t stride = std::max<std::size_t>(
+      1, static_cast<std::size_t>(static_cast<double>(scaled.size()) / limit.pairs_per_lag));
+  const auto back = static_cast<std::size_t>(lag);
+  for (std::size_t i = back; i < scaled.size(); i += stride)
+    if (since_gap[i] >= lag) sizes.push_back(std::abs(scaled[i] - scaled[i - back]));
+  std::vector<double> sorted = sizes;
+  const double scale = median_of(sorted) / 0.6745;
+  double sum = 0.0;
+  pairs = 0;
+  for (const double size : sizes)
+    if (!(size > std::max(limit.farthest * scale, least_jump)) || !(scale > 0.0)) sum += size * size, ++pairs;
+  return pairs > 0 ? 0.5 * sum / static_cast<double>(pairs) : 0.0;
+}
+
+}  // namespace engine
+
+inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum) {
+  using engine::median_of;
+  constexpr NoiseThresholds limit;
+  const std::size_t count = sequence.size();
+  if (count < limit.least_pairs) return 0.0;
+  std::vector<int> since_gap(count, 0);
+  int longest = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    since_gap[i] = gaps[i] ? 0 : since_gap[i - 1] + 1;
+    longest = std::max(longest, since_gap[i]);
+  }
+  // Each block in units of its own scale; the mean square of the scales brings the units back.
+  const std::size_t blocks = std::max<std::size_t>(1, count / limit.block);
+  std::vector<double> scaled = sequence, steps;
+  double squares = 0.0;
+  std::vector<double> scales(blocks, 0.0);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    steps.clear();
+    for (std::size_t i = b * count / blocks + 1; i < (b + 1) * count / blocks; ++i)
+      if (since_gap[i] > 0) steps.push_back(std::abs(sequence[i] - sequence[i - 1]));
+    scales[b] = median_of(steps);
+  }
+  std::vector<double> typical = scales;
+  const double usual = engine::quantile_of(typical, 0.5);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const double scale = scales[b] > 0.0 ? scales[b] : usual;
+    if (!(scale > 0.0)) continue;
+    const std::size_t from = b * count / blocks, to = (b + 1) * count / blocks;
+    for (std::size_t i = from; i < to; ++i) scaled[i] = sequence[i] / scale;
+    squares += scale * scale * static_cast<double>(to - from) / static_cast<double>(count);
+    if (from > 0) since_gap[from] = -1;  // in other units than what comes before
+  }
+  for (std::size_t i = 1; i < count; ++i)
+    if (since_gap[i] < 0) since_gap[i] = 0;
+    else if (!gaps[i]) since_gap[i] = since_gap[i - 1] + 1;
+  double mean_square = 0.0;
+  for (const double value : sequence) mean_square += value * value / static_cast<double>(count);
+  const double rounding = std::min(quantum / std::sqrt(12.0), std::sqrt(mean_square));
+  if (!(squares > 0.0)) return std::sqrt(mean_square);
+  std::vector<double> lags, variogram, weights;
+  for (const int lag : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
+    if (lag > std::max(longest / 2, 1) || lag > limit.longest_lag) break;
+    std::size_t pairs = 0;
+    const double value =
+        engine::half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs);
+    if (pairs < limit.least_pairs) break;
+    lags.push_back(lag);
+    variogram.push_back(std::max(value, 1e-300));
+    // Neighbouring pairs share their samples: about n / lag of them are independent.
+    weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 * lag / static_cast<double>(count)));
+  }
+  if (lags.empty()) return std::sqrt(mean_square);
+  const double variance = engine::noise_of_variogram(lags, variogram, weights) * squares;
+  return std::max(std::sqrt(std::min(variance, mean_square)), rounding);
 }
 
 /// How many samples in a row count as one: 1 + 2 sum of the autocorrelations, up to their first fall below

@@ -2,9 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/data_gate.hpp>
+#include <thermopower/gap/check.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/localise/own_plant.hpp>
+#include <thermopower/gap/fit/axis_averaging.hpp>
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/parts.hpp>
@@ -98,7 +99,7 @@ private:
     constexpr double relevant = 1.2;
     const std::vector<Segment> full = cut(inputs, options_.horizon_s, plant_of(model_));
     const Errors errors = errors_of(calibrated, full, catalogue_);
-    std::array<double, signal_count> sigma = noise_of(errors, inputs);
+    std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
     if (problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
       for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], problem.sigma[i]);
     const std::array<double, signal_count> floor = noise_floor(calibrated, full, sigma, catalogue_);
@@ -111,24 +112,26 @@ private:
 
   void gather(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
     if (train.empty()) throw InvalidInput("there is no recording to train on");
-    for (const Recording& one : train) {
-      for (Finding& finding : check_data(one, model_)) result_.findings.push_back(std::move(finding));
-      if (const auto problem = one.validate())
-        throw InvalidInput("recording '" + one.name + "': " + *problem);
-      if (held_out.empty()) {
+    std::vector<Recording> first = train, last = held_out;
+    if (held_out.empty())
+      for (Recording& one : first) {
+        if (const auto problem = one.validate())
+          throw InvalidInput("recording '" + one.name + "': " + *problem);
         auto parts = split(one, options_.held_out_fraction);
-        train_recordings_.push_back(std::move(parts.first));
-        held_out_recordings_.push_back(std::move(parts.second));
-      } else {
-        train_recordings_.push_back(one);
+        one = std::move(parts.first);
+        last.push_back(std::move(parts.second));
       }
+    engine::CheckedRecordings checked =
+        engine::check(model_, first, last, {options_.horizon_s, options_.as_recorded}, catalogue_);
+    result_.findings = std::move(checked.findings);
+    for (const engine::PreparedRecording& one : checked.train) {
+      train_recordings_.push_back(one.recording());
+      train_inputs_.push_back(one.inputs());
     }
-    for (const Recording& one : held_out) {
-      for (Finding& finding : check_data(one, model_)) result_.findings.push_back(std::move(finding));
-      held_out_recordings_.push_back(one);
+    for (const engine::PreparedRecording& one : checked.held_out) {
+      held_out_recordings_.push_back(one.recording());
+      held_out_inputs_.push_back(one.inputs());
     }
-    for (const Recording& one : train_recordings_) train_inputs_.push_back(prepare(model_, one));
-    for (const Recording& one : held_out_recordings_) held_out_inputs_.push_back(prepare(model_, one));
     for (const auto* all : {&train_inputs_, &held_out_inputs_})
       for (const Inputs& one : *all)
         for (const std::string& note : one.not_judged)
@@ -139,6 +142,14 @@ private:
   }
 
   bool enough() {
+    if (const Finding* finding = deciding(result_.findings)) {
+      result_.verdict = Verdict::insufficient;
+      result_.reason = "the data cannot be believed as they stand: " +
+                       (finding->column.empty() ? "'" + finding->recording + "'" : finding->column) + " " +
+                       finding->message;
+      result_.next_experiment = finding->mend;
+      return false;
+    }
     constexpr double least = 12.0;
     for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
       double most = 0.0;
@@ -168,7 +179,8 @@ private:
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
           300, bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
-      thin->push_back(one.bench() && !one.axis() ? thinned_bench(one, share, model_, catalogue_) : one);
+      if (one.axis()) thin->push_back(one.bench() ? one : AxisAveraging(one).run(options_.horizon_s));
+      else thin->push_back(one.bench() ? thinned_bench(one, share, model_, catalogue_) : one);
     }
     FitProblem problem;
     problem.model = &model_;
@@ -220,10 +232,10 @@ private:
     const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
     for (std::size_t i = 0; i < signal_count; ++i) {
       if (residuals[i].empty()) continue;
-      const double rounding = problem.segments.front().inputs->repeats.size() > 0
-                                  ? 0.0
-                                  : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / std::sqrt(12.0);
-      problem.sigma[i] = std::max({white_sd(residuals[i], gaps[i]) * problem.sigma[i], rounding, 1e-9});
+      const double quantum = problem.segments.front().inputs->repeats.size() > 0
+                                 ? 0.0
+                                 : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / problem.sigma[i];
+      problem.sigma[i] = std::max(noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i], 1e-9);
     }
   }
 

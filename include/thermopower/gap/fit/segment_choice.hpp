@@ -42,7 +42,8 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
   for (const Segment& segment : segments)
     if (segment.axis) total += segment.end - segment.begin, ++windows;
   if (total <= rows || windows < 4) return segments;
-  const Eigen::Index wanted = std::max<Eigen::Index>(4, windows * rows / total);
+  constexpr Eigen::Index fewest = 12;  // windows: of fast recordings, too
+  const Eigen::Index wanted = std::max(std::min(fewest, windows), windows * rows / total);
   const Eigen::Index stretches = std::min<Eigen::Index>(4, wanted / 2);
   const auto asked_for = [&](std::size_t place) {
     return std::binary_search(also.begin(), also.end(), place);

@@ -127,14 +127,21 @@ inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal)
   return quantum;
 }
 
-/// Noise of every signal: the white part of a simulation's errors, at least that of rounding.
-inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Inputs>& inputs) {
+/// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: differences
+/// over a step of it are left out.
+inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
+                                                 const std::vector<Inputs>& inputs) {
   std::array<double, signal_count> sigma{};
   for (std::size_t i = 0; i < signal_count; ++i) {
     std::vector<bool> gaps(errors.of[i].size(), false);
-    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = errors.segment[i][k] != errors.segment[i][k - 1];
-    sigma[i] = std::max(white_sd(errors.of[i], gaps),
-                        coarsest_quantum(inputs, static_cast<Signal>(i)) / std::sqrt(12.0));
+    for (std::size_t k = 1; k < gaps.size(); ++k) {
+      const int segment = errors.segment[i][k];
+      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
+      gaps[k] = segment != errors.segment[i][k - 1] ||
+                (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A &&
+                 power[errors.row[i][k]] != power[errors.row[i][k - 1]]);
+    }
+    sigma[i] = noise_sd(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)));
   }
   return sigma;
 }
@@ -149,7 +156,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   // The augmented model is the fitted one where there is a cause, else the model as configured.
   const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
-      noise_floor(fitted, segments, noise_of(best, inputs), catalogue);
+      noise_floor(fitted, segments, noise_of(best, segments, inputs), catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/plant/catalogue.hpp>
+
+#include <vector>
+
+/// @file check.hpp
+/// The first stage of a diagnosis: from recordings as they were given to recordings that can be judged.
+
+namespace thermopower::gap::engine {
+
+/// The recordings of a diagnosis, prepared, and everything the check has to say about them.
+struct CheckedRecordings {
+  std::vector<PreparedRecording> train;     ///< to find and to fit
+  std::vector<PreparedRecording> held_out;  ///< to judge on
+  std::vector<Finding> findings;            ///< those that decide first, then recording by recording
+};
+
+/// How to check.
+struct CheckOptions {
+  double horizon_s = 0.5;    ///< length of the axis' windows in s
+  bool as_recorded = false;  ///< say what is wrong, but mask and cut nothing
+};
+
+/// Checks and prepares all recordings of a diagnosis.
+/// @param held_out  may be empty where only the data are looked at
+/// @throws InvalidInput where a recording is invalid
+CheckedRecordings check(const Model& model, const std::vector<Recording>& train,
+                        const std::vector<Recording>& held_out, const CheckOptions& options,
+                        const Catalogue& catalogue);
+
+}  // namespace thermopower::gap::engine
+
+#ifndef THERMOPOWER_GAP_LIBRARY
+#include <thermopower/gap/detail/check.hpp>
+#endif

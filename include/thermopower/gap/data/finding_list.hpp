@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/finding.hpp>
+#include <thermopower/gap/recording.hpp>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// One entry per row: whether a sample of a column is not to be believed.
+typedef std::vector<char> RowMask;
+
+/// A number as sentences have it.
+inline std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// Collects the findings of one recording.
+class FindingList {
+public:
+  /// @param recording  as it was given; must outlive this object
+  explicit FindingList(const Recording& recording) : recording_(recording) {}
+
+  /// Adds a finding about a column as a whole.
+  void add(FindingKind kind, Severity severity, const std::string& column, const std::string& message,
+           const std::string& mend = {}) {
+    findings_.push_back({kind, severity, recording_.name, column, message, mend, FindingAction::none, {}});
+  }
+
+  /// Adds a finding about the rows that are set in `mask`, and says how many and where; nothing where none is.
+  /// @param words  follows the count, as in "samples stand at ..."
+  void add_rows(FindingKind kind, Severity severity, const std::string& column, const RowMask& mask,
+                FindingAction action, const std::string& words, const std::string& mend = {}) {
+    std::vector<RowRange> rows = ranges_of(mask);
+    if (rows.empty()) return;
+    Eigen::Index count = 0;
+    for (const RowRange& range : rows) count += range.end - range.begin;
+    const Eigen::Index first = rows.front().begin;
+    const std::string message = std::to_string(count) + (count == 1 ? " sample " : " samples ") + words +
+                                ", first in row " + std::to_string(recording_.first_row + first) + " (" +
+                                short_number(recording_.t_s[first]) + " s)";
+    for (RowRange& range : rows) range.begin += recording_.first_row, range.end += recording_.first_row;
+    findings_.push_back({kind, severity, recording_.name, column, message, mend, action, std::move(rows)});
+  }
+
+  /// Adds a finding as it is.
+  void add(Finding finding) { findings_.push_back(std::move(finding)); }
+
+  /// The recording that the findings are about.
+  const Recording& recording() const { return recording_; }
+
+  /// What was collected.
+  std::vector<Finding> take() { return std::move(findings_); }
+
+  /// The stretches in which a mask is set.
+  static std::vector<RowRange> ranges_of(const RowMask& mask) {
+    std::vector<RowRange> rows;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      if (mask[i] == 0) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      if (!rows.empty() && rows.back().end == row) ++rows.back().end;
+      else rows.push_back({row, row + 1});
+    }
+    return rows;
+  }
+
+private:
+  const Recording& recording_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace thermopower::gap::engine

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/duty.hpp>
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/sample_masks.hpp>
+#include <thermopower/gap/data/segments.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// A recording as every stage of a diagnosis uses it: validated and checked once, when it is made.
+///
+/// Samples that are not to be believed are missing; inputs have no holes; where time passed unrecorded or an input
+/// was not known the run is cut, and the rows in between are left out. What was done stands in `findings`.
+class PreparedRecording {
+public:
+  /// @param model       says which columns are inputs, and which outputs are judged
+  /// @param recorded    as it was given
+  /// @param as_recorded findings are made, but nothing is masked or cut
+  /// @throws InvalidInput where the recording is invalid (Recording::validate())
+  PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded = false);
+
+  /// What is believed: all rows lie in a run.
+  const Recording& recording() const { return believed_; }
+  /// The same as the rollouts of the model take it.
+  const Inputs& inputs() const { return inputs_; }
+  /// What was found, in a fixed order: stamps, then column by column.
+  const std::vector<Finding>& findings() const { return findings_; }
+  /// For each row of recording() its row in the whole recording as it was given.
+  const std::vector<Eigen::Index>& source_rows() const { return source_rows_; }
+  /// Median interval between rows in s.
+  double interval_s() const { return interval_s_; }
+  /// Rows that were given.
+  Eigen::Index recorded_rows() const { return recorded_rows_; }
+
+private:
+  void mask_outputs(const Recording& recorded, FindingList& list);
+  void mask_output(const Recording& recorded, const std::string& name, Eigen::VectorXd& values,
+                   FindingList& list);
+  void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
+  void fill_inputs(const Recording& recorded, FindingList& list);
+  void keep_known_rows();
+  std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power) const;
+  Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A) const;
+
+  bool moves_ = false;              ///< angle and rate are outputs of an axis, and no covariates
+  bool electrical_ = false;         ///< the supply drives what is judged
+  bool drives_by_current_ = false;  ///< current_A is an input: nothing else tells the heat
+  Recording believed_;
+  RowMask unknown_;
+  Inputs inputs_;
+  std::vector<Finding> findings_;
+  std::vector<Eigen::Index> source_rows_;
+  double interval_s_ = 0.0;
+  Eigen::Index recorded_rows_ = 0;
+};
+
+/// Bounds of what a temperature of, or near, a motor can be, in degC.
+struct PossibleTemperature {
+  double low_C = -60.0;   ///< colder than any place a motor is run in
+  double high_C = 500.0;  ///< hotter than any insulation stands
+};
+
+inline PreparedRecording::PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded)
+    : believed_(recorded),
+      unknown_(static_cast<std::size_t>(recorded.rows()), 0),
+      recorded_rows_(recorded.rows()) {
+  if (const auto problem = recorded.validate())
+    throw InvalidInput("recording '" + recorded.name + "': " + *problem);
+  believed_.runs = recorded.spans();
+  FindingList list(recorded);
+  for (const Column& column : recorded.columns)
+    if (!recorded.has(column.name)) {
+      list.add(FindingKind::empty_column, Severity::warning, column.name, "is there, but has no sample");
+      believed_.empty_columns.push_back(column.name);
+    }
+  believed_.columns.erase(std::remove_if(believed_.columns.begin(), believed_.columns.end(),
+                                         [&](const Column& one) { return !recorded.has(one.name); }),
+                          believed_.columns.end());
+  RowMask starts(unknown_.size(), 0);
+  check_stamps(list, believed_.runs, starts);
+  believed_.runs = cut_at(believed_.runs, starts);
+  moves_ = model.has_axis();
+  electrical_ = model.has_current() && recorded.has("power_param");
+  drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && model.has_thermal();
+  mask_outputs(recorded, list);
+  fill_inputs(recorded, list);
+  interval_s_ = median_interval_s(believed_);
+  if (as_recorded) {
+    std::vector<Finding> all = list.take();
+    for (Finding& one : all) one.action = FindingAction::none;
+    findings_ = std::move(all);
+    believed_ = recorded;
+    unknown_.assign(unknown_.size(), 0);
+  } else {
+    findings_ = list.take();
+  }
+  keep_known_rows();
+  inputs_ = prepare(model, believed_);
+}
+
+inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
+  std::vector<const Eigen::VectorXd*> outputs;
+  const auto is_output = [&](const std::string& name) {
+    return name == "current_A" || name == "motor_C" ||
+           (moves_ && (name == "angle_deg" || name == "rate_dps"));
+  };
+  for (const Column& column : recorded.columns)
+    if (recorded.has(column.name) && is_output(column.name)) outputs.push_back(&column.values);
+  const RowMask repeated = repeated_frames(outputs, believed_.runs);
+  list.add_rows(FindingKind::repeated_frames, Severity::warning, "", repeated, FindingAction::masked,
+                "of every output repeat the row before them", "log each frame once");
+  for (Column& column : believed_.columns) {
+    const bool slow = column.name == "ambient_C" || column.name == "neighbour_C" ||
+                      (electrical_ && column.name == "supply_V");
+    if (is_output(column.name)) {
+      for (std::size_t i = 0; i < repeated.size(); ++i)
+        if (repeated[i] != 0) column.values[static_cast<Eigen::Index>(i)] = missing;
+      mask_output(recorded, column.name, column.values, list);
+    } else if (slow) {
+      mask_slow_input(column.name, column.values, list);
+    }
+  }
+}
+
+/// Rows of a constant power that a spike can be told in.
+inline constexpr Eigen::Index shortest_steady = 7;
+
+/// The runs cut wherever the power steps.
+inline std::vector<RunSpan> PreparedRecording::steady_runs(const Eigen::VectorXd& power) const {
+  RowMask starts(unknown_.size(), 0);
+  for (Eigen::Index i = 1; i < power.size(); ++i)
+    starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
+  return cut_at(believed_.runs, starts);
+}
+
+/// The current without what the voltage at the motor does to it at once: the steps of the power are gone.
+inline Eigen::VectorXd PreparedRecording::detrended_current(const Eigen::VectorXd& current_A) const {
+  constexpr Eigen::Index around = 15;  // rows of one ratio
+  constexpr double least_share = 0.1;  // of the largest voltage: below it a ratio is mostly noise
+  const Eigen::VectorXd* power = believed_.find("power_param");
+  if (power == nullptr) return current_A;
+  const Eigen::VectorXd* supply = believed_.find("supply_V");
+  Eigen::VectorXd volts(current_A.size());
+  for (Eigen::Index i = 0; i < volts.size(); ++i) {
+    const double on = std::isfinite((*power)[i]) ? std::clamp((*power)[i], 0.0, 255.0) : 0.0;
+    const double open_V = supply != nullptr && std::isfinite((*supply)[i]) ? (*supply)[i] : 1.0;
+    volts[i] = on > 0.0 ? v_rms_from_duty<double>(open_V, duty_from_power(on)) : 0.0;
+  }
+  const double least = least_share * volts.maxCoeff();
+  Eigen::VectorXd result = current_A;
+  std::vector<double> ratios;
+  for (const RunSpan& run : believed_.runs)
+    for (Eigen::Index block = run.begin; block < run.end; block += around) {
+      const Eigen::Index end = std::min(run.end, block + around);
+      ratios.clear();
+      for (Eigen::Index i = std::max(run.begin, block - around); i < std::min(run.end, end + around); ++i)
+        if (volts[i] > least && std::isfinite(current_A[i])) ratios.push_back(current_A[i] / volts[i]);
+      const double ratio = median_of(ratios);
+      for (Eigen::Index i = block; i < end; ++i) result[i] -= ratio * volts[i];
+    }
+  return result;
+}
+
+/// Exact zeros of the current at a power at which current flows otherwise.
+inline RowMask lost_current(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power, double scale_A) {
+  constexpr double clearly = 10.0, mostly = 0.5;  // noise scales of a current that flows; share of its rows
+  constexpr int bands = 26;                       // of ten counts
+  std::vector<std::vector<double>> flowing(bands);
+  const auto band = [](double counts) {
+    return static_cast<std::size_t>(std::clamp(counts / 10.0, 0.0, 25.0));
+  };
+  RowMask mask(static_cast<std::size_t>(current_A.size()), 0);
+  for (Eigen::Index i = 0; i < current_A.size(); ++i)
+    if (power[i] > 0.0 && std::isfinite(current_A[i])) flowing[band(power[i])].push_back(current_A[i]);
+  std::vector<double> typical(bands, 0.0);
+  for (std::size_t k = 0; k < flowing.size(); ++k) {
+    const auto zeros = std::count(flowing[k].begin(), flowing[k].end(), 0.0);
+    if (static_cast<double>(zeros) > mostly * static_cast<double>(flowing[k].size())) continue;
+    typical[k] = std::abs(quantile_of(flowing[k], 0.25));
+  }
+  for (Eigen::Index i = 0; i < current_A.size(); ++i)
+    if (power[i] > 0.0 && current_A[i] == 0.0 && typical[band(power[i])] > clearly * std::max(scale_A, 1e-12))
+      mask[static_cast<std::size_t>(i)] = 1;
+  return mask;
+}
+
+inline void PreparedRecording::mask_output(const Recording& recorded, const std::string& name,
+                                           Eigen::VectorXd& values, FindingList& list) {
+  const std::vector<RunSpan>& runs = believed_.runs;
+  const Eigen::Index present = recorded.find(name)->array().isFinite().count();
+  if (present < recorded.rows()) {
+    constexpr double many = 0.2;
+    const double share = 1.0 - static_cast<double>(present) / static_cast<double>(recorded.rows());
+    list.add(FindingKind::missing_samples, share > many ? Severity::warning : Severity::note, name,
+             std::to_string(recorded.rows() - present) + " of " + std::to_string(recorded.rows()) +
+                 " samples are missing (" + short_number(100.0 * share) + " %)");
+  }
+  const auto take = [&](const RowMask& mask) {
+    for (std::size_t i = 0; i < mask.size(); ++i)
+      if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
+  };
+  if (name == "motor_C") {
+    std::vector<double> list_of = finite_samples(values);
+    const double typical = median_of(list_of);
+    constexpr PossibleTemperature possible;
+    RowMask mask(unknown_.size(), 0);
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      if (typical > possible.low_C && typical < possible.high_C &&
+          (values[i] < possible.low_C || values[i] > possible.high_C))
+        mask[static_cast<std::size_t>(i)] = 1;
+    take(mask);
+    list.add_rows(FindingKind::impossible_samples, Severity::warning, name, mask, FindingAction::masked,
+                  "are no temperature of a motor", "look at the thermometer's wiring");
+  }
+  if (name == "angle_deg") {
+    Eigen::VectorXd whole = thermopower::gap::detail::unwrapped(values, runs);
+    Eigen::Index turned = 0;
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      turned += std::isfinite(values[i]) && whole[i] != values[i] ? 1 : 0;
+    if (turned > 0) {
+      list.add(FindingKind::wrapped_angle, Severity::note, name,
+               "starts anew after each turn; it is unwrapped");
+      values = std::move(whole);
+    }
+  }
+  ColumnTraits traits;
+  traits.cannot_jump = name == "motor_C";
+  traits.zero_is_rest = name == "rate_dps" || name == "current_A" || name == "angle_deg";
+  if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
+  if (name == "rate_dps") traits.integral = believed_.find("angle_deg"), traits.t_s = &believed_.t_s;
+  const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
+  const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power) : runs;
+  SampleMasks masks(values, steady, traits);
+  if (power != nullptr) {
+    const RowMask lost = lost_current(values, *power, masks.scale());
+    take(lost);
+    masks.take(lost);
+    list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
+                  "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+  }
+  RowMask spikes = masks.spikes();
+  if (power != nullptr) {  // where the power steps too often to be looked at in between: what it leaves
+    const RowMask others = SampleMasks(detrended_current(masks.values()), runs, traits).spikes();
+    for (const RunSpan& run : steady)
+      for (Eigen::Index i = run.begin; run.size() < shortest_steady && i < run.end; ++i)
+        spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
+  }
+  take(spikes);
+  list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
+                "lie far from all around them");
+  const RowMask bursts = masks.bursts();
+  take(bursts);
+  list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
+                "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
+  {
+    SampleMasks still(values, runs, traits);
+    const RowMask frozen = still.frozen();
+    take(frozen);
+    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
+                  "repeat the value before them where noise or motion would show",
+                  "look at what reads the sensor");
+    const RowMask clipped = still.clipped();
+    take(clipped);
+    list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
+                  "stand at the end of the sensor's range", "use a sensor with a wider range");
+    if (still.equal_share() > 0.999999 && recorded.rows() > 20)
+      list.add(FindingKind::constant_column, Severity::note, name, "never changes");
+  }
+  const double quantum = quantum_of(values);
+  std::vector<double> steps = step_sizes(values, runs);
+  if (quantum > 0.0 && median_of(steps) < 1.5 * quantum && quantum > 1e-6)
+    list.add(FindingKind::coarse_quantum, Severity::note, name,
+             "comes in steps of " + short_number(quantum) + ": no model can be told to be better than " +
+                 short_number(quantum / std::sqrt(12.0)));
+}
+
+inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::VectorXd& values,
+                                               FindingList& list) {
+  ColumnTraits traits;
+  traits.cannot_jump = name != "supply_V";  // a supply gives way to the load
+  SampleMasks masks(values, believed_.runs, traits);
+  RowMask mask = masks.spikes();
+  const RowMask bursts = masks.bursts();
+  const Eigen::VectorXd* power = name == "supply_V" ? believed_.find("power_param") : nullptr;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    mask[i] = mask[i] != 0 || bursts[i] != 0 ? 1 : 0;
+    if (mask[i] == 0 || power == nullptr) continue;
+    const auto row = static_cast<Eigen::Index>(i);  // a step of the load may show for a row
+    if ((row > 0 && (*power)[row] != (*power)[row - 1]) ||
+        (row + 1 < power->size() && (*power)[row] != (*power)[row + 1]))
+      mask[i] = 0;
+  }
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
+  list.add_rows(FindingKind::spiked_samples, Severity::note, name, mask, FindingAction::masked,
+                "lie far from all around them");
+}
+
+inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingList& list) {
+  std::vector<InputColumn> inputs = input_columns();
+  if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
+  for (const InputColumn& input : inputs) {
+    Column* found = nullptr;
+    for (Column& column : believed_.columns)
+      if (column.name == input.name) found = &column;
+    if (found == nullptr || found->values.array().isFinite().all()) continue;
+    const Eigen::Index holes = recorded.rows() - recorded.find(input.name)->array().isFinite().count();
+    RowMask mask(unknown_.size(), 0);
+    found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask);
+    for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
+    list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
+                  "are missing between values that differ; their rows are not judged",
+                  "log the inputs at every row");
+    if (holes > 0 && FindingList::ranges_of(mask).empty())
+      list.add(FindingKind::missing_samples, Severity::note, input.name,
+               std::to_string(holes) + " samples are missing between values that tell what they were");
+  }
+}
+
+inline void PreparedRecording::keep_known_rows() {
+  constexpr SegmentThresholds limit;
+  std::vector<RunSpan> kept;
+  const std::vector<RunSpan> runs =
+      without(believed_.runs.empty() ? believed_.spans() : believed_.runs, unknown_);
+  const bool cut = runs.size() != believed_.spans().size();
+  for (const RunSpan& run : runs)
+    if (!cut || run.size() >= limit.least_rows) kept.push_back(run);
+  source_rows_.clear();
+  for (RunSpan& run : kept) {
+    const auto begin = static_cast<Eigen::Index>(source_rows_.size());
+    for (Eigen::Index row = run.begin; row < run.end; ++row)
+      source_rows_.push_back(believed_.first_row + row);
+    run = {begin, static_cast<Eigen::Index>(source_rows_.size()), run.label};
+  }
+  believed_.runs = std::move(kept);
+  const auto rows = static_cast<Eigen::Index>(source_rows_.size());
+  if (rows == believed_.rows()) return;
+  const auto kept_of = [&](const Eigen::VectorXd& values) {
+    Eigen::VectorXd result(rows);
+    for (Eigen::Index i = 0; i < rows; ++i)
+      result[i] = values[source_rows_[static_cast<std::size_t>(i)] - believed_.first_row];
+    return result;
+  };
+  believed_.t_s = kept_of(believed_.t_s);
+  for (Column& column : believed_.columns) column.values = kept_of(column.values);
+}
+
+}  // namespace thermopower::gap::engine

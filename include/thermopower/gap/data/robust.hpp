@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/recording.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+/// @file robust.hpp
+/// Medians, quantiles, scales and quanta that a tenth of bad samples cannot move far.
+
+namespace thermopower::gap::engine {
+
+/// The quantile `share` (0..1) of finite values, 0 of none; reorders them.
+inline double quantile_of(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+/// The median of finite values, 0 of none; reorders them.
+inline double median_of(std::vector<double>& values) { return quantile_of(values, 0.5); }
+
+/// The finite samples of a column, run after run.
+inline std::vector<double> finite_samples(const Eigen::VectorXd& values) {
+  std::vector<double> list;
+  list.reserve(static_cast<std::size_t>(values.size()));
+  for (const double value : values)
+    if (std::isfinite(value)) list.push_back(value);
+  return list;
+}
+
+/// Magnitudes of the steps between finite neighbours inside the runs.
+inline std::vector<double> step_sizes(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+  std::vector<double> list;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      const double step = std::abs(values[i] - values[i - 1]);
+      if (std::isfinite(step)) list.push_back(step);
+    }
+  return list;
+}
+
+/// Scale of the noise on a smooth signal, as a standard deviation: the median second difference. No estimate of
+/// the noise for a score (coloured noise is larger), but what an isolated bad sample is measured against.
+inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+  std::vector<double> list;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
+      const double second = std::abs(values[i - 1] - 2.0 * values[i] + values[i + 1]);
+      if (std::isfinite(second)) list.push_back(second);
+    }
+  constexpr double normal_median = 0.6745, gain = 2.449489742783178;  // sqrt(1 + 4 + 1)
+  return median_of(list) / (normal_median * gain);
+}
+
+/// Median interval between the rows of a run in s; 0 where no run has two rows.
+inline double median_interval_s(const Recording& recording) {
+  std::vector<double> steps;
+  for (const RunSpan& run : recording.spans())
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
+      steps.push_back(recording.t_s[i] - recording.t_s[i - 1]);
+  return median_of(steps);
+}
+
+}  // namespace thermopower::gap::engine
+
+namespace thermopower::gap {
+
+/// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a
+/// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
+/// ever differ by the same amount.
+inline double quantum_of(const Eigen::VectorXd& values) {
+  constexpr double often = 0.01, same = 1e-3;
+  constexpr std::size_t enough = 20000;
+  std::vector<double> steps;
+  double previous = std::nan(""), largest = 0.0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    const double step = std::abs(value - previous);
+    largest = std::max(largest, std::abs(value));
+    if (step > 1e-9 * largest) steps.push_back(step);
+    previous = value;
+    if (steps.size() >= enough) break;
+  }
+  std::sort(steps.begin(), steps.end());
+  constexpr std::size_t few = 10;
+  if (steps.size() < few) return steps.empty() ? 0.0 : steps.front();
+  const double needed = std::max(2.0, often * static_cast<double>(steps.size()));
+  for (std::size_t from = 0; from < steps.size();) {
+    std::size_t to = from;
+    while (to < steps.size() && steps[to] <= steps[from] * (1.0 + same)) ++to;
+    if (static_cast<double>(to - from) >= needed) return steps[from];
+    from = to;
+  }
+  return 0.0;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/robust.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+/// @file sample_masks.hpp
+/// Samples of one column that are not to be believed: spikes, stretches that jump away and back, frozen and clipped
+/// stretches. Every threshold is a multiple of a median, so that a tenth of the rows may be bad.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the masks. In white Gaussian noise of 1e6 samples none is passed; see tests/unit/gap/data.
+struct MaskThresholds {
+  double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
+  double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
+  double jump_scales = 12.0;  ///< noise scales of a step that may begin a stretch elsewhere
+  double jump_steps = 6.0;    ///< of the 75th percentile of the steps
+  double quanta = 4.0;        ///< quanta that any of them must be, too
+  double came_back = 0.25;    ///< of the jump: what lies nearer to where it came from has come back
+  double stayed_away = 0.5;   ///< of the jump: what lies farther is still away
+  Eigen::Index longest_burst = 20;   ///< rows of a stretch elsewhere
+  Eigen::Index longest_stuck = 400;  ///< rows, where all of them have the same value
+  Eigen::Index longest_repeat = 5;   ///< frames in a row that repeat another
+  double by_chance = 0.1;            ///< share of the repeated frames that chance may make
+  double rarely_equal = 0.5;         ///< share of equal neighbours below which the noise shows at every row
+  double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
+  double log_chance = 20.7;        ///< -ln(1e-9): how improbable a frozen stretch must be
+  Eigen::Index least_frozen = 6;   ///< rows of the shortest frozen stretch
+  double clip_ratio = 8.0;         ///< times as many samples at the extreme as at the value next to it
+  Eigen::Index least_clipped = 5;  ///< samples at the extreme
+  double outside = 1.5;  ///< ranges (5th to 95th percentile) beyond the level a burst of a moving axis lies
+};
+
+/// What masks need to know about a column.
+struct ColumnTraits {
+  bool cannot_jump = false;   ///< a temperature: what jumps away and back was never there
+  bool zero_is_rest = false;  ///< an exact 0 is what a good sensor reads at rest
+  const Eigen::VectorXd* at_rest =
+      nullptr;  ///< a column that is 0 while this one may stand still (the rate of an angle)
+  const Eigen::VectorXd* integral = nullptr;  ///< a column that moves on by this one (the angle of a rate)
+  const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` is given
+};
+
+/// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
+/// one took.
+class SampleMasks {
+public:
+  /// @param values  of the column, NaN where missing
+  /// @param runs    inside which rows follow on each other
+  SampleMasks(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs,
+              const ColumnTraits& traits = {})
+      : values_(values), runs_(runs), traits_(traits), quantum_(quantum_of(values)) {
+    std::vector<double> steps = step_sizes(values, runs);
+    Eigen::Index equal = 0;
+    for (const double step : steps) equal += step == 0.0 ? 1 : 0;
+    equal_share_ = steps.empty() ? 1.0 : static_cast<double>(equal) / static_cast<double>(steps.size());
+    scale_ = white_scale(values, runs);
+    usual_step_ = quantile_of(steps, 0.75);
+  }
+
+  /// Noise scale of the column.
+  double scale() const { return scale_; }
+  /// Share of neighbours with the same value.
+  double equal_share() const { return equal_share_; }
+  /// The column without what was masked so far.
+  const Eigen::VectorXd& values() const { return values_; }
+
+  /// Takes samples away that are set in a mask.
+  void take(const RowMask& mask) {
+    for (std::size_t i = 0; i < mask.size(); ++i)
+      if (mask[i] != 0) values_[static_cast<Eigen::Index>(i)] = missing;
+  }
+
+  /// Isolated samples (one, or two of five) far from the median of five around them.
+  RowMask spikes() {
+    RowMask mask = empty();
+    for (int pass = 0; pass < 2; ++pass) {  // a tenth of bad rows puts three of five together now and then
+      for (const RunSpan& run : runs_) spikes_of(run, mask);
+      take(mask);
+    }
+    return mask;
+  }
+
+  /// Stretches that jump away from the level before them and back to it.
+  RowMask bursts() {
+    RowMask mask = empty();
+    const double least =
+        std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
+    std::vector<double> list = finite_samples(values_);
+    const double range = quantile_of(list, 0.95) - quantile_of(list, 0.05);
+    for (const RunSpan& run : runs_) {
+      const std::vector<Eigen::Index> rows = finite_rows(run);
+      for (std::size_t i = 1; i < rows.size(); ++i) {
+        const double level = values_[rows[i - 1]], jump = values_[rows[i]] - level;
+        if (!(std::abs(jump) > least) || !(least > 0.0)) continue;
+        std::size_t end = i;
+        bool stuck = true, away = true;
+        const auto off = [&](std::size_t k) { return (values_[rows[k]] - level) / jump; };
+        while (end < rows.size() && off(end) > limit_.stayed_away) {
+          stuck = stuck && values_[rows[end]] == values_[rows[i]];
+          away = away && std::abs(values_[rows[end]] - level) > limit_.outside * range;
+          ++end;
+          const auto length = static_cast<Eigen::Index>(end - i);
+          if (length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) break;
+        }
+        const auto length = static_cast<Eigen::Index>(end - i);
+        if (end == rows.size() || length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) continue;
+        if (!(off(end) < limit_.came_back)) continue;
+        if (!traits_.cannot_jump && !away && !(stuck && length > 1 && equal_share_ < limit_.hardly_equal))
+          continue;
+        if (!traits_.cannot_jump && traits_.zero_is_rest && values_[rows[i]] == 0.0) continue;
+        for (std::size_t k = i; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
+        i = end;
+      }
+    }
+    take(mask);
+    return mask;
+  }
+
+  /// Stretches of one value where noise or motion would show: all but their first row.
+  RowMask frozen() {
+    RowMask mask = empty();
+    for (const RunSpan& run : runs_) {
+      const std::vector<Eigen::Index> rows = finite_rows(run);
+      for (std::size_t begin = 0; begin < rows.size();) {
+        std::size_t end = begin + 1;
+        while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
+        if (is_frozen(rows, begin, end))
+          for (std::size_t k = begin + 1; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
+        begin = end;
+      }
+    }
+    take(mask);
+    return mask;
+  }
+
+  /// Samples at the largest or the least value, where far more stand there than next to it.
+  RowMask clipped() {
+    RowMask mask = empty();
+    if (!(equal_share_ < limit_.hardly_equal)) return mask;
+    std::vector<double> list = finite_samples(values_);
+    if (list.size() < 50) return mask;
+    std::sort(list.begin(), list.end());
+    for (const bool top : {true, false}) {
+      const double extreme = top ? list.back() : list.front();
+      const auto at_extreme = std::count(list.begin(), list.end(), extreme);
+      const double next = top ? list[list.size() - 1 -
+                                     static_cast<std::size_t>(std::min<std::ptrdiff_t>(
+                                         at_extreme, static_cast<std::ptrdiff_t>(list.size()) - 1))]
+                              : list[static_cast<std::size_t>(std::min<std::ptrdiff_t>(
+                                    at_extreme, static_cast<std::ptrdiff_t>(list.size()) - 1))];
+      const auto at_next = std::count(list.begin(), list.end(), next);
+      if (at_extreme < limit_.least_clipped || extreme == 0.0 ||
+          static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
+        continue;
+      for (Eigen::Index i = 0; i < values_.size(); ++i)
+        if (values_[i] == extreme && !resting(i) && !moves_on(i, extreme))
+          mask[static_cast<std::size_t>(i)] = 1;
+    }
+    take(mask);
+    return mask;
+  }
+
+private:
+  RowMask empty() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
+
+  std::vector<Eigen::Index> finite_rows(const RunSpan& run) const {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index i = run.begin; i < run.end; ++i)
+      if (std::isfinite(values_[i])) rows.push_back(i);
+    return rows;
+  }
+
+  static double median_of_five(double a, double b, double c, double d, double e) {
+    std::array<double, 5> five{a, b, c, d, e};
+    std::sort(five.begin(), five.end());
+    return five[2];
+  }
+
+  void spikes_of(const RunSpan& run, RowMask& mask) const {
+    const std::vector<Eigen::Index> rows = finite_rows(run);
+    const std::size_t count = rows.size();
+    if (count < 7) return;
+    const auto at = [&](std::size_t k) { return values_[rows[k]]; };
+    const double least = std::max(limit_.spike_scales * scale_, limit_.quanta * quantum_);
+    if (!(least > 0.0)) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t from = i < 2 ? 0 : std::min(i - 2, count - 5);
+      double off =
+          std::abs(at(i) - median_of_five(at(from), at(from + 1), at(from + 2), at(from + 3), at(from + 4)));
+      if (!(off > least)) continue;
+      // What continues either side in a straight line is the corner of a motion and no spike.
+      if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
+      if (i + 2 < count) off = std::min(off, std::abs(at(i) - 2.0 * at(i + 1) + at(i + 2)));
+      if (!(off > least)) continue;
+      std::vector<double> bends;
+      for (std::size_t k = i < 5 ? 1 : i - 4; k < std::min(count - 1, i + 5); ++k)
+        if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
+      if (off > limit_.spike_bends * median_of(bends)) mask[static_cast<std::size_t>(rows[i])] = 1;
+    }
+  }
+
+  bool resting(Eigen::Index row) const {
+    if (traits_.at_rest == nullptr) return false;
+    const double rate = (*traits_.at_rest)[row];
+    return !(std::abs(rate) > rest_rate());
+  }
+
+  double rest_rate() const {
+    if (rest_rate_ >= 0.0) return rest_rate_;
+    constexpr double rest_share = 0.05;  // of the rate's 90th percentile
+    std::vector<double> list = finite_samples(traits_.at_rest->cwiseAbs());
+    return rest_rate_ = rest_share * quantile_of(list, 0.9);
+  }
+
+  /// Whether the column that this one is the rate of moves on by `rate` between two rows: then the rate is right.
+  bool moves_on(Eigen::Index from, Eigen::Index to, double rate) const {
+    constexpr double off_share = 0.02, quanta = 4.0;
+    if (traits_.integral == nullptr) return false;
+    const Eigen::VectorXd& position = *traits_.integral;
+    const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
+    const double moved = position[to] - position[from];
+    if (!std::isfinite(moved)) return false;
+    if (position_quantum_ < 0.0) position_quantum_ = quantum_of(position) + white_scale(position, runs_);
+    // The way as a whole, and half of it: a motion there and back ends where it began.
+    const Eigen::Index middle = from + (to - from) / 2;
+    const double halfway = position[middle] - position[from];
+    const double half_s = (*traits_.t_s)[middle] - (*traits_.t_s)[from];
+    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_quantum_;
+    return std::abs(moved - rate * lasts_s) <= allowed &&
+           (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
+  }
+  bool moves_on(Eigen::Index row, double rate) const {
+    constexpr Eigen::Index around = 3;
+    if (traits_.integral == nullptr) return false;
+    for (const RunSpan& run : runs_)
+      if (row >= run.begin && row < run.end)
+        return moves_on(std::max(run.begin, row - around), std::min(run.end - 1, row + around), rate);
+    return false;
+  }
+
+  bool is_frozen(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
+    const auto length = static_cast<Eigen::Index>(end - begin);
+    if (length < limit_.least_frozen) return false;
+    const double value = values_[rows[begin]];
+    if (traits_.zero_is_rest && value == 0.0) return false;
+    if (traits_.at_rest != nullptr) {
+      std::size_t moving = 0;
+      for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
+      if (2 * moving < end - begin) return false;
+    }
+    if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value)) return false;
+    const double share = std::max(equal_share_, 1e-4);
+    const bool improbable = -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
+    if (equal_share_ < limit_.rarely_equal && quantum_ < scale_ && improbable) return true;
+    // Of a coarse thermometer only a reading that has to catch up tells that it stood.
+    if (end == rows.size()) return false;
+    const double jump = std::abs(values_[rows[end]] - value);
+    return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
+                            limit_.quanta * quantum_}) &&
+           (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
+  }
+
+  static constexpr MaskThresholds limit_{};
+  Eigen::VectorXd values_;
+  const std::vector<RunSpan>& runs_;
+  ColumnTraits traits_;
+  double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
+  mutable double rest_rate_ = -1.0, position_quantum_ = -1.0;
+};
+
+/// Rows that repeat all outputs of the row before them (at most a few in a row), where the outputs change at every
+/// other row around them.
+inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& outputs,
+                               const std::vector<RunSpan>& runs) {
+  constexpr MaskThresholds limit;
+  constexpr Eigen::Index around = 6;
+  RowMask mask;
+  if (outputs.empty()) return mask;
+  const Eigen::Index rows = outputs.front()->size();
+  mask.assign(static_cast<std::size_t>(rows), 0);
+  // 0: all outputs differ from the row before; 1: some are the same; 2: all are.
+  std::vector<char> same(static_cast<std::size_t>(rows), 0);
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      std::size_t equal = 0, known = 0;
+      for (const Eigen::VectorXd* one : outputs) {
+        known += std::isfinite((*one)[i]) ? 1 : 0;
+        equal += (*one)[i] == (*one)[i - 1] ? 1 : 0;
+      }
+      same[static_cast<std::size_t>(i)] = equal == 0 ? 0 : known > 0 && equal == outputs.size() ? 2 : 1;
+    }
+  // How often all would be equal by chance: a column steps by none half as often as by one quantum either way.
+  double chance = 1.0, repeats = 0.0;
+  for (const Eigen::VectorXd* one : outputs) {
+    const double quantum = quantum_of(*one);
+    const std::vector<double> steps = step_sizes(*one, runs);
+    const auto single = std::count_if(steps.begin(), steps.end(), [&](double step) {
+      return step > 0.5 * quantum && step < 1.5 * quantum;
+    });
+    chance *= 0.5 * static_cast<double>(single) / std::max(1.0, static_cast<double>(steps.size()));
+  }
+  for (const char one : same) repeats += one == 2 ? 1.0 : 0.0;
+  if (!(chance * static_cast<double>(rows) < limit.by_chance * repeats)) return mask;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end;) {
+      if (same[static_cast<std::size_t>(i)] != 2) {
+        ++i;
+        continue;
+      }
+      Eigen::Index end = i;
+      while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
+      bool alone = end - i <= limit.longest_repeat;
+      Eigen::Index seen = 0;
+      for (Eigen::Index k = std::max(run.begin + 1, i - around); alone && k < std::min(run.end, end + around);
+           ++k) {
+        if (k >= i && k < end) continue;
+        ++seen;
+        alone = same[static_cast<std::size_t>(k)] == 0 ||
+                (outputs.size() > 1 && same[static_cast<std::size_t>(k)] == 2 && (k < i - 1 || k > end));
+      }
+      for (Eigen::Index k = i; alone && seen >= 2 * around && k < end; ++k)
+        mask[static_cast<std::size_t>(k)] = 1;
+      i = end;
+    }
+  return mask;
+}
+
+}  // namespace thermopower::gap::engine

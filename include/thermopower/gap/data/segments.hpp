@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/robust.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file segments.hpp
+/// Where time passes unrecorded, or an input is not known: there a run is cut, because a simulation that holds the
+/// last value through it is wrong without the model being so.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the cutting of runs.
+struct SegmentThresholds {
+  double regular_gap =
+      1.6;  ///< intervals: of stamps on a grid, a row is missing (a rounded stamp moves by less)
+  double irregular_gap = 2.5;     ///< of the longest usual interval (95th percentile): of stamps that jitter
+  double jitter = 1.1;            ///< 95th percentile over the median above which stamps count as jittering
+  double same_command = 0.02;     ///< of the command's range: what lies between two such values is known
+  Eigen::Index bridged_rows = 5;  ///< a hole in a slow input (air, supply) of at most so many rows is bridged
+  Eigen::Index held_rows = 20;    ///< a command is believed to have stood still for at most so many rows
+  double slow_noise = 4.0;        ///< noise units within which a slow input counts as unchanged over a hole
+  Eigen::Index least_rows = 4;    ///< shorter segments tell nothing and are left out
+};
+
+/// How an input behaves between its rows.
+enum class InputPace {
+  command,  ///< may step at any row: power, drive, targets
+  slow,     ///< air, supply: straight between its samples
+};
+
+/// An input column and its pace.
+struct InputColumn {
+  const char* name;  ///< of the column
+  InputPace pace;    ///< what a hole in it means
+};
+
+/// The columns that are inputs wherever they are recorded.
+inline const std::vector<InputColumn>& input_columns() {
+  static const std::vector<InputColumn> columns = {
+      {"power_param", InputPace::command}, {"drive_A", InputPace::command},
+      {"voltage_V", InputPace::command},   {"target_deg", InputPace::command},
+      {"target_dps", InputPace::command},  {"torque_Nm", InputPace::command},
+      {"heat_W", InputPace::command},      {"supply_V", InputPace::slow},
+      {"ambient_C", InputPace::slow},      {"airspeed_mps", InputPace::slow},
+      {"neighbour_C", InputPace::slow}};
+  return columns;
+}
+
+/// Runs cut at some rows: `starts[row]` set means that a new segment begins there. The cut pieces keep their
+/// run's label.
+inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMask& starts) {
+  std::vector<RunSpan> result;
+  for (const RunSpan& run : runs) {
+    RunSpan piece = run;
+    for (Eigen::Index row = run.begin + 1; row < run.end; ++row) {
+      if (starts[static_cast<std::size_t>(row)] == 0) continue;
+      piece.end = row;
+      result.push_back(piece);
+      piece.begin = row;
+    }
+    piece.end = run.end;
+    result.push_back(piece);
+  }
+  return result;
+}
+
+/// Runs without the rows that are set in `unknown`: what is left of each, as segments.
+inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowMask& unknown) {
+  std::vector<RunSpan> result;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row < run.end;) {
+      if (unknown[static_cast<std::size_t>(row)] != 0) {
+        ++row;
+        continue;
+      }
+      RunSpan piece = run;
+      piece.begin = row;
+      while (row < run.end && unknown[static_cast<std::size_t>(row)] == 0) ++row;
+      piece.end = row;
+      result.push_back(piece);
+    }
+  return result;
+}
+
+/// Whether two values of a command count as the same: then it is taken to have stood still between them.
+class CommandRange {
+public:
+  /// @param values  of the column, NaN where missing
+  explicit CommandRange(const Eigen::VectorXd& values) {
+    std::vector<double> list = finite_samples(values);
+    range_ = quantile_of(list, 0.98) - quantile_of(list, 0.02);
+  }
+  /// Whether a command that was `before` and is `after` stood still meanwhile.
+  bool same(double before, double after) const {
+    return std::abs(after - before) <= SegmentThresholds().same_command * range_;
+  }
+
+private:
+  double range_ = 0.0;
+};
+
+/// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
+/// a command did not stand still.
+inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, RowMask& starts) {
+  constexpr SegmentThresholds limit;
+  const Recording& r = list.recording();
+  std::vector<double> steps;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(r.t_s[i] - r.t_s[i - 1]);
+  if (steps.size() < 3) return;
+  const double usual = median_of(steps), longest = quantile_of(steps, 0.95),
+               shortest = quantile_of(steps, 0.05);
+  const bool jitters = longest > limit.jitter * usual || shortest < usual / limit.jitter;
+  if (jitters)
+    list.add(FindingKind::irregular_stamps, Severity::note, "t_s",
+             "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
+                 " s around " + short_number(usual) + " s");
+  const double pause = jitters ? limit.irregular_gap * longest : limit.regular_gap * usual;
+  std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
+  for (const InputColumn& input : input_columns())
+    if (input.pace == InputPace::command && r.has(input.name))
+      commands.emplace_back(r.find(input.name), CommandRange(*r.find(input.name)));
+  RowMask cut(static_cast<std::size_t>(r.rows()), 0);
+  double worst = 0.0;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      const double step = r.t_s[i] - r.t_s[i - 1];
+      if (!(step > pause)) continue;
+      bool stood_still = step <= static_cast<double>(limit.held_rows) * usual && !commands.empty();
+      for (const auto& [values, range] : commands)
+        stood_still = stood_still && range.same((*values)[i - 1], (*values)[i]);
+      if (stood_still) continue;
+      cut[static_cast<std::size_t>(i)] = starts[static_cast<std::size_t>(i)] = 1;
+      worst = std::max(worst, step);
+    }
+  list.add_rows(FindingKind::gap_in_stamps, Severity::note, "t_s", cut, FindingAction::segmented,
+                std::string("follow a pause (up to ") + short_number(worst) +
+                    " s where the usual interval is " + short_number(usual) +
+                    " s) in which the inputs are unknown",
+                "log without losing rows");
+}
+
+/// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
+/// @return the column with known holes filled
+inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
+                                   const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
+                                   RowMask& unknown) {
+  constexpr SegmentThresholds limit;
+  Eigen::VectorXd filled = values;
+  const CommandRange range(values);
+  const double noise = white_scale(values, runs) + quantum_of(values);
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row < run.end;) {
+      if (std::isfinite(values[row])) {
+        ++row;
+        continue;
+      }
+      Eigen::Index end = row;
+      while (end < run.end && !std::isfinite(values[end])) ++end;
+      const bool inside = row > run.begin && end < run.end;
+      const double before = row > run.begin ? values[row - 1] : missing,
+                   after = end < run.end ? values[end] : missing;
+      bool known = false;
+      if (input.pace == InputPace::command)
+        known = inside && end - row <= limit.held_rows && range.same(before, after);
+      else
+        known = (inside &&
+                 (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
+                (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
+      for (Eigen::Index i = row; i < end; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (!known) unknown[at] = 1;
+        else if (input.pace == InputPace::command || !inside)
+          filled[i] = std::isfinite(before) ? before : after;
+        else filled[i] = before + (after - before) * (t_s[i] - t_s[row - 1]) / (t_s[end] - t_s[row - 1]);
+      }
+      row = end;
+    }
+  return filled;
+}
+
+}  // namespace thermopower::gap::engine

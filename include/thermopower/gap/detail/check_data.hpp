@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/check_data.hpp>
+#include <thermopower/gap/detail/unit_check.hpp>
+#include <thermopower/gap/detail/check.hpp>
+#include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/simulate.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap {
+
+namespace engine {
+
+/// Thresholds of what a recording can show.
+struct WorthThresholds {
+  double step = 0.01;        ///< relative step of a constant for its derivative
+  double gain = 1.1;         ///< usual size of an effect that starts as a factor of 1
+  double prior = 0.05;       ///< how well constants are known before, as a share
+  double determined = 0.05;  ///< standard deviation below which a constant counts as determined
+  double takes_part = 0.3;   ///< component of a constant in a combination, of 1
+  double absorbed = 0.1;     ///< share of a signature that must remain when constants move
+  double alike = 0.95;       ///< cosine above which two effects look the same
+  double visible = 0.5;      ///< noise units below which an effect of usual size does not show
+};
+
+/// Simulated signals of a recording in noise units, one vector; 0 where nothing was measured.
+class Responses {
+public:
+  /// @param sample     a part of a recording that spans its excitation
+  /// @param horizon_s  length of the axis' windows in s
+  Responses(const Model& model, const Recording& sample, double horizon_s, const Catalogue& catalogue)
+      : model_(model), sample_(sample), catalogue_(catalogue) {
+    options_.horizon_s = horizon_s;
+    for (const SimulatedSignal& signal : simulate(model, sample, options_, catalogue)) {
+      const Eigen::VectorXd measured =
+          thermopower::gap::detail::unwrapped(sample.column(to_string(signal.signal)), sample.spans());
+      SignalReport report;
+      report.signal = to_string(signal.signal);
+      const auto known = signal.signal.known();
+      if (known) report.unit = unit_of(*known);
+      std::vector<double> errors;
+      std::vector<bool> gaps;
+      const Eigen::VectorXd* power = sample.find("power_param");
+      double squares = 0.0;
+      Eigen::VectorXd used = Eigen::VectorXd::Zero(sample.rows());
+      for (const RunSpan& run : sample.spans()) {
+        bool gap = true;
+        for (Eigen::Index i = run.begin; i < run.end; ++i) {
+          const double error = signal.values[i] - measured[i];
+          const bool restarts = std::abs(error) <= 1e-9 * std::max(1.0, std::abs(measured[i]));
+          if (!std::isfinite(error) || restarts) {
+            gap = true;
+            continue;
+          }
+          used[i] = 1.0;
+          const bool steps = power != nullptr && i > run.begin && (*power)[i] != (*power)[i - 1];
+          errors.push_back(error);
+          gaps.push_back(gap || steps);
+          gap = false;
+          squares += error * error;
+        }
+      }
+      report.samples = static_cast<Eigen::Index>(errors.size());
+      report.noise = noise_sd(errors, gaps, quantum_of(measured));
+      report.misfit = errors.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(errors.size()));
+      std::vector<double> values = finite_samples(measured);
+      report.range = quantile_of(values, 0.95) - quantile_of(values, 0.05);
+      signals_.push_back(std::move(report));
+      used_.push_back(std::move(used));
+    }
+    base_ = of(model);
+  }
+
+  /// What was measured of each signal.
+  const std::vector<SignalReport>& signals() const { return signals_; }
+  /// The model's own response.
+  const Eigen::VectorXd& base() const { return base_; }
+
+  /// The response of a model: all signals one after the other.
+  Eigen::VectorXd of(const Model& model) const {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(signals_.size()) * sample_.rows());
+    std::size_t k = 0;
+    for (const SimulatedSignal& signal : simulate(model, sample_, options_, catalogue_)) {
+      const double noise = std::max(signals_[k].noise, 1e-12);
+      for (Eigen::Index i = 0; i < sample_.rows(); ++i) {
+        const double value = signal.values[i] / noise;
+        all[static_cast<Eigen::Index>(k) * sample_.rows() + i] =
+            used_[k][i] > 0.0 && std::isfinite(value) ? std::clamp(value, -1e9, 1e9) : 0.0;
+      }
+      ++k;
+    }
+    return all;
+  }
+
+  /// Largest root mean square of a change over the signals.
+  double size(const Eigen::VectorXd& change) const {
+    double most = 0.0;
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      const double count = std::max(1.0, used_[k].sum());
+      most = std::max(most,
+                      change.segment(static_cast<Eigen::Index>(k) * sample_.rows(), sample_.rows()).norm() /
+                          std::sqrt(count));
+    }
+    return most;
+  }
+
+private:
+  const Model& model_;
+  const Recording& sample_;
+  const Catalogue& catalogue_;
+  SimulationOptions options_;
+  std::vector<SignalReport> signals_;
+  std::vector<Eigen::VectorXd> used_;
+  Eigen::VectorXd base_;
+};
+
+/// Whether a need is a column of the recording.
+inline bool is_column(plant::Need need) {
+  switch (need) {
+    case plant::Need::current_A:
+    case plant::Need::motor_C:
+    case plant::Need::angle_deg:
+    case plant::Need::rate_dps:
+    case plant::Need::power_param:
+    case plant::Need::airspeed_mps:
+    case plant::Need::neighbour_C:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A parameter of usual size: where fits begin.
+inline double usual_size(const Parameter& parameter, const Recording& recording) {
+  double value = parameter.starts.front();
+  const char* const input = parameter.starts_relative_to == plant::Input::drive_A       ? "drive_A"
+                            : parameter.starts_relative_to == plant::Input::power_param ? "power_param"
+                            : parameter.starts_relative_to == plant::Input::supply_V    ? "supply_V"
+                                                                                        : nullptr;
+  if (input != nullptr && recording.has(input)) {
+    std::vector<double> sizes = finite_samples(recording.column(input).cwiseAbs());
+    value *= quantile_of(sizes, 1.0);
+  }
+  constexpr double of_range = 0.1;
+  if (value == 0.0) value = of_range * (parameter.upper > 0.0 ? parameter.upper : parameter.lower);
+  return std::clamp(value, parameter.lower, parameter.upper);
+}
+
+/// Constants: derivative of the responses by each, and what follows for them.
+inline Eigen::MatrixXd judge_constants(const Model& model, const Responses& responses, DataReport& report) {
+  constexpr WorthThresholds limit;
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  Eigen::MatrixXd slopes(responses.base().size(), 0);
+  std::vector<std::string> names;
+  for (const CalibratedConstant& constant : constants) {
+    if (!constant.may_be_cause) continue;
+    Model moved = model;
+    for (const std::string& field : constant.fields) {
+      const std::string name = constant.block + "." + field;
+      moved.set(name, moved.get(name) * (1.0 + limit.step));
+    }
+    const Eigen::VectorXd slope = (responses.of(moved) - responses.base()) / std::log1p(limit.step);
+    if (!(slope.squaredNorm() > 0.0)) continue;  // its block is not judged
+    slopes.conservativeResize(Eigen::NoChange, slopes.cols() + 1);
+    slopes.col(slopes.cols() - 1) = slope;
+    names.push_back(constant.id);
+  }
+  if (names.empty()) return slopes;
+  const Eigen::MatrixXd information = slopes.transpose() * slopes;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(information);
+  const double floor = 1e-12 * std::max(modes.eigenvalues().maxCoeff(), 1e-300);
+  const Eigen::VectorXd variances = modes.eigenvalues().cwiseMax(floor).cwiseInverse();
+  const Eigen::MatrixXd covariance =
+      modes.eigenvectors() * variances.asDiagonal() * modes.eigenvectors().transpose();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    report.constants.push_back({names[i], 1.0 / std::sqrt(std::max(information(at, at), 1e-300)),
+                                std::sqrt(std::max(covariance(at, at), 0.0))});
+  }
+  for (Eigen::Index k = 0; k < variances.size(); ++k) {
+    const double sd = std::sqrt(variances[k]);
+    if (!(sd > limit.determined)) continue;
+    Combination weak;
+    weak.sd = sd;
+    const Eigen::VectorXd mode = modes.eigenvectors().col(k);
+    Eigen::Index first = 0;
+    mode.cwiseAbs().maxCoeff(&first);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double part = mode[static_cast<Eigen::Index>(i)] * (mode[first] > 0.0 ? 1.0 : -1.0);
+      if (std::abs(part) > limit.takes_part) weak.constants.push_back((part < 0.0 ? "-" : "") + names[i]);
+    }
+    report.only_together.push_back(std::move(weak));
+  }
+  std::stable_sort(report.only_together.begin(), report.only_together.end(),
+                   [](const Combination& a, const Combination& b) { return a.sd > b.sd; });
+  return slopes;
+}
+
+/// Effects: what one of usual size changes that constants, moving as far as they are unknown, cannot imitate.
+inline void judge_effects(const Model& model, const Recording& recording, const std::vector<Inputs>& inputs,
+                          const Responses& responses, const Eigen::MatrixXd& slopes,
+                          const Catalogue& catalogue, DataReport& report) {
+  constexpr WorthThresholds limit;
+  std::vector<Eigen::VectorXd> signatures;
+  Eigen::MatrixXd penalised = slopes.transpose() * slopes;
+  penalised.diagonal().array() += 1.0 / (limit.prior * limit.prior);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(penalised);
+  bool bench = false, axis = false;
+  for (const Inputs& one : inputs) bench = bench || one.bench(), axis = axis || one.axis();
+  for (const CatalogueEntry& entry : catalogue.entries()) {
+    if (model.effects.count(entry.info.id) > 0) continue;
+    const bool concerns = (entry.hooks.any_bench() && bench) || (entry.hooks.any_axis() && axis);
+    if (!can_be_judged(entry, model, inputs)) {
+      std::string needs;
+      for (const plant::Need need : entry.info.needs)
+        if (is_column(need) && !recording.has(to_string(need)))
+          needs += (needs.empty() ? "" : ", ") + std::string(to_string(need));
+      if (concerns && !needs.empty()) report.need_columns.push_back(entry.info.id + ": " + needs);
+      continue;
+    }
+    Model with = model;
+    EffectParameters& parameters = with.effects[entry.info.id];
+    for (const Parameter& parameter : entry.info.parameters)
+      parameters[parameter.name] = usual_size(parameter, recording);
+    Eigen::VectorXd change = responses.of(with) - responses.base();
+    if (!(change.squaredNorm() > 0.0)) {  // a gain starts at 1, where it does nothing
+      for (auto& [name, value] : parameters) value *= limit.gain;
+      change = responses.of(with) - responses.base();
+    }
+    Eigen::VectorXd own = change;
+    if (slopes.cols() > 0) own -= slopes * solver.solve(slopes.transpose() * change);
+    EffectReport one;
+    one.effect = entry.info.id;
+    one.visible = responses.size(own);
+    one.absorbed = one.visible < limit.visible && own.norm() < limit.absorbed * change.norm();
+    report.effects.push_back(std::move(one));
+    signatures.push_back(std::move(own));
+  }
+  for (std::size_t a = 0; a < signatures.size(); ++a)
+    for (std::size_t b = 0; b < signatures.size(); ++b) {
+      const double norm = signatures[a].norm() * signatures[b].norm();
+      if (a == b || !(norm > 0.0) || report.effects[a].visible < limit.visible ||
+          report.effects[b].visible < limit.visible)
+        continue;
+      if (std::abs(signatures[a].dot(signatures[b])) > limit.alike * norm)
+        report.effects[a].alike.push_back(report.effects[b].effect);
+    }
+  std::stable_sort(report.effects.begin(), report.effects.end(),
+                   [](const EffectReport& a, const EffectReport& b) { return a.visible > b.visible; });
+}
+
+}  // namespace engine
+
+THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vector<Recording>& train,
+                                             const std::vector<Recording>& held_out, const Options& options,
+                                             const Catalogue& catalogue) {
+  options.validate();
+  if (const auto problem = model.validate()) throw InvalidInput("model '" + model.name + "': " + *problem);
+  if (train.empty()) throw InvalidInput("there is no recording to look at");
+  engine::CheckedRecordings checked =
+      engine::check(model, train, held_out, {options.horizon_s, options.as_recorded}, catalogue);
+  DataReport report;
+  report.findings = std::move(checked.findings);
+  const engine::PreparedRecording* longest = &checked.train.front();
+  std::vector<Inputs> inputs;
+  for (const engine::PreparedRecording& one : checked.train) {
+    inputs.push_back(one.inputs());
+    for (const std::string& note : one.inputs().not_judged)
+      if (std::find(report.not_judged.begin(), report.not_judged.end(), note) == report.not_judged.end())
+        report.not_judged.push_back(note);
+    if (one.recording().rows() > longest->recording().rows()) longest = &one;
+  }
+  constexpr Eigen::Index few = 12;
+  const Recording sample = engine::sampled(longest->recording(), engine::moves(model, longest->recording()));
+  if (sample.rows() < few) return report;
+  const engine::Responses responses(model, sample, options.horizon_s, catalogue);
+  report.signals = responses.signals();
+  if (deciding(report.findings) != nullptr) return report;  // nothing that follows could be believed
+  const Eigen::MatrixXd slopes = engine::judge_constants(model, responses, report);
+  engine::judge_effects(model, longest->recording(), inputs, responses, slopes, catalogue, report);
+  return report;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// What the check of a recording can find. `to_string` gives the id that reports spell.
+enum class FindingKind {
+  // Stamps.
+  irregular_stamps,  ///< intervals vary more than by rounding
+  gap_in_stamps,     ///< rows are missing: what the inputs did meanwhile is unknown
+  // One column.
+  empty_column,        ///< a column without a sample; it counts as absent
+  constant_column,     ///< an output that never changes
+  missing_samples,     ///< empty cells of an output or covariate
+  unknown_input,       ///< empty cells of an input between values that differ
+  spiked_samples,      ///< isolated samples far from their neighbours
+  glitched_samples,    ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
+  repeated_frames,     ///< rows that repeat the outputs of the row before them
+  frozen_samples,      ///< an output that stands still where it cannot
+  clipped_samples,     ///< an output cut off at the end of its sensor's range
+  impossible_samples,  ///< outside what the quantity can be
+  wrapped_angle,       ///< an angle given inside one turn; it is unwrapped
+  coarse_quantum,      ///< steps that limit what any model can score
+  // Columns against each other and the simulation.
+  wrong_unit,       ///< the simulation follows the data in another unit
+  wrong_sign,       ///< the simulation follows the data with the sign turned round
+  swapped_columns,  ///< the simulation follows the data with two columns exchanged
+  clock_shift,      ///< an input stamped by another clock than the outputs
+  // The experiment.
+  sampled_too_slowly,     ///< hardly a row in each window of the horizon
+  never_driven,           ///< an input that is 0 throughout
+  held_out_not_excited,   ///< held-out data in which nothing is driven and nothing moves
+  held_out_in_training,   ///< held-out data that are training data, too
+  recording_given_twice,  ///< two training recordings are the same
+  // The file.
+  text_column_ignored,  ///< a column of text that is no run label
+  no_final_line_break,  ///< a file that may have been cut off
+};
+
+/// The kind as reports spell it.
+inline const char* to_string(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::irregular_stamps:
+      return "irregular_stamps";
+    case FindingKind::gap_in_stamps:
+      return "gap_in_stamps";
+    case FindingKind::empty_column:
+      return "empty_column";
+    case FindingKind::constant_column:
+      return "constant_column";
+    case FindingKind::missing_samples:
+      return "missing_samples";
+    case FindingKind::unknown_input:
+      return "unknown_input";
+    case FindingKind::spiked_samples:
+      return "spiked_samples";
+    case FindingKind::glitched_samples:
+      return "glitched_samples";
+    case FindingKind::repeated_frames:
+      return "repeated_frames";
+    case FindingKind::frozen_samples:
+      return "frozen_samples";
+    case FindingKind::clipped_samples:
+      return "clipped_samples";
+    case FindingKind::impossible_samples:
+      return "impossible_samples";
+    case FindingKind::wrapped_angle:
+      return "wrapped_angle";
+    case FindingKind::coarse_quantum:
+      return "coarse_quantum";
+    case FindingKind::wrong_unit:
+      return "wrong_unit";
+    case FindingKind::wrong_sign:
+      return "wrong_sign";
+    case FindingKind::swapped_columns:
+      return "swapped_columns";
+    case FindingKind::clock_shift:
+      return "clock_shift";
+    case FindingKind::sampled_too_slowly:
+      return "sampled_too_slowly";
+    case FindingKind::never_driven:
+      return "never_driven";
+    case FindingKind::held_out_not_excited:
+      return "held_out_not_excited";
+    case FindingKind::held_out_in_training:
+      return "held_out_in_training";
+    case FindingKind::recording_given_twice:
+      return "recording_given_twice";
+    case FindingKind::text_column_ignored:
+      return "text_column_ignored";
+    case FindingKind::no_final_line_break:
+      return "no_final_line_break";
+  }
+  return "";
+}
+
+/// How much a finding matters.
+enum class Severity {
+  note,     ///< good to know
+  warning,  ///< may distort the answer
+  error,    ///< the data cannot be believed as they stand: the verdict is `insufficient`
+};
+
+/// The severity as reports spell it.
+inline const char* to_string(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "";
+}
+
+/// What the check did about a finding.
+enum class FindingAction {
+  none,       ///< nothing
+  masked,     ///< the samples count as missing
+  segmented,  ///< the run is cut there: the state starts anew after it
+};
+
+/// The action as reports spell it.
+inline const char* to_string(FindingAction action) {
+  switch (action) {
+    case FindingAction::none:
+      return "none";
+    case FindingAction::masked:
+      return "masked";
+    case FindingAction::segmented:
+      return "segmented";
+  }
+  return "";
+}
+
+/// Half-open range of rows [begin, end), counted from 0 over the data rows of the recording as it was given.
+struct RowRange {
+  Eigen::Index begin = 0;  ///< first row
+  Eigen::Index end = 0;    ///< one past the last row
+};
+
+/// Something about the data themselves, found before any effect is looked for.
+struct Finding {
+  FindingKind kind = FindingKind::missing_samples;  ///< what it is
+  Severity severity = Severity::note;               ///< an error decides the verdict
+  std::string recording;                            ///< name of the recording it was found in
+  std::string column;                               ///< may be empty
+  std::string message;                              ///< one sentence: what is wrong, where, by how much
+  std::string mend = {};  ///< what would mend it, such as `--column motor_C=motor_C:degF`; may be empty
+  FindingAction action = FindingAction::none;  ///< what was done about it
+  std::vector<RowRange> rows = {};             ///< which rows, in order; empty: the column as a whole
+
+  /// Number of rows in `rows`.
+  Eigen::Index row_count() const {
+    Eigen::Index count = 0;
+    for (const RowRange& range : rows) count += range.end - range.begin;
+    return count;
+  }
+};
+
+/// The first finding that makes the data unbelievable, or nullptr.
+inline const Finding* deciding(const std::vector<Finding>& findings) {
+  const auto found = std::find_if(findings.begin(), findings.end(),
+                                  [](const Finding& one) { return one.severity == Severity::error; });
+  return found == findings.end() ? nullptr : &*found;
+}
+
+}  // namespace thermopower::gap

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/robust.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// When a recording of a moving axis is averaged down.
+struct AveragingThresholds {
+  double rows_per_horizon =
+      100.0;  ///< of a window that is scored: finer than any effect of the catalogue needs
+  double smooth =
+      1.3;  ///< robust scale of the samples about a block's parabola, over that of neighbours: more is motion
+  double kinks = 5.0;  ///< the same for the 95th percentile: blocks in which the torque steps
+};
+
+/// Averages a fast recording of a moving axis down in time, so that a budget of rows spans the same motion at any
+/// sampling rate.
+///
+/// Blocks of k rows become one row at their centre: outputs are the value of the parabola through their samples there
+/// (a mean would cut the tops of fast motions), inputs the mean over the time from centre to centre, so that the
+/// torque's integral is what it was. Blocks are halved until parabolas describe the samples to within their noise.
+class AxisAveraging {
+public:
+  /// @param full  what is averaged; must outlive this object
+  explicit AxisAveraging(const Inputs& full) : full_(full) {}
+
+  /// The shorter recording, or the full one where it is not faster than needed.
+  Inputs run(double horizon_s) const {
+    std::vector<double> steps;
+    for (const RunSpan& run : full_.runs)
+      for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(full_.t_s[i] - full_.t_s[i - 1]);
+    const double interval_s = engine::median_of(steps);
+    if (!(interval_s > 0.0)) return full_;
+    auto rows = static_cast<Eigen::Index>(horizon_s / (AveragingThresholds().rows_per_horizon * interval_s));
+    while (rows > 1 && !smooth_within(rows)) rows /= 2;
+    return rows > 1 ? averaged(rows) : full_;
+  }
+
+private:
+  /// The parabola through the samples of a block, at the block's mean stamp.
+  static double at_centre(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s, Eigen::Index begin,
+                          Eigen::Index end, double centre_s) {
+    // Sums of powers of the stamps about the centre, in units of the block's length.
+    const double unit_s = std::max(t_s[end - 1] - t_s[begin], 1e-300);
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    Eigen::Index count = 0;
+    for (Eigen::Index i = begin; i < end; ++i) {
+      if (!std::isfinite(values[i])) continue;
+      const double s = (t_s[i] - centre_s) / unit_s;
+      const Eigen::Vector3d powers(1.0, s, s * s);
+      normal += powers * powers.transpose();
+      right += powers * values[i];
+      ++count;
+    }
+    if (2 * count <= end - begin) return missing;
+    if (count < 4) {  // too few for a parabola: a straight line
+      if (count < 2) return right[0] / static_cast<double>(std::max<Eigen::Index>(count, 1));
+      return normal.topLeftCorner<2, 2>().ldlt().solve(right.head<2>())[0];
+    }
+    return normal.ldlt().solve(right)[0];
+  }
+
+  double centre_of(Eigen::Index begin, Eigen::Index end) const {
+    return full_.t_s.segment(begin, end - begin).mean();
+  }
+
+  bool smooth_within(Eigen::Index rows) const {
+    constexpr AveragingThresholds limit;
+    constexpr Eigen::Index looked_at = 400;  // blocks
+    for (const Signal signal : {Signal::angle_deg, Signal::rate_dps}) {
+      if (!full_.judged(signal)) continue;
+      const Eigen::VectorXd& values = full_.of(signal);
+      const double scale = engine::white_scale(values, full_.runs) + quantum_of(values) / std::sqrt(12.0);
+      std::vector<double> left;
+      const Eigen::Index stride = std::max(rows, full_.rows() / looked_at);
+      for (const RunSpan& run : full_.runs)
+        for (Eigen::Index begin = run.begin; begin + rows <= run.end; begin += stride) {
+          const Eigen::Index middle = begin + rows / 2;
+          const double off =
+              values[middle] - at_centre(values, full_.t_s, begin, begin + rows, full_.t_s[middle]);
+          if (std::isfinite(off)) left.push_back(std::abs(off));
+        }
+      std::vector<double> again = left;
+      if (engine::median_of(left) > limit.smooth * 0.6745 * scale ||
+          engine::quantile_of(again, 0.95) > limit.kinks * scale)
+        return false;
+    }
+    return true;
+  }
+
+  Inputs averaged(Eigen::Index rows) const {
+    Inputs thin = full_;
+    thin.runs.clear();
+    std::vector<std::pair<Eigen::Index, Eigen::Index>> blocks;
+    for (const RunSpan& run : full_.runs) {
+      const auto begin = static_cast<Eigen::Index>(blocks.size());
+      for (Eigen::Index row = run.begin; row + rows <= run.end; row += rows)
+        blocks.push_back({row, row + rows});
+      thin.runs.push_back({begin, static_cast<Eigen::Index>(blocks.size()), run.label});
+    }
+    const auto count = static_cast<Eigen::Index>(blocks.size());
+    thin.t_s.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& block = blocks[static_cast<std::size_t>(i)];
+      thin.t_s[i] = centre_of(block.first, block.second);
+    }
+    const auto picked = [&](Eigen::VectorXd& values) {
+      if (values.size() == 0) return;
+      const Eigen::VectorXd whole = values;
+      values.resize(count);
+      for (Eigen::Index i = 0; i < count; ++i) values[i] = whole[blocks[static_cast<std::size_t>(i)].first];
+    };
+    for (Eigen::VectorXd* values :
+         {&thin.power_param, &thin.supply_V, &thin.ambient_C, &thin.airspeed_mps, &thin.neighbour_C,
+          &thin.covariate_rate_dps, &thin.covariate_motor_C, &thin.held_current_A, &thin.held_motor_C})
+      picked(*values);
+    // The value of a parabola at its middle has 9/4 times the variance of a mean.
+    thin.repeats = Eigen::VectorXd::Constant(count, std::max(1.0, 4.0 / 9.0 * static_cast<double>(rows)));
+    if (full_.drive_A.size() > 0) thin.drive_A = held_means(full_.drive_A, thin);
+    for (std::size_t k = 0; k < thin.measured.size(); ++k) {
+      if (full_.measured[k].size() == 0) continue;
+      const bool moves =
+          k == static_cast<std::size_t>(Signal::angle_deg) || k == static_cast<std::size_t>(Signal::rate_dps);
+      if (!moves) {
+        picked(thin.measured[k]);
+        continue;
+      }
+      thin.measured[k].resize(count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const auto& block = blocks[static_cast<std::size_t>(i)];
+        thin.measured[k][i] = at_centre(full_.measured[k], full_.t_s, block.first, block.second, thin.t_s[i]);
+      }
+    }
+    return thin;
+  }
+
+  /// Means of a held input over the intervals that start at the rows of `thin`.
+  Eigen::VectorXd held_means(const Eigen::VectorXd& values, const Inputs& thin) const {
+    Eigen::VectorXd means(thin.t_s.size());
+    for (std::size_t r = 0; r < thin.runs.size(); ++r) {
+      const RunSpan& run = thin.runs[r];
+      const RunSpan& whole = full_.runs[r];
+      Eigen::Index row = whole.begin;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double from_s = thin.t_s[i];
+        const double to_s = i + 1 < run.end ? thin.t_s[i + 1] : full_.t_s[whole.end - 1];
+        while (row + 1 < whole.end && full_.t_s[row + 1] <= from_s) ++row;
+        double sum = 0.0, length_s = 0.0;
+        for (Eigen::Index k = row; k < whole.end; ++k) {
+          const double begin_s = std::max(from_s, full_.t_s[k]);
+          const double end_s = k + 1 < whole.end ? std::min(to_s, full_.t_s[k + 1]) : to_s;
+          if (!(begin_s < to_s)) break;
+          if (end_s > begin_s) sum += values[k] * (end_s - begin_s), length_s += end_s - begin_s;
+        }
+        means[i] = length_s > 0.0 ? sum / length_s : values[row];
+      }
+    }
+    return means;
+  }
+
+  const Inputs& full_;
+};
+
+}  // namespace thermopower::gap

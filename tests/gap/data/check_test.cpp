@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// What the check does to the data, with the truth known: dirt is put into clean recordings at ten places, and each
+// sample that was spoilt must be out of the way, and hardly any other.
+#include "../../catch.hpp"
+
+#include "../plants.hpp"
+
+#include <thermopower/gap/data/prepared_recording.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+using namespace thermopower::gap;
+using engine::PreparedRecording;
+
+namespace {
+
+constexpr int places = 10;
+
+Recording bench() { return test::bench_recording({}, 1500, 1); }
+Recording axis() { return test::axis_recording({}, 3000, 1); }
+
+/// Where dirt goes: ten rows, evenly spread but for an odd step, away from the ends.
+Eigen::Index place(const Recording& r, int k) { return 60 + k * (r.rows() - 150) / places + 7 * k % 11; }
+
+void change(Recording& r, const char* column, const std::function<double(double, Eigen::Index)>& f) {
+  Eigen::VectorXd values = r.column(column);
+  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = f(values[i], i);
+  r.set(column, values);
+}
+
+/// Rows of a column that are missing, or left out, after the check.
+std::set<Eigen::Index> taken(const Recording& recorded, const PreparedRecording& prepared,
+                             const char* column) {
+  std::set<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < recorded.rows(); ++i) rows.insert(i);
+  const Eigen::VectorXd& values = prepared.recording().column(column);
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (std::isfinite(values[i])) rows.erase(prepared.source_rows()[static_cast<std::size_t>(i)]);
+  return rows;
+}
+
+bool found(const PreparedRecording& prepared, FindingKind kind, const std::string& column,
+           FindingAction action) {
+  return std::any_of(prepared.findings().begin(), prepared.findings().end(), [&](const Finding& one) {
+    return one.kind == kind && one.column == column && one.action == action;
+  });
+}
+
+/// Spoils a recording at ten places and looks at what is left.
+/// @param length  rows that are spoilt at each place
+/// @param spoil   what becomes of the value at a row; the row counts from the first spoilt one
+void spoilt_at_ten_places(const char* what, const Model& model, Recording r, const char* column, int length,
+                          FindingKind kind, const std::function<double(double, Eigen::Index)>& spoil) {
+  CAPTURE(what);
+  std::set<Eigen::Index> bad;
+  Eigen::VectorXd values = r.column(column);
+  for (int k = 0; k < places; ++k)
+    for (int i = 0; i < length; ++i) {
+      const Eigen::Index row = place(r, k) + i;
+      values[row] = spoil(values[row], i);
+      bad.insert(row);
+    }
+  r.set(column, values);
+  const PreparedRecording prepared(model, r);
+  CHECK(found(prepared, kind, column, FindingAction::masked));
+  const std::set<Eigen::Index> out = taken(r, prepared, column);
+  std::size_t missed = 0, good = 0;
+  for (const Eigen::Index row : bad) missed += out.count(row) == 0 ? 1 : 0;
+  for (const Eigen::Index row : out) good += bad.count(row) == 0 ? 1 : 0;
+  CHECK(missed == 0);
+  CHECK(static_cast<double>(good) <= 0.002 * static_cast<double>(r.rows()));
+}
+
+}  // namespace
+
+TEST_CASE("less than a thousandth of clean samples is taken for dirt") {
+  Eigen::Index samples = 0;
+  std::size_t lost = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const bool moving : {false, true}) {
+      const Recording r = moving ? test::axis_recording({0.02, 0.0, 1.0, 0}, 2000, seed)
+                                 : test::bench_recording({}, 1500, seed);
+      const PreparedRecording prepared(moving ? test::axis_model() : test::bench_model(), r);
+      for (const char* column : {"motor_C", "current_A", "angle_deg", "rate_dps"}) {
+        if (!r.has(column)) continue;
+        samples += r.rows();
+        lost += taken(r, prepared, column).size();
+      }
+      CHECK(prepared.recording().runs.size() == 1);
+      for (const Finding& one : prepared.findings()) CHECK(one.severity == Severity::note);
+    }
+  }
+  CHECK(static_cast<double>(lost) < 0.001 * static_cast<double>(samples));
+}
+
+TEST_CASE("each kind of bad sample is masked where it is, and nothing else is") {
+  const Model motor = test::bench_model(), moving = test::axis_model();
+  spoilt_at_ten_places("a spike of the thermometer", motor, bench(), "motor_C", 1,
+                       FindingKind::spiked_samples, [](double x, Eigen::Index) { return x + 4.0; });
+  spoilt_at_ten_places("85.0 degC, what a DS18B20 says before it has measured", motor, bench(), "motor_C", 3,
+                       FindingKind::glitched_samples, [](double, Eigen::Index) { return 85.0; });
+  spoilt_at_ten_places("a thermometer that is not there", motor, bench(), "motor_C", 4,
+                       FindingKind::impossible_samples, [](double, Eigen::Index) { return -127.0; });
+  spoilt_at_ten_places("a spike of the rate", moving, axis(), "rate_dps", 1, FindingKind::spiked_samples,
+                       [](double x, Eigen::Index) { return x + 60.0; });
+  spoilt_at_ten_places("a spike of the angle", moving, axis(), "angle_deg", 1, FindingKind::spiked_samples,
+                       [](double x, Eigen::Index) { return x - 25.0; });
+  spoilt_at_ten_places("a rate whose 16-bit word wraps", moving, axis(), "rate_dps", 4,
+                       FindingKind::glitched_samples,
+                       [](double x, Eigen::Index) { return x - 65536.0 * 0.061; });
+}
+
+TEST_CASE("a current that reads 0 while it flows is masked, and one that does not flow is not") {
+  Recording r = bench();
+  std::set<Eigen::Index> bad;
+  const Eigen::VectorXd& power = r.column("power_param");
+  Eigen::VectorXd current = r.column("current_A");
+  for (int k = 0; k < places; ++k)
+    for (Eigen::Index row = place(r, k); row < place(r, k) + 2; ++row) {
+      if (power[row] == 0.0) continue;
+      current[row] = 0.0;
+      bad.insert(row);
+    }
+  r.set("current_A", current);
+  REQUIRE(bad.size() > 8);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(taken(r, prepared, "current_A") == bad);
+  CHECK(found(prepared, FindingKind::glitched_samples, "current_A", FindingAction::masked));
+}
+
+TEST_CASE("an output that stands still while its noise should show is masked from its second sample on") {
+  Recording r = axis();
+  const Eigen::Index from = 1000, to = 1400;
+  const double held = r.column("rate_dps")[from];
+  change(r, "rate_dps", [&](double x, Eigen::Index i) { return i >= from && i < to ? held : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::frozen_samples, "rate_dps", FindingAction::masked));
+  const std::set<Eigen::Index> out = taken(r, prepared, "rate_dps");
+  CHECK(out.size() >= static_cast<std::size_t>(to - from - 1));
+  CHECK(out.size() < static_cast<std::size_t>(to - from + 5));
+}
+
+TEST_CASE("a rate cut off at the end of its range is masked there") {
+  Recording r = axis();
+  const double limit = 0.7 * r.column("rate_dps").cwiseAbs().maxCoeff();
+  std::size_t cut = 0;
+  change(r, "rate_dps", [&](double x, Eigen::Index) {
+    cut += std::abs(x) > limit ? 1 : 0;
+    return std::clamp(x, -limit, limit);
+  });
+  REQUIRE(cut > 50);
+  REQUIRE(cut < 1000);
+  const PreparedRecording prepared(test::axis_model(), r);
+  const std::size_t out = taken(r, prepared, "rate_dps").size();
+  CHECK(static_cast<double>(out) > 0.9 * static_cast<double>(cut));
+  CHECK(static_cast<double>(out) < 1.1 * static_cast<double>(cut) + 3.0);
+}
+
+TEST_CASE("frames that repeat the one before them are masked") {
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (int k = 0; k < places; ++k) {
+    const Eigen::Index row = place(r, k);
+    for (const char* column : {"angle_deg", "rate_dps"}) {
+      Eigen::VectorXd values = r.column(column);
+      values[row] = values[row + 1] = values[row - 1];
+      r.set(column, values);
+    }
+    bad.insert(row);
+    bad.insert(row + 1);
+  }
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked));
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+}
+
+TEST_CASE("a coarse thermometer that stands still is nothing to talk about") {
+  Recording r = bench();
+  change(r, "motor_C", [](double x, Eigen::Index) { return std::round(x); });
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(taken(r, prepared, "motor_C").empty());
+  for (const Finding& one : prepared.findings()) {
+    CHECK(one.severity == Severity::note);
+    CHECK(one.kind == FindingKind::coarse_quantum);
+  }
+}
+
+TEST_CASE("a tenth of bad rows does not move the thresholds") {
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  test::Noise noise(5);
+  change(r, "rate_dps", [&](double x, Eigen::Index i) {
+    if (i % 10 != 3) return x;
+    bad.insert(i);
+    return x + (noise() > 0.0 ? 50.0 : -50.0);
+  });
+  const PreparedRecording prepared(test::axis_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "rate_dps");
+  std::size_t missed = 0;
+  for (const Eigen::Index row : bad) missed += out.count(row) == 0 ? 1 : 0;
+  CHECK(missed == 0);
+  CHECK(out.size() <= bad.size() + 6);
+}
+
+TEST_CASE("lost rows cut the run, but not where the command stood still") {
+  Recording r = axis();
+  std::vector<bool> keep(static_cast<std::size_t>(r.rows()), true);
+  for (int k = 0; k < places; ++k)
+    for (Eigen::Index i = 0; i < 12; ++i) keep[static_cast<std::size_t>(place(r, k) + i)] = false;
+  Recording holes;
+  holes.name = r.name;
+  const auto kept = [&](const Eigen::VectorXd& values) {
+    std::vector<double> list;
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      if (keep[static_cast<std::size_t>(i)]) list.push_back(values[i]);
+    return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(list.data(), static_cast<Eigen::Index>(list.size())));
+  };
+  holes.t_s = kept(r.t_s);
+  for (const Column& column : r.columns) holes.set(column.name, kept(column.values));
+  const PreparedRecording prepared(test::axis_model(), holes);
+  CHECK(found(prepared, FindingKind::gap_in_stamps, "t_s", FindingAction::segmented));
+  CHECK(prepared.recording().runs.size() >= 8);
+  CHECK(prepared.recording().runs.size() <= places + 1);
+  holes.set("drive_A", Eigen::VectorXd::Constant(holes.rows(), 0.1));
+  CHECK(PreparedRecording(test::axis_model(), holes).recording().runs.size() == 1);
+  CHECK(PreparedRecording(test::axis_model(), holes, true).recording().rows() == holes.rows());
+}
+
+TEST_CASE("an input that is missing between values that differ is not made up") {
+  Recording r = axis();
+  change(r, "drive_A", [&](double x, Eigen::Index i) { return i >= 500 && i < 515 ? missing : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::unknown_input, "drive_A", FindingAction::segmented));
+  REQUIRE(prepared.recording().runs.size() == 2);
+  CHECK(prepared.recording().runs[0].end == 500);
+  CHECK(prepared.recording().rows() == r.rows() - 15);
+  CHECK(prepared.recording().column("drive_A").array().isFinite().all());
+  // A power that was 150 before and after was 150 in between.
+  Recording motor = bench();
+  Eigen::Index steady = 80;
+  while (motor.column("power_param")[steady - 1] != motor.column("power_param")[steady + 3]) ++steady;
+  const double level = motor.column("power_param")[steady - 1];
+  change(motor, "power_param",
+         [&](double x, Eigen::Index i) { return i >= steady && i < steady + 3 ? missing : x; });
+  const PreparedRecording bridged(test::bench_model(), motor);
+  CHECK(bridged.recording().runs.size() == 1);
+  CHECK(bridged.recording().column("power_param")[steady + 1] == level);
+}
+
+TEST_CASE("as recorded, the check says what it saw and does nothing") {
+  Recording r = bench();
+  change(r, "motor_C", [](double x, Eigen::Index i) { return i % 100 == 50 ? 85.0 : x; });
+  const PreparedRecording prepared(test::bench_model(), r, true);
+  CHECK_FALSE(prepared.findings().empty());
+  for (const Finding& one : prepared.findings()) CHECK(one.action == FindingAction::none);
+  CHECK(taken(r, prepared, "motor_C").empty());
+}
+
+TEST_CASE("rows of a part count in the whole recording") {
+  Recording r = bench();
+  change(r, "motor_C", [](double x, Eigen::Index i) { return i == 1200 ? x + 30.0 : x; });
+  const PreparedRecording prepared(test::bench_model(), r.slice(1000, 1500));
+  REQUIRE(found(prepared, FindingKind::spiked_samples, "motor_C", FindingAction::masked));
+  for (const Finding& one : prepared.findings())
+    if (one.kind == FindingKind::spiked_samples) {
+      REQUIRE(one.rows.size() == 1);
+      CHECK(one.rows[0].begin == 1200);
+      CHECK(one.row_count() == 1);
+    }
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The noise of a residual, whatever its colour and tails, with and without the error of a wrong model beside it.
+#include "../../catch.hpp"
+
+#include <thermopower/gap/data/noise.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+using namespace thermopower::gap;
+
+namespace {
+
+typedef std::mt19937 Random;  // its sequence is the standard's; the distributions are ours
+
+double normal(Random& random) {
+  const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
+  return std::sqrt(-2.0 * std::log(uniform())) * std::cos(6.283185307179586 * uniform());
+}
+
+/// Student's t with three degrees of freedom, scaled to a standard deviation of 1.
+double heavy_tailed(Random& random) {
+  const double a = normal(random), b = normal(random), c = normal(random);
+  return normal(random) / std::sqrt((a * a + b * b + c * c) / 3.0) / std::sqrt(3.0);
+}
+
+std::vector<double> coloured(int count, double memory, Random& random) {
+  std::vector<double> x;
+  double state = normal(random);
+  for (int i = 0; i < count; ++i) {
+    x.push_back(state);
+    state = memory * state + std::sqrt(1.0 - memory * memory) * normal(random);
+  }
+  return x;
+}
+
+/// Median of the estimate over the truth in 21 draws.
+double ratio(int count, int run, double truth, double quantum,
+             const std::function<std::vector<double>(Random&)>& draw) {
+  std::vector<double> ratios;
+  for (unsigned seed = 1; seed <= 21; ++seed) {
+    Random random(seed);
+    const std::vector<double> x = draw(random);
+    std::vector<bool> gaps(static_cast<std::size_t>(count), false);
+    for (int i = run; i < count; i += run) gaps[static_cast<std::size_t>(i)] = true;
+    ratios.push_back(noise_sd(x, gaps, quantum) / truth);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[10];
+}
+
+}  // namespace
+
+TEST_CASE("the noise is right within a fifth for white, coloured and heavy-tailed residuals") {
+  const struct { int count, run; } lengths[] = {{500, 500}, {2000, 2000}, {4000, 100}, {10000, 500}};
+  for (const auto& one : lengths) {
+    CAPTURE(one.count, one.run);
+    const auto of = [&](const std::function<std::vector<double>(Random&)>& draw) {
+      return ratio(one.count, one.run, 1.0, 0.0, draw);
+    };
+    const auto each = [&](const std::function<double(Random&)>& value) {
+      return [&, value](Random& random) {
+        std::vector<double> x;
+        for (int i = 0; i < one.count; ++i) x.push_back(value(random));
+        return x;
+      };
+    };
+    CHECK(of(each(normal)) == Approx(1.0).epsilon(0.05));
+    CHECK(of(each(heavy_tailed)) == Approx(1.0).epsilon(0.2));
+    CHECK(of([&](Random& random) { return coloured(one.count, 0.8, random); }) == Approx(1.0).epsilon(0.2));
+    CHECK(of([&](Random& random) { return coloured(one.count, 0.95, random); }) == Approx(1.0).epsilon(0.2));
+  }
+}
+
+TEST_CASE("the error of a wrong model is no noise") {
+  constexpr int count = 4000;
+  const auto with = [&](double memory, const std::function<double(int)>& error) {
+    return ratio(count, 200, 1.0, 0.0, [&](Random& random) {
+      std::vector<double> x = coloured(count, memory, random);
+      for (int i = 0; i < count; ++i) x[static_cast<std::size_t>(i)] += error(i);
+      return x;
+    });
+  };
+  CHECK(with(0.0, [](int i) { return 5.0 * std::sin(0.05 * i); }) == Approx(1.0).epsilon(0.2));
+  CHECK(with(0.0, [](int i) { return 8.0 * std::exp(-(i % 200) / 60.0); }) == Approx(1.0).epsilon(0.2));
+  CHECK(with(0.95, [](int i) { return 5.0 * std::sin(0.02 * i); }) == Approx(1.0).epsilon(0.25));
+}
+
+TEST_CASE("runs may differ in their noise, and readings in coarse steps have the noise of rounding, too") {
+  constexpr int count = 4000;
+  CHECK(ratio(count, 500, std::sqrt(13.0), 0.0, [&](Random& random) {
+          std::vector<double> x;
+          for (int i = 0; i < count; ++i) x.push_back(normal(random) * (i < count / 2 ? 1.0 : 5.0));
+          return x;
+        }) == Approx(1.0).epsilon(0.1));
+  // A thermometer of 0.5 K steps with a noise of 0.14 K.
+  CHECK(ratio(count, count, std::hypot(0.14, 0.5 / std::sqrt(12.0)), 0.5, [&](Random& random) {
+          std::vector<double> x;
+          for (int i = 0; i < count; ++i) {
+            const double truth = 20.0 + 5.0 * std::sin(0.003 * i);
+            x.push_back(0.5 * std::round((truth + 0.14 * normal(random)) / 0.5) - truth);
+          }
+          return x;
+        }) == Approx(1.0).epsilon(0.2));
+}
+
+TEST_CASE("a few odd samples do not hide a quantum") {
+  Eigen::VectorXd values(1000);
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    values[i] = 0.1 * std::round(10.0 * (20.0 + 3.0 * std::sin(0.05 * static_cast<double>(i))));
+  CHECK(quantum_of(values) == Approx(0.1).epsilon(1e-6));
+  values[500] = 22.2345;
+  CHECK(quantum_of(values) == Approx(0.1).epsilon(1e-6));
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Units, signs, exchanged columns, clocks, and experiments that cannot tell anything.
+#include "../../catch.hpp"
+
+#include "../plants.hpp"
+
+#include <thermopower/gap/check.hpp>
+#include <thermopower/gap/detail/unit_check.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <functional>
+
+using namespace thermopower::gap;
+
+namespace {
+
+Recording bench() { return test::bench_recording({}, 1200, 1); }
+Recording axis() { return test::axis_recording({}, 3000, 1); }
+
+void change(Recording& r, const char* column, const std::function<double(double)>& f) {
+  Eigen::VectorXd values = r.column(column);
+  for (double& value : values) value = f(value);
+  r.set(column, values);
+}
+
+std::vector<Finding> findings(const Model& model, const Recording& r) {
+  return engine::check(model, {r}, {}, {}, standard_catalogue()).findings;
+}
+
+/// The first finding as `kind(column) mend`; empty where none decides.
+std::string decision(const Model& model, const Recording& r) {
+  const std::vector<Finding> all = findings(model, r);
+  const Finding* one = deciding(all);
+  return one == nullptr ? "" : std::string(to_string(one->kind)) + "(" + one->column + ") " + one->mend;
+}
+
+std::string said(const Model& model, const Recording& r) {
+  std::string text;
+  for (const Finding& one : findings(model, r))
+    text += std::string(to_string(one.kind)) + "(" + one.column + ") " + one.message + "; ";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("sound recordings are believed, and those of other plants than the model's") {
+  CHECK(decision(test::bench_model(), bench()).empty());
+  CHECK(decision(test::axis_model(), axis()).empty());
+  CHECK(decision(test::bench_model(), test::bench_recording({0.01, 0.05, 1.3, 1.5, 20.0, 1.4}, 1200, 3))
+            .empty());
+  CHECK(decision(test::axis_model(), test::axis_recording({0.03, 0.02, 1.0, 3}, 3000, 4)).empty());
+  CHECK(decision(test::axis_model(), test::axis_recording({0.0, 0.0, 18.0, 0}, 3000, 4))
+            .empty());  // angle_scale
+}
+
+TEST_CASE("a wrong unit decides, with the option that mends it") {
+  struct Case {
+    const char* column;
+    std::function<double(double)> as_recorded;
+    const char* answer;
+  };
+  const Case motor[] = {
+      {"motor_C", [](double x) { return x * 1.8 + 32.0; },
+       "wrong_unit(motor_C) --column motor_C=motor_C:degF"},
+      {"motor_C", [](double x) { return x + 273.15; }, "wrong_unit(motor_C) --column motor_C=motor_C:K"},
+      {"ambient_C", [](double x) { return x * 1.8 + 32.0; },
+       "wrong_unit(ambient_C) --column ambient_C=ambient_C:degF"},
+      {"ambient_C", [](double x) { return x + 273.15; },
+       "wrong_unit(ambient_C) --column ambient_C=ambient_C:K"},
+      {"power_param", [](double x) { return x / 255.0; },
+       "wrong_unit(power_param) --column power_param=power_param:1"},
+      {"power_param", [](double x) { return x / 2.55; },
+       "wrong_unit(power_param) --column power_param=power_param:%"},
+      {"current_A", [](double x) { return 1000.0 * x; },
+       "wrong_unit(current_A) --column current_A=current_A:mA"},
+      {"current_A", [](double x) { return -x; }, "wrong_sign(current_A) --column current_A=current_A:-A"},
+      {"supply_V", [](double x) { return 1000.0 * x; },
+       "wrong_unit(supply_V) --column supply_V=supply_V:mV"}};
+  for (const Case& one : motor) {
+    Recording r = bench();
+    change(r, one.column, one.as_recorded);
+    CHECK(decision(test::bench_model(), r) == one.answer);
+  }
+  const Case moving[] = {
+      {"drive_A", [](double x) { return 1000.0 * x; }, "wrong_unit(drive_A) --column drive_A=drive_A:mA"},
+      {"drive_A", [](double x) { return -x; }, "wrong_sign(drive_A) --column drive_A=drive_A:-A"},
+      {"rate_dps", [](double x) { return x / 6.0; }, "wrong_unit(rate_dps) --column rate_dps=rate_dps:rpm"},
+      {"rate_dps", [](double x) { return x / 57.29578; },
+       "wrong_unit(rate_dps) --column rate_dps=rate_dps:rad/s"},
+      {"rate_dps", [](double x) { return -x; }, "wrong_sign(rate_dps) --column rate_dps=rate_dps:-deg/s"},
+      {"angle_deg", [](double x) { return -x; }, "wrong_sign(angle_deg) --column angle_deg=angle_deg:-deg"}};
+  for (const Case& one : moving) {
+    Recording r = axis();
+    change(r, one.column, one.as_recorded);
+    CHECK(decision(test::axis_model(), r) == one.answer);
+  }
+}
+
+TEST_CASE("several columns in the same wrong unit are mended together") {
+  Recording r = bench();
+  for (const char* column : {"motor_C", "ambient_C"})
+    change(r, column, [](double x) { return x * 1.8 + 32.0; });
+  CHECK(decision(test::bench_model(), r) ==
+        "wrong_unit(motor_C) --column motor_C=motor_C:degF --column ambient_C=ambient_C:degF");
+  r = axis();
+  for (const char* column : {"angle_deg", "rate_dps"})
+    change(r, column, [](double x) { return x / 57.29578; });
+  CHECK(decision(test::axis_model(), r) ==
+        "wrong_unit(rate_dps) --column rate_dps=rate_dps:rad/s --column angle_deg=angle_deg:rad");
+}
+
+TEST_CASE("stamps in other units decide") {
+  const struct {
+    double factor;
+    const char* unit;
+  } cases[] = {{1e3, "ms"}, {1e6, "us"}, {1.0 / 60.0, "min"}};
+  for (const auto& one : cases) {
+    Recording motor = bench(), moving = axis();
+    motor.t_s *= one.factor;
+    moving.t_s *= one.factor;
+    const std::string answer = std::string("wrong_unit(t_s) --column t_s=t_s:") + one.unit;
+    CHECK(decision(test::bench_model(), motor) == answer);
+    CHECK(decision(test::axis_model(), moving) == answer);
+  }
+}
+
+TEST_CASE("exchanged columns decide") {
+  Recording r = axis();
+  const Eigen::VectorXd angle = r.column("angle_deg");
+  r.set("angle_deg", r.column("rate_dps"));
+  r.set("rate_dps", angle);
+  CHECK(decision(test::axis_model(), r) ==
+        "swapped_columns(angle_deg) --column angle_deg=rate_dps --column rate_dps=angle_deg");
+  r = bench();
+  const Eigen::VectorXd motor = r.column("motor_C");
+  r.set("motor_C", r.column("ambient_C"));
+  r.set("ambient_C", motor);
+  CHECK(decision(test::bench_model(), r) ==
+        "swapped_columns(motor_C) --column motor_C=ambient_C --column ambient_C=motor_C");
+}
+
+TEST_CASE("loggers whose clocks differ are told, but do not decide") {
+  Recording r = bench();
+  r.set("current_A", engine::shifted(r.column("current_A"), 5));
+  CHECK_THAT(said(test::bench_model(), r),
+             ContainsSubstring("clock_shift(current_A) follows power_param by 10 s (5 rows)"));
+  CHECK(decision(test::bench_model(), r).empty());
+  r = axis();
+  r.set("drive_A", engine::shifted(r.column("drive_A"), 4));
+  CHECK_THAT(said(test::axis_model(), r), ContainsSubstring("clock_shift(drive_A)"));
+}
+
+TEST_CASE("an experiment that can tell nothing decides") {
+  const auto kinds = [](const Model& model, const std::vector<Recording>& train,
+                        const std::vector<Recording>& held, double horizon_s = 0.5) {
+    std::string text;
+    for (const Finding& one :
+         engine::check(model, train, held, {horizon_s, false}, standard_catalogue()).findings)
+      if (one.severity == Severity::error) text += std::string(to_string(one.kind)) + " ";
+    return text;
+  };
+  const Recording train = axis(), held = test::axis_recording({}, 2000, 7);
+  CHECK(kinds(test::axis_model(), {train}, {held}).empty());
+  CHECK(kinds(test::axis_model(), {train}, {held}, 0.005) == "sampled_too_slowly ");
+  CHECK(kinds(test::axis_model(), {train}, {train}) == "held_out_in_training ");
+  CHECK(kinds(test::axis_model(), {train}, {train.slice(1000, 2000)}) == "held_out_in_training ");
+  CHECK(kinds(test::axis_model(), {train, train}, {held}) == "recording_given_twice ");
+  Recording still = held;
+  test::Noise noise(3);
+  still.set("drive_A", Eigen::VectorXd::Zero(still.rows()));
+  change(still, "rate_dps", [&](double) { return 0.15 * noise(); });
+  change(still, "angle_deg", [&](double) { return 0.02 * noise(); });
+  CHECK(kinds(test::axis_model(), {train}, {still}) == "held_out_not_excited ");
+  CHECK(kinds(test::axis_model(), {still}, {held}) == "never_driven ");
+}
+
+TEST_CASE("an empty column is said to be empty") {
+  Recording r = bench();
+  r.set("airspeed_mps", Eigen::VectorXd::Constant(r.rows(), missing));
+  CHECK_THAT(said(test::bench_model(), r), ContainsSubstring("empty_column(airspeed_mps)"));
+  r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), missing));
+  const engine::PreparedRecording prepared(test::bench_model(), r);
+  REQUIRE_FALSE(prepared.inputs().not_judged.empty());
+  CHECK(prepared.inputs().not_judged.front() == "motor_C is not judged: column ambient_C has no sample");
+}
