@@ -17,7 +17,24 @@ typedef thermopower::GimbalController<Small, Small, Large> Gimbal;
 // A three-cell battery is empty at 9 V; your rig's supply, limits and gains go here.
 inline Gimbal new_gimbal() {
   const thermopower::GimbalConfig config = {13.0f, 9.0f, 0.5f,
-                                            thermopower::AirTemperature::Config::standard()};
+                                            thermopower::AirTemperature::Config::standard(), 20.0f};
   return Gimbal(config, Small::Config::with_gain({24.0f, 4.0f}), Small::Config::with_gain({180.0f, 105.0f}),
                 Large::Config::with_gain({40.0f, 2.0f}));
+}
+
+// Without a record of what was, the motors may be as hot as their limit.
+inline int16_t hottest_start_C() { return 60; }
+
+inline void start(Gimbal& gimbal, float motor_C) {
+  gimbal.axis<0>().start(motor_C);
+  gimbal.axis<1>().start(motor_C);
+  gimbal.axis<2>().start(motor_C);
+}
+
+// The hottest motor, to whole degC and not below it. No temperature at all is the hottest there is.
+inline int16_t hottest_C(const Gimbal& gimbal) {
+  float hottest = gimbal.axis<0>().state().motor_C;
+  if (!(hottest > gimbal.axis<1>().state().motor_C)) hottest = gimbal.axis<1>().state().motor_C;
+  if (!(hottest > gimbal.axis<2>().state().motor_C)) hottest = gimbal.axis<2>().state().motor_C;
+  return static_cast<int16_t>(hottest < 190.0f ? hottest + 1.0f : 190.0f);
 }

@@ -7,6 +7,8 @@
 //           time; ten levels of error that noise does not toggle; a ceiling that moves at a rate per second;
 //           a gain to the nearest count. Supply 13 V.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
+#include <avr/eeprom.h>
+#include <avr/wdt.h>
 #include <thermopower.h>
 
 #include "gimbal.h"
@@ -14,20 +16,42 @@
 namespace tp = thermopower;
 namespace sbgc = thermopower::sbgc;
 
-const uint32_t request_interval_us = 10000;
-const uint32_t answer_timeout_us = 50000;  // a board answers within 24 ms, its 8 ms between looks included
+// The chip's EEPROM, a byte at a time: a byte takes 3.3 ms, and nobody waits for it.
+struct Eeprom {
+  static bool is_ready() { return eeprom_is_ready(); }
+  static uint8_t read(size_t at) { return eeprom_read_byte(reinterpret_cast<const uint8_t*>(at)); }
+  static void write(size_t at, uint8_t value) { eeprom_write_byte(reinterpret_cast<uint8_t*>(at), value); }
+};
+typedef tp::HottestJournal<Eeprom> Journal;
 
 Gimbal gimbal = new_gimbal();
 tp::SbgcCodec<> codec;
+sbgc::Poller poller;
+Eeprom eeprom;
+Journal journal(eeprom);
+tp::fixed_point::Clock journal_clock;
 
-uint32_t requested_us, stepped_us;
-bool is_waiting, has_telemetry;
+uint32_t stepped_us;
+bool has_telemetry;
+
+// As warm as the hottest motor of the newest record may be by now, after a reset or a loss of power; without a
+// record as hot as the limit. What the board did meanwhile nobody knows: the first step heats at any power,
+// for as long as the record leaves open.
+void restore() {
+  int16_t hottest_C = hottest_start_C();
+  if (journal.load(hottest_C)) journal.write_now(hottest_C);
+  start(gimbal, static_cast<float>(hottest_C));
+  gimbal.assume_driven();
+  stepped_us = micros() - Journal::open_us();
+}
 
 // A wrong constant leaves every axis at its least power for ever; the lamp says so.
 void setup() {
+  wdt_enable(WDTO_1S);  // a loop that hangs is reset, and goes on as after any reset
   Serial.begin(115200);
   pinMode(LED_BUILTIN, OUTPUT);
   digitalWrite(LED_BUILTIN, tp::is_error(gimbal.validate().field) ? HIGH : LOW);
+  restore();
 }
 
 float seconds_since_step() {
@@ -37,37 +61,47 @@ float seconds_since_step() {
   return elapsed_s;
 }
 
-// Everything that has come is taken at once: an answer is twice as long as the core's buffer.
+void send_command() { codec.send(sbgc::power_and_gain(gimbal.state().command), Serial); }
+void keep() { journal.step(hottest_C(gimbal), journal_clock.elapsed(micros())); }
+
+// Everything that has come is taken at once: an answer is twice as long as the core's buffer. Whether the
+// board obeyed is in the next telemetry; a board that reports no power there is asked to confirm.
 void receive() {
   while (Serial.available() > 0) {
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), micros()); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
-      if (telemetry == nullptr) continue;  // a CONFIRM
-      codec.send(sbgc::power_and_gain(gimbal.step(*telemetry, seconds_since_step())), Serial);
+      if (telemetry == nullptr) {
+        if (codec.frame().id == sbgc::command::confirm) gimbal.confirmed();
+        if (codec.frame().id == sbgc::command::error) gimbal.refused();
+        continue;
+      }
+      gimbal.step(*telemetry, seconds_since_step());
+      send_command();
       has_telemetry = true;
-      is_waiting = false;
+      poller.answered();
+      keep();
     }
   }
 }
 
 // A silent board may still listen: it is told what holds for half a second, and then the least power. Before
 // the first answer nothing is stepped: the ceiling must not start from the bottom only because the board
-// takes longer to start than we do.
+// takes longer to start than we do, and the first step makes up for the time.
 void miss_answer() {
-  is_waiting = false;
-  if (has_telemetry)
-    codec.send(sbgc::power_and_gain(gimbal.step_silent(seconds_since_step())), Serial);
-  else
-    codec.send(sbgc::power_and_gain(gimbal.state().command), Serial);
+  if (has_telemetry) {
+    gimbal.step_silent(seconds_since_step());
+    keep();
+  }
+  send_command();
 }
 
 void loop() {
+  wdt_reset();
+  journal.work();
   receive();
-  const uint32_t waited_us = micros() - requested_us;
-  if (is_waiting && waited_us > answer_timeout_us) miss_answer();
-  if (!is_waiting && waited_us > request_interval_us) {
-    codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
-    requested_us = micros();
-    is_waiting = true;
+  switch (poller.turn(micros())) {
+    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
+    case sbgc::Turn::missed: miss_answer(); break;
+    case sbgc::Turn::wait: break;
   }
 }

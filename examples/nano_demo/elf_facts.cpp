@@ -14,7 +14,7 @@ namespace nano {
 namespace {
 
 class OpenElf {
- public:
+public:
   explicit OpenElf(const std::string& path) : file_(::open(path.c_str(), O_RDONLY)) {
     if (file_ < 0) throw std::runtime_error(path + ": " + std::strerror(errno));
     elf_version(EV_CURRENT);
@@ -35,7 +35,7 @@ class OpenElf {
   ~OpenElf() { close(); }
   Elf* get() const { return elf_; }
 
- private:
+private:
   void close() {
     if (elf_ != nullptr) elf_end(elf_);
     ::close(file_);

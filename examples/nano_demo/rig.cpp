@@ -23,8 +23,11 @@ double us_of_cycles(std::uint64_t cycle) { return static_cast<double>(cycle) / c
 
 }  // namespace
 
-Rig::Rig(const std::string& elf_path, const thermopower::simulation::BoardConfig& board, World world)
+Rig::Rig(const std::string& elf_path, const thermopower::simulation::BoardConfig& board, World world,
+         const std::vector<std::uint8_t>& eeprom)
     : chip_(elf_path), board_(board), world_(std::move(world)) {
+  for (std::size_t at = 0; at < eeprom.size(); ++at)
+    chip_.set_eeprom(static_cast<std::uint16_t>(at), eeprom[at]);
   const auto serial = chip_.elf().symbols.find("Serial");
   if (serial != chip_.elf().symbols.end() && serial->second.size == serial_size)
     serial_address_ = static_cast<std::uint16_t>(serial->second.address & 0xFFFFu);
@@ -37,6 +40,13 @@ Rig::Rig(const std::string& elf_path, const thermopower::simulation::BoardConfig
     expected_.erase(expected_.begin());
     is_watching_ = serial_address_ != 0;
   };
+}
+
+void Rig::reset_chip(bool is_power_lost) {
+  chip_.reset(is_power_lost);
+  expected_.clear();
+  current_.reset();
+  is_watching_ = false;
 }
 
 double Rig::time_s() const { return us_of_cycles(chip_.cycle()) * 1e-6; }

@@ -36,7 +36,7 @@ struct UnaskedCommand {
 
 /// A chip and an emulated board at two ends of a serial line, and a world that both act upon.
 class Rig {
- public:
+public:
   typedef thermopower::simulation::EmulatedBoard Board;
   typedef thermopower::simulation::BoardTruth Truth;
 
@@ -44,15 +44,21 @@ class Rig {
   /// at its input.
   typedef std::function<Truth(double time_s, Board& board)> World;
 
+  /// @param eeprom  its first bytes; the rest is erased
   /// @throws std::runtime_error when the program cannot be loaded
-  Rig(const std::string& elf_path, const thermopower::simulation::BoardConfig& board, World world);
+  Rig(const std::string& elf_path, const thermopower::simulation::BoardConfig& board, World world,
+      const std::vector<std::uint8_t>& eeprom = {});
   Rig(const Rig&) = delete;
   Rig& operator=(const Rig&) = delete;
 
   /// Runs to a time since the chip's reset. @throws std::runtime_error when the program crashes
   void run_until(double time_s);
 
-  double time_s() const;                   ///< Since the chip's reset.
+  /// Resets the chip in the middle of whatever it does; the board goes on. @param is_power_lost  see
+  /// SimulatedChip::reset()
+  void reset_chip(bool is_power_lost);
+
+  double time_s() const;                   ///< Since the start.
   Board& board() { return board_; }        ///< To make faults, or to count.
   SimulatedChip& chip() { return chip_; }  ///< To look into.
   const std::vector<Update>& updates() const { return updates_; }
@@ -68,7 +74,7 @@ class Rig {
   /// Is the core's Serial object where it is expected?
   bool sees_core_buffers() const { return serial_address_ != 0; }
 
- private:
+private:
   void hear(std::uint64_t cycle, std::uint8_t byte);
   void take_frame(const thermopower::sbgc::Frame& frame, std::uint64_t start_cycle, std::uint64_t end_cycle);
   void deliver(double until_us);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #include "simulated_chip.hpp"
 
+#include <avr_eeprom.h>
 #include <avr_uart.h>
 #include <sim_avr.h>
 #include <sim_elf.h>
@@ -163,6 +164,21 @@ std::uint64_t SimulatedChip::cycle() const { return simulation_->avr->cycle; }
 std::uint8_t SimulatedChip::data(std::uint16_t address) const { return simulation_->avr->data[address]; }
 void SimulatedChip::set_data(std::uint16_t address, std::uint8_t value) {
   simulation_->avr->data[address] = value;
+}
+void SimulatedChip::set_eeprom(std::uint16_t address, std::uint8_t value) {
+  avr_eeprom_desc_t byte = {&value, address, 1};
+  avr_ioctl(simulation_->avr, AVR_IOCTL_EEPROM_SET, &byte);
+}
+void SimulatedChip::reset(bool is_power_lost) {
+  Simulation& self = *simulation_;
+  if (is_power_lost)
+    for (std::uint32_t address = 0x100; address <= self.avr->ramend; ++address)
+      self.avr->data[address] = static_cast<std::uint8_t>(0xA5u ^ (address * 37u));
+  avr_reset(self.avr);
+  self.uart->cycles_per_byte = cycles_per_byte;
+  self.arrivals.clear();
+  self.seen.clear();
+  self.is_arrival_timed = false;
 }
 const ElfFacts& SimulatedChip::elf() const { return simulation_->elf; }
 std::uint64_t SimulatedChip::bytes_overrun() const { return simulation_->overruns; }

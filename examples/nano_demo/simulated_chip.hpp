@@ -19,7 +19,7 @@ constexpr double cycles_per_us = 16.0;  ///< 16 MHz.
 /// The port's own bytes take 10 bits at 117 647 baud (1360 cycles), which is what the core makes of 115200.
 /// Received bytes come when the other end says.
 class SimulatedChip {
- public:
+public:
   static constexpr std::uint32_t cycles_per_byte = 1360;  ///< 10 bits of 136 cycles.
 
   /// @throws std::runtime_error when the program cannot be read
@@ -48,13 +48,17 @@ class SimulatedChip {
   std::uint8_t data(std::uint16_t address) const;  ///< A byte of the data space: registers, I/O, RAM.
   void set_data(std::uint16_t address,
                 std::uint8_t value);  ///< Overwrites a byte of the data space, to start from a rare state.
-  const ElfFacts& elf() const;        ///< The program's size and symbols.
+  /// A byte of the EEPROM, before the program runs or between runs.
+  void set_eeprom(std::uint16_t address, std::uint8_t value);
+  /// Pulls the reset line for a moment. @param is_power_lost  the RAM forgets as well; the EEPROM does not
+  void reset(bool is_power_lost);
+  const ElfFacts& elf() const;  ///< The program's size and symbols.
   /// Deepest stack so far: RAM above the variables is painted at reset, and what is no longer painted was
   /// stack.
   std::uint16_t deepest_stack_bytes() const;
   std::uint64_t bytes_overrun() const;  ///< Received bytes that the two-byte hardware buffer had no room for.
 
- private:
+private:
   struct Simulation;
   std::unique_ptr<Simulation> simulation_;
 };

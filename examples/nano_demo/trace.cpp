@@ -22,7 +22,7 @@ typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::
 typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<180, 105>>
     Pitch;
 typedef fixed::AxisController<Large, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<40, 2>> Yaw;
-typedef fixed::GimbalController<Roll, Pitch, Yaw> Gimbal;
+typedef fixed::BasicGimbalController<fixed::ProgrammedGimbal, Roll, Pitch, Yaw> Gimbal;
 
 template <class Axis>
 AxisPoint point_of(const Axis& axis, const RecordedTelemetry& telemetry, std::uint8_t index, double true_C) {

@@ -8,6 +8,8 @@
 //           ceiling that moves by one count per update, a gain cut to a whole count. Supply 13 V. All in
 //           whole numbers: tables instead of a float library.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
+#include <avr/eeprom.h>
+#include <avr/wdt.h>
 #include <thermopower.h>
 
 namespace tp = thermopower;
@@ -21,17 +23,45 @@ typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::
 typedef fixed::AxisController<Small, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<180, 105> >
     Pitch;
 typedef fixed::AxisController<Large, fixed::ProgrammedLevels<>, Limiter, fixed::TruncatedGain<40, 2> > Yaw;
-typedef fixed::GimbalController<Roll, Pitch, Yaw> Gimbal;
+typedef fixed::BasicGimbalController<fixed::ProgrammedGimbal, Roll, Pitch, Yaw> Gimbal;
 
 const uint32_t silence_us =
     501000;  // a little above fixed_point::StandardGimbal::timeout_s(), so that the gimbal agrees
+
+// The chip's EEPROM, a byte at a time: a byte takes 3.3 ms, and nobody waits for it.
+struct Eeprom {
+  static bool is_ready() { return eeprom_is_ready(); }
+  static uint8_t read(size_t at) { return eeprom_read_byte(reinterpret_cast<const uint8_t*>(at)); }
+  static void write(size_t at, uint8_t value) { eeprom_write_byte(reinterpret_cast<uint8_t*>(at), value); }
+};
+typedef tp::HottestJournal<Eeprom> Journal;
+
+// Until the air is read, nothing cools in it.
+const fixed::CoarseTemperature warmest_air = 60 * 128;
 
 Gimbal gimbal;
 fixed::Clock step_clock;
 tp::SbgcCodec<> codec;
 sbgc::Poller poller;
+Eeprom eeprom;
+Journal journal(eeprom);
 
-void setup() { Serial.begin(115200); }
+// As warm as the hottest motor of the newest record may be by now, after a reset or a loss of power. Without a
+// record the motors start as warm as the air, as the original does.
+void restore() {
+  int16_t hottest_C;
+  if (!journal.load(hottest_C)) return;
+  journal.write_now(hottest_C);
+  gimbal.restore(static_cast<fixed::CoarseTemperature>(hottest_C * 128), warmest_air);
+  // The first step heats at any power for as long as the record leaves open.
+  step_clock.start(micros() - Journal::open_us());
+}
+
+void setup() {
+  wdt_enable(WDTO_1S);  // a loop that hangs is reset, and goes on as after any reset
+  Serial.begin(115200);
+  restore();
+}
 
 // What the next step needs is computed while the command is on its way.
 void send_command() {
@@ -45,36 +75,39 @@ void receive() {
     const uint32_t now_us = micros();
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), now_us); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
-      if (telemetry == nullptr) continue;  // a CONFIRM
-      gimbal.step(*telemetry, step_clock.elapsed(now_us));
+      if (telemetry == nullptr) continue;  // a CONFIRM; whether it obeyed is in the next telemetry
+      const fixed::Ticks ticks = step_clock.elapsed(now_us);
+      gimbal.step(*telemetry, ticks);
       send_command();
       poller.answered();
+      journal.step(gimbal.hottest_C(), ticks);
     }
   }
 }
 
-// A silent board may still listen, so it is told the least power. Before the first answer nothing is stepped:
-// the ceiling must not start from the bottom only because the board takes longer to start than we do.
+// A silent board may still listen, so it is told the least power. Before the first answer nothing is stepped
+// but motors that may be driven: the ceiling must not start from the bottom only because the board takes
+// longer to start than we do.
 void miss_answer(uint32_t now_us) {
   const tp::LimitReason reason = gimbal.command().reason[0];
-  if (reason != tp::LimitReason::no_telemetry_yet) {
-    if (reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us) return;
-    gimbal.step_silent(step_clock.elapsed(now_us));
+  const bool is_unheard = reason == tp::LimitReason::no_telemetry_yet;
+  if (!is_unheard && reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us) return;
+  if (!is_unheard || gimbal.is_restored()) {
+    const fixed::Ticks ticks = step_clock.elapsed(now_us);
+    gimbal.step_silent(ticks);
+    journal.step(gimbal.hottest_C(), ticks);
   }
   send_command();
 }
 
 void loop() {
+  wdt_reset();
+  journal.work();
   receive();
   const uint32_t now_us = micros();
   switch (poller.turn(now_us)) {
-    case sbgc::Turn::ask:
-      codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
-      break;
-    case sbgc::Turn::missed:
-      miss_answer(now_us);
-      break;
-    case sbgc::Turn::wait:
-      break;
+    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
+    case sbgc::Turn::missed: miss_answer(now_us); break;
+    case sbgc::Turn::wait: break;
   }
 }

@@ -15,6 +15,7 @@
 #include "actuator/field_oriented.hpp"
 #include "actuator/fixed_point/thermal_model.hpp"
 #include "actuator/heating.hpp"
+#include "actuator/hottest_journal.hpp"
 #include "actuator/observer_measurement.hpp"
 #include "actuator/observer_thermal.hpp"
 #include "actuator/ohmic_current.hpp"

@@ -54,15 +54,36 @@ TEST_CASE("a frame IMU that is not fitted reads 0 degC and is not averaged, in a
   tp::AirTemperature air;
   for (const float camera_C : {30.0f, 16.0f, 14.0f, 5.0f, 1.0f}) {
     CHECK(air.step(camera_C, 0.0f).air_C == camera_C);
-    CHECK(air.state().source == AirSource::warmer);
+    CHECK(air.state().source == AirSource::camera);
   }
-  CHECK(air.step(-8.0f, 0.0f).air_C == 0.0f);
+  CHECK(air.step(-8.0f, 0.0f).air_C == -8.0f);
+  // One that has read something else is fitted; a sudden 0 from it is a fault, and the warmer one counts.
+  air.step(20.0f, 18.0f);
+  CHECK(air.step(20.0f, 0.0f).air_C == 20.0f);
+  CHECK(air.state().source == AirSource::warmer);
+}
+
+TEST_CASE("thermometers that have only ever read 0 are not awake") {
+  tp::AirTemperature air;
+  for (int answers = 0; answers < 3; ++answers) CHECK(std::isnan(air.step(0.0f, 0.0f).air_C));
+  CHECK(air.step(24.0f, 0.0f).air_C == 24.0f);
+  CHECK(air.step(1.0f, 0.0f).air_C == 1.0f);
+  CHECK(air.step(0.0f, 0.0f).air_C == 0.0f);  // winter, and it has shown that it moves
+}
+
+TEST_CASE("a fall is believed as fast as air falls, a rise at once") {
+  tp::AirTemperature air;
+  CHECK(air.step(30.0f, 30.0f, 0.03f).air_C == 30.0f);
+  CHECK(air.step(5.0f, 5.0f, 1.0f).air_C == Approx(29.8f));
+  for (int i = 0; i < 130; ++i) air.step(5.0f, 5.0f, 1.0f);
+  CHECK(air.state().air_C == 5.0f);
+  CHECK(air.step(30.0f, 30.0f, 0.03f).air_C == 30.0f);
 }
 
 TEST_CASE("a wrong constant of the air temperature is refused by name") {
   using tp::ConfigError;
   const auto error = [](float from_C, float to_C, float apart_K) {
-    return tp::AirTemperature::Config{from_C, to_C, apart_K}.validate();
+    return tp::AirTemperature::Config{from_C, to_C, apart_K, 0.2f}.validate();
   };
   CHECK(error(-40.0f, 85.0f, 15.0f) == ConfigError::none);
   for (const float bad : {none, infinite, -infinite}) {
@@ -72,6 +93,6 @@ TEST_CASE("a wrong constant of the air temperature is refused by name") {
   }
   CHECK(error(-40.0f, -40.0f, 15.0f) == ConfigError::maximum_plausible_C);
   CHECK(error(-40.0f, 85.0f, 0.0f) == ConfigError::maximum_difference_K);
-  CHECK(tp::AirTemperature(tp::AirTemperature::Config{none, none, none}).validate() ==
+  CHECK(tp::AirTemperature(tp::AirTemperature::Config{none, none, none, none}).validate() ==
         ConfigError::minimum_plausible_C);
 }

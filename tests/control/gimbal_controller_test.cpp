@@ -97,13 +97,14 @@ TEST_CASE("time that is NaN counts as silence, and time that runs backwards buys
   check_all(backwards.step_silent(0.03f), tp::least_power(), LimitReason::link_silent);
 }
 
-TEST_CASE("temperatures go on through the silence") {
+TEST_CASE("temperatures go on through the silence, and rise when any power may be in force") {
   Gimbal three = gimbal();
   for (int i = 0; i < 4000; ++i) three.step(inputs(3.0f), 0.03f);
   const float hot_C = three.axis<0>().state().motor_C;
   for (int i = 0; i < 4000; ++i) three.step_silent(0.03f);
-  CHECK(three.axis<0>().state().motor_C < hot_C - 2.0f);
-  CHECK(three.axis<0>().state().motor_C > 25.0f);
+  CHECK(three.axis<0>().state().motor_C > hot_C + 10.0f);  // nobody knows what the board drives them with
+  for (int i = 0; i < 20000; ++i) three.step(inputs(0.0f), 0.03f);
+  CHECK(three.axis<0>().state().motor_C < hot_C + 10.0f);
 }
 
 TEST_CASE("an empty battery gives the least power, and a silent cycle after it does not undo that") {
@@ -162,7 +163,7 @@ TEST_CASE("a wrong constant of the gimbal is refused by name") {
   using tp::ConfigError;
   const float infinite = std::numeric_limits<float>::infinity();
   const auto error = [](float supply_V, float minimum_V, float timeout_s) {
-    tp::GimbalConfig config = {supply_V, minimum_V, timeout_s, tp::AirTemperature::Config::standard()};
+    tp::GimbalConfig config = {supply_V, minimum_V, timeout_s, tp::AirTemperature::Config::standard(), 60.0f};
     return config.validate();
   };
   CHECK(tp::GimbalConfig::standard().validate() == ConfigError::none);

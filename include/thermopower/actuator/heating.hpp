@@ -55,8 +55,9 @@ struct HeatCapacityHeating {
 
 /// The thesis's coefficient of heating: 1/r = (s1 V + s0) T + (o1 V + o0), with V = V_rms and T the motor's
 /// temperature in degC. 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute`
-/// takes them as the thesis prints them. No heating at or below `minimum_V_rms`, nor where 1/r is not
-/// positive (as programmed).
+/// takes them as the thesis prints them. No heating at or below `minimum_V_rms`, nor, with a least capacity of
+/// 0, where 1/r is not positive. As programmed that is so: the yaw motor below 2 degC is never believed to
+/// warm (1/r = 0.2435 T - 0.4952), which is no thermal protection at all.
 ///
 /// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 =
 /// -0.4952; the program multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by
@@ -71,13 +72,17 @@ struct ThesisHeating {
   Number offset_V1_J_per_K;  ///< o1, per volt
   Number offset_V0_J_per_K;  ///< o0
   Number minimum_V_rms;      ///< At or below this voltage there is no heating (the program: 1 V).
+  /// 1/r is not taken below this, J/K: outside the range it was measured in, the law has a pole and beyond it
+  /// no heat at all, which would leave a cold motor unprotected. 0: as programmed.
+  Number least_capacity_J_per_K;
 
   /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
   static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1,
-                                            Number offset_V0, Number minimum_V_rms) noexcept {
+                                            Number offset_V0, Number minimum_V_rms,
+                                            Number least_capacity_J_per_K = Number()) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    return ThesisHeating{slope_V1 * Real(60), slope_V0 * Real(60), offset_V1 * Real(60), offset_V0 * Real(60),
-                         minimum_V_rms};
+    return ThesisHeating{slope_V1 * Real(60),  slope_V0 * Real(60), offset_V1 * Real(60),
+                         offset_V0 * Real(60), minimum_V_rms,       least_capacity_J_per_K};
   }
 
   static constexpr bool is_linear() { return false; }  ///< r depends on the temperature.
@@ -92,28 +97,34 @@ struct ThesisHeating {
   /// r, in kelvin per joule; >= 0.
   Number rise_K_per_J(const Number& v_rms_V, const Number& motor_C) const noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
-    const Number capacity = apparent_capacity_J_per_K(v_rms_V, motor_C);
+    const Number capacity =
+        detail::at_least(apparent_capacity_J_per_K(v_rms_V, motor_C), least_capacity_J_per_K);
     return where_heating(v_rms_V, capacity, Real(1) / capacity);
   }
 
   /// dr/dT = -r^2 (s1 V + s0), in 1/J.
   Number rise_slope_per_J(const Number& v_rms_V, const Number& motor_C) const noexcept {
     const Number capacity = apparent_capacity_J_per_K(v_rms_V, motor_C);
-    return where_heating(v_rms_V, capacity, -capacity_slope_J_per_K2(v_rms_V) / (capacity * capacity));
+    const Number zero = (capacity + v_rms_V) * typename detail::Numeric<Number>::Real(0);
+    return where_heating(v_rms_V, capacity,
+                         detail::Numeric<Number>::choose_if_greater(
+                             capacity, least_capacity_J_per_K,
+                             -capacity_slope_J_per_K2(v_rms_V) / (capacity * capacity), zero));
   }
 
   /// Hands each field to an archive, in the order of a record: config_record.hpp.
   template <class Self, class Archive>
   static void each_field(Self& self, Archive& archive) {
     archive(self.slope_V1_J_per_K2, self.slope_V0_J_per_K2, self.offset_V1_J_per_K, self.offset_V0_J_per_K,
-            self.minimum_V_rms);
+            self.minimum_V_rms, self.least_capacity_J_per_K);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
     return first_error(
         detail::require_finite(slope_V1_J_per_K2 + slope_V0_J_per_K2 + offset_V1_J_per_K + offset_V0_J_per_K,
                                ConfigError::heating_J_per_K),
-        detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms));
+        first_error(detail::require_not_negative(minimum_V_rms, ConfigError::minimum_V_rms),
+                    detail::require_not_negative(least_capacity_J_per_K, ConfigError::heating_J_per_K)));
   }
 
 private:

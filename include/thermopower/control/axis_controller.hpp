@@ -142,6 +142,19 @@ public:
     is_started_ = detail::is_finite(motor_C);
   }
 
+  /// Says that a larger power than the one granted may have acted since the last step: that one heats in the
+  /// next step. @param power  largest power that may have been in force
+  void heated_by(uint8_t power) noexcept { acted_power_ = power; }
+  /// Says that the actuator is warmer than was thought. @param difference_K  above 0
+  void warm_by(float difference_K) noexcept {
+    if (is_started_) start(state_.motor_C + difference_K);
+  }
+
+  /// Says that an actuator whose temperature was set is not colder than this.
+  void not_below(float air_C) noexcept {
+    if (is_started_ && state_.motor_C < air_C) start(air_C);
+  }
+
   /// One control cycle. @param dt_s  time since the last one, >= 0
   const State& step(const Inputs& inputs, float dt_s) noexcept {
     return decide(inputs, detail::not_a_number(), dt_s);
@@ -178,7 +191,10 @@ private:
     if (is_error(config_error_)) fault = LimitReason::config_invalid;
     else if (!is_fault(fault))
       fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
+    if (acted_power_ > state_.power) detail::tell_acted(limiter_, acted_power_, 0);
+    else acted_power_ = state_.power;
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
+    acted_power_ = 0;
 
     AxisFacts facts = {least_power(),       state_.motor_C, detail::body_of(thermal_, 0),
                        state_.rate_K_per_s, last_air_C_,    last_supply_V_,
@@ -215,7 +231,7 @@ private:
     if (!is_started_) detail::start_thermal(thermal_, last_air_C_, 0);
     is_started_ = true;
     const typename Current::State& drawn =
-        detail::drawn_at(current_, state_.power, last_supply_V_, thermal_.hottest_C(), 0);
+        detail::drawn_at(current_, acted_power_, last_supply_V_, thermal_.hottest_C(), 0);
     const typename Thermal::Inputs heat = {drawn.winding_power_W, drawn.v_rms_V, {last_air_C_, 0.0f}};
     thermal_.step(heat, dt_s);
     state_.v_rms_V = drawn.v_rms_V;
@@ -234,6 +250,7 @@ private:
   float last_air_C_ = detail::not_a_number();
   float last_supply_V_ = 0.0f;
   bool is_started_ = false;
+  uint8_t acted_power_ = 0;  // what heated_by() said
   ConfigError config_error_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "air_temperature.hpp"
 #include "axis_controller.hpp"
+#include "power_in_force.hpp"
 
 /// @file control/gimbal_controller.hpp
 /// One `AxisController` per axis, each with its own motor, fed by one telemetry message.
@@ -48,16 +49,17 @@ struct GimbalConfig {
   float minimum_supply_V;      ///< Below this the battery counts as empty or missing. The program: 3.
   float timeout_s;             ///< Silence of the link that is tolerated, above 0.
   AirTemperature::Config air;  ///< When a thermometer is believed.
+  float maximum_supply_V;      ///< Above this a reading is no supply. Above `supply_V`.
 
-  /// 13 V, 3 V, half a second.
+  /// 13 V, 3 V, half a second, 60 V.
   static GimbalConfig standard() noexcept {
-    GimbalConfig config = {13.0f, 3.0f, 0.5f, AirTemperature::Config::standard()};
+    GimbalConfig config = {13.0f, 3.0f, 0.5f, AirTemperature::Config::standard(), 60.0f};
     return config;
   }
   /// Hands each field to an archive, in the order of a record: config_record.hpp.
   template <class Self, class Archive>
   static void each_field(Self& self, Archive& archive) {
-    archive(self.supply_V, self.minimum_supply_V, self.timeout_s, self.air);
+    archive(self.supply_V, self.minimum_supply_V, self.timeout_s, self.air, self.maximum_supply_V);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -65,6 +67,8 @@ struct GimbalConfig {
     if (is_error(detail::require_not_negative(minimum_supply_V, ConfigError::minimum_supply_V)) ||
         minimum_supply_V >= supply_V)
       return ConfigError::minimum_supply_V;
+    if (!detail::is_finite(maximum_supply_V) || maximum_supply_V <= supply_V)
+      return ConfigError::maximum_supply_V;
     return first_error(detail::require_positive(timeout_s, ConfigError::timeout_s), air.validate());
   }
 };
@@ -218,26 +222,46 @@ public:
     inputs.camera_C = static_cast<float>(telemetry.imu_C());
     inputs.frame_C = static_cast<float>(telemetry.frame_imu_C());
     inputs.supply_V = telemetry.battery_V();
+    HeardVisitor<Telemetry> visitor = {*this, telemetry};
+    axes_.visit(visitor);
+    count_disobeyed(force_.decided(), dt_s);
     this->read_poses(telemetry);
     return decide(inputs, dt_s);
   }
 
-  /// One control cycle; no law is told where its axis stands. @param dt_s  time since the last step, >= 0
+  /// One control cycle; no law is told where its axis stands. What was sent is taken for what is in force, but for what `confirmed()` and
+  /// `refused()` say. @param dt_s  time since the last step, >= 0
   const Command& step(const Inputs& inputs, float dt_s) noexcept {
     this->clear_poses();
+    const NothingReported nothing = {};
+    HeardVisitor<NothingReported> visitor = {*this, nothing};
+    axes_.visit(visitor);
+    count_disobeyed(force_.decided(), dt_s);
     return decide(inputs, dt_s);
   }
 
   /// One cycle in which no telemetry came. The temperatures go on; what the last telemetry asked for, or its
-  /// fault, holds until `timeout_s`, then the power is the least. @param dt_s  time since the last step or
-  /// silent cycle, >= 0
+  /// fault, holds until `timeout_s`, then the power is the least; an axis whose limiter vouches for a shorter
+  /// time without a plan (`hold_s`) has no longer than that. @param dt_s  time since the last step or silent
+  /// cycle, >= 0
   const Command& step_silent(float dt_s) noexcept {
     // Asked this way round so that a NaN time counts as silence, and a negative one buys no more of it.
     if (!(dt_s < 0.0f)) state_.silent_s += dt_s;
     const bool is_tolerated = state_.silent_s <= config_.timeout_s;
+    if (!is_tolerated) force_.lost();
+    UnheardVisitor visitor = {*this};
+    axes_.visit(visitor);
     if (!has_telemetry_) return step_axes(LimitReason::no_telemetry_yet, dt_s);
     return step_axes(is_tolerated ? telemetry_fault_ : LimitReason::link_silent, dt_s);
   }
+
+  /// The board has confirmed a command. Needed of a board whose telemetry does not report the power in force.
+  void confirmed() noexcept { force_.confirmed(); }
+  /// The board has answered with an error: the power it was told may not be in force.
+  void refused() noexcept { force_.refused(); }
+  /// Any power may be in force until the board says another: after a restart of this controller beside a board
+  /// that went on.
+  void assume_driven() noexcept { force_.lost(); }
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
 
@@ -255,26 +279,49 @@ public:
   }
 
 private:
-  const Command& decide(const Inputs& inputs, float dt_s) noexcept {
-    air_.step(inputs.camera_C, inputs.frame_C);
-    state_.silent_s = 0.0f;
-    last_ = inputs;
-    has_telemetry_ = true;
-    telemetry_fault_ = LimitReason::none;
-    if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
-    else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
-    return step_axes(telemetry_fault_, dt_s);
-  }
-
+  struct NothingReported {};
+  template <class Telemetry>
+  struct HeardVisitor {
+    BasicGimbalController& gimbal;
+    const Telemetry& telemetry;
+    template <class Axis>
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      controller.heated_by(gimbal.force_.heard(index, detail::reported_power(telemetry, index, 0),
+                                               gimbal.state_.command.power[index]));
+    }
+  };
+  struct UnheardVisitor {
+    BasicGimbalController& gimbal;
+    template <class Axis>
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      controller.heated_by(gimbal.force_.unheard(index, gimbal.state_.command.power[index]));
+    }
+  };
+  struct WarmVisitor {
+    float difference_K;
+    template <class Axis>
+    void operator()(uint8_t, Axis& controller) noexcept {
+      controller.warm_by(difference_K);
+    }
+  };
+  struct NotBelowVisitor {
+    float air_C;
+    template <class Axis>
+    void operator()(uint8_t, Axis& controller) noexcept {
+      controller.not_below(air_C);
+    }
+  };
   struct StepVisitor {
     BasicGimbalController& gimbal;
     LimitReason fault;
     float dt_s;
     template <class Axis>
     void operator()(uint8_t index, Axis& controller) noexcept {
+      const bool is_overdue = gimbal.state_.silent_s > detail::hold_of(controller.limiter(), 0);
+      const LimitReason found = is_overdue && !is_fault(fault) ? LimitReason::link_silent : fault;
       const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
                                             Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
-                                            gimbal.state_.air_C, fault};
+                                            gimbal.state_.air_C, found};
       gimbal.store(index, gimbal.step_axis(controller, inputs, index, dt_s));
     }
   };
@@ -311,6 +358,49 @@ private:
     axes_.visit(visitor);
   }
 
+  const Command& decide(const Inputs& inputs, float dt_s) noexcept {
+    follow_air(inputs, dt_s);
+    state_.silent_s = 0.0f;
+    const float known_supply_V = last_.supply_V;
+    last_ = inputs;
+    has_telemetry_ = true;
+    telemetry_fault_ = LimitReason::none;
+    if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
+    else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
+    else if (inputs.supply_V > config_.maximum_supply_V) telemetry_fault_ = LimitReason::supply_implausible;
+    else if (disobeyed_s_ > config_.timeout_s) telemetry_fault_ = LimitReason::not_obeyed;
+    // A reading that cannot be must not heat the estimate: one cycle of it would take an hour to cool.
+    if (telemetry_fault_ == LimitReason::supply_implausible)
+      last_.supply_V = detail::is_finite(known_supply_V) ? known_supply_V : config_.supply_V;
+    return step_axes(telemetry_fault_, dt_s);
+  }
+
+  void count_disobeyed(bool is_obeyed, float dt_s) noexcept {
+    disobeyed_s_ = is_obeyed ? 0.0f : (dt_s > 0.0f ? disobeyed_s_ + dt_s : disobeyed_s_);
+  }
+
+  // An air that jumps up soon after the start was read wrongly at the start, when the motors were taken to be
+  // as warm as it.
+  void follow_air(const Inputs& inputs, float dt_s) noexcept {
+    const float before_C = air_.state().air_C;
+    air_.step(inputs.camera_C, inputs.frame_C, dt_s);
+    const float rise_K = air_.state().air_C - before_C;
+    if (is_air_unknown_ && detail::is_finite(air_.state().air_C)) {
+      NotBelowVisitor visitor = {air_.state().air_C};
+      axes_.visit(visitor);
+      is_air_unknown_ = false;
+    }
+    if (!detail::is_finite(before_C) || !(known_air_s_ < settling_s())) return;
+    if (dt_s > 0.0f) known_air_s_ += dt_s;
+    if (!(rise_K > jump_K())) return;
+    WarmVisitor visitor = {rise_K};
+    axes_.visit(visitor);
+  }
+  // Air itself does not warm by this from one message to the next; a thermometer that comes to its senses does.
+  static constexpr float jump_K() { return 5.0f; }
+  // How long after the first reading such a jump still says that the first was wrong.
+  static constexpr float settling_s() { return 16.0f; }
+
   const Command& step_axes(LimitReason fault, float dt_s) noexcept {
     state_.air_C = air_.state().air_C;
     state_.air_source = air_.state().source;
@@ -322,12 +412,16 @@ private:
 
   Config config_ = Config::standard();
   AirTemperature air_{config_.air};
+  PowerInForce<sizeof...(Axes)> force_;
   detail::AxisChain<0, Axes...> axes_;
   Inputs last_;
   State state_;
   GimbalConfigError config_error_;
   LimitReason telemetry_fault_ = LimitReason::none;
+  float disobeyed_s_ = 0.0f;  // how long the board has had another power in force than it was told
+  float known_air_s_ = 0.0f;  // since the first plausible air; stops at settling_s()
   bool has_telemetry_ = false;
+  bool is_air_unknown_ = true;
 };
 
 /// The controller of a gimbal whose motors run on a known, stiff supply, as the thesis assumes.

@@ -30,7 +30,9 @@ enum class LimitReason : uint8_t {
   supply_not_finite = 69,     ///< The supply voltage is NaN or infinite.
   temperature_not_finite = 70,///< The estimated temperature or its rate is NaN or infinite, or it is below absolute zero.
   time_invalid = 71,          ///< The time step is NaN, infinite or negative.
-  config_invalid = 72         ///< `validate()` refused the configuration.
+  config_invalid = 72,        ///< `validate()` refused the configuration.
+  not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
+  supply_implausible = 74     ///< The supply reads higher than it can be.
 };
 
 /// True when the reason is a fault and not the limiter doing its work.

@@ -30,10 +30,11 @@ struct Bgm5208_200_12 {
                                                    Number(0.125709), Number(3.413451), Number(1));
   }
   /// Eq 4.18 as the text has it, 1/r = 0.2435 V_rms - 0.4952, unrounded (regression of Table 4.10).
+  /// Not below 2 J/K, a quarter of the least that was measured: the law holds in the cold, too.
   template <class Number = float>
   static constexpr ThesisHeating<Number> heating_law() noexcept {
     return ThesisHeating<Number>::per_minute(Number(0), Number(0), Number(0.243455), Number(-0.495180),
-                                             Number(1));
+                                             Number(1), Number(2));
   }
   /// k = 0.05 per minute, eq 4.11 (which prints it per second).
   template <class Number = float>
@@ -53,8 +54,8 @@ struct Bgm5208_200_12 {
   /// the voltage, so the motor seems 3 to 5 times as heavy as it is and the estimate is 6 to 12 K too cold
   /// after five minutes (Table 5.2). For reproducing the original only.
   struct AsProgrammed {
-    typedef CurrentModel<ThesisCurrent<float> > Current;                                 ///< Current law.
-    typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, EulerStep> Thermal;   ///< Thermal model.
+    typedef CurrentModel<ThesisCurrent<float>> Current;                                 ///< Current law.
+    typedef ThermalModel<ThesisHeating<float>, RateCooling<float>, EulerStep> Thermal;  ///< Thermal model.
 
     /// Program lines 32 to 36.
     template <class Number = float>

@@ -171,6 +171,7 @@ class EmulatedBoard {
     if (!vars.read(frame)) return static_cast<void>(++counters_.other_frames);
     for (std::uint8_t index = 0; index < vars.count(); ++index) {
       const sbgc::AdjVar var = vars[index];
+      if (faults.refuses_power && var.id >= sbgc::variable::power_roll) continue;
       if (var.id < variable_count && var.value >= 0 && var.value <= 255)
         variables_[var.id] = static_cast<std::uint8_t>(var.value);
       else

@@ -30,6 +30,7 @@ struct BoardFaults {
   bool is_deaf = false;               ///< Nothing arrives at the board, so it answers nothing.
   bool is_frame_imu_missing = false;  ///< No frame IMU: its temperature and angles read 0, as on the real
                                       ///< board.
+  bool refuses_power = false;         ///< It answers CONFIRM to SET_ADJ_VARS_VAL and leaves POWER as it is.
   double lost_byte_rate = 0;          ///< Probability that a sent byte vanishes, 0 .. 1.
   double changed_byte_rate = 0;       ///< Probability that a sent byte arrives with one bit flipped, 0 .. 1.
   double noise_byte_rate = 0;         ///< Probability that a random byte follows a sent one, 0 .. 1.

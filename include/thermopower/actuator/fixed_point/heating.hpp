@@ -69,6 +69,15 @@ struct HeatCurves {
   }
 };
 
+template <class Source>
+constexpr auto least_capacity_J_per_K(int) -> decltype(Source::least_capacity_J_per_K()) {
+  return Source::least_capacity_J_per_K();
+}
+template <class Source>
+constexpr double least_capacity_J_per_K(long) {
+  return 0.0;
+}
+
 /// How they are scaled into 16 bits. Constants and not functions, so that each is computed once.
 template <class Source>
 struct HeatScaling {
@@ -81,6 +90,7 @@ struct HeatScaling {
   static constexpr int8_t exponent = Curves::exponent_for(power_scale_unit * widest_power);
   static constexpr double power_scale = power_scale_unit / Curves::power_of_two(exponent);
   static constexpr uint8_t idle_level = Curves::idle_level();
+  static constexpr int16_t least_capacity = Curves::whole(least_capacity_J_per_K<Source>(0) * capacity_scale);
 
   static_assert(
       power_scale * widest_power <= 32767.0,
@@ -98,13 +108,14 @@ struct HeatScaling {
 };
 
 /// Not a template: one copy serves every motor. @param exponent  HeatScaling::exponent
+/// @param least  HeatScaling::least_capacity
 [[gnu::noinline]] inline Rate heating_between(const int16_t* table, uint8_t level, int8_t exponent,
-                                              CoarseTemperature motor) noexcept {
+                                              CoarseTemperature motor, int16_t least) noexcept {
   const LevelNode node = between_nodes(table, level_position(level));
   const int16_t power = static_cast<int16_t>(node.second + product_q15(node.first, motor));
   if (power <= 0) return 0;
-  return quotient(static_cast<uint16_t>(power), level, exponent,
-                  static_cast<int16_t>(node.fourth + product_q15(node.third, motor)));
+  const int16_t capacity = static_cast<int16_t>(node.fourth + product_q15(node.third, motor));
+  return quotient(static_cast<uint16_t>(power), level, exponent, capacity > least ? capacity : least);
 }
 
 }  // namespace detail
@@ -127,7 +138,8 @@ struct Heating {
   static Rate rate(uint8_t level, CoarseTemperature motor) noexcept {
     typedef detail::HeatScaling<Source> Scaling;
     if (level <= Scaling::idle_level) return 0;
-    return detail::heating_between(detail::LevelTable<Scaling>::table(), level, Scaling::exponent, motor);
+    return detail::heating_between(detail::LevelTable<Scaling>::table(), level, Scaling::exponent, motor,
+                                   Scaling::least_capacity);
   }
 };
 

@@ -79,6 +79,10 @@ struct ThesisMotor {
     return Motor::template heating_law<double>().slope_V1_J_per_K2 * v_rms_V +
            Motor::template heating_law<double>().slope_V0_J_per_K2;
   }
+  /// The capacity is not taken below this, J/K; a source without this function has no such bound.
+  static constexpr double least_capacity_J_per_K() {
+    return Motor::template heating_law<double>().least_capacity_J_per_K;
+  }
   /// k, 1/s.
   static constexpr double cooling_per_s() { return Motor::template cooling_law<double>().cooling_per_s; }
 };

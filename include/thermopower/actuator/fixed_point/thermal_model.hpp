@@ -42,6 +42,11 @@ public:
     state_.heating = 0;
   }
 
+  /// Says that the actuator is warmer than was thought. @param difference  above 0
+  void warm_by(Temperature difference) noexcept {
+    state_.motor = detail::within_range(state_.motor + difference);
+  }
+
   /// Prepares the heating for the next step. @param heating  ThermalModel::heating of the motor
   void heat(Rate heating) noexcept { state_.heating = heating; }
 
@@ -60,7 +65,7 @@ public:
   float motor_C() const noexcept { return celsius_of(state_.motor); }  ///< The temperature, for a log.
 
 private:
-  State state_ = {0, 0};
+  State state_ = {detail::temperature_of(detail::coldest_C()), 0};
 };
 
 /// One-node thermal model that takes 16-bit multiplications where thermopower::ThermalModel takes a floating-point

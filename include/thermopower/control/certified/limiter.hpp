@@ -153,6 +153,7 @@ public:
                           ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
                           : detail::not_a_number()),
         count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
+        hold_s_(config.use.hold_s),
         config_error_(first_error(config.validate_fields(), network_.feasible())),
         every_(config.use.every),
         turn_(config.use.phase) {}
@@ -172,6 +173,15 @@ public:
   /// Lowers the bounds to a measurement, for instance an observer's estimate plus its uncertainty.
   /// @param winding_C, body_C  never below the truth; NaN where nothing was measured
   void tighten(float winding_C, float body_C) noexcept { network_.tighten(winding_C, body_C); }
+
+  /// Says that a larger power than the one granted may have acted since the last step; call it before `step()`.
+  void acted(uint8_t power) noexcept {
+    const uint8_t count =
+        static_cast<uint8_t>(Heat::count(power < least_power() ? least_power() : power) - 1);
+    if (count > acted_) acted_ = count;
+  }
+  /// How long a power may act before the next plan, as declared.
+  float hold_s() const noexcept { return hold_s_; }
 
   /// @param dt_s  time since the last step, during which the power granted then acted, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
@@ -328,7 +338,7 @@ private:
 
   Network network_;
   typename Network::Travel travel_;
-  float highest_air_C_, air_upper_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_;
+  float highest_air_C_, air_upper_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_, hold_s_;
   float travelled_s_ = 0.0f;  // length of each of the `travelled_` steps that `travel_` is for
   float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number();
   detail::UnitFraction supply_squared_ = detail::whole_fraction();

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <math.h>
+
 #include "../axis_facts.hpp"
 
 /// @file control/detail/policy_call.hpp
@@ -45,6 +47,24 @@ auto cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float dt_
 template <class Limiter>
 LimitedPower cut_limiter(Limiter& limiter, LimitReason reason, uint8_t demand, float, long) noexcept {
   return limiter.cut(reason, demand);
+}
+
+/// Tells a limiter that keeps account of the power itself what acted besides the power it granted.
+template <class Limiter>
+auto tell_acted(Limiter& limiter, uint8_t power, int) noexcept -> decltype(limiter.acted(power)) {
+  return limiter.acted(power);
+}
+template <class Limiter>
+void tell_acted(Limiter&, uint8_t, long) noexcept {}
+
+/// Silence that a limiter's guarantee covers, s; infinite where it does not say.
+template <class Limiter>
+auto hold_of(const Limiter& limiter, int) noexcept -> decltype(limiter.hold_s()) {
+  return limiter.hold_s();
+}
+template <class Limiter>
+float hold_of(const Limiter&, long) noexcept {
+  return static_cast<float>(INFINITY);
 }
 
 template <class Law>

@@ -20,6 +20,13 @@ struct StandardAir {
   static constexpr int8_t maximum_plausible_C() { return 85; }
   /// Further apart than this the two are not averaged.
   static constexpr uint8_t maximum_difference_K() { return 15; }
+  /// A fall is believed no faster than this, K/s. Above 0, at most 1; 0: at once.
+  static constexpr double fall_per_s() { return 0.2; }
+};
+/// The same for a program that believes a fall at once, as the thesis's does.
+/// @ingroup control
+struct ProgrammedAir : StandardAir {
+  static constexpr double fall_per_s() { return 0.0; }  ///< At once.
 };
 
 /// Fuses two thermometers as thermopower::AirTemperature does, whose documentation says why.
@@ -40,8 +47,13 @@ public:
 
   /// @param camera_C  thermometer of the camera's IMU
   /// @param frame_C   of the frame's IMU; an implausible one is as good as none
-  const State& step(int8_t camera_C, int8_t frame_C) noexcept {
-    const bool camera = is_plausible(camera_C), frame = is_plausible(frame_C);
+  /// @param ticks     time since the last reading
+  const State& step(int8_t camera_C, int8_t frame_C, Ticks ticks = 0xFFFFu) noexcept {
+    // Nothing but 0 so far: not fitted, or not awake yet.
+    camera_moves_ = camera_moves_ || camera_C != 0;
+    frame_moves_ = frame_moves_ || frame_C != 0;
+    const bool camera = camera_moves_ && is_plausible(camera_C),
+               frame = frame_moves_ && is_plausible(frame_C);
     const int16_t difference = static_cast<int16_t>(camera_C - frame_C);
     state_.source = AirSource::neither;
     if (!camera && !frame) return state_;
@@ -53,9 +65,23 @@ public:
       doubled = static_cast<int16_t>(camera_C + frame_C);
       state_.source = AirSource::both;
     }
-    state_.air = static_cast<CoarseTemperature>(doubled * 64);
+    const CoarseTemperature read = static_cast<CoarseTemperature>(doubled * 64);
+    constexpr int32_t fall =
+        static_cast<int32_t>(detail::nearest(Constants::fall_per_s() * 8388608.0 / detail::ticks_per_s()));
+    const Temperature lowest = air_ - fall * static_cast<int32_t>(ticks);
+    if (fall == 0 || !has_air_ || static_cast<CoarseTemperature>(lowest >> 16) <= read) {
+      air_ = static_cast<Temperature>(read) * 65536;
+      state_.air = read;
+    } else {
+      air_ = lowest;
+      state_.air = static_cast<CoarseTemperature>(lowest >> 16);
+    }
+    has_air_ = true;
     return state_;
   }
+
+  /// Takes the air to be as warm as this until the first reading.
+  void assume(CoarseTemperature air) noexcept { state_.air = air; }
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
 
@@ -65,6 +91,8 @@ private:
   }
 
   State state_ = {0, AirSource::neither};
+  Temperature air_ = 0;  // what is believed, finer than it is told
+  bool camera_moves_ = false, frame_moves_ = false, has_air_ = false;
 };
 
 }  // namespace fixed_point

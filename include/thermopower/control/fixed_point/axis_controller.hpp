@@ -36,6 +36,16 @@ public:
                               : limiter.step(demand, thermal.state().motor, rate, ticks);
   }
 
+  // As above: one copy for all axes.
+  [[gnu::noinline]] void start(Temperature motor) noexcept { thermal.start(motor); }
+  [[gnu::noinline]] void warm_by(CoarseTemperature difference) noexcept {
+    thermal.warm_by(static_cast<Temperature>(difference) * 65536);
+  }
+  [[gnu::noinline]] void not_below(CoarseTemperature air) noexcept {
+    const CoarseTemperature motor = static_cast<CoarseTemperature>(thermal.state().motor >> 16);
+    if (motor < air) warm_by(static_cast<CoarseTemperature>(air - motor));
+  }
+
   Core thermal;
   PowerLaw power_law;
   Limiter limiter;
@@ -78,8 +88,22 @@ public:
   typedef LimitedPower State;  ///< The power granted, to be sent as POWER, and why it is below the demand.
 
   /// Sets the temperature, at the beginning or when something better than the estimate is known. Until then
-  /// the motor is at 0 degC and every step needs a fault. @param motor  saturates at -50 and 180 degC
-  void start(Temperature motor) noexcept { axis_.thermal.start(motor); }
+  /// the motor is as cold as can be and every step needs a fault. @param motor  saturates at -50 and 180 degC
+  void start(Temperature motor) noexcept { axis_.start(motor); }
+
+  /// Says that a larger power than the one granted may have acted since the last step. Call it before
+  /// `step()`. @param power  largest power that may have been in force
+  void heated_by(uint8_t power) noexcept {
+    if (power > axis_.granted.power) axis_.thermal.heat(Thermal::heating(power, axis_.thermal.state().motor));
+  }
+  /// Says that the actuator is warmer than was thought. @param difference  above 0
+  void warm_by(CoarseTemperature difference) noexcept { axis_.warm_by(difference); }
+  /// Says that the actuator is not colder than this.
+  void not_below(CoarseTemperature air) noexcept { axis_.not_below(air); }
+  /// The temperature, rounded up.
+  CoarseTemperature upper() const noexcept {
+    return static_cast<CoarseTemperature>((axis_.thermal.state().motor >> 16) + 1);
+  }
 
   /// One control cycle; `prepare()` must have been called since the last one. @param ticks  time since then
   const State& step(const Inputs& inputs, Ticks ticks) noexcept {
@@ -89,9 +113,7 @@ public:
 
   /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for
   /// it there.
-  void prepare() noexcept {
-    axis_.thermal.heat(Thermal::heating(axis_.granted.power, axis_.thermal.state().motor));
-  }
+  void prepare() noexcept { prepare(axis_.granted.power); }
 
   /// Send this as P.
   uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
@@ -103,6 +125,10 @@ public:
   uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
 
 private:
+  [[gnu::noinline]] void prepare(uint8_t power) noexcept {
+    axis_.thermal.heat(Thermal::heating(power, axis_.thermal.state().motor));
+  }
+
   detail::SharedAxis<typename Thermal::Core, PowerLaw, Limiter> axis_;
 };
 

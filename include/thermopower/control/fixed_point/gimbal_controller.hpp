@@ -6,6 +6,7 @@
 #include "axis_controller.hpp"
 #include "../gimbal_controller.hpp"
 #include "../position_error.hpp"
+#include "../power_in_force.hpp"
 
 /// @file control/fixed_point/gimbal_controller.hpp
 /// One `AxisController` per axis, fed by one telemetry message: thermopower::GimbalController without a
@@ -23,6 +24,11 @@ struct StandardGimbal {
   static constexpr double minimum_supply_V() { return 3.0; }
   /// Silence of the link that is tolerated, 0.01 .. 16 s.
   static constexpr double timeout_s() { return 0.5; }
+};
+/// The same for the thesis's program, which believes a fall of the air at once.
+/// @ingroup control
+struct ProgrammedGimbal : StandardGimbal {
+  typedef ProgrammedAir Air;  ///< When a thermometer is believed.
 };
 
 namespace detail {
@@ -100,10 +106,17 @@ public:
       const int16_t error = position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
       error_units_[index] = static_cast<uint16_t>(error < 0 ? -error : error);
     }
-    const bool has_air = air_.step(telemetry.imu_C(), telemetry.frame_imu_C()).source != AirSource::neither;
-    telemetry_fault_ = telemetry.battery_cV() < minimum_cV
-                           ? LimitReason::supply_low
-                           : (has_air ? LimitReason::none : LimitReason::air_implausible);
+    const bool has_air = follow_air(telemetry.imu_C(), telemetry.frame_imu_C(), ticks);
+    uint8_t acted[axis_count()];
+    for (uint8_t index = 0; index < axis_count(); ++index)
+      acted[index] = force_.heard(index, thermopower::detail::reported_power(telemetry, index, 0),
+                                  command_.power[index]);
+    // Before the first air there was no estimate to be heated.
+    if (has_telemetry_ || is_restored_) heat(acted);
+    disobeyed_ = force_.decided() ? static_cast<uint16_t>(0) : saturating_sum(disobeyed_, ticks);
+    if (telemetry.battery_cV() < minimum_cV) telemetry_fault_ = LimitReason::supply_low;
+    else if (!has_air) telemetry_fault_ = LimitReason::air_implausible;
+    else telemetry_fault_ = disobeyed_ > tolerated() ? LimitReason::not_obeyed : LimitReason::none;
     silent_ = 0;
     has_telemetry_ = true;
     return decide(telemetry_fault_, ticks);
@@ -112,12 +125,39 @@ public:
   /// One cycle in which no telemetry came: what the last one asked for, or its fault, holds until
   /// `timeout_s()`, then the power is the least. @param ticks  time since the last step or silent cycle
   const Command& step_silent(Ticks ticks) noexcept {
-    constexpr uint16_t tolerated =
-        static_cast<uint16_t>(detail::nearest(Constants::timeout_s() * detail::ticks_per_s()));
-    silent_ = ticks > static_cast<uint16_t>(0xFFFFu - silent_) ? static_cast<uint16_t>(0xFFFFu)
-                                                               : static_cast<uint16_t>(silent_ + ticks);
+    silent_ = saturating_sum(silent_, ticks);
+    if (silent_ > tolerated()) force_.lost();
+    uint8_t acted[axis_count()];
+    for (uint8_t index = 0; index < axis_count(); ++index)
+      acted[index] = force_.unheard(index, command_.power[index]);
+    heat(acted);
     if (!has_telemetry_) return decide(LimitReason::no_telemetry_yet, ticks);
-    return decide(silent_ <= tolerated ? telemetry_fault_ : LimitReason::link_silent, ticks);
+    return decide(silent_ <= tolerated() ? telemetry_fault_ : LimitReason::link_silent, ticks);
+  }
+
+  /// The board has confirmed a command. Needed of a board whose telemetry does not report the power in force.
+  void confirmed() noexcept { force_.confirmed(); }
+  /// The board has answered with an error: the power it was told may not be in force.
+  void refused() noexcept { force_.refused(); }
+
+  /// Starts from temperatures that are known, after a restart of this controller beside a board that may have
+  /// gone on: any power may be in force until the board says another. Before the first step.
+  /// @param hottest  no axis is hotter
+  /// @param air      the warmest there can be: until it is read, nothing cools below that
+  void restore(CoarseTemperature hottest, CoarseTemperature air) noexcept {
+    NotBelowVisitor visitor = {hottest};
+    axes_.visit(visitor);
+    air_.assume(air);
+    is_restored_ = true;
+    force_.lost();
+  }
+  /// Was it restored?
+  bool is_restored() const noexcept { return is_restored_; }
+  /// The temperature of the hottest axis, rounded up to a whole degC.
+  int16_t hottest_C() noexcept {
+    HottestVisitor visitor = {-128 * 128};
+    axes_.visit(visitor);
+    return static_cast<int16_t>((visitor.hottest >> 7) + 1);
   }
 
   /// Computes the heating by the last command. Call it after every step, when the command is on its way.
@@ -150,11 +190,33 @@ private:
       gimbal.command_.p_gain[index] = controller.p_gain();
     }
   };
-  struct StartVisitor {
-    Temperature motor;
+  struct ActedVisitor {
+    const uint8_t* acted;
+    template <class Axis>
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      controller.heated_by(acted[index]);
+    }
+  };
+  struct WarmVisitor {
+    CoarseTemperature difference;
     template <class Axis>
     void operator()(uint8_t, Axis& controller) noexcept {
-      controller.start(motor);
+      controller.warm_by(difference);
+    }
+  };
+  struct NotBelowVisitor {
+    CoarseTemperature air;
+    template <class Axis>
+    void operator()(uint8_t, Axis& controller) noexcept {
+      controller.not_below(air);
+    }
+  };
+  struct HottestVisitor {
+    CoarseTemperature hottest;
+    template <class Axis>
+    void operator()(uint8_t, Axis& controller) noexcept {
+      const CoarseTemperature upper = controller.upper();
+      if (upper > hottest) hottest = upper;
     }
   };
   struct PrepareVisitor {
@@ -173,14 +235,42 @@ private:
     return LimitReason::no_telemetry_yet;
   }
 
-  const Command& decide(LimitReason fault, Ticks ticks) noexcept {
-    // Before the first plausible air there is no temperature to limit by; the fault says so.
-    if (!has_air_ && air_.state().source != AirSource::neither) {
+  // Once for all callers: what it takes is a copy for each motor.
+  [[gnu::noinline]] void heat(const uint8_t* acted) noexcept {
+    ActedVisitor visitor = {acted};
+    axes_.visit(visitor);
+  }
+
+  static constexpr uint16_t tolerated() {
+    return static_cast<uint16_t>(detail::nearest(Constants::timeout_s() * detail::ticks_per_s()));
+  }
+  static uint16_t saturating_sum(uint16_t sum, Ticks ticks) noexcept {
+    const uint16_t room = static_cast<uint16_t>(0xFFFFu - sum);
+    return ticks > room ? static_cast<uint16_t>(0xFFFFu) : static_cast<uint16_t>(sum + ticks);
+  }
+
+  // An air that jumps up by more than 5 K in the first 16 s was read wrongly at the start, when the motors were
+  // taken to be as warm as it; a program that believes every fall believes that first reading, too. @return is there a plausible reading?
+  bool follow_air(int8_t camera_C, int8_t frame_C, Ticks ticks) noexcept {
+    const CoarseTemperature before = air_.state().air;
+    if (air_.step(camera_C, frame_C, ticks).source == AirSource::neither) return false;
+    if (known_air_ == 0) {
       // The thesis's assumption, section 4.2: a motor that was just switched on is as warm as the air.
-      StartVisitor start = {static_cast<Temperature>(air_.state().air) * 65536};
-      axes_.visit(start);
-      has_air_ = true;
+      NotBelowVisitor visitor = {air_.state().air};
+      axes_.visit(visitor);
+      known_air_ = 1;
+    } else if (Constants::Air::fall_per_s() > 0.0 && known_air_ != 0xFFFFu) {
+      const CoarseTemperature rise = static_cast<CoarseTemperature>(air_.state().air - before);
+      if (rise > 5 * 128) {
+        WarmVisitor visitor = {rise};
+        axes_.visit(visitor);
+      }
+      known_air_ = saturating_sum(known_air_, ticks);
     }
+    return true;
+  }
+
+  const Command& decide(LimitReason fault, Ticks ticks) noexcept {
     StepVisitor visitor = {*this, fault, ticks};
     axes_.visit(visitor);
     return command_;
@@ -190,10 +280,13 @@ private:
   detail::AxisChain<0, Axes...> axes_;
   Command command_;
   uint16_t error_units_[sizeof...(Axes)];
+  PowerInForce<sizeof...(Axes)> force_;
   uint16_t silent_ = 0;
+  uint16_t disobeyed_ = 0;  // how long the board has had another power in force than it was told
+  uint16_t known_air_ = 0;  // ticks since the first plausible air, at least 1 then
   LimitReason telemetry_fault_ = LimitReason::none;
   bool has_telemetry_ = false;
-  bool has_air_ = false;
+  bool is_restored_ = false;
 };
 
 /// The controller of a gimbal with the standard rules for its sensors.
