@@ -153,7 +153,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--duration", duration_s, "Length of each run in seconds")
       ->capture_default_str()
-      ->check(CLI::Range(20.0, 36000.0));
+      ->check([](const std::string& text) {
+        // CLI::Range takes nan for a number within.
+        double value = 0.0;
+        const bool fine = CLI::detail::lexical_cast(text, value) && value >= 20.0 && value <= 36000.0;
+        return fine ? std::string() : "'" + text + "' is no number of seconds from 20 to 36000";
+      });
   app.add_option("--draws", draws, "Runs of each scenario with other winds and pushes, averaged")
       ->capture_default_str()
       ->check(CLI::Range(1u, 1000u));

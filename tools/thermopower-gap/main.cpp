@@ -27,9 +27,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <filesystem>
 #include <mutex>
 #include <new>
@@ -52,7 +54,7 @@ struct UsageError : std::runtime_error {
 
 struct Arguments {
   std::string model, report, html, predictions, augmented, header;
-  std::vector<std::string> recordings, held_out, without, columns;
+  std::vector<std::string> recordings, held_out, without, columns, starts;
   bool as_recorded = false;
   double horizon_s = 0.5;
   double tolerance = 0.05;
@@ -131,11 +133,15 @@ void refuse_overlaps(const Arguments& arguments) {
   for (const auto* output : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
                              &arguments.header}) {
     if (output->empty()) continue;
+    std::error_code error;
+    const bool special =
+        std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
     for (const auto& other : taken) {
-      std::error_code error;
-      const bool special =
-          std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
-      if (!special && (*output == other || std::filesystem::equivalent(*output, other, error))) {
+      // Spelt differently, or linked, it is one file all the same, whether it exists yet or not.
+      const bool same = std::filesystem::weakly_canonical(*output, error) ==
+                            std::filesystem::weakly_canonical(other, error) ||
+                        std::filesystem::equivalent(*output, other, error);
+      if (!special && same) {
         throw UsageError("'" + *output +
                          "' is named twice; an output must not be an input or another output");
       }
@@ -236,6 +242,21 @@ int check(const Arguments& arguments) {
   return gap::deciding(report.findings) != nullptr ? too_little_data : made;
 }
 
+std::map<std::string, double> starts_of(const std::vector<std::string>& texts) {
+  std::map<std::string, double> starts;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    double value = 0.0;
+    const bool known = name == "motor_C" || name == "angle_deg" || name == "rate_dps";
+    if (!known || equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(equals + 1), value) ||
+        !std::isfinite(value))
+      throw UsageError("--start " + text + ": expected motor_C=, angle_deg= or rate_dps= with a number");
+    if (!starts.emplace(name, value).second) throw UsageError("--start " + name + " is given twice");
+  }
+  return starts;
+}
+
 int predict(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
@@ -243,8 +264,9 @@ int predict(const Arguments& arguments) {
   outputs.expect(arguments.predictions);
   const gap::Model augmented = files::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
-  const std::vector<gap::Recording> recordings =
-      read_all(arguments.recordings, column_choices(arguments), findings);
+  std::vector<gap::Recording> recordings = read_all(arguments.recordings, column_choices(arguments), findings);
+  const std::map<std::string, double> starts = starts_of(arguments.starts);
+  for (gap::Recording& one : recordings) one = files::with_starts(std::move(one), augmented, starts);
   gap::Model bare = augmented;
   bare.effects.clear();
   outputs.put(arguments.predictions,
@@ -252,6 +274,18 @@ int predict(const Arguments& arguments) {
   outputs.commit();
   return made;
 }
+
+// CLI11's own would tell the largest double in 309 digits.
+const CLI::Validator positive(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+      return fine ? std::string() : "'" + text + "' is not a finite number above 0";
+    },
+    "POSITIVE");
+const CLI::Validator not_empty(
+    [](std::string& text) { return text.empty() ? std::string("is empty; expected a name") : std::string(); },
+    "", "not empty");
 
 std::string version() {
   using thermopower::Version;
@@ -285,7 +319,7 @@ int run(int count, char** values) {
   diagnosing->add_option("--without", arguments.without,
                          "remove an effect from the catalogue; may be repeated");
   diagnosing->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(CLI::PositiveNumber)
+      ->check(positive)
       ->capture_default_str();
   diagnosing
       ->add_option("--tolerance", arguments.tolerance,
@@ -295,7 +329,7 @@ int run(int count, char** values) {
   diagnosing
       ->add_option("--threads", arguments.threads,
                    "worker threads; 0: one per core. The result does not depend on it")
-      ->check(CLI::Range(0u, 256u))
+      ->check(CLI::Range(0u, 1024u))
       ->capture_default_str();
   diagnosing->add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();
 
@@ -305,8 +339,11 @@ int run(int count, char** values) {
       ->required();
   predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")
       ->required();
+  predicting->add_option("--start", arguments.starts,
+                         "where a run starts, as in motor_C=40 (also angle_deg, rate_dps); without it as "
+                         "measured, else at the air's temperature and at rest");
   predicting->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(CLI::PositiveNumber)
+      ->check(positive)
       ->capture_default_str();
 
   CLI::App* const checking = app.add_subcommand(
@@ -316,7 +353,7 @@ int run(int count, char** values) {
   checking->add_option("--heldout", arguments.held_out, "a recording to judge on; may be repeated");
   checking->add_option("--report", arguments.report, "write the same for machines (JSON)");
   checking->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(CLI::PositiveNumber)
+      ->check(positive)
       ->capture_default_str();
   for (CLI::App* const one : {diagnosing, checking})
     one->add_flag("--as-recorded", arguments.as_recorded,
@@ -327,6 +364,10 @@ int run(int count, char** values) {
                     "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
+
+  for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
+    for (CLI::Option* const option : subcommand->get_options([](const CLI::Option*) { return true; }))
+      if (option->get_type_name() == "TEXT") option->check(not_empty);
 
   try {
     app.parse(count, values);
@@ -347,7 +388,7 @@ int main(int count, char** values) {
   const auto complain = [](const char* what) { std::fprintf(stderr, "thermopower-gap: %s\n", what); };
   try {
     const int status = run(count, values);
-    if (std::fflush(stdout) != 0) {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       complain("standard output cannot be written");
       return invalid_input;
     }

@@ -93,34 +93,81 @@ private:
   }
 
   Json parse(const std::string& text) const {
-    // nlohmann keeps the last of two equal keys; which of them the author meant nobody knows.
-    std::vector<std::set<std::string>> keys;
-    std::string twice;
-    const auto watch = [&](int, Json::parse_event_t event, Json& value) {
-      if (event == Json::parse_event_t::object_start) keys.emplace_back();
-      if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
-      if (event == Json::parse_event_t::key && !keys.empty() &&
-          !keys.back().insert(value.get<std::string>()).second && twice.empty()) {
-        twice = value.get<std::string>();
-      }
+    Watch watch(file_, text);
+    Json::sax_parse(text, &watch);
+    return Json::parse(text);
+  }
+
+  /// Reads along and stops at what the parser would take without a word, or refuse without saying where.
+  class Watch : public nlohmann::json_sax<Json> {
+  public:
+    Watch(const std::string& file, const std::string& text) : file_(file), text_(text) {}
+
+    bool null() override { return value(); }
+    bool boolean(bool) override { return value(); }
+    bool number_integer(number_integer_t) override { return value(); }
+    bool number_unsigned(number_unsigned_t) override { return value(); }
+    bool number_float(number_float_t, const string_t&) override { return value(); }
+    bool string(string_t&) override { return value(); }
+    bool binary(binary_t&) override { return value(); }
+    bool start_object(std::size_t) override { return open(false); }
+    bool start_array(std::size_t) override { return open(true); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override {
+      Level& level = levels_.back();
+      level.at = name;
+      // The parser keeps the last of two equal keys; which of them the author meant nobody knows.
+      if (!level.keys.insert(name).second)
+        throw InputError(file_ + ": " + pointer() +
+                         ": this key appears twice in one object; expected it once");
       return true;
-    };
-    try {
-      Json root = Json::parse(text, watch);
-      if (!twice.empty())
-        fail("", "key " + excerpt(twice) + " appears twice in one object; expected it once");
-      return root;
-    } catch (const Json::parse_error& error) {
+    }
+    bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
+      const std::string where = file_ + ":" + line_and_column(text_, position) + ": ";
+      if (dynamic_cast<const Json::out_of_range*>(&error) != nullptr)
+        throw InputError(where + pointer() + ": " + excerpt(token) +
+                         " is too large for a number; expected a finite number");
       std::string what = error.what();
       const auto colon = what.find(": ", what.find("column"));
       if (colon != std::string::npos) what = what.substr(colon + 2);
-      throw InputError(file_ + ":" + line_and_column(text, error.byte) + ": not JSON: " + what);
-    } catch (const Json::exception& error) {  // a number too large, a depth too great
-      std::string what = error.what();
-      if (const auto bracket = what.find("] "); bracket != std::string::npos) what = what.substr(bracket + 2);
-      throw InputError(file_ + ": not usable JSON: " + what + "; expected finite numbers");
+      throw InputError(where + "not JSON: " + what);
     }
-  }
+
+  private:
+    struct Level {
+      bool array = false;
+      std::size_t index = 0;
+      std::string at;
+      std::set<std::string> keys;
+    };
+    bool value() {
+      if (!levels_.empty() && levels_.back().array) ++levels_.back().index;
+      return true;
+    }
+    bool open(bool array) {
+      if (levels_.size() >= deepest)
+        throw InputError(file_ + ": " + pointer() + ": nested more than " + std::to_string(deepest) +
+                         " levels deep; expected a model");
+      levels_.push_back({array, 0, {}, {}});
+      return true;
+    }
+    bool close() {
+      levels_.pop_back();
+      return value();
+    }
+    std::string pointer() const {
+      std::string text;
+      for (const Level& level : levels_)
+        text = below(text, level.array ? std::to_string(level.index) : level.at);
+      return text;
+    }
+
+    static constexpr std::size_t deepest = 64;
+    const std::string& file_;
+    const std::string& text_;
+    std::vector<Level> levels_;
+  };
 
   void object(const Json& value, const std::string& pointer) const {
     if (!value.is_object()) fail(pointer, "is " + shown(value) + "; expected an object");

@@ -4,10 +4,12 @@
 #include "predictions_file.hpp"
 
 #include "engine.hpp"
+#include "input_error.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace thermopower::gap::files {
 namespace {
@@ -36,7 +38,40 @@ const Eigen::VectorXd* find(const std::vector<SimulatedColumn>& signals, const s
   return nullptr;
 }
 
+// What a model predicts, with what its prediction starts from where nobody measured it.
+struct Start {
+  Signal signal;
+  bool predicted;
+  double value;
+};
+
 }  // namespace
+
+Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
+  const bool powered = recording.has("power_param") && (model.supply || recording.has("supply_V"));
+  const bool heated =
+      (model.has_current() && powered) || recording.has("current_A") || recording.has("drive_A");
+  const double missing_value = std::numeric_limits<double>::quiet_NaN();
+  const bool body = model.has_thermal() && recording.has("ambient_C") && heated;
+  const bool joint = model.has_axis() && recording.has("drive_A");
+  for (const Start& start : {Start{Signal::motor_C, body, missing_value},
+                             Start{Signal::current_A, model.has_current() && powered, 0.0},
+                             Start{Signal::angle_deg, joint, 0.0}, Start{Signal::rate_dps, joint, 0.0}}) {
+    const std::string name = to_string(start.signal);
+    const auto given = starts.find(name);
+    if (!start.predicted || (recording.has(name) && given == starts.end())) continue;
+    Eigen::VectorXd values = recording.has(name) ? recording.column(name)
+                                                 : Eigen::VectorXd::Constant(recording.rows(), missing_value);
+    for (const RunSpan& run : recording.spans()) {
+      // A body that nobody measured has the temperature of its air.
+      const double rest =
+          start.signal == Signal::motor_C ? recording.column("ambient_C")[run.begin] : start.value;
+      values[run.begin] = given != starts.end() ? given->second : rest;
+    }
+    recording.set(name, values);
+  }
+  return recording;
+}
 
 std::string predictions_csv(const Model& baseline, const Model& augmented,
                             const std::vector<Recording>& recordings, double horizon_s) {
@@ -53,6 +88,12 @@ std::string predictions_csv(const Model& baseline, const Model& augmented,
           signals.push_back(one.signal);
       }
     }
+  }
+  if (signals.empty()) {
+    throw InputError(
+        (recordings.empty() ? std::string() : recordings.front().name + ": ") +
+        "nothing to predict: the columns that the model's laws need (power_param with a supply and "
+        "ambient_C, or drive_A) are not recorded");
   }
   std::string out = "t_s";
   if (runs > 1) out += ",run";

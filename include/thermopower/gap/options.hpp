@@ -5,6 +5,7 @@
 #include <thermopower/gap/recording.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,15 @@ struct Options {
 
   /// @throws InvalidInput naming the first option that is out of its range
   void validate() const {
-    const auto within = [](double value, double low, double high, const char* name) {
+    const auto text = [](double value) {
+      char digits[32];
+      std::snprintf(digits, sizeof digits, "%g", value);
+      return std::string(digits);
+    };
+    const auto within = [&text](double value, double low, double high, const char* name) {
       if (!(value >= low && value <= high))
-        throw InvalidInput("option " + std::string(name) + " is " + std::to_string(value) + ", expected " +
-                           std::to_string(low) + " to " + std::to_string(high));
+        throw InvalidInput("option " + std::string(name) + " is " + text(value) + ", expected " + text(low) +
+                           " to " + text(high));
     };
     within(horizon_s, 1e-6, 1e9, "horizon_s");
     within(slack, 0.0, 0.5, "slack");

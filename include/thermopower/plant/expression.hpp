@@ -208,7 +208,9 @@ public:
     Kind kind;         ///< what it does
     std::string name;  ///< of a symbol or a function (exp, log, sin, cos, tanh, sqrt, abs)
     double value;      ///< of a constant
-    int a, b, c;       ///< arguments; -1: none
+    int a;             ///< first argument; -1: none
+    int b;             ///< second argument; -1: none
+    int c;             ///< third argument; -1: none
   };
 
   Trace() = default;
@@ -343,6 +345,11 @@ inline Expression Expression::operator-() const {
   return trace_->make(Trace::Kind::negative, *this);
 }
 
+/// @name As with plain numbers
+/// Each records what it computes; what is known already (a constant, a sum with 0) is not recorded.
+/// @{
+
+/// See above.
 inline Expression operator+(const Expression& a, const Expression& b) {
   if (a.is_constant() && b.is_constant()) return a.value_ + b.value_;
   if (detail::is(a, 0.0)) return b;
@@ -409,6 +416,7 @@ inline Expression pow(const Expression& x, const Expression& y) {
   if (x.is_constant() && y.is_constant()) return std::pow(x.value_, y.value_);
   return detail::trace_of(x, y)->make(Trace::Kind::power, x, y);
 }
+/// @}
 
 inline Expression Trace::replaced(const Expression& in, const Expression& part, const Expression& by) {
   if (in.is_constant() || part.is_constant()) return in;

@@ -8,7 +8,7 @@
 
 #include <cstdio>
 
-/// @file localise_axis.hpp
+/// @file axis.hpp
 /// A moving axis: torques against measured motion, and the angle against the rate. Bumps of two widths see
 /// fast and slow faults.
 

@@ -5,7 +5,7 @@
 #include <thermopower/gap/localise/rows.hpp>
 #include <thermopower/gap/model.hpp>
 
-/// @file localise_bench_rows.hpp
+/// @file bench_rows.hpp
 /// What a motor on a bench recorded, and what the laws say of it.
 
 namespace thermopower::gap::detail {

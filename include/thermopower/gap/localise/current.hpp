@@ -5,7 +5,7 @@
 #include <thermopower/gap/localise/bench_rows.hpp>
 #include <thermopower/gap/localise/least_squares.hpp>
 
-/// @file localise_current.hpp
+/// @file current.hpp
 /// A motor on a bench: the current, given the measured temperature.
 
 namespace thermopower::gap::detail {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-/// @file localise_least_squares.hpp
+/// @file least_squares.hpp
 /// Which block of regressors explains a residual? Bounded least squares, judged on stretches that the fit has
 /// not seen.
 

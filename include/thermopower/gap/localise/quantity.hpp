@@ -7,7 +7,7 @@
 #include <thermopower/gap/localise/current.hpp>
 #include <thermopower/gap/localise/thermal.hpp>
 
-/// @file localise_quantity.hpp
+/// @file quantity.hpp
 /// The missing quantity itself: watts, newton metres, volts, read off the recording and ordered by what
 /// orders them.
 

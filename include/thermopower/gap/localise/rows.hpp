@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// @file localise_rows.hpp
+/// @file rows.hpp
 /// Columns as a localisation needs them: without holes, ordered into bins, thinned.
 
 namespace thermopower::gap::detail {

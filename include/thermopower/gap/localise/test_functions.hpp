@@ -5,7 +5,7 @@
 #include <thermopower/gap/localise/rows.hpp>
 #include <thermopower/gap/data/noise.hpp>
 
-/// @file localise_bumps.hpp
+/// @file test_functions.hpp
 /// What a moving axis recorded, and integrals of it against smooth bumps (the weak form): no noisy signal is
 /// ever differentiated, the derivative goes to the bump.
 

@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-/// @file localise_thermal.hpp
+/// @file thermal.hpp
 /// A motor on a bench: the temperature, given the heat.
 
 namespace thermopower::gap::detail {
