@@ -29,7 +29,7 @@ const std::string good_model =
  "current": {"law": "ohmic", "resistance_ohm": 8.2, "tempco_per_K": 0.0039, "reference_C": 25.0},
  "thermal": {"law": "lumped", "heat_capacity_J_per_K": 60.0, "conductance_W_per_K": 0.11},
  "axis": {"law": "rigid", "inertia_kgm2": 1e-3, "viscous_Nms_per_rad": 1e-3, "torque_constant_Nm_per_A": 0.2},
- "effects": {"series_resistance": {"resistance_ohm": 0.5}}})";
+ "effects": {"series_resistance": {"ohm": 0.5}}})";
 const std::string good_csv =
     "t_s,power_param,ambient_C,motor_C,current_A\n0,100,25,25,1\n1,100,25,26,1\n2,100,25,27,1\n";
 

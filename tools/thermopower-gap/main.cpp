@@ -125,6 +125,14 @@ std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
   return list;
 }
 
+// A path without detours: absolute, links followed as far as it exists.
+std::filesystem::path plain_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+  const std::filesystem::path plain = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : plain;
+}
+
 // Two outputs in one file, or an output over an input, would lose one of them.
 void refuse_overlaps(const Arguments& arguments) {
   std::vector<std::string> taken = arguments.recordings;
@@ -138,9 +146,8 @@ void refuse_overlaps(const Arguments& arguments) {
         std::filesystem::exists(*output, error) && !std::filesystem::is_regular_file(*output, error);
     for (const auto& other : taken) {
       // Spelt differently, or linked, it is one file all the same, whether it exists yet or not.
-      const bool same = std::filesystem::weakly_canonical(*output, error) ==
-                            std::filesystem::weakly_canonical(other, error) ||
-                        std::filesystem::equivalent(*output, other, error);
+      const bool same =
+          plain_path(*output) == plain_path(other) || std::filesystem::equivalent(*output, other, error);
       if (!special && same) {
         throw UsageError("'" + *output +
                          "' is named twice; an output must not be an input or another output");
@@ -283,6 +290,14 @@ const CLI::Validator positive(
       return fine ? std::string() : "'" + text + "' is not a finite number above 0";
     },
     "POSITIVE");
+// CLI11's own takes nan for a number within.
+const CLI::Validator share(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool fine = CLI::detail::lexical_cast(text, value) && value >= 0.0 && value <= 0.5;
+      return fine ? std::string() : "'" + text + "' is not a number from 0 to 0.5";
+    },
+    "0..0.5");
 const CLI::Validator not_empty(
     [](std::string& text) { return text.empty() ? std::string("is empty; expected a name") : std::string(); },
     "", "not empty");
@@ -324,7 +339,7 @@ int run(int count, char** values) {
   diagnosing
       ->add_option("--tolerance", arguments.tolerance,
                    "relative shrinkage of the gap below which nobody cares")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(share)
       ->capture_default_str();
   diagnosing
       ->add_option("--threads", arguments.threads,
@@ -367,7 +382,7 @@ int run(int count, char** values) {
 
   for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
     for (CLI::Option* const option : subcommand->get_options([](const CLI::Option*) { return true; }))
-      if (option->get_type_name() == "TEXT") option->check(not_empty);
+      if (option->get_expected_min() > 0) option->check(not_empty);
 
   try {
     app.parse(count, values);
