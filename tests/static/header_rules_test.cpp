@@ -232,6 +232,18 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "one include style a floor: downstairs relative, as a copy in a sketchbook needs it; upstairs by full name") {
+  for (const auto& [name, header] : every_header()) {
+    CAPTURE(name);
+    if (!is_firmware(name)) {
+      CHECK(header.quoted.empty());
+    } else {
+      for (const std::string& included : header.angled) CHECK(included.rfind("thermopower/", 0) != 0);
+    }
+  }
+}
+
 TEST_CASE("the umbrella holds every firmware header") {
   std::set<std::string> reached;
   reach("thermopower.hpp", reached);

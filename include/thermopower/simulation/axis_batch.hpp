@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "axis_case.hpp"
-#include "lanes.hpp"
+#include <thermopower/simulation/axis_case.hpp>
+#include <thermopower/simulation/lanes.hpp>
 
 /// @file axis_batch.hpp
 /// Thousands of axes at once: what a single axis does, on lanes and threads.

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "axis_plant.hpp"
+#include <thermopower/simulation/axis_plant.hpp>
 
 /// @file axis_case.hpp
 /// One axis at constant POWER in sway and wind: the unit of a batch.
@@ -12,28 +12,28 @@ namespace thermopower::simulation {
 /// One axis and what happens to it. Numbers, or lanes of numbers: then one axis per lane.
 template <class Number>
 struct AxisCase {
-  typename AxisPlant<Number>::Config config;   ///< The axis.
-  typename AxisPlant<Number>::Start start;     ///< What it starts from; the angle is also the target.
-  Number power;                                ///< POWER, 0 .. 255.
-  Number p_gain;                               ///< P, 0 .. 255.
-  Number supply_V;                             ///< Stiff.
-  Surroundings<Number> around;                 ///< Air.
-  Number sway_deg;                             ///< Amplitude of the base's motion.
-  Number sway_Hz;                              ///< Its frequency.
-  Number sway_turns;                           ///< Its phase at the start, in turns.
-  Number wind_Nm;                              ///< Amplitude of the torque on the camera.
-  Number wind_Hz;                              ///< Its frequency.
-  Number wind_turns;                           ///< Its phase at the start, in turns.
+  typename AxisPlant<Number>::Config config;  ///< The axis.
+  typename AxisPlant<Number>::Start start;    ///< What it starts from; the angle is also the target.
+  Number power;                               ///< POWER, 0 .. 255.
+  Number p_gain;                              ///< P, 0 .. 255.
+  Number supply_V;                            ///< Stiff.
+  Surroundings<Number> around;                ///< Air.
+  Number sway_deg;                            ///< Amplitude of the base's motion.
+  Number sway_Hz;                             ///< Its frequency.
+  Number sway_turns;                          ///< Its phase at the start, in turns.
+  Number wind_Nm;                             ///< Amplitude of the torque on the camera.
+  Number wind_Hz;                             ///< Its frequency.
+  Number wind_turns;                          ///< Its phase at the start, in turns.
 };
 
 /// What came out.
 template <class Number>
 struct AxisOutcome {
-  Number error_rms_deg;     ///< Pointing error.
-  Number error_peak_deg;    ///< Largest magnitude.
-  Number energy_J;          ///< Drawn from the supply.
-  Number winding_C;         ///< At the end.
-  Number body_C;            ///< At the end.
+  Number error_rms_deg;   ///< Pointing error.
+  Number error_peak_deg;  ///< Largest magnitude.
+  Number energy_J;        ///< Drawn from the supply.
+  Number winding_C;       ///< At the end.
+  Number body_C;          ///< At the end.
 };
 
 /// Clocks of a run.

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "board_pid.hpp"
-#include "gimbal_axis.hpp"
-#include "gimbal_drive.hpp"
-#include "motor_body.hpp"
+#include <thermopower/simulation/board_pid.hpp>
+#include <thermopower/simulation/gimbal_axis.hpp>
+#include <thermopower/simulation/gimbal_drive.hpp>
+#include <thermopower/simulation/motor_body.hpp>
 
 /// @file axis_plant.hpp
 /// One axis of the rig: mechanics, drive, temperatures and the board's loop.
@@ -27,22 +27,22 @@ template <class Number>
 class AxisPlant {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
- public:
+public:
   using Scalar = Number;  ///< What it computes in.
 
   /// What describes the axis.
   struct Config {
-    typename GimbalAxis<Number>::Config mechanics;   ///< Camera, bearing, cable.
-    GimbalDrive<Number> drive;                       ///< Motor and amplifier.
-    typename MotorBody<Number>::Config body;         ///< Heat.
-    typename BoardPid<Number>::Config pid;           ///< The board's loop.
+    typename GimbalAxis<Number>::Config mechanics;  ///< Camera, bearing, cable.
+    GimbalDrive<Number> drive;                      ///< Motor and amplifier.
+    typename MotorBody<Number>::Config body;        ///< Heat.
+    typename BoardPid<Number>::Config pid;          ///< The board's loop.
   };
 
   /// What an axis starts from.
   struct Start {
-    Number angle_deg;    ///< Of the camera, in space.
-    Number winding_C;    ///< Temperature of the winding.
-    Number body_C;       ///< Temperature of the body.
+    Number angle_deg;  ///< Of the camera, in space.
+    Number winding_C;  ///< Temperature of the winding.
+    Number body_C;     ///< Temperature of the body.
   };
 
   /// @param config  the axis; taken as it is
@@ -100,7 +100,7 @@ class AxisPlant {
   /// The board's loop.
   const typename BoardPid<Number>::State& board() const noexcept { return pid_.state(); }
 
- private:
+private:
   static Real rad_per_deg() noexcept { return static_cast<Real>(1.0 / deg_per_rad); }
 
   GimbalAxis<Number> mechanics_;

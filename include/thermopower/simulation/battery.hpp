@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/check.hpp"
+#include <thermopower/detail/check.hpp>
 
 /// @file battery.hpp
 /// A supply that is not stiff.
@@ -15,7 +15,7 @@ template <class Number>
 class Battery {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
- public:
+public:
   /// What describes the battery.
   struct Config {
     Number full_V;      ///< Open-circuit voltage when full, above 0.
@@ -26,9 +26,9 @@ class Battery {
 
   /// What one logs.
   struct State {
-    Number used_C;      ///< Charge taken out.
-    Number supply_V;    ///< At the terminals, under the last load.
-    Number energy_J;    ///< Delivered at the terminals since the start.
+    Number used_C;    ///< Charge taken out.
+    Number supply_V;  ///< At the terminals, under the last load.
+    Number energy_J;  ///< Delivered at the terminals since the start.
   };
 
   /// @param config  constants  @param charge  0 empty .. 1 full
@@ -58,7 +58,7 @@ class Battery {
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
   State state_;
 };

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../detail/check.hpp"
+#include <thermopower/detail/check.hpp>
 
 /// @file board_pid.hpp
 /// What a gimbal board does between telemetry and torque, as far as it is published.
@@ -22,7 +22,7 @@ template <class Number>
 class BoardPid {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
- public:
+public:
   /// What one tunes on the board.
   struct Config {
     Number share_per_deg;    ///< s_P: share of the torque for a degree of error and one count of P. Above 0.
@@ -32,8 +32,8 @@ class BoardPid {
 
   /// What one logs.
   struct State {
-    Number integral;   ///< Share held by the integral, -1 .. 1.
-    Number share;      ///< Share asked for in the last cycle, -1 .. 1.
+    Number integral;  ///< Share held by the integral, -1 .. 1.
+    Number share;     ///< Share asked for in the last cycle, -1 .. 1.
   };
 
   /// Starts with an empty integral.
@@ -54,7 +54,7 @@ class BoardPid {
   const State& state() const noexcept { return state_; }     ///< After the last cycle.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   static Number within_one(const Number& share) noexcept {
     using Math = thermopower::detail::Numeric<Number>;
     return thermopower::detail::at_most(thermopower::detail::at_least(share, Math::constant(Real(-1))),

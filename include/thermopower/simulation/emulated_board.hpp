@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../sbgc/codec.hpp"
-#include "emulated_board_line.hpp"
-#include "emulated_board_truth.hpp"
+#include <thermopower/sbgc/codec.hpp>
+#include <thermopower/simulation/emulated_board_line.hpp>
+#include <thermopower/simulation/emulated_board_truth.hpp>
 
 /// @file emulated_board.hpp
 /// A SimpleBGC board that exists only in software: bytes in, bytes out, at the real board's pace.
@@ -19,23 +19,23 @@ namespace thermopower::simulation {
 
 /// How the board works.
 struct BoardConfig {
-  double parse_interval_us = 8000;         ///< It looks at what it received this often, above 0.
-  double baud = 115200;                    ///< Above 0.
-  unsigned bits_per_byte = 10;             ///< 10 for 8N1, 11 with a parity bit.
-  std::size_t transmit_buffer_bytes = 255; ///< It parses nothing while its answer would not fit.
-  std::uint8_t power[3] = {150, 150, 150}; ///< POWER after power-up: roll, pitch, yaw.
-  std::uint8_t p_gain[3] = {12, 135, 18};  ///< P after power-up.
-  std::uint16_t firmware_version = 2687;   ///< Reported by BOARD_INFO.
-  std::uint64_t seed = 1;                  ///< Of the line's random damage.
+  double parse_interval_us = 8000;          ///< It looks at what it received this often, above 0.
+  double baud = 115200;                     ///< Above 0.
+  unsigned bits_per_byte = 10;              ///< 10 for 8N1, 11 with a parity bit.
+  std::size_t transmit_buffer_bytes = 255;  ///< It parses nothing while its answer would not fit.
+  std::uint8_t power[3] = {150, 150, 150};  ///< POWER after power-up: roll, pitch, yaw.
+  std::uint8_t p_gain[3] = {12, 135, 18};   ///< P after power-up.
+  std::uint16_t firmware_version = 2687;    ///< Reported by BOARD_INFO.
+  std::uint64_t seed = 1;                   ///< Of the line's random damage.
 };
 
 /// What happened so far.
 struct BoardCounters {
-  std::uint64_t telemetry_sent = 0;     ///< REALTIME_DATA answers, asked for or streamed.
-  std::uint64_t variables_set = 0;      ///< SET_ADJ_VARS_VAL commands obeyed.
-  std::uint64_t confirmations = 0;      ///< CONFIRM answers.
-  std::uint64_t other_frames = 0;       ///< Frames it has no answer for.
-  std::uint64_t refused_variables = 0;  ///< Adjustable variables that do not exist, or out of 0 .. 255.
+  std::uint64_t telemetry_sent = 0;        ///< REALTIME_DATA answers, asked for or streamed.
+  std::uint64_t variables_set = 0;         ///< SET_ADJ_VARS_VAL commands obeyed.
+  std::uint64_t confirmations = 0;         ///< CONFIRM answers.
+  std::uint64_t other_frames = 0;          ///< Frames it has no answer for.
+  std::uint64_t refused_variables = 0;     ///< Adjustable variables that do not exist, or out of 0 .. 255.
   double shortest_request_gap_us = 1e300;  ///< Between the ends of two requests for telemetry.
 };
 
@@ -49,7 +49,7 @@ struct BoardCounters {
 /// It answers REALTIME_DATA_3/4, BOARD_INFO, GET_ADJ_VARS_VAL and confirms SET_ADJ_VARS_VAL, MOTORS_ON/OFF
 /// and DATA_STREAM_INTERVAL (whose streams it sends). Anything else is counted and ignored.
 class EmulatedBoard {
- public:
+public:
   /// @throws std::invalid_argument naming the field that is out of range
   explicit EmulatedBoard(const BoardConfig& config = BoardConfig())
       : config_(checked(config)), line_(config.bits_per_byte * 1e6 / config.baud, config.seed) {
@@ -88,7 +88,7 @@ class EmulatedBoard {
 
   BoardFaults faults;  ///< What is wrong with it now; may be changed at any time.
 
- private:
+private:
   static constexpr int variable_count = 12;
   struct Arrived {
     double end_us;
@@ -146,14 +146,18 @@ class EmulatedBoard {
         info.firmware_version = config_.firmware_version;
         return send(info, now_us, false);
       }
-      case sbgc::command::set_adj_vars_val: return set_variables(frame, now_us);
-      case sbgc::command::get_adj_vars_val: return report_variables(frame, now_us);
+      case sbgc::command::set_adj_vars_val:
+        return set_variables(frame, now_us);
+      case sbgc::command::get_adj_vars_val:
+        return report_variables(frame, now_us);
       case sbgc::command::motors_on:
       case sbgc::command::motors_off:
         motors_on_ = frame.id == sbgc::command::motors_on;
         return confirm(frame.id, now_us);
-      case sbgc::command::data_stream_interval: return start_stream(frame, now_us);
-      default: ++counters_.other_frames;
+      case sbgc::command::data_stream_interval:
+        return start_stream(frame, now_us);
+      default:
+        ++counters_.other_frames;
     }
   }
 
@@ -174,8 +178,7 @@ class EmulatedBoard {
       if (faults.refuses_power && var.id >= sbgc::variable::power_roll) continue;
       if (var.id < variable_count && var.value >= 0 && var.value <= 255)
         variables_[var.id] = static_cast<std::uint8_t>(var.value);
-      else
-        ++counters_.refused_variables;
+      else ++counters_.refused_variables;
     }
     ++counters_.variables_set;
     confirm(frame.id, now_us);

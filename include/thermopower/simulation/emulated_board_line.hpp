@@ -7,7 +7,7 @@
 #include <deque>
 #include <random>
 
-#include "emulated_board_truth.hpp"
+#include <thermopower/simulation/emulated_board_truth.hpp>
 
 /// @file emulated_board_line.hpp
 /// The sending half of an emulated board's serial line: each byte at its time, and damage where it is asked
@@ -24,7 +24,7 @@ struct LineByte {
 
 /// Bytes in a row, one after the other, at the line's pace.
 class BoardLine {
- public:
+public:
   /// @param byte_us  time of one byte on the wire, above 0
   /// @param seed     of the random damage; the same seed gives the same damage
   BoardLine(double byte_us, std::uint64_t seed) : byte_us_(byte_us), random_(seed) {}
@@ -65,7 +65,7 @@ class BoardLine {
     return free_us_ > now_us ? (free_us_ - now_us) / byte_us_ : 0.0;
   }
 
- private:
+private:
   bool happens(double probability) {
     if (!(probability > 0)) return false;
     return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "../sbgc/realtime_fields.hpp"
+#include <thermopower/sbgc/realtime_fields.hpp>
 
 /// @file emulated_board_truth.hpp
 /// What an emulated board measures, how coarsely it reports it, and what can be wrong with it.

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "joint_friction.hpp"
-#include "sine.hpp"
+#include <thermopower/simulation/joint_friction.hpp>
+#include <thermopower/simulation/sine.hpp>
 
 /// @file gimbal_axis.hpp
 /// The mechanics of one gimbal axis: a camera on a bearing, between a moving base and the air.
@@ -13,9 +13,9 @@ namespace thermopower::simulation {
 /// How the base moves during one step: a parabola, so that a step may be cut without changing the motion.
 template <class Number>
 struct BaseMotion {
-  Number angle_rad;           ///< At the start of the step, in space.
-  Number rate_rad_per_s;      ///< At the start of the step.
-  Number accel_rad_per_s2;    ///< Constant over the step.
+  Number angle_rad;         ///< At the start of the step, in space.
+  Number rate_rad_per_s;    ///< At the start of the step.
+  Number accel_rad_per_s2;  ///< Constant over the step.
 };
 
 /// One axis: inertia, imbalance, bearing friction, the spring of the cable, the cogging of the motor.
@@ -30,7 +30,7 @@ template <class Number>
 class GimbalAxis {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
- public:
+public:
   using Scalar = Number;  ///< What it computes in.
 
   /// What describes the axis.
@@ -49,15 +49,15 @@ class GimbalAxis {
 
   /// The camera, in space.
   struct State {
-    Number angle_rad;         ///< Any number of turns.
-    Number rate_rad_per_s;    ///< Its speed.
+    Number angle_rad;       ///< Any number of turns.
+    Number rate_rad_per_s;  ///< Its speed.
   };
 
   /// What acts during a step.
   struct Inputs {
-    Number motor_Nm;            ///< Torque of the motor.
-    Number disturbance_Nm;      ///< Wind, hands, walls.
-    BaseMotion<Number> base;    ///< What the bearing is fixed to.
+    Number motor_Nm;          ///< Torque of the motor.
+    Number disturbance_Nm;    ///< Wind, hands, walls.
+    BaseMotion<Number> base;  ///< What the bearing is fixed to.
   };
 
   /// @param config  the mechanics; taken as it is
@@ -100,9 +100,9 @@ class GimbalAxis {
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   Config config_;
-  Number per_inertia_;   // four divisions a step less
+  Number per_inertia_;  // four divisions a step less
   State state_;
 };
 

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../actuator/duty.hpp"
-#include "../actuator/ohmic_current.hpp"
+#include <thermopower/actuator/duty.hpp>
+#include <thermopower/actuator/ohmic_current.hpp>
 
 /// @file gimbal_drive.hpp
 /// From POWER to torque: a brushless motor that a gimbal board drives like a stepper.
@@ -24,17 +24,17 @@ namespace thermopower::simulation {
 /// deg/s it is a hundredth of the supply.
 template <class Number>
 struct GimbalDrive {
-  OhmicCurrent<Number> winding;         ///< R(T).
-  Number exponent;                      ///< n, 0.5 .. 1.
-  Number torque_Nm_per_A;               ///< Kt at 25 degC, above 0.
-  Number magnet_tempco_per_K;           ///< a_m, -0.005 .. 0: NdFeB -0.0012.
+  OhmicCurrent<Number> winding;  ///< R(T).
+  Number exponent;               ///< n, 0.5 .. 1.
+  Number torque_Nm_per_A;        ///< Kt at 25 degC, above 0.
+  Number magnet_tempco_per_K;    ///< a_m, -0.005 .. 0: NdFeB -0.0012.
 
   /// What the drive does at one power.
   struct State {
-    Number v_rms_V;        ///< Eq 3.11.
-    Number load_S;         ///< Conductance seen by the supply: I_supply = V_supply load_S.
-    Number heat_W;         ///< In the winding, and drawn from the supply.
-    Number available_Nm;   ///< Amplitude of the torque.
+    Number v_rms_V;       ///< Eq 3.11.
+    Number load_S;        ///< Conductance seen by the supply: I_supply = V_supply load_S.
+    Number heat_W;        ///< In the winding, and drawn from the supply.
+    Number available_Nm;  ///< Amplitude of the torque.
   };
 
   /// Conductance that the drive puts across the supply: independent of the supply's voltage. @param
@@ -59,7 +59,7 @@ struct GimbalDrive {
     return state;
   }
 
- private:
+private:
   using Math = thermopower::detail::Numeric<Number>;
   using Real = typename Math::Real;
   // V_w / V_supply. Kept off 0, where a power through exponent and logarithm has no value.

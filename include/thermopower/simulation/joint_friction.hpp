@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "vector_math.hpp"
+#include <thermopower/simulation/vector_math.hpp>
 
 /// @file joint_friction.hpp
 /// Friction in the bearing of an axis.
@@ -18,11 +18,11 @@ namespace thermopower::simulation {
 /// keeps its order.
 template <class Number>
 struct JointFriction {
-  Number coulomb_Nm;                ///< M_c, >= 0.
-  Number breakaway_Nm;              ///< M_s, >= M_c.
-  Number stribeck_rad_per_s;        ///< w_s, above 0.
-  Number creep_rad_per_s;           ///< w_0, above 0; small against w_s.
-  Number viscous_Nm_s_per_rad;      ///< b, >= 0.
+  Number coulomb_Nm;            ///< M_c, >= 0.
+  Number breakaway_Nm;          ///< M_s, >= M_c.
+  Number stribeck_rad_per_s;    ///< w_s, above 0.
+  Number creep_rad_per_s;       ///< w_0, above 0; small against w_s.
+  Number viscous_Nm_s_per_rad;  ///< b, >= 0.
 
   /// Torque against the motion. @param joint_rad_per_s  speed of the camera side relative to the base side
   Number torque_Nm(const Number& joint_rad_per_s) const noexcept {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "../detail/numeric.hpp"
+#include <thermopower/detail/numeric.hpp>
 
 /// @file lanes.hpp
 /// Many actuators stepped at once: the models on fixed-size columns of numbers, one lane per actuator.

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../actuator/forced_airflow.hpp"
-#include "../actuator/natural_convection.hpp"
-#include "../actuator/radiation_cooling.hpp"
+#include <thermopower/actuator/forced_airflow.hpp>
+#include <thermopower/actuator/natural_convection.hpp>
+#include <thermopower/actuator/radiation_cooling.hpp>
 
 /// @file motor_body.hpp
 /// The temperatures of a motor: richer than what the controllers assume.
@@ -23,22 +23,22 @@ template <class Number>
 class MotorBody {
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
- public:
+public:
   /// What describes the motor.
   struct Config {
-    Number winding_heat_capacity_J_per_K;   ///< C_w, above 0.
-    Number body_heat_capacity_J_per_K;      ///< C_b, above 0.
-    Number coupling_W_per_K;                ///< K, above 0.
-    NaturalConvection<Number> convection;   ///< Still air.
-    Number stream_W_per_K;                  ///< What a stream of 1 m/s adds, >= 0.
-    Number stream_exponent;                 ///< How that grows with the speed, 0.2 .. 1.
-    RadiationCooling<Number> radiation;     ///< To surroundings as warm as the air.
+    Number winding_heat_capacity_J_per_K;  ///< C_w, above 0.
+    Number body_heat_capacity_J_per_K;     ///< C_b, above 0.
+    Number coupling_W_per_K;               ///< K, above 0.
+    NaturalConvection<Number> convection;  ///< Still air.
+    Number stream_W_per_K;                 ///< What a stream of 1 m/s adds, >= 0.
+    Number stream_exponent;                ///< How that grows with the speed, 0.2 .. 1.
+    RadiationCooling<Number> radiation;    ///< To surroundings as warm as the air.
   };
 
   /// The two temperatures.
   struct State {
-    Number winding_C;   ///< Copper.
-    Number body_C;      ///< Iron, magnets, bracket: what a thermometer or a thermal camera sees.
+    Number winding_C;  ///< Copper.
+    Number body_C;     ///< Iron, magnets, bracket: what a thermometer or a thermal camera sees.
   };
 
   /// @param config  constants  @param state  to start from
@@ -46,8 +46,7 @@ class MotorBody {
 
   /// Advances by `dt_s` with the midpoint rule; small against C_w / K (ten seconds for the smallest motor
   /// here).
-  const State& step(const Number& heat_W, const Surroundings<Number>& around,
-                    Real dt_s) noexcept {
+  const State& step(const Number& heat_W, const Surroundings<Number>& around, Real dt_s) noexcept {
     const State first = slope(state_, heat_W, around);
     const State middle = {state_.winding_C + (dt_s * Real(0.5)) * first.winding_C,
                           state_.body_C + (dt_s * Real(0.5)) * first.body_C};
@@ -68,7 +67,7 @@ class MotorBody {
   const State& state() const noexcept { return state_; }     ///< After the last step.
   const Config& config() const noexcept { return config_; }  ///< The constants.
 
- private:
+private:
   using Math = thermopower::detail::Numeric<Number>;
 
   State slope(const State& at, const Number& heat_W, const Surroundings<Number>& around) const noexcept {

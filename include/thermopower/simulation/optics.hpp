@@ -9,10 +9,10 @@ namespace thermopower::simulation {
 
 /// A camera and what it looks at.
 struct Optics {
-  double distance_m;    ///< D, to the target.
-  double pixel_m;       ///< p_x, size of a pixel.
-  double focal_m;       ///< f, focal length.
-  double exposure_s;    ///< t.
+  double distance_m;  ///< D, to the target.
+  double pixel_m;     ///< p_x, size of a pixel.
+  double focal_m;     ///< f, focal length.
+  double exposure_s;  ///< t.
 
   /// A line-scan camera as in the thesis: 5.5 um pixels, 16 mm lens, 5 ms, 50 m above ground.
   static Optics line_scan() noexcept { return {50.0, 5.5e-6, 0.016, 0.005}; }

@@ -12,7 +12,7 @@ namespace thermopower::simulation {
 /// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a seed gives the same numbers everywhere, which `<random>`'s
 /// distributions do not promise.
 class Random {
- public:
+public:
   /// @param seed  any; equal seeds give equal numbers
   explicit Random(std::uint64_t seed) noexcept : state_(seed) {}
 
@@ -29,7 +29,7 @@ class Random {
     return from + (to - from) * (static_cast<double>(next() >> 11) * (1.0 / 9007199254740992.0));
   }
 
- private:
+private:
   std::uint64_t state_;
 };
 

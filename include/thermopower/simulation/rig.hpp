@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "rig_metrics.hpp"
-#include "rig_telemetry.hpp"
-#include "scenario.hpp"
-#include "thesis_gimbal.hpp"
+#include <thermopower/simulation/rig_metrics.hpp>
+#include <thermopower/simulation/rig_telemetry.hpp>
+#include <thermopower/simulation/scenario.hpp>
+#include <thermopower/simulation/thesis_gimbal.hpp>
 
 /// @file rig.hpp
 /// A gimbal on the desk: three axes, a board, a supply, and what happens to them.
@@ -42,7 +42,7 @@ struct RigConfig {
 /// The rig in motion. Everything follows from the configuration, the scenario and the commands: no clock, no
 /// randomness.
 class Rig {
- public:
+public:
   /// @param config    copied  @param scenario  copied
   Rig(const RigConfig& config, const Scenario& scenario)
       : config_(config),
@@ -119,7 +119,7 @@ class Rig {
   const RigConfig& config() const noexcept { return config_; }     ///< As set up.
   const Scenario& scenario() const noexcept { return scenario_; }  ///< As set up.
 
- private:
+private:
   struct Setting {
     std::uint8_t power = 25, p_gain = 20;
   };

@@ -2,13 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../control/adaptive_holding_law.hpp"
-#include "../control/certified/limiter.hpp"
-#include "../control/eased_gain.hpp"
-#include "../control/reserve_law.hpp"
-#include "../control/sag_aware_law.hpp"
-#include "../control/voltage_gain.hpp"
-#include "rig_policies.hpp"
+#include <thermopower/control/adaptive_holding_law.hpp>
+#include <thermopower/control/certified/limiter.hpp>
+#include <thermopower/control/eased_gain.hpp>
+#include <thermopower/control/reserve_law.hpp>
+#include <thermopower/control/sag_aware_law.hpp>
+#include <thermopower/control/voltage_gain.hpp>
+#include <thermopower/simulation/rig_policies.hpp>
 
 /// @file rig_ours.hpp
 /// The library's own choice for the rig: learned holding power with a reserve while the axis is disturbed,

@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../motors/bgm2606_90t.hpp"
-#include "../motors/bgm5208_200_12.hpp"
-#include "rig_run.hpp"
+#include <thermopower/motors/bgm2606_90t.hpp>
+#include <thermopower/motors/bgm5208_200_12.hpp>
+#include <thermopower/simulation/rig_run.hpp>
 
 /// @file rig_policies.hpp
 /// The controllers that are compared on the rig: the very types that firmware runs.

@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "../control/gimbal_controller.hpp"
-#include "rig.hpp"
+#include <thermopower/control/gimbal_controller.hpp>
+#include <thermopower/simulation/rig.hpp>
 
 /// @file rig_run.hpp
 /// A controller on the rig, from start to finish.
@@ -12,7 +12,7 @@ namespace thermopower::simulation {
 
 /// Constant power with the gain that goes with it: how a gimbal is run without any of this.
 struct ConstantPower {
-  GimbalCommand<3> command;   ///< Sent in every cycle.
+  GimbalCommand<3> command;  ///< Sent in every cycle.
 
   /// @param power  POWER of each axis  @param p_gain  P of each axis
   ConstantPower(std::array<std::uint8_t, 3> power, std::array<std::uint8_t, 3> p_gain) noexcept {
@@ -33,15 +33,15 @@ struct ConstantPower {
 
 /// One row of what a run looks like, once per control cycle.
 struct RigSample {
-  double t_s;                                   ///< Since the start.
-  const Rig& rig;                               ///< Everything there is.
-  const RigTelemetry& telemetry;                ///< What the controller saw.
-  const GimbalCommand<3>& command;              ///< What it answered.
+  double t_s;                       ///< Since the start.
+  const Rig& rig;                   ///< Everything there is.
+  const RigTelemetry& telemetry;    ///< What the controller saw.
+  const GimbalCommand<3>& command;  ///< What it answered.
 };
 
 /// Adds up the figures of a run, cycle by cycle.
 class RigMeter {
- public:
+public:
   /// After every cycle of the board.
   void cycle(const Rig& rig) noexcept {
     const RigConfig& config = rig.config();
@@ -89,7 +89,7 @@ class RigMeter {
     return metrics;
   }
 
- private:
+private:
   RigMetrics metrics_;
   std::uint64_t cycles_ = 0, counted_ = 0;
 };

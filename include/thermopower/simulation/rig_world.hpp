@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "emulated_board.hpp"
-#include "rig_run.hpp"
+#include <thermopower/simulation/emulated_board.hpp>
+#include <thermopower/simulation/rig_run.hpp>
 
 /// @file rig_world.hpp
 /// The rig behind an emulated board: a controller then sees nothing but bytes.
@@ -14,7 +14,7 @@ namespace thermopower::simulation {
 /// time since the last call pass under the board's POWER and P, and says what there is to be measured. Call
 /// it at multiples of the rig's parse interval.
 class RigWorld {
- public:
+public:
   /// @param config, scenario  as for `Rig`; the board's own faults are the emulated board's
   RigWorld(const RigConfig& config, const Scenario& scenario) : rig_(config, scenario) {}
 
@@ -43,7 +43,7 @@ class RigWorld {
   /// Of the run so far; without limiting times.
   RigMetrics figures() const noexcept { return meter_.figures(rig_); }
 
- private:
+private:
   Rig rig_;
   RigMeter meter_;
 };

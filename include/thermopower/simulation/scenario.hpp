@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "battery.hpp"
+#include <thermopower/simulation/battery.hpp>
 
 /// @file scenario.hpp
 /// What happens to a gimbal, as data.
@@ -16,11 +16,11 @@ namespace thermopower::simulation {
 
 /// A sine that fades in and out: a base that sways, a wind that comes in gusts.
 struct Wave {
-  double amplitude;      ///< Degrees for a base, N m for a torque.
-  double frequency_Hz;   ///< >= 0
-  double phase_rad;      ///< At time 0.
-  double from_s;         ///< Begins to fade in.
-  double to_s;           ///< Has faded out; above `from_s`.
+  double amplitude;     ///< Degrees for a base, N m for a torque.
+  double frequency_Hz;  ///< >= 0
+  double phase_rad;     ///< At time 0.
+  double from_s;        ///< Begins to fade in.
+  double to_s;          ///< Has faded out; above `from_s`.
 
   /// Value at a time. It fades over half a second, or half the window where that is shorter.
   double at(double t_s) const noexcept {
@@ -35,9 +35,9 @@ struct Wave {
 
 /// A push: half a sine of torque.
 struct Push {
-  double at_s;         ///< Begins.
-  double duration_s;   ///< Above 0.
-  double peak_Nm;      ///< Either sign.
+  double at_s;        ///< Begins.
+  double duration_s;  ///< Above 0.
+  double peak_Nm;     ///< Either sign.
 
   /// Torque at a time. @return N m
   double at(double t_s) const noexcept {
@@ -48,12 +48,12 @@ struct Push {
 
 /// What happens to one axis.
 struct AxisScenario {
-  double target_deg = 0.0;     ///< Angle to be held, in space.
-  std::vector<Wave> base;      ///< Motion of what the axis is fixed to, degrees.
-  std::vector<Wave> wind;      ///< Torque on the camera, N m.
-  std::vector<Push> pushes;    ///< Impacts.
-  double winding_C = NAN;      ///< To start from; NaN: as warm as the air.
-  double body_C = NAN;         ///< To start from; NaN: as warm as the air.
+  double target_deg = 0.0;   ///< Angle to be held, in space.
+  std::vector<Wave> base;    ///< Motion of what the axis is fixed to, degrees.
+  std::vector<Wave> wind;    ///< Torque on the camera, N m.
+  std::vector<Push> pushes;  ///< Impacts.
+  double winding_C = NAN;    ///< To start from; NaN: as warm as the air.
+  double body_C = NAN;       ///< To start from; NaN: as warm as the air.
 
   /// Angle of the base. @return degrees
   double base_deg(double t_s) const noexcept {
@@ -73,14 +73,14 @@ struct AxisScenario {
 /// A whole run. Nothing in it is random: a scenario with wind is made from a seed by `scenarios.hpp` and is
 /// then fixed.
 struct Scenario {
-  std::string name;                    ///< One word or two.
-  double duration_s = 60.0;            ///< Length.
-  double settle_s = 5.0;               ///< Nothing is counted before this.
-  double air_C = 26.0;                 ///< Air and surroundings.
-  double airspeed_mps = 0.0;           ///< Over the motors.
-  Battery<double>::Config supply;      ///< Battery or bench supply.
-  double charge = 1.0;                 ///< Of the battery at the start, 0 .. 1.
-  std::array<AxisScenario, 3> axes;    ///< Roll, pitch, yaw.
+  std::string name;                  ///< One word or two.
+  double duration_s = 60.0;          ///< Length.
+  double settle_s = 5.0;             ///< Nothing is counted before this.
+  double air_C = 26.0;               ///< Air and surroundings.
+  double airspeed_mps = 0.0;         ///< Over the motors.
+  Battery<double>::Config supply;    ///< Battery or bench supply.
+  double charge = 1.0;               ///< Of the battery at the start, 0 .. 1.
+  std::array<AxisScenario, 3> axes;  ///< Roll, pitch, yaw.
 };
 
 }  // namespace thermopower::simulation

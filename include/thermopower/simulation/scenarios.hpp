@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "random.hpp"
-#include "scenario.hpp"
-#include "thesis_gimbal.hpp"
+#include <thermopower/simulation/random.hpp>
+#include <thermopower/simulation/scenario.hpp>
+#include <thermopower/simulation/thesis_gimbal.hpp>
 
 /// @file scenarios.hpp
 /// The runs on which policies are compared.

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "vector_math.hpp"
+#include <thermopower/simulation/vector_math.hpp>
 
 /// @file sine.hpp
 /// One sine for every scalar of the simulation.

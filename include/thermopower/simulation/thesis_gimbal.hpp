@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "axis_plant.hpp"
-#include "battery.hpp"
+#include <thermopower/simulation/axis_plant.hpp>
+#include <thermopower/simulation/battery.hpp>
 
 /// @file thesis_gimbal.hpp
 /// The gimbal of the thesis as a simulated rig: two BGM2606-90T (roll, pitch), one BGM5208-200-12 (yaw).
@@ -27,8 +27,13 @@ void set_bgm2606_90t(typename AxisPlant<Number>::Config& axis) {
   using Real = typename Math::Real;
   const auto number = [](double value) { return Math::constant(static_cast<Real>(value)); };
   axis.drive = {{number(11.1), number(0.00393), number(25.0)}, number(0.93), number(0.0384), number(-0.0012)};
-  axis.body = {number(4.5),    number(21.5), number(0.45), {number(0.025), number(0.25), number(20.0)},
-               number(0.02), number(0.6),  {number(0.0038), number(0.9)}};
+  axis.body = {number(4.5),
+               number(21.5),
+               number(0.45),
+               {number(0.025), number(0.25), number(20.0)},
+               number(0.02),
+               number(0.6),
+               {number(0.0038), number(0.9)}};
 }
 
 /// Electrical and thermal side of the BGM5208-200-12.
@@ -38,8 +43,13 @@ void set_bgm5208_200_12(typename AxisPlant<Number>::Config& axis) {
   using Real = typename Math::Real;
   const auto number = [](double value) { return Math::constant(static_cast<Real>(value)); };
   axis.drive = {{number(17.5), number(0.00393), number(25.0)}, number(0.95), number(0.256), number(-0.0012)};
-  axis.body = {number(18.0),   number(138.0), number(1.2), {number(0.058), number(0.25), number(20.0)},
-               number(0.05), number(0.6),   {number(0.011), number(0.9)}};
+  axis.body = {number(18.0),
+               number(138.0),
+               number(1.2),
+               {number(0.058), number(0.25), number(20.0)},
+               number(0.05),
+               number(0.6),
+               {number(0.011), number(0.9)}};
 }
 
 /// Share of the torque per degree and count of P: the same for every axis of a board.
@@ -52,9 +62,11 @@ typename AxisPlant<Number>::Config thesis_roll() {
   using Real = typename Math::Real;
   const auto number = [](double value) { return Math::constant(static_cast<Real>(value)); };
   typename AxisPlant<Number>::Config axis;
-  axis.mechanics = {number(3.0e-4), number(0.004),  number(-1.3),
-                    {number(0.0012), number(0.0018), number(0.15), number(0.02), number(2.0e-4)},
-                    number(0.004), number(0.1), number(3.0e-4), number(84.0)};
+  axis.mechanics = {
+      number(3.0e-4), number(0.004),
+      number(-1.3),   {number(0.0012), number(0.0018), number(0.15), number(0.02), number(2.0e-4)},
+      number(0.004),  number(0.1),
+      number(3.0e-4), number(84.0)};
   set_bgm2606_90t<Number>(axis);
   axis.pid = {number(thesis_share_per_deg), number(1.05), number(0.0178)};
   return axis;
@@ -67,9 +79,11 @@ typename AxisPlant<Number>::Config thesis_pitch() {
   using Real = typename Math::Real;
   const auto number = [](double value) { return Math::constant(static_cast<Real>(value)); };
   typename AxisPlant<Number>::Config axis;
-  axis.mechanics = {number(3.0e-3), number(0.0025), number(0.9),
-                    {number(0.0012), number(0.0018), number(0.15), number(0.02), number(2.0e-4)},
-                    number(0.003), number(-0.1), number(3.0e-4), number(84.0)};
+  axis.mechanics = {
+      number(3.0e-3), number(0.0025),
+      number(0.9),    {number(0.0012), number(0.0018), number(0.15), number(0.02), number(2.0e-4)},
+      number(0.003),  number(-0.1),
+      number(3.0e-4), number(84.0)};
   set_bgm2606_90t<Number>(axis);
   axis.pid = {number(thesis_share_per_deg), number(9.5), number(0.17)};
   return axis;
@@ -82,9 +96,11 @@ typename AxisPlant<Number>::Config thesis_yaw() {
   using Real = typename Math::Real;
   const auto number = [](double value) { return Math::constant(static_cast<Real>(value)); };
   typename AxisPlant<Number>::Config axis;
-  axis.mechanics = {number(3.0e-3), number(0.0), number(0.0),
-                    {number(0.003), number(0.0045), number(0.15), number(0.02), number(5.0e-4)},
-                    number(0.006), number(0.2), number(1.5e-3), number(84.0)};
+  axis.mechanics = {
+      number(3.0e-3), number(0.0),
+      number(0.0),    {number(0.003), number(0.0045), number(0.15), number(0.02), number(5.0e-4)},
+      number(0.006),  number(0.2),
+      number(1.5e-3), number(84.0)};
   set_bgm5208_200_12<Number>(axis);
   axis.pid = {number(thesis_share_per_deg), number(1.65), number(0.035)};
   return axis;

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include "lanes.hpp"
+#include <thermopower/simulation/lanes.hpp>
 
 /// @file vector_math.hpp
 /// What the mechanics need from their scalar beyond `detail::Numeric`, where lanes have something faster than
