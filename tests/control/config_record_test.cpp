@@ -110,7 +110,7 @@ TEST_CASE("the configuration of every actuator model goes through a record") {
   check_component("OhmicCurrent", OhmicCurrent<float>{8.0f, 0.0039f, 20.0f}, 12);
   check_component("ThesisCurrent", motors::Bgm2606_90t::current(), 24);
   check_component("HeatCapacityHeating", HeatCapacityHeating<float>{30.0f}, 4);
-  check_component("ThermalModel, thesis", motors::Bgm2606_90t::thermal(), 24);
+  check_component("ThermalModel, thesis", motors::Bgm2606_90t::thermal(), 28);
   check_component("NewtonCooling", NewtonCooling<float>{0.2f}, 4);
   check_component("NaturalConvection", NaturalConvection<float>{0.2f, 0.25f, 30.0f}, 12);
   check_component("ForcedAirflow", ForcedAirflow<float>{0.2f, 1.0f, 0.5f}, 12);
@@ -147,8 +147,8 @@ TEST_CASE("the configuration of every policy goes through a record") {
   gain.gain_low_power = 60.0f;
   check_component("VoltageGain", gain, 22);
   check_component("EasedGain", EasedGain<VoltageGain>::Config{gain, 1.5f, 3}, 27);
-  check_component("AirTemperature", AirTemperature::Config::standard(), 12);
-  check_component("GimbalController", GimbalConfig::standard(), 24);
+  check_component("AirTemperature", AirTemperature::Config::standard(), 16);
+  check_component("GimbalController", GimbalConfig::standard(), 32);
 }
 
 TEST_CASE("a whole axis goes through one record") {
