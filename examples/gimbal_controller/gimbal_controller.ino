@@ -100,8 +100,13 @@ void loop() {
   journal.work();
   receive();
   switch (poller.turn(micros())) {
-    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
-    case sbgc::Turn::missed: miss_answer(); break;
-    case sbgc::Turn::wait: break;
+    case sbgc::Turn::ask:
+      codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
+      break;
+    case sbgc::Turn::missed:
+      miss_answer();
+      break;
+    case sbgc::Turn::wait:
+      break;
   }
 }

@@ -21,7 +21,7 @@ struct Phase {
 
 /// The minute: what pushes the gimbal, and three motors that warm as the corrected laws say.
 class Story {
- public:
+public:
   static const std::vector<Phase>& phases();
   static double end_s() { return phases().back().to_s; }
   static const Phase& phase_at(double time_s);
@@ -42,7 +42,7 @@ class Story {
   /// V_supply I, integrated.
   double supply_J(int axis) const { return axes_[std::size_t(axis)].supply.state().energy_J; }
 
- private:
+private:
   typedef thermopower::CurrentModel<thermopower::ThesisCurrent<double>> Current;
   typedef thermopower::ThermalModel<thermopower::ThesisHeating<double>, thermopower::RateCooling<double>,
                                     thermopower::LinearizedStep>

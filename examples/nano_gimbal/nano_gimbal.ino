@@ -91,7 +91,8 @@ void receive() {
 void miss_answer(uint32_t now_us) {
   const tp::LimitReason reason = gimbal.command().reason[0];
   const bool is_unheard = reason == tp::LimitReason::no_telemetry_yet;
-  if (!is_unheard && reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us) return;
+  if (!is_unheard && reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us)
+    return;
   if (!is_unheard || gimbal.is_restored()) {
     const fixed::Ticks ticks = step_clock.elapsed(now_us);
     gimbal.step_silent(ticks);
@@ -106,8 +107,13 @@ void loop() {
   receive();
   const uint32_t now_us = micros();
   switch (poller.turn(now_us)) {
-    case sbgc::Turn::ask: codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial); break;
-    case sbgc::Turn::missed: miss_answer(now_us); break;
-    case sbgc::Turn::wait: break;
+    case sbgc::Turn::ask:
+      codec.send(sbgc::Request(sbgc::command::realtime_data_4), Serial);
+      break;
+    case sbgc::Turn::missed:
+      miss_answer(now_us);
+      break;
+    case sbgc::Turn::wait:
+      break;
   }
 }

@@ -27,7 +27,9 @@ struct Eeprom {
   }
 };
 
-StoredState warm(float winding_C = 61.27f) { return {winding_C, 48.5f, winding_C + 4.0f, 52.0f, 6.25f, 1.5f, 1000000UL, 0}; }
+StoredState warm(float winding_C = 61.27f) {
+  return {winding_C, 48.5f, winding_C + 4.0f, 52.0f, 6.25f, 1.5f, 1000000UL, 0};
+}
 TwoNodeThermalModel<float>::Config motor() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 PowerUpFacts facts(float off_s) { return {true, warm(), off_s, 25.0f, 2.0f, 40.0f, 110.0f, 60.0f, 0.0f}; }
 

@@ -31,10 +31,8 @@ TEST_CASE("per cycle, the ceiling is the thesis's, decision by decision") {
     const int asked = 25 * demand(random);
     if (motor_C > 60.0f)  // program lines 200 to 210
       ceiling = 1;
-    else if (motor_C > 60.0f - 30.0f * rate_K_per_s)
-      ceiling -= ceiling > 1;
-    else
-      ceiling += ceiling < 255;
+    else if (motor_C > 60.0f - 30.0f * rate_K_per_s) ceiling -= ceiling > 1;
+    else ceiling += ceiling < 255;
     const auto granted = limiter.step({static_cast<uint8_t>(asked), motor_C, rate_K_per_s}, 0.03f);
     REQUIRE(limiter.ceiling() == ceiling);
     REQUIRE(granted.power == std::min(asked, ceiling));

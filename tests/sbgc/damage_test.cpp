@@ -194,10 +194,8 @@ TEST_CASE("damage: v1 loses an intact frame only to damaged bytes whose checksum
       bool received = false;
       bool overlapped = false;
       for (const reference::Frame& read : reading) {
-        if (read.begin == frame.begin && read.end == frame.end)
-          received = true;
-        else if (read.begin < frame.end && frame.begin < read.end)
-          overlapped = true;
+        if (read.begin == frame.begin && read.end == frame.end) received = true;
+        else if (read.begin < frame.end && frame.begin < read.end) overlapped = true;
       }
       if (!received) {
         ++lost;

@@ -26,7 +26,7 @@ enum class Limit { rises, falls, cut };
 /// @tparam wraps_time whether micros() is kept in 16 bits, as the program does
 template <class Real, bool wraps_time = true>
 class Program {
- public:
+public:
   Decision update(const thermopower::sbgc::RealtimeFields& telemetry, uint32_t micros) {
     const Real supply_V = telemetry.battery_cV > 300 ? Real(13) : Real(0);
     air_C_ = Real(telemetry.imu_C + telemetry.frame_imu_C) / Real(2);
@@ -62,7 +62,7 @@ class Program {
   Real error_deg(int axis) const { return axes_[axis].error_deg; }
   int ceiling(int axis) const { return axes_[axis].ceiling; }
 
- private:
+private:
   struct Constants {
     Real cooling_per_min;                   // line 30
     Real slope_V2, slope_V1, slope_V0;      // 32 to 34, mA/K

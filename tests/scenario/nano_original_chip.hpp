@@ -13,7 +13,7 @@
 /// The original's arithmetic as the original's chip does it: nano_original_chip.cpp in the simulator, asked
 /// update by update.
 class OriginalOnItsChip {
- public:
+public:
   explicit OriginalOnItsChip(const std::string& elf_path) : chip_(elf_path) {
     chip_.on_transmit = [this](std::uint64_t, std::uint8_t byte) { answer_.push_back(byte); };
     chip_.run_until(10000);
@@ -52,7 +52,7 @@ class OriginalOnItsChip {
 
   float motor_C(int axis) const { return motor_C_[axis]; }
 
- private:
+private:
   nano::SimulatedChip chip_;
   std::vector<std::uint8_t> answer_;
   float motor_C_[3] = {0, 0, 0};

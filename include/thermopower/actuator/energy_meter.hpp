@@ -35,12 +35,12 @@ struct AtSupply {
 /// @ingroup actuator
 template <class Where, class Number = float>
 class EnergyMeter {
- public:
+public:
   /// What one logs.
   struct State {
-    Number energy_J;        ///< Since start().
-    Number time_s;          ///< Since start().
-    Number last_power_W;    ///< Of the last step.
+    Number energy_J;      ///< Since start().
+    Number time_s;        ///< Since start().
+    Number last_power_W;  ///< Of the last step.
   };
 
   EnergyMeter() noexcept { start(); }
@@ -78,7 +78,7 @@ class EnergyMeter {
   /// Samples that were not finite, or whose time ran backwards.
   uint32_t rejected() const noexcept { return rejected_; }
 
- private:
+private:
   // Compensated (Kahan): in single precision an hour of 10 ms steps would otherwise lose every small
   // addition.
   struct Sum {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-
 /// @file surroundings.hpp
 /// What an actuator loses its heat to.
 

@@ -53,7 +53,7 @@ struct SetAdjVars {
 /// @brief View of a SET_ADJ_VARS_VAL payload with any number of variables; valid as long as its frame.
 /// @ingroup sbgc
 class AdjVarsView {
- public:
+public:
   /// @brief Looks at a frame's payload.
   /// @return false, with this object unchanged, unless the frame is SET_ADJ_VARS_VAL and as long as its
   /// number of variables says.
@@ -84,7 +84,7 @@ class AdjVarsView {
     return false;
   }
 
- private:
+private:
   const uint8_t* payload_ = nullptr;
 };
 

@@ -16,13 +16,13 @@ namespace sbgc {
 /// It misses swapped bytes, and about one random error in 256.
 /// @ingroup sbgc
 class Sum8 {
- public:
+public:
   /// @brief Takes one more byte into account.
   void add(uint8_t byte) noexcept { sum_ = static_cast<uint8_t>(sum_ + byte); }
   /// @brief Checksum of the bytes added so far; 0 when there were none.
   uint8_t value() const noexcept { return sum_; }
 
- private:
+private:
   uint8_t sum_ = 0;
 };
 
@@ -33,7 +33,7 @@ class Sum8 {
 /// Source: SimpleBGC serial protocol specification 2.5, appendix with the CRC.
 /// @ingroup sbgc
 class Crc16 {
- public:
+public:
   /// @brief Takes one more byte into account.
   void add(uint8_t byte) noexcept {
     // The register is kept mirrored. Then a whole byte is one step, since for this polynomial the entry x of
@@ -61,7 +61,7 @@ class Crc16 {
                                  mirror(static_cast<uint8_t>(mirrored_ >> 8)));
   }
 
- private:
+private:
   static uint8_t mirror(uint8_t byte) noexcept {
     byte = static_cast<uint8_t>((byte << 4) | (byte >> 4));
     byte = static_cast<uint8_t>(((byte & 0x33) << 2) | ((byte >> 2) & 0x33));

@@ -44,7 +44,7 @@ template <size_t payload_capacity = 124, class Protocol = sbgc::ProtocolV1>
 class SbgcCodec : public sbgc::Receiver<payload_capacity, Protocol> {
   typedef sbgc::Receiver<payload_capacity, Protocol> Base;
 
- public:
+public:
   /// @param timeout_us longest pause between two bytes of a frame; see sbgc::Receiver.
   explicit SbgcCodec(uint32_t timeout_us = 20000) noexcept : Base(timeout_us) {}
 
@@ -77,7 +77,7 @@ class SbgcCodec : public sbgc::Receiver<payload_capacity, Protocol> {
     return sbgc::send<Protocol>(message, wire, Base::protocol().sending());
   }
 
- private:
+private:
   sbgc::RealtimeData telemetry_;
 };
 

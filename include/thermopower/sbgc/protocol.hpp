@@ -33,7 +33,7 @@ enum class Version : uint8_t {
 ///   program. A v2 frame whose first byte is damaged into the one of v1 has one chance in 256 to pass.
 /// @ingroup sbgc
 class ProtocolV1 {
- public:
+public:
   enum : uint8_t { overhead = 5 /**< bytes of a frame besides its payload */ };
 
   /// @brief Can a frame start with this byte?
@@ -55,14 +55,14 @@ class ProtocolV1 {
   /// @brief Version to send in.
   static constexpr Version sending() noexcept { return Version::v1; }
 
- private:
+private:
   Sum8 sum_;
 };
 
 /// @brief Policy: protocol v2 only. Members as in ProtocolV1, which also says when to take which.
 /// @ingroup sbgc
 class ProtocolV2 {
- public:
+public:
   enum : uint8_t { overhead = 6 /**< bytes of a frame besides its payload */ };
 
   /// @copydoc ProtocolV1::is_start
@@ -86,7 +86,7 @@ class ProtocolV2 {
   /// @copydoc ProtocolV1::sending
   static constexpr Version sending() noexcept { return Version::v2; }
 
- private:
+private:
   Crc16 crc_;
   uint16_t sent_ = 0;
 };
@@ -95,7 +95,7 @@ class ProtocolV2 {
 /// first). Members as in ProtocolV1, which also says when to take which.
 /// @ingroup sbgc
 class ProtocolAuto {
- public:
+public:
   enum : uint8_t { overhead = 6 /**< bytes of a frame besides its payload, at most */ };
 
   /// @copydoc ProtocolV1::is_start
@@ -129,7 +129,7 @@ class ProtocolAuto {
   /// @brief Sends in this version until a frame of the other one arrives.
   void send_in(Version version) noexcept { sending_ = version; }
 
- private:
+private:
   ProtocolV1 v1_;
   ProtocolV2 v2_;
   bool is_v2_ = false;

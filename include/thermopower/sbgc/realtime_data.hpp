@@ -32,7 +32,7 @@ namespace sbgc {
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_REALTIME_DATA_3 and CMD_REALTIME_DATA_4.
 /// @ingroup sbgc
 class RealtimeData {
- public:
+public:
   /// @brief Payload sizes in bytes.
   enum Size : uint8_t {
     basic_size = 63,     ///< REALTIME_DATA_3
@@ -147,7 +147,7 @@ class RealtimeData {
   }
   /// @}
 
- private:
+private:
   static uint8_t twice(uint8_t index, uint8_t last) noexcept {
     return static_cast<uint8_t>(2 * (index > last ? last : index));
   }

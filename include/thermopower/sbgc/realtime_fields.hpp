@@ -126,7 +126,7 @@ struct RealtimeFields {
     put_bytes(sink, later, sizeof(later));
   }
 
- private:
+private:
   template <class Sink>
   static void put_all(Sink& sink, const int16_t* values, uint8_t count) {
     for (uint8_t i = 0; i < count; ++i) put_i16(sink, values[i]);
