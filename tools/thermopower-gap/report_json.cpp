@@ -40,6 +40,15 @@ Json location(const Location& where) {
                         {"to", number(where.regime->to)}};
   }
   object["evidence"] = where.evidence;
+  if (!where.only_in.empty()) {
+    object["only_in"] = Json::array();
+    for (const auto& one : where.only_in) {
+      object["only_in"].push_back({{"recording", one.recording},
+                                   {"run", one.run},
+                                   {"held_out", one.held_out},
+                                   {"from_s", one.from_s ? number(*one.from_s) : Json(nullptr)}});
+    }
+  }
   return object;
 }
 

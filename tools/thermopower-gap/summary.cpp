@@ -74,6 +74,17 @@ const char* headline(Verdict verdict) {
   return "";
 }
 
+std::string occurrences_text(const std::vector<Occurrence>& list) {
+  std::string out;
+  for (const auto& one : list) {
+    out += (out.empty() ? "" : ", ") + one.recording;
+    if (!one.run.empty()) out += " run " + one.run;
+    if (one.held_out) out += " (held out)";
+    if (one.from_s) out += " from " + readable(*one.from_s) + " s on";
+  }
+  return out;
+}
+
 std::string gap_table(const Diagnosis& diagnosis) {
   if (diagnosis.gap.empty()) return {};
   char row[200];
@@ -108,6 +119,7 @@ std::string summary(const Diagnosis& diagnosis) {
       text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +
               readable(where.regime->to);
     }
+    if (!where.only_in.empty()) text += "; only in " + occurrences_text(where.only_in);
     out += line(first ? "where" : "", text);
     first = false;
   }

@@ -55,13 +55,22 @@ struct Regime {
   double to = 0.0;       ///< where it ends, at least `from`
 };
 
+/// One run in which a fault shows while others hold.
+struct Occurrence {
+  std::string recording;         ///< name of the recording
+  std::string run;               ///< label of the run, may be empty
+  bool held_out = false;         ///< the run is among the held-out data
+  std::optional<double> from_s;  ///< stamp from which on it shows, where it does not before
+};
+
 /// Where simulation and recording part, found from residuals alone.
 struct Location {
-  plant::SignalName signal;      ///< in which the two part
-  plant::SubmodelName submodel;  ///< which part of the plant is at fault
-  double share = 0.0;            ///< part of that signal's excess residual, 0..1
-  std::optional<Regime> regime;  ///< where in which variable it is largest
-  std::string evidence;          ///< one sentence
+  plant::SignalName signal;              ///< in which the two part
+  plant::SubmodelName submodel;          ///< which part of the plant is at fault
+  double share = 0.0;                    ///< part of that signal's excess residual, 0..1
+  std::optional<Regime> regime;          ///< where in which variable it is largest
+  std::string evidence;                  ///< one sentence
+  std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
 };
 
 /// A fitted parameter of an effect.

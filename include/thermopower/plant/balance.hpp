@@ -57,7 +57,7 @@ struct BalancePart {
   };
   Kind kind = Kind::flow_sampled;  ///< where the values enter
   Eigen::VectorXd values;          ///< one per row; none for reading_late
-  double delay_s = 0.0;            ///< of a held flow: it starts that much after its row
+  double delay_s = 0.0;            ///< of a held flow: it starts that much later than the balance's own
   double factor = 1.0;             ///< multiplies them
   Eigen::VectorXd weight = {};     ///< of a store: multiplies the derivative row by row; empty: 1
 };
@@ -81,14 +81,15 @@ struct Freedom {
   std::function<std::vector<Direction>(double at)> directions;
   /// Bound of every coefficient from below: 0 for what acts one way only.
   double least = -std::numeric_limits<double>::infinity();
-  int penalty = 0;               ///< directions that count besides: what a scan tried
-  std::vector<double> scan = {}; ///< values of which the best is taken; empty: `directions(0)` once
-  std::vector<double> refine = {};                        ///< factors tried around the best of `scan`
+  int penalty = 0;                  ///< directions that count besides: what a scan tried
+  std::vector<double> scan = {};    ///< values of which the best is taken; empty: `directions(0)` once
+  std::vector<double> refine = {};  ///< factors tried around the best of `scan`
   std::function<std::string(double at)> words_at = nullptr;  ///< words for the scan's best; empty: `words`
   /// The instrument that may be at fault instead: it is, where other balances hold better without its reading,
   /// or with `correction` applied to it.
   std::optional<SubmodelName> or_instrument = {};
-  std::optional<Correction> correction = {};  ///< see `or_instrument`; also of a fault of the instrument itself
+  std::optional<Correction> correction =
+      {};                          ///< see `or_instrument`; also of a fault of the instrument itself
   std::string scatters_with = {};  ///< of a course without an order: its size goes with this variable
 };
 
@@ -100,10 +101,10 @@ struct OrderingVariable {
     held,        ///< holds over the interval that starts at the row
     derivative,  ///< the derivative of the values is meant
   };
-  std::string name;                ///< a column, or a derived name such as `rise_K`
-  std::string unit;                ///< of the variable (of its derivative where that is meant)
-  Eigen::VectorXd values;          ///< one per row
-  Kind kind = Kind::sampled;       ///< how it is averaged
+  std::string name;                  ///< a column, or a derived name such as `rise_K`
+  std::string unit;                  ///< of the variable (of its derivative where that is meant)
+  Eigen::VectorXd values;            ///< one per row
+  Kind kind = Kind::sampled;         ///< how it is averaged
   SignalName from = SignalName("");  ///< the signal whose reading it is, where it is one
 };
 
@@ -116,32 +117,88 @@ struct RestatedQuantity {
 
 /// One balance of a plant at the rows of a recording.
 struct Balance {
-  QuantityName quantity;     ///< what may be missing; balances of one quantity are alternatives of each other
-  std::string unit;          ///< of the missing quantity
-  SignalName signal;         ///< the measured signal that its residual shows in
-  SubmodelName instrument;   ///< that shows the signal
-  SubmodelName otherwise;    ///< who is at fault where no freedom helps
-  std::string given;         ///< "Given the measured motion and command": what the balance takes as known
-  BalanceForm form = BalanceForm::algebraic;     ///< how it is compared
-  std::shared_ptr<const BalanceRows> rows;       ///< not null
-  Eigen::VectorXd measured;                      ///< the state as measured; NaN where missing
-  Eigen::VectorXd state;                         ///< the same without holes
-  Eigen::VectorXd capacity = {};                 ///< what stores the state, row by row; empty: 1
-  Eigen::VectorXd flow_sampled;                  ///< at the row's instant, at the measured state
-  Eigen::VectorXd flow_held = {};                ///< over the row's interval; empty: none
-  double held_delay_s = 0.0;                     ///< the held flow starts that much after its row
-  Eigen::VectorXd relaxation_per_s = {};         ///< `filtered`: -(d flow/d state) / capacity
-  double state_noise = 0.0;                      ///< standard deviation of `measured`, in its unit
-  double flow_noise = 0.0;                       ///< of the sampled flow where another instrument tells it
+  QuantityName quantity;    ///< what may be missing; balances of one quantity are alternatives of each other
+  std::string unit;         ///< of the missing quantity
+  SignalName signal;        ///< the measured signal that its residual shows in
+  SubmodelName instrument;  ///< that shows the signal
+  SubmodelName otherwise;   ///< who is at fault where no freedom helps
+  std::string given;        ///< "Given the measured motion and command": what the balance takes as known
+  BalanceForm form = BalanceForm::algebraic;  ///< how it is compared
+  std::shared_ptr<const BalanceRows> rows;    ///< not null
+  Eigen::VectorXd measured;                   ///< the state as measured; NaN where missing
+  Eigen::VectorXd state;                      ///< the same without holes
+  Eigen::VectorXd capacity = {};              ///< what stores the state, row by row; empty: 1
+  Eigen::VectorXd flow_sampled;               ///< at the row's instant, at the measured state
+  Eigen::VectorXd flow_held = {};             ///< over the row's interval; empty: none
+  double held_delay_s = 0.0;                  ///< the held flow starts that much after its row
+  Eigen::VectorXd relaxation_per_s = {};      ///< `filtered`: -(d flow/d state) / capacity
+  Eigen::VectorXd flow_measured = {};  ///< the reading that the sampled flow is, NaN where missing; or empty
+  Eigen::VectorXd noise_from = {};     ///< samples whose white noise `measured` carries; empty: itself
+  double noise_gain = 1.0;             ///< multiplies the noise of `noise_from`
   std::vector<std::pair<std::string, Direction>> constants = {};  ///< flow per logarithm of each constant
-  std::vector<SignalName> reads = {};            ///< other signals whose readings make its flows
-  std::vector<Freedom> freedoms = {};            ///< what may be otherwise
-  std::vector<Freedom> courses = {};             ///< of many directions, for what follows no variable
-  std::vector<OrderingVariable> variables = {};  ///< what may order the missing quantity
-  std::optional<RestatedQuantity> restated = {}; ///< for faults of the plant rather than of the instrument
+  std::vector<SignalName> reads = {};             ///< other signals whose readings make its flows
+  std::vector<Freedom> freedoms = {};             ///< what may be otherwise
+  std::vector<Freedom> courses = {};              ///< of many directions, for what follows no variable
+  std::vector<OrderingVariable> variables = {};   ///< what may order the missing quantity
+  std::optional<RestatedQuantity> restated = {};  ///< for faults of the plant rather than of the instrument
   std::vector<int> half_widths = {};  ///< `weak`: of the test functions, in rows; narrow ones see fast faults
   int picture_half_width = 0;         ///< rows that a sample of the missing quantity spans; 0: as noise asks
   double per_display_unit = 1.0;      ///< the missing quantity is divided by this for display
 };
+
+/// What a plant's readings are taken off before they enter a balance, by signal, in the signals' units.
+using ReadingOffsets = PerSignal<double>;
+
+/// A balance that is made when a stage asks for it.
+struct BalanceSource {
+  QuantityName quantity;                               ///< as in Balance
+  SignalName signal;                                   ///< as in Balance
+  std::vector<SignalName> reads;                       ///< as in Balance
+  std::function<Balance(const ReadingOffsets&)> make;  ///< the balance, its readings corrected by these
+};
+
+/// A recorded column that no law uses, and that may order what is missing.
+struct Covariate {
+  std::string name;        ///< of the column
+  Eigen::VectorXd values;  ///< one per row, without holes
+};
+
+/// The unit that a column's name ends in: `degC` for `_C`, `m/s` for `_mps`, ...; empty where it has none.
+inline std::string unit_of_column(const std::string& name) {
+  const auto ends = [&](const std::string& tail) {
+    return name.size() > tail.size() && name.compare(name.size() - tail.size(), tail.size(), tail) == 0;
+  };
+  if (ends("_C")) return "degC";
+  if (ends("_mps")) return "m/s";
+  if (ends("_dps")) return "deg/s";
+  if (ends("_deg")) return "deg";
+  if (ends("_pct")) return "%";
+  const auto at = name.rfind('_');
+  return at == std::string::npos ? "" : name.substr(at + 1);
+}
+
+/// A direction of one part.
+inline Direction flow_held(Eigen::VectorXd values) {
+  return {{BalancePart::Kind::flow_held, std::move(values)}};
+}
+/// A direction of one part.
+inline Direction flow_sampled(Eigen::VectorXd values) {
+  return {{BalancePart::Kind::flow_sampled, std::move(values)}};
+}
+/// A direction of one part.
+inline Direction further_store(Eigen::VectorXd values, Eigen::VectorXd weight = {}) {
+  return {{BalancePart::Kind::store, std::move(values), 0.0, 1.0, std::move(weight)}};
+}
+/// A direction of one part.
+inline Direction further_reading(Eigen::VectorXd values) {
+  return {{BalancePart::Kind::reading, std::move(values)}};
+}
+/// One direction per column, each made by `one(column)`.
+template <class One>
+std::vector<Direction> directions_of(const Eigen::MatrixXd& columns, One&& one) {
+  std::vector<Direction> list;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) list.push_back(one(Eigen::VectorXd(columns.col(k))));
+  return list;
+}
 
 }  // namespace thermopower::plant

@@ -6,17 +6,28 @@
 #include "../plants.hpp"
 
 #include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <map>
+#include <string>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 namespace plant = thermopower::plant;
 
 namespace {
 
-Localisation bench(const test::BenchFault& fault) {
-  return localise(test::bench_model(), {test::bench_recording(fault, 1500, 3)});
+using Effects = std::map<std::string, EffectParameters>;
+
+Localisation bench(const test::BenchFault& fault, const Effects& baseline = {}) {
+  Model model = test::bench_model();
+  model.effects = baseline;
+  return localise(model, {test::bench_recording(fault, 1500, 3)}, {}, standard_catalogue());
 }
-Localisation axis(const test::AxisFault& fault) {
-  return localise(test::axis_model(), {test::axis_recording(fault, 4000, 3)});
+Localisation axis(const test::AxisFault& fault, const Effects& baseline = {}) {
+  Model model = test::axis_model();
+  model.effects = baseline;
+  return localise(model, {test::axis_recording(fault, 4000, 3)}, {}, standard_catalogue());
 }
 
 void check_first(const Localisation& found, Signal signal, plant::Submodel submodel) {
@@ -98,7 +109,48 @@ TEST_CASE("recordings without the needed columns, or too short, place nothing") 
   Recording r;
   r.t_s = Eigen::VectorXd::LinSpaced(100, 0.0, 99.0);
   r.set("motor_C", Eigen::VectorXd::Constant(100, 20.0));
-  CHECK(localise(test::bench_model(), {r}).where.empty());
-  CHECK(localise(test::axis_model(), {r}).where.empty());
-  CHECK(localise(test::bench_model(), {test::bench_recording({}, 20, 1)}).where.empty());
+  CHECK(localise(test::bench_model(), {r}, {}, standard_catalogue()).where.empty());
+  CHECK(localise(test::axis_model(), {r}, {}, standard_catalogue()).where.empty());
+  CHECK(localise(test::bench_model(), {test::bench_recording({}, 20, 1)}, {}, standard_catalogue())
+            .where.empty());
+}
+
+TEST_CASE(
+    "what the model has already is not missing: its effects act in its balances as they do when it is simulated") {
+  test::BenchFault fault;
+  fault.sensor_offset_A = 0.03;
+  CHECK(bench(fault, {{"current_sensor_offset", {{"A", 0.03}}}}).where.empty());
+  fault = {};
+  fault.sensor_gain = 1.15;
+  CHECK(bench(fault, {{"current_sensor_gain", {{"gain", 1.15}}}}).where.empty());
+  fault = {};
+  fault.series_ohm = 1.2;
+  CHECK(bench(fault, {{"series_resistance", {{"ohm", 1.2}}}}).where.empty());
+  fault = {};
+  fault.lag_s = 25.0;
+  // The circuit is judged at what the thermometer shows; the body is not blamed for its lag.
+  for (const Location& one : bench(fault, {{"thermometer_lag", {{"lag_s", 25.0}}}}).where)
+    CHECK(one.signal != Signal::motor_C);
+  test::AxisFault joint;
+  joint.coulomb_Nm = 0.004;
+  CHECK(axis(joint, {{"coulomb_friction", {{"Nm", 0.004}}}}).where.empty());
+  joint = {};
+  joint.spring_Nm_per_rad = 0.01;
+  CHECK(axis(joint, {{"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.0}}}}).where.empty());
+  joint = {};
+  joint.delay_rows = 2;
+  CHECK(axis(joint, {{"actuation_delay", {{"s", 0.02}}}}).where.empty());
+  joint = {};
+  joint.angle_gain = 1.1;
+  CHECK(axis(joint, {{"angle_scale", {{"gain", 1.1}}}}).where.empty());
+}
+
+TEST_CASE("a second fault is placed beside what the model has already") {
+  test::AxisFault joint;
+  joint.coulomb_Nm = 0.004;
+  joint.spring_Nm_per_rad = 0.01;
+  check_first(axis(joint, {{"coulomb_friction", {{"Nm", 0.004}}}}), Signal::rate_dps,
+              plant::Submodel::mechanical_load);
+  check_first(axis(joint, {{"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.0}}}}), Signal::rate_dps,
+              plant::Submodel::mechanical_friction);
 }

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
+#include <thermopower/gap/localise/occurrence.hpp>
 #include <thermopower/gap/localise/own_plant.hpp>
 #include <thermopower/gap/fit/axis_averaging.hpp>
 #include <thermopower/gap/fit/overlooked.hpp>
@@ -40,9 +41,13 @@ public:
     gather(train, held_out);
     stage("data gate");
     if (!enough()) return std::move(result_);
-    Localisation found;
+    engine::LocalisationOptions localisation;
+    localisation.slack = options_.slack;
+    engine::Localisation found;
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
-    else found = localise(model_, train_recordings_, LocalisationOptions{options_.slack});
+    else found = engine::localise(model_, train_recordings_, localisation, catalogue_);
+    if (!model_.own)
+      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, localisation, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
@@ -335,7 +340,7 @@ private:
         for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
         draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
       } else {
-        draw_effect(model_, simulated, result_.missing_quantities);
+        engine::draw_effect(model_, simulated, catalogue_, result_.missing_quantities);
       }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);

@@ -2,32 +2,30 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/localise/thresholds.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
-/// @file least_squares.hpp
+/// @file
 /// Which block of regressors explains a residual? Bounded least squares, judged on stretches that the fit has
 /// not seen.
 
-namespace thermopower::gap::detail {
+namespace thermopower::gap::engine {
 
 /// Regressors that share a coefficient range each: a direction in which a submodel may be wrong, with no
 /// formula attached.
 struct Block {
-  std::string submodel;     ///< whom it accuses
-  std::string variable;     ///< what orders the missing quantity: a column, a derived name, or empty
-  std::string words;        ///< "a loss that depends on the rise", for the evidence
-  Eigen::MatrixXd columns;  ///< rows x directions
-  double lower = -std::numeric_limits<
-      double>::infinity();  ///< of every coefficient: a bank of relaxations has none below 0
-  double upper = std::numeric_limits<double>::infinity();  ///< of every coefficient
+  Eigen::MatrixXd columns;                                  ///< rows x directions
+  double lower = -std::numeric_limits<double>::infinity();  ///< of every coefficient: what acts one way has 0
+  double upper = std::numeric_limits<double>::infinity();   ///< of every coefficient
   int penalty = 0;  ///< directions that a scan tried to find these, counted as parameters
+  double at = 0.0;  ///< the value that a scan found best
 };
 
 /// A residual, what re-calibration within slack may take from it, and the stretches it is cross-validated on.
@@ -102,7 +100,7 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
 
 /// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a
 /// scan.
-inline double quick_fit(const Problem& problem, const Eigen::MatrixXd& columns) {
+inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd& columns) {
   const Eigen::Index bounded = problem.nuisance.cols(),
                      width = bounded + problem.free.cols() + columns.cols();
   Eigen::MatrixXd x(problem.y.size(), width);
@@ -281,14 +279,15 @@ struct Choice {
 /// than the best.
 ///
 /// @param floor sum of squares that noise alone would leave: a fit that reaches it needs no more
-/// @param pairs whether two blocks may act at once
-inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs = true) {
+inline Choice choose_blocks(const BlockFitter& fitter, double floor, const LocalisationThresholds& limit) {
   Choice choice;
   choice.none = fitter.fit({});
   choice.best = choice.none;
-  // Stretches that bind a nuisance make prediction of the unseen worse than what was seen: either may say
+  // Stretches that bind a constant make prediction of the unseen worse than what was seen: either may say
   // that nothing is missing.
-  if (choice.none.seen_total <= 1.15 * floor && choice.none.unseen_total <= 4.0 * floor) return choice;
+  if (choice.none.seen_total <= limit.nothing_seen * floor &&
+      choice.none.unseen_total <= limit.nothing_unseen * floor)
+    return choice;
   std::vector<BlockFit> singles;
   std::size_t least = 0;
   for (std::size_t i = 0; i < fitter.size(); ++i) {
@@ -301,17 +300,17 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
     for (std::size_t i = 0; i < fits.size(); ++i) {
       if (fits[i].directions >= fits[pick].directions) continue;
       const double more = fits[i].unseen_total - fits[best].unseen_total;
-      const bool as_good = more <= 0.35 * fits[best].unseen_total + 0.15 * floor;
-      const bool all_but_a_trace =
-          more <= 0.003 * (choice.none.unseen_total - floor) && fits[i].unseen_total < 12.0 * floor;
+      const bool as_good = more <= limit.as_good * fits[best].unseen_total + limit.as_good_floor * floor;
+      const bool all_but_a_trace = more <= limit.trace * (choice.none.unseen_total - floor) &&
+                                   fits[i].unseen_total < limit.trace_left * floor;
       if (as_good || all_but_a_trace) pick = i;
     }
     return pick;
   };
   const BlockFit single = singles[simplest(singles, least)];
-  if (single.unseen_total > 0.9 * choice.none.unseen_total) return choice;
+  if (single.unseen_total > limit.no_help * choice.none.unseen_total) return choice;
   choice.best = single;
-  if (!pairs || singles[least].unseen_total <= 2.0 * floor) return choice;
+  if (singles[least].unseen_total <= limit.needs_a_second * floor) return choice;
   std::vector<BlockFit> doubles;
   std::size_t best = 0;
   for (std::size_t i = 0; i < fitter.size(); ++i) {
@@ -322,7 +321,8 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   }
   // A second block must matter: next to the first, and next to all there was to explain.
   const double gained = doubles.empty() ? 0.0 : singles[least].unseen_total - doubles[best].unseen_total;
-  if (gained < 0.6 * singles[least].unseen_total || gained < 0.004 * (choice.none.unseen_total - floor))
+  if (gained < limit.second_gain * singles[least].unseen_total ||
+      gained < limit.second_share * (choice.none.unseen_total - floor))
     return choice;
   choice.best = doubles[simplest(doubles, best)];
   // The one of the two that explains more alone comes first.
@@ -332,11 +332,4 @@ inline Choice choose_blocks(const BlockFitter& fitter, double floor, bool pairs 
   return choice;
 }
 
-/// A submodel's problem with its candidate directions.
-struct Judged {
-  Problem problem;
-  std::vector<Block> blocks;
-  double floor = 0.0;  ///< sum of squares that noise leaves
-};
-
-}  // namespace thermopower::gap::detail
+}  // namespace thermopower::gap::engine

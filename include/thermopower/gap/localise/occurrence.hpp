@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/localise/localisation.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file
+/// In which runs a fault shows while it does not in others, and from when on.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the question in which runs, and from when on, a fault shows.
+struct OccurrenceThresholds {
+  Eigen::Index least_rows = 150;   ///< of a run that is asked about: eight stretches of some twenty rows
+  Eigen::Index most_rows = 20000;  ///< of a run: the first of them; more say no more about whether
+  std::size_t most_runs = 12;      ///< that are asked about, evenly spread
+  double holds =
+      1.5;  ///< floors that the constants may leave where a balance holds: noise is known to some 20 %
+  double clearly = 4.0;  ///< floors that they leave at least where it does not
+  int stretches = 20;    ///< of a run, at the ends of which a fault may begin
+  int first = 3;         ///< stretches that must hold before it
+};
+
+/// One run of a recording.
+struct RunPart {
+  Recording recording;    ///< its rows alone
+  std::string name;       ///< of the recording
+  std::string run;        ///< label of the run, may be empty
+  bool held_out = false;  ///< it is among the held-out data
+};
+
+namespace detail {
+
+/// How one balance does in one run.
+struct Holding {
+  plant::QuantityName quantity;  ///< of the balance
+  plant::SignalName signal;      ///< of the balance
+  double level = 0.0;            ///< floors that the constants within their slack leave
+  std::optional<double> from_s;  ///< it holds before and not after; none: no such time
+};
+
+/// How a balance does in the rows of a run, its constants moving within their slack.
+inline Holding holding_of(plant::Balance balance, double slack, const OccurrenceThresholds& limit) {
+  balance.freedoms.clear();
+  balance.courses.clear();
+  Holding result{balance.quantity, balance.signal, 0.0, {}};
+  const LocalisationThresholds stage;
+  const std::unique_ptr<Projection> projection = projection_of(balance, stage);
+  const Problem whole = problem_of(balance, *projection, slack);
+  if (whole.y.size() < stage.least_rows) return result;
+  const double floor_per_row = projection->floor() / static_cast<double>(whole.y.size());
+  const auto left = [&](const std::vector<Eigen::Index>& rows) {
+    const Eigen::Index n = static_cast<Eigen::Index>(rows.size());
+    Problem part;
+    part.slack = slack;
+    part.y.resize(n);
+    part.nuisance.resize(n, whole.nuisance.cols());
+    part.free.resize(n, whole.free.cols());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Index from = rows[static_cast<std::size_t>(i)];
+      part.y[i] = whole.y[from];
+      part.nuisance.row(i) = whole.nuisance.row(from);
+      part.free.row(i) = whole.free.row(from);
+    }
+    return sum_of_squares_left(part, Eigen::MatrixXd(n, 0)) / (floor_per_row * static_cast<double>(n));
+  };
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < whole.y.size(); ++i) rows.push_back(i);
+  result.level = left(rows);
+  if (result.level < limit.clearly) return result;
+  const Eigen::VectorXi stretch = projection->stretches(limit.stretches);
+  int held = 0;
+  for (int end = 1; end < limit.stretches; ++end) {
+    rows.clear();
+    for (Eigen::Index i = 0; i < whole.y.size(); ++i)
+      if (stretch[i] < end) rows.push_back(i);
+    if (rows.size() < static_cast<std::size_t>(stage.least_rows)) continue;
+    if (left(rows) > limit.holds) break;
+    held = end;
+  }
+  if (held >= limit.first) {
+    const Eigen::Index row = balance.rows->size() * held / limit.stretches;
+    result.from_s = balance.rows->t_s[std::min(row, balance.rows->size() - 1)];
+  }
+  return result;
+}
+
+/// The runs of recordings that are long enough, evenly spread where there are many.
+inline std::vector<RunPart> runs_of(const std::vector<Recording>& recordings, bool held_out,
+                                    const OccurrenceThresholds& limit) {
+  std::vector<RunPart> all;
+  for (const Recording& one : recordings)
+    for (const RunSpan& run : one.spans())
+      if (run.size() >= limit.least_rows)
+        all.push_back({one.slice(run.begin, std::min(run.end, run.begin + limit.most_rows)), one.name,
+                       run.label, held_out});
+  if (all.size() <= limit.most_runs) return all;
+  std::vector<RunPart> some;
+  for (std::size_t i = 0; i < limit.most_runs; ++i)
+    some.push_back(std::move(all[i * (all.size() - 1) / (limit.most_runs - 1)]));
+  return some;
+}
+
+}  // namespace detail
+
+/// Says of each location in which runs the fault shows while it does not in others, and from when on; and adds the
+/// places of what shows in held-out runs only.
+/// @param train, held_out as the diagnosis is given them
+inline void add_occurrences(const Model& model, const std::vector<Recording>& train,
+                            const std::vector<Recording>& held_out, const LocalisationOptions& options,
+                            const Catalogue& catalogue, Localisation& found) {
+  constexpr OccurrenceThresholds limit;
+  std::vector<RunPart> parts = detail::runs_of(train, false, limit);
+  for (RunPart& one : detail::runs_of(held_out, true, limit)) parts.push_back(std::move(one));
+  std::vector<std::vector<detail::Holding>> holdings;
+  for (const RunPart& part : parts) {
+    const RecordedBalances balances(model, {part.recording}, catalogue);
+    std::vector<detail::Holding> list;
+    for (const plant::BalanceSource& source : balances.sources()) {
+      detail::Holding one =
+          detail::holding_of(source.make(plant::ReadingOffsets(signal_count, 0.0)), options.slack, limit);
+      const auto same = std::find_if(list.begin(), list.end(), [&](const detail::Holding& other) {
+        return other.quantity == one.quantity;
+      });
+      if (same == list.end()) list.push_back(std::move(one));
+      else if (one.level < same->level) *same = std::move(one);  // of alternatives the one that holds best
+    }
+    holdings.push_back(std::move(list));
+  }
+  const auto occurrences = [&](const plant::SignalName& signal) {
+    std::vector<Occurrence> list;
+    std::size_t throughout = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (const detail::Holding& one : holdings[i]) {
+        if (one.signal != signal || one.level < limit.clearly) continue;
+        list.push_back({parts[i].name, parts[i].run, parts[i].held_out, one.from_s});
+        throughout += one.from_s ? 0 : 1;
+        break;
+      }
+    if (throughout == parts.size()) list.clear();
+    return list;
+  };
+  const auto held_anywhere = [&](const plant::SignalName& signal) {
+    for (const auto& list : holdings)
+      for (const detail::Holding& one : list)
+        if (one.signal == signal && one.level < limit.holds) return true;
+    return false;
+  };
+  for (Location& one : found.where) {
+    std::vector<Occurrence> list = occurrences(one.signal);
+    const bool later =
+        std::any_of(list.begin(), list.end(), [](const Occurrence& o) { return o.from_s.has_value(); });
+    if (held_anywhere(one.signal) || later) one.only_in = std::move(list);
+  }
+  bool held_out_alone = false;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (const detail::Holding& one : holdings[i])
+      held_out_alone =
+          held_out_alone || (parts[i].held_out && one.level >= limit.clearly &&
+                             std::none_of(found.where.begin(), found.where.end(),
+                                          [&](const Location& l) { return l.signal == one.signal; }));
+  if (!held_out_alone) return;
+  const Localisation later = localise(model, held_out, options, catalogue);
+  for (Location one : later.where) {
+    if (std::any_of(found.where.begin(), found.where.end(),
+                    [&](const Location& l) { return l.signal == one.signal; }))
+      continue;
+    one.only_in = occurrences(one.signal);
+    if (one.only_in.empty()) continue;
+    found.where.push_back(std::move(one));
+  }
+  if (found.quantities.empty()) found.quantities = later.quantities;
+}
+
+}  // namespace thermopower::gap::engine

@@ -1,0 +1,548 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/axis_rollout.hpp>
+#include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/piecewise_linear.hpp>
+#include <thermopower/plant/samples.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file axis_balances.hpp
+/// The balances of a moving axis, its torques and its two instruments, from the equations that its rollout
+/// integrates.
+
+namespace thermopower::plant {
+
+/// Twist of a spring between two inertias, and its rate, while the near one moves as measured:
+/// q'' = -rate' - w^2 q - 2 z w q', with q of the far side relative to the near one.
+struct SpringTwist {
+  Eigen::VectorXd angle_rad;       ///< q
+  Eigen::VectorXd rate_rad_per_s;  ///< q'
+
+  /// @param rate        of the near side, rad/s, without holes
+  /// @param w_rad_per_s natural frequency of the far side on the spring, > 0
+  /// @param damping     its damping ratio, >= 0
+  SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping)
+      : angle_rad(rate.size()), rate_rad_per_s(rate.size()) {
+    constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
+    const double w = w_rad_per_s;
+    for (const RunSpan& run : rows.runs) {
+      double q = 0.0, v = 0.0;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        angle_rad[i] = q;
+        rate_rad_per_s[i] = v;
+        if (i + 1 == run.end) break;
+        const double step = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step;
+        const int parts = std::max(1, static_cast<int>(std::ceil(w * step / longest_rad)));
+        for (int p = 0; p < parts; ++p) {
+          const double h = step / parts, k1 = pull - w * w * q - 2.0 * damping * w * v;
+          const double q2 = q + 0.5 * h * v, v2 = v + 0.5 * h * k1;
+          q += h * v2;
+          v += h * (pull - w * w * q2 - 2.0 * damping * w * v2);
+        }
+      }
+    }
+  }
+};
+
+/// What an axis recorded and what its equation says of it, row by row at the measured motion.
+class AxisAtRows {
+public:
+  /// What a balance needs of each row.
+  struct Values {
+    double inertia_kgm2 = 0.0;  ///< that moves with the instruments
+    Eigen::VectorXd motion_Nm;  ///< torques of the motion: viscous, load, dry friction, spring
+    Eigen::VectorXd drive_Nm;   ///< torque of the drive, held
+  };
+
+  /// Keeps references to model, catalogue and inputs: they must outlive this object.
+  AxisAtRows(const Model& model, const Catalogue& catalogue, const Inputs& inputs,
+             const ReadingOffsets& offsets)
+      : model_(model), catalogue_(catalogue), inputs_(inputs) {
+    rows_ = std::make_shared<BalanceRows>(
+        BalanceRows{inputs.t_s, inputs.runs, median_interval_s(inputs.t_s, inputs.runs)});
+    measure(offsets);
+  }
+
+  /// The equation with the constants multiplied by `factors` (as many as Model::calibrated(), or none).
+  Values evaluate(const std::vector<double>& factors = {}) const {
+    const Instance<double> instance(model_, factors, {}, catalogue_);
+    const AxisRollout<double> rollout(instance, inputs_);
+    const auto& shape = instance.axis_structure;
+    Values v;
+    v.inertia_kgm2 = instance.inertia_kgm2 * (shape.compliant ? 1.0 - shape.far_share : 1.0);
+    v.motion_Nm = v.drive_Nm = Eigen::VectorXd::Zero(rate.size());
+    const double rest_rad_per_s = 4.0 * rate_noise;
+    for (const RunSpan& run : inputs_.runs) {
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
+        const AxisDrive<double> drive = rollout.drive(i, run, i, t_s);
+        const double drive_Nm = drive.torque_Nm;
+        const auto now = rollout.step().torques({angle[i], rate[i], 0.0, 0.0}, t_s, drive);
+        // A transition that the noise of the rate hides is as good as none.
+        const bool sticks =
+            now.transition_rad_per_s <= std::max(friction_sticks_below_rad_per_s, rest_rad_per_s);
+        const bool rests = std::fabs(rate[i]) < rest_rad_per_s &&
+                           (i == run.begin || std::fabs(rate[i - 1]) < rest_rad_per_s) &&
+                           (i + 1 == run.end || std::fabs(rate[i + 1]) < rest_rad_per_s);
+        double friction_Nm = 0.0;
+        if (sticks && rests) {
+          // At rest dry friction takes whatever the other torques give, up to its size.
+          friction_Nm = std::clamp(now.torque_Nm, -now.backward_Nm, now.forward_Nm);
+        } else if (sticks) {
+          const double forward = forward_share(i, run);
+          friction_Nm = forward * now.forward_Nm - (1.0 - forward) * now.backward_Nm;
+        } else {
+          friction_Nm = (rate[i] >= 0.0 ? now.forward_Nm : now.backward_Nm) *
+                        std::tanh(rate[i] / std::max(now.transition_rad_per_s, 1e-12));
+        }
+        v.drive_Nm[i] = drive_Nm;
+        v.motion_Nm[i] = now.torque_Nm - drive_Nm - friction_Nm;
+      }
+    }
+    if (shape.compliant) {
+      const double w = shape.spring_rad_per_s * std::sqrt(1.0 - shape.far_share);
+      const double reduced = v.inertia_kgm2 * shape.far_share;
+      const SpringTwist twist(rate, *rows_, w, shape.spring_damping * std::sqrt(1.0 - shape.far_share));
+      v.motion_Nm +=
+          reduced * shape.spring_rad_per_s *
+          (shape.spring_rad_per_s * twist.angle_rad + 2.0 * shape.spring_damping * twist.rate_rad_per_s);
+    }
+    return v;
+  }
+
+  /// From command to torque in s, as the model's effects delay it.
+  double delay_s() const {
+    const Instance<double> instance(model_, {}, {}, catalogue_);
+    return instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0;
+  }
+
+  /// What changes with the logarithm of each constant that calibration may move.
+  template <class Use>
+  void for_each_constant(Use&& use) const {
+    constexpr double step = 1e-4;
+    const std::vector<CalibratedConstant> constants = model_.calibrated();
+    for (std::size_t k = 0; k < constants.size(); ++k) {
+      if (!constants[k].has_slack || constants[k].block != "axis") continue;
+      std::vector<double> up(constants.size(), 1.0), down = up;
+      up[k] = std::exp(step);
+      down[k] = std::exp(-step);
+      use(constants[k].id, evaluate(up), evaluate(down), 0.5 / step);
+    }
+  }
+
+  Eigen::VectorXd angle, rate;          ///< true ones by the model's readings, rad and rad/s, without holes
+  Eigen::VectorXd raw_angle, raw_rate;  ///< the same with holes; of an angle alone, its slopes
+  double rate_noise = 0.0;              ///< rad/s
+  bool has_rate = false;                ///< a gyroscope is judged
+  bool has_angle = false;               ///< an angle is judged
+
+  /// The rows.
+  const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
+  /// The inputs given.
+  const Inputs& inputs() const { return inputs_; }
+
+private:
+  /// Share of the time around a row, half an interval each way, in which the rate is positive; it is straight
+  /// between rows.
+  double forward_share(Eigen::Index i, const RunSpan& run) const {
+    const auto half = [&](double here, double next) {
+      const double there = 0.5 * (here + next);
+      if (here >= 0.0 && there >= 0.0) return 1.0;
+      if (here <= 0.0 && there <= 0.0) return 0.0;
+      const double before = std::fabs(here) / (std::fabs(here) + std::fabs(there));
+      return here > 0.0 ? before : 1.0 - before;
+    };
+    const double here = rate[i];
+    return 0.5 * (half(here, i > run.begin ? rate[i - 1] : here) +
+                  half(here, i + 1 < run.end ? rate[i + 1] : here));
+  }
+
+  void measure(const ReadingOffsets& offsets) {
+    const Eigen::Index n = inputs_.rows();
+    has_rate = inputs_.judged(Signal::rate_dps);
+    has_angle = inputs_.judged(Signal::angle_deg);
+    const Instance<double> instance(model_, {}, {}, catalogue_);
+    const AxisRollout<double> rollout(instance, inputs_);
+    raw_angle = raw_rate = Eigen::VectorXd::Constant(n, missing);
+    for (const RunSpan& run : inputs_.runs)
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double shown_deg =
+            has_angle ? inputs_.of(Signal::angle_deg)[i] - offsets[Signal::angle_deg] : missing;
+        const double shown_dps =
+            has_rate ? inputs_.of(Signal::rate_dps)[i] - offsets[Signal::rate_dps] : missing;
+        const auto state = rollout.start(i, inputs_.t_s[run.begin], shown_deg, shown_dps);
+        raw_angle[i] = state.angle_rad;
+        raw_rate[i] = state.rate_rad_per_s;
+      }
+    if (!has_rate) {  // slopes over four intervals
+      for (const RunSpan& run : inputs_.runs)
+        for (Eigen::Index i = run.begin + 2; i + 2 < run.end; ++i)
+          raw_rate[i] =
+              (2.0 * (raw_angle[i + 2] - raw_angle[i - 2]) + (raw_angle[i + 1] - raw_angle[i - 1])) /
+              (2.0 * (inputs_.t_s[i + 2] - inputs_.t_s[i - 2]) + (inputs_.t_s[i + 1] - inputs_.t_s[i - 1]));
+      rate_noise = sample_noise(raw_angle, inputs_.runs) * slope_noise_per_angle();
+    } else {
+      rate_noise = sample_noise(raw_rate, inputs_.runs);
+    }
+    angle =
+        has_angle ? without_holes(raw_angle, inputs_.runs, 0.0) : Eigen::VectorXd(Eigen::VectorXd::Zero(n));
+    rate = without_holes(raw_rate, inputs_.runs, 0.0);
+  }
+
+public:
+  /// Noise of a slope over four intervals per noise of the angle, 1/s: sqrt(10) / 10 intervals.
+  double slope_noise_per_angle() const { return 1.0 / (3.2 * rows_->interval_s); }
+
+private:
+  const Model& model_;
+  const Catalogue& catalogue_;
+  const Inputs& inputs_;
+  std::shared_ptr<const BalanceRows> rows_;
+};
+
+namespace detail {
+
+/// Dry friction that builds up over an angle after each reversal (Dahl's state), for several angles.
+inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
+  constexpr double widest_rad = 0.5;
+  const double reach =
+      a.has_angle && a.angle.size() > 0 ? std::max(a.angle.maxCoeff() - a.angle.minCoeff(), 1e-3) : 1.0;
+  Eigen::MatrixXd out(a.rate.size(), 4);
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const double width = std::min(widest_rad, reach) * std::pow(0.3, static_cast<double>(k) + 1.0);
+    for (const RunSpan& run : a.rows()->runs) {
+      double z = 0.0;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        out(i, k) = z;
+        if (i + 1 == run.end) break;
+        const double moved = 0.5 * (a.rate[i] + a.rate[i + 1]) * (a.rows()->t_s[i + 1] - a.rows()->t_s[i]);
+        const double goal = moved > 0.0 ? 1.0 : -1.0;
+        z = goal + (z - goal) * std::exp(-std::fabs(moved) / width);
+      }
+    }
+  }
+  return out;
+}
+
+/// What in friction may be otherwise.
+/// @param direction  which way the axis moves, -1 to 1
+/// @param drive_Nm   torque of the drive
+inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a,
+                                  const std::shared_ptr<const Eigen::VectorXd>& direction,
+                                  const std::shared_ptr<const Eigen::VectorXd>& drive_Nm) {
+  const auto sampled = [](const Eigen::MatrixXd& columns) {
+    return directions_of(columns, [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+  };
+  const auto add = [&](const std::string& variable, const std::string& words,
+                       std::function<std::vector<Direction>()> directions,
+                       double least = -std::numeric_limits<double>::infinity()) {
+    b.freedoms.push_back({Submodel::mechanical_friction, variable, words,
+                          [directions](double) { return directions(); }, least});
+  };
+  add(
+      "rate_dps", "a friction that takes an angle to turn round",
+      [a, sampled] { return sampled(-building_up(*a)); }, 0.0);
+  add("rate_dps", "a friction of the same size at every rate",
+      [direction, sampled] { return sampled(*direction); });
+  add("rate_dps", "a friction that holds the axis at rest", [a, direction, drive_Nm] {
+    // At rest, dry friction takes whatever the drive gives.
+    const double rest = 4.0 * a->rate_noise;
+    const Eigen::VectorXd moving = (a->rate.array().abs() > rest).cast<double>();
+    return std::vector<Direction>{flow_sampled(direction->cwiseProduct(moving)),
+                                  flow_held(drive_Nm->cwiseProduct((1.0 - moving.array()).matrix()))};
+  });
+  add("rate_dps", "another viscous friction", [a, sampled] { return sampled(a->rate); });
+  add("rate_dps", "a friction that depends on the rate",
+      [a, direction, sampled] { return sampled(scaled(hats(a->rate.cwiseAbs(), 5), *direction)); });
+  add("rate_dps", "a friction that differs with the direction", [direction, sampled] {
+    Eigen::MatrixXd columns(direction->size(), 2);
+    columns << *direction, Eigen::VectorXd::Ones(direction->size());
+    return sampled(columns);
+  });
+  add("rate_dps", "a friction that depends on rate and direction",
+      [a, sampled] { return sampled(hats(a->rate, 9)); });
+  add("drive_A", "a friction that grows with the torque", [direction, drive_Nm] {
+    return std::vector<Direction>{flow_held(direction->cwiseProduct(drive_Nm->cwiseAbs()))};
+  });
+}
+
+/// What between command and torque may be otherwise.
+inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a,
+                               const std::shared_ptr<const Eigen::VectorXd>& drive_Nm) {
+  const auto add = [&](const std::string& variable, const std::string& words,
+                       std::function<std::vector<Direction>()> directions,
+                       double least = -std::numeric_limits<double>::infinity()) {
+    b.freedoms.push_back(
+        {Submodel::mechanical_drive, variable, words, [directions](double) { return directions(); }, least});
+  };
+  const auto held = [](const Eigen::MatrixXd& columns) {
+    return directions_of(columns, [](Eigen::VectorXd c) { return flow_held(std::move(c)); });
+  };
+  add("drive_A", "another torque constant", [drive_Nm, held] { return held(*drive_Nm); });
+  add("drive_A", "a torque that is not in proportion to the command",
+      [drive_Nm, held] { return held(scaled(hats(drive_Nm->cwiseAbs(), 6), *drive_Nm)); });
+  add(
+      "drive_A_per_s", "a torque that comes after the command",
+      [a, drive_Nm] {
+        const double unit_s = std::max(a->rows()->interval_s, 0.004);
+        std::vector<Direction> list;
+        for (const double k : {0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
+          list.push_back({{BalancePart::Kind::flow_held, *drive_Nm, k * unit_s},
+                          {BalancePart::Kind::flow_held, *drive_Nm, 0.0, -1.0}});
+        return list;
+      },
+      0.0);
+  if (a->inputs().covariate_motor_C.size() > 0)
+    add("motor_C", "a torque constant that changes with the temperature", [a, drive_Nm, held] {
+      const Eigen::VectorXd& motor_C = a->inputs().covariate_motor_C;
+      Eigen::MatrixXd columns(motor_C.size(), 2);
+      columns << *drive_Nm, drive_Nm->cwiseProduct((motor_C.array() - motor_C.mean()).matrix());
+      return held(columns);
+    });
+}
+
+/// What of angle, time and inertia may be otherwise.
+inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a) {
+  const Eigen::Index n = a->rate.size();
+  const auto sampled = [](const Eigen::MatrixXd& columns) {
+    return directions_of(columns, [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+  };
+  const auto add = [&](const std::string& variable, const std::string& words,
+                       std::function<std::vector<Direction>()> directions) {
+    b.freedoms.push_back(
+        {Submodel::mechanical_load, variable, words, [directions](double) { return directions(); }});
+  };
+  if (a->has_angle) {
+    add("angle_deg", "a torque with the sine of the angle", [a, sampled] {
+      Eigen::MatrixXd columns(a->angle.size(), 2);
+      columns << a->angle.array().sin(), a->angle.array().cos();
+      return sampled(columns);
+    });
+    add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
+      Eigen::MatrixXd columns(n, 2);
+      columns << a->angle, Eigen::VectorXd::Ones(n);
+      return sampled(columns);
+    });
+    add("angle_deg", "a torque that depends on the angle",
+        [a, sampled] { return sampled(even_hats(a->angle, 9)); });
+    // A torque that repeats n times a turn, as far as travel and rows show such a period.
+    constexpr double turn_rad = 6.283185307179586, rows_per_period = 4.2;
+    Freedom periodic{Submodel::mechanical_load, "angle_deg", "", [a, sampled](double count) {
+                       Eigen::MatrixXd columns(a->angle.size(), 2);
+                       columns << (count * a->angle.array()).sin(), (count * a->angle.array()).cos();
+                       return sampled(columns);
+                     }};
+    const double travel = a->angle.maxCoeff() - a->angle.minCoeff(), pace = a->rate.cwiseAbs().mean();
+    for (int count = 2; count <= 64; ++count)
+      if (travel * count >= turn_rad && count * a->rows()->interval_s * pace <= turn_rad / rows_per_period)
+        periodic.scan.push_back(count);
+    periodic.penalty = 2;
+    periodic.words_at = [](double count) {
+      return "a torque that repeats " + std::to_string(static_cast<int>(std::lround(count))) +
+             " times a turn";
+    };
+    if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
+  }
+  add("t_s", "a constant torque", [n, sampled] { return sampled(Eigen::VectorXd::Ones(n)); });
+  b.freedoms.push_back({Submodel::mechanical_structure, "acceleration_rad_per_s2", "another inertia",
+                        [a](double) { return std::vector<Direction>{further_store(a->rate)}; }});
+  // A second inertia that follows the measured motion through a spring.
+  constexpr double damping = 0.04, lowest_Hz = 1.5, highest_Hz = 40.0, of_sampling = 0.3;
+  Freedom spring{Submodel::mechanical_structure, "acceleration_rad_per_s2", "", [a](double hertz) {
+                   const double w = 6.283185307179586 * hertz;
+                   const SpringTwist twist(a->rate, *a->rows(), w, damping);
+                   return std::vector<Direction>{further_store(twist.rate_rad_per_s),
+                                                 flow_sampled(w * w * twist.angle_rad)};
+                 }};
+  for (double hertz = lowest_Hz; hertz <= std::min(highest_Hz, of_sampling / a->rows()->interval_s);
+       hertz *= 1.12)
+    spring.scan.push_back(hertz);
+  spring.refine = {0.93, 0.95, 0.97, 0.99, 1.01, 1.03, 1.05, 1.07};
+  spring.penalty = 2;
+  spring.words_at = [](double hertz) {
+    char words[80];
+    std::snprintf(words, sizeof words, "an inertia behind a spring, %.1f Hz", hertz);
+    return std::string(words);
+  };
+  if (!spring.scan.empty()) b.freedoms.push_back(std::move(spring));
+}
+
+}  // namespace detail
+
+/// The torques, given the measured motion and command: N m.
+inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::vector<Covariate>& covariates) {
+  const Inputs& in = a->inputs();
+  const AxisAtRows::Values v = a->evaluate();
+  const Eigen::Index n = in.rows();
+  const auto drive_Nm = std::make_shared<const Eigen::VectorXd>(v.drive_Nm);
+  const auto direction = std::make_shared<const Eigen::VectorXd>(
+      (a->rate.array() / std::max(2.0 * a->rate_noise, 1e-9)).tanh().matrix());
+  Balance b;
+  b.quantity = Quantity::missing_torque;
+  b.unit = "N m";
+  b.signal = a->has_rate ? Signal::rate_dps : Signal::angle_deg;
+  b.instrument = a->has_rate ? Submodel::sensing_rate : Submodel::sensing_angle;
+  b.otherwise = Submodel::mechanical_drive;
+  b.given = "Given the measured motion and command";
+  b.form = BalanceForm::weak;
+  b.rows = a->rows();
+  b.measured = a->raw_rate;
+  b.state = a->rate;
+  if (!a->has_rate) {
+    b.noise_from = a->raw_angle;
+    b.noise_gain = a->slope_noise_per_angle();
+  }
+  b.capacity = Eigen::VectorXd::Constant(n, v.inertia_kgm2);
+  b.flow_sampled = v.motion_Nm;
+  b.flow_held = v.drive_Nm;
+  b.held_delay_s = a->delay_s();
+  b.half_widths = {4, 24};
+  b.picture_half_width = 6;
+  a->for_each_constant([&](const std::string& name, const AxisAtRows::Values& up,
+                           const AxisAtRows::Values& down, double per_log) {
+    Direction parts;
+    const double store = (up.inertia_kgm2 - down.inertia_kgm2) * per_log / v.inertia_kgm2;
+    const Eigen::VectorXd motion = (up.motion_Nm - down.motion_Nm) * per_log,
+                          drive = (up.drive_Nm - down.drive_Nm) * per_log;
+    if (store != 0.0) parts.push_back({BalancePart::Kind::store, a->rate, 0.0, store});
+    if (motion.cwiseAbs().maxCoeff() > 0.0) parts.push_back({BalancePart::Kind::flow_sampled, motion});
+    if (drive.cwiseAbs().maxCoeff() > 0.0) parts.push_back({BalancePart::Kind::flow_held, drive});
+    if (!parts.empty()) b.constants.push_back({name, std::move(parts)});
+  });
+  detail::add_friction_freedoms(b, a, direction, drive_Nm);
+  detail::add_drive_freedoms(b, a, drive_Nm);
+  detail::add_load_freedoms(b, a);
+  constexpr double deg = 1.0 / rad_per_deg;
+  b.variables = {
+      {"rate_dps", "deg/s", a->rate * deg, OrderingVariable::Kind::sampled, Signal::rate_dps},
+      {"drive_A", "A", in.drive_A, OrderingVariable::Kind::held},
+      {"drive_A_per_s", "A/s", in.drive_A, OrderingVariable::Kind::derivative},
+      {"acceleration_rad_per_s2", "rad/s2", a->rate, OrderingVariable::Kind::derivative, Signal::rate_dps},
+      {"t_s", "s", in.t_s}};
+  if (a->has_angle)
+    b.variables.push_back(
+        {"angle_deg", "deg", a->angle * deg, OrderingVariable::Kind::sampled, Signal::angle_deg});
+  if (in.covariate_motor_C.size() > 0) b.variables.push_back({"motor_C", "degC", in.covariate_motor_C});
+  for (const Covariate& covariate : covariates) {
+    const auto z = std::make_shared<const Eigen::VectorXd>(
+        covariate.values / std::max(covariate.values.cwiseAbs().maxCoeff(), 1e-12));
+    const auto add = [&](Submodel submodel, const std::string& words,
+                         std::function<std::vector<Direction>(double)> directions) {
+      b.freedoms.push_back({submodel, covariate.name, words + covariate.name, std::move(directions)});
+      b.freedoms.back().penalty = 1;
+    };
+    add(Submodel::mechanical_drive, "a torque constant that changes with ", [drive_Nm, z](double) {
+      return std::vector<Direction>{flow_held(*drive_Nm), flow_held(drive_Nm->cwiseProduct(*z))};
+    });
+    add(Submodel::mechanical_friction, "a friction that changes with ", [a, direction, z](double) {
+      return std::vector<Direction>{flow_sampled(a->rate.cwiseProduct(*z)),
+                                    flow_sampled(direction->cwiseProduct(*z))};
+    });
+    add(Submodel::mechanical_load, "a torque that comes with ", [z](double) {
+      return std::vector<Direction>{flow_sampled(*z), flow_sampled(Eigen::VectorXd::Ones(z->size()))};
+    });
+    b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
+  }
+  const auto course = [&](Submodel submodel, const std::string& variable, const std::string& words,
+                          std::function<Eigen::MatrixXd()> columns) {
+    b.courses.push_back({submodel, variable, words, [columns](double) {
+                           return directions_of(columns(),
+                                                [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+                         }});
+  };
+  const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };
+  course(Submodel::mechanical_friction, "t_s", "a friction that changes in the course of time",
+         [a, direction, order] {
+           Eigen::MatrixXd columns(direction->size(), 24);
+           columns << scaled(even_hats(order(), 12), *direction), scaled(even_hats(order(), 12), a->rate);
+           return columns;
+         });
+  course(Submodel::mechanical_load, "t_s", "a torque of its own course in time",
+         [order] { return even_hats(order(), 48); });
+  if (a->has_angle) {
+    course(Submodel::mechanical_friction, "angle_deg", "a friction that depends on the angle",
+           [a, direction] { return scaled(even_hats(a->angle, 24), *direction); });
+    course(Submodel::mechanical_load, "angle_deg", "a torque of its own course over the angle",
+           [a] { return even_hats(a->angle, 48); });
+  }
+  return b;
+}
+
+/// The angle against the rate, two instruments that must agree: deg/s.
+inline Balance instrument_balance(const AxisAtRows& a) {
+  constexpr double deg = 1.0 / rad_per_deg;
+  const Eigen::Index n = a.rate.size();
+  const auto angle = std::make_shared<const Eigen::VectorXd>(a.angle);
+  const auto rate_dps = std::make_shared<const Eigen::VectorXd>(a.rate * deg);
+  Balance b;
+  b.quantity = Quantity::angle_slope_minus_rate;
+  b.unit = "deg/s";
+  b.signal = Signal::angle_deg;
+  b.instrument = Submodel::sensing_angle;
+  b.otherwise = Submodel::sensing_angle;
+  b.given = "With angle and rate held against each other";
+  b.form = BalanceForm::weak;
+  b.rows = a.rows();
+  b.measured = a.raw_angle * deg;
+  b.state = a.angle * deg;
+  b.flow_sampled = *rate_dps;
+  b.flow_measured = a.raw_rate * deg;
+  b.half_widths = {16};
+  b.picture_half_width = 16;
+  b.reads = {Signal::rate_dps};
+  b.freedoms.push_back(
+      {Submodel::sensing_angle, "t_s", "the rate's integral and the angle part at a constant pace",
+       [n](double) { return std::vector<Direction>{flow_sampled(Eigen::VectorXd::Ones(n))}; }});
+  // A gyroscope's bias drags along a torque that is not there; a drifting angle does not.
+  b.freedoms.back().or_instrument = Submodel::sensing_rate;
+  b.freedoms.back().correction = Correction{Signal::rate_dps, -1.0};
+  b.freedoms.push_back({Submodel::sensing_angle, "rate_dps",
+                        "the angle moves by another factor than the rate says",
+                        [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
+  b.freedoms.push_back({Submodel::sensing_angle, "angle_deg", "the angle's error repeats every turn",
+                        [rate_dps, angle](double) {
+                          return std::vector<Direction>{
+                              flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().sin()))),
+                              flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().cos())))};
+                        }});
+  b.variables = {{"rate_dps", "deg/s", *rate_dps, OrderingVariable::Kind::sampled, Signal::rate_dps},
+                 {"angle_deg", "deg", a.angle * deg, OrderingVariable::Kind::sampled, Signal::angle_deg},
+                 {"t_s", "s", a.inputs().t_s}};
+  return b;
+}
+
+/// The balances of an axis, as far as its signals are judged. Model, catalogue and inputs must outlive them.
+inline std::vector<BalanceSource> axis_balances(const Model& model, const Catalogue& catalogue,
+                                                const Inputs& inputs, std::vector<Covariate> covariates) {
+  std::vector<BalanceSource> list;
+  const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
+  if (!angle && !rate) return list;
+  const auto shared = std::make_shared<std::vector<Covariate>>(std::move(covariates));
+  if (angle && rate)
+    list.push_back({Quantity::angle_slope_minus_rate,
+                    Signal::angle_deg,
+                    {Signal::rate_dps},
+                    [&model, &catalogue, &inputs](const ReadingOffsets& offsets) {
+                      return instrument_balance(AxisAtRows(model, catalogue, inputs, offsets));
+                    }});
+  list.push_back({Quantity::missing_torque,
+                  rate ? Signal::rate_dps : Signal::angle_deg,
+                  {},
+                  [&model, &catalogue, &inputs, shared](const ReadingOffsets& offsets) {
+                    return torque_balance(
+                        std::make_shared<const AxisAtRows>(model, catalogue, inputs, offsets), *shared);
+                  }});
+  return list;
+}
+
+}  // namespace thermopower::plant

@@ -1,0 +1,510 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/piecewise_linear.hpp>
+#include <thermopower/plant/samples.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file bench_balances.hpp
+/// The balances of a motor on a bench, circuit and body, from the laws and effects that its rollout integrates.
+
+namespace thermopower::plant {
+
+/// Where the heat of a body's balance comes from; each is a balance of its own.
+enum class HeatTold {
+  by_law,               ///< the circuit's law at the measured temperature
+  by_current,           ///< the measured current and the winding's resistance
+  by_electrical_power,  ///< the measured current and the voltage at the motor
+};
+
+/// What the laws of a bench say at the rows of a recording, each at its measured inputs. Behind a thermometer that
+/// lags (a model with that effect) the circuit is judged at what the thermometer shows.
+class BenchAtRows {
+public:
+  /// What a balance needs of each row.
+  struct Values {
+    Eigen::VectorXd law_A;             ///< what the ammeter would show
+    Eigen::VectorXd ohm;               ///< volts per ampere of the motor
+    Eigen::VectorXd v_rms_V;           ///< at the motor
+    Eigen::VectorXd supply_V;          ///< at the bridge
+    Eigen::VectorXd heat_W;            ///< into the body
+    Eigen::VectorXd loss_W;            ///< out of the body, at the measured temperature
+    Eigen::VectorXd capacity;          ///< J/K
+    Eigen::VectorXd relaxation_per_s;  ///< of the temperature, everything else given
+    Eigen::VectorXd winding_C;         ///< the thermometer's node
+  };
+
+  /// Keeps references to model, catalogue and inputs: they must outlive this object.
+  BenchAtRows(const Model& model, const Catalogue& catalogue, const Inputs& inputs,
+              const ReadingOffsets& offsets)
+      : model_(model),
+        catalogue_(catalogue),
+        inputs_(inputs),
+        offset_A_(offsets[Signal::current_A]),
+        offset_K_(offsets[Signal::motor_C]) {
+    rows_ = std::make_shared<BalanceRows>(
+        BalanceRows{inputs.t_s, inputs.runs, median_interval_s(inputs.t_s, inputs.runs)});
+  }
+
+  /// The laws with the constants multiplied by `factors` (as many as Model::calibrated(), or none).
+  Values evaluate(HeatTold heat, const std::vector<double>& factors = {}) const {
+    const Instance<double> instance(model_, factors, {}, catalogue_);
+    const BenchRollout<double> rollout(instance, inputs_);
+    const Eigen::Index n = inputs_.rows();
+    Values v;
+    for (Eigen::VectorXd* one : {&v.law_A, &v.ohm, &v.v_rms_V, &v.supply_V, &v.heat_W, &v.loss_W, &v.capacity,
+                                 &v.relaxation_per_s, &v.winding_C})
+      *one = Eigen::VectorXd::Zero(n);
+    for (const RunSpan& run : inputs_.runs) {
+      double charge_Ah = 0.0, surface_C = missing;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
+        const double step_s = i + 1 < run.end ? inputs_.t_s[i + 1] - inputs_.t_s[i] : 0.0;
+        const double winding_C = inputs_.held_motor_C.size() > 0
+                                     ? rollout.start(i, inputs_.held_motor_C[i] - offset_K_).winding_C
+                                     : 25.0;
+        v.winding_C[i] = winding_C;
+        const bool powered = inputs_.power_param.size() > 0 && (instance.ohmic || instance.thesis_current);
+        BenchRollout<double>::Circuit law{};
+        if (powered) {
+          law = rollout.circuit(i, t_s, winding_C, charge_Ah);
+          v.law_A[i] = shown_A(instance, t_s, law.current_A);
+          v.v_rms_V[i] = law.v_rms_V;
+          v.supply_V[i] = law.supply_V;
+        }
+        v.ohm[i] = instance.ohmic        ? instance.winding.resistance_at(winding_C)
+                   : law.current_A > 0.0 ? law.v_rms_V / law.current_A
+                                         : 0.0;
+        const double measured_A = measured_current(instance, i, t_s);
+        const double true_A = std::isfinite(measured_A) ? measured_A : law.current_A;
+        charge_Ah += true_A * rollout.charge_share(i) * step_s / 3600.0;
+        if (!instance.lumped && !instance.thesis_thermal) continue;
+        BenchRollout<double>::Circuit electrical = law;
+        if (heat != HeatTold::by_law) electrical = rollout.driven_by(i, t_s, true_A, winding_C, charge_Ah);
+        if (heat == HeatTold::by_electrical_power) electrical.winding_W = law.v_rms_V * true_A;
+        body(instance, rollout, electrical, i, t_s, step_s, winding_C, surface_C, v);
+      }
+    }
+    if (instance.thermal_structure.lagged) {
+      // Behind a thermometer that lags everything is a lag later: a linear body's balance holds for it again.
+      const double lag_s = std::max(instance.thermal_structure.thermometer_lag_s, 1e-9);
+      for (const RunSpan& run : inputs_.runs) {
+        double late_W = v.heat_W[run.begin];
+        for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) {
+          const double step_s = inputs_.t_s[i + 1] - inputs_.t_s[i], kept = std::exp(-step_s / lag_s);
+          const double behind_W = late_W - v.heat_W[i];
+          late_W = v.heat_W[i] + behind_W * kept;
+          v.heat_W[i] += behind_W * (1.0 - kept) * lag_s / step_s;  // its mean over the interval
+        }
+      }
+    }
+    return v;
+  }
+
+  /// What changes with the logarithm of each constant that calibration may move, as name and two evaluations.
+  template <class Use>
+  void for_each_constant(HeatTold heat, Use&& use) const {
+    constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
+    const std::vector<CalibratedConstant> constants = model_.calibrated();
+    for (std::size_t k = 0; k < constants.size(); ++k) {
+      if (!constants[k].has_slack || constants[k].block == "axis") continue;
+      std::vector<double> up(constants.size(), 1.0), down = up;
+      up[k] = std::exp(step);
+      down[k] = std::exp(-step);
+      use(constants[k].id, evaluate(heat, up), evaluate(heat, down), 0.5 / step);
+    }
+  }
+
+  /// The rows.
+  const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
+  /// The inputs given.
+  const Inputs& inputs() const { return inputs_; }
+  /// The model given.
+  const Model& model() const { return model_; }
+
+private:
+  static void body(const Instance<double>& instance, const BenchRollout<double>& rollout,
+                   const BenchRollout<double>::Circuit& electrical, Eigen::Index i, double t_s, double step_s,
+                   double winding_C, double& surface_C, Values& v) {
+    constexpr double step_K = 0.01;  // for a slope by differences: losses are smooth over kelvins
+    const bool two = instance.thermal_structure.two_nodes;
+    if (!std::isfinite(surface_C)) surface_C = winding_C;
+    const double node_C = two ? surface_C : winding_C;
+    const auto flows = rollout.heat_flows(i, t_s, electrical, winding_C, node_C);
+    const double total = flows.rise_K_per_J > 0.0 ? 1.0 / flows.rise_K_per_J : 6e4;
+    v.heat_W[i] = flows.heat_W;
+    if (two) {
+      const double share = instance.thermal_structure.winding_share,
+                   coupling = instance.thermal_structure.coupling_W_per_K;
+      v.capacity[i] = share * total;
+      v.loss_W[i] = coupling * (winding_C - surface_C);
+      v.relaxation_per_s[i] = coupling / v.capacity[i];
+      const auto above = rollout.heat_flows(i, t_s, electrical, winding_C, surface_C + step_K);
+      const double rest = (1.0 - share) * total,
+                   decay = (coupling + (above.loss_W - flows.loss_W) / step_K) / rest;
+      const double gain = (coupling * (winding_C - surface_C) - flows.loss_W) / rest;
+      surface_C += gain * (decay > 0.0 ? -std::expm1(-decay * step_s) / decay : step_s);
+      return;
+    }
+    const auto above = rollout.heat_flows(i, t_s, electrical, winding_C + step_K, winding_C + step_K);
+    v.capacity[i] = total;
+    v.loss_W[i] = flows.loss_W;
+    v.relaxation_per_s[i] =
+        std::max(0.0, (above.loss_W - flows.loss_W - above.heat_W + flows.heat_W) / step_K) / total;
+  }
+
+  double shown_A(const Instance<double>& instance, double t_s, double current_A) const {
+    BenchReadings<double> read;
+    read.t_s = t_s;
+    read.measured_ambient_C = missing;
+    read.motor_C = 0.0;
+    read.current_A = current_A;
+    for (const auto& effect : instance.bench_readings) effect(read);
+    return read.current_A;
+  }
+
+  /// The true current of a measured one; readings are affine in it.
+  double measured_current(const Instance<double>& instance, Eigen::Index i, double t_s) const {
+    const double shown = inputs_.held_current_A.size() > 0 ? inputs_.held_current_A[i] - offset_A_
+                         : inputs_.drive_A.size() > 0 && inputs_.heat == HeatSource::drive
+                             ? inputs_.drive_A[i]
+                             : missing;
+    if (!std::isfinite(shown) || instance.bench_readings.empty()) return shown;
+    const double at_0 = shown_A(instance, t_s, 0.0), at_1 = shown_A(instance, t_s, 1.0);
+    return (shown - at_0) / (at_1 - at_0);
+  }
+
+  const Model& model_;
+  const Catalogue& catalogue_;
+  const Inputs& inputs_;
+  double offset_A_ = 0.0, offset_K_ = 0.0;
+  std::shared_ptr<const BalanceRows> rows_;
+};
+
+/// The current, given the measured temperature and supply: A.
+inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covariate>& covariates) {
+  struct Known {
+    BenchAtRows::Values v;
+    Eigen::VectorXd on, charge;
+  };
+  const Inputs& in = bench.inputs();
+  const auto k = std::make_shared<Known>();
+  k->v = bench.evaluate(HeatTold::by_law);
+  const Eigen::Index n = in.rows();
+  k->on = (k->v.v_rms_V.array() > 0.0).cast<double>();
+  k->charge = Eigen::VectorXd::Zero(n);
+  for (const RunSpan& run : in.runs) {
+    double sum = 0.0;
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      k->charge[i] = sum;
+      if (i + 1 == run.end) break;
+      sum += in.held_current_A[i] * k->v.v_rms_V[i] / std::max(k->v.supply_V[i], 1e-9) *
+             (in.t_s[i + 1] - in.t_s[i]) / 3600.0;
+    }
+  }
+  Balance b;
+  b.quantity = Quantity::missing_current;
+  b.unit = "A";
+  b.signal = Signal::current_A;
+  b.instrument = Submodel::sensing_current;
+  b.otherwise = Submodel::electrical;
+  b.given = "Given the measured temperature and supply";
+  b.form = BalanceForm::algebraic;
+  b.rows = bench.rows();
+  b.measured = in.of(Signal::current_A);
+  b.state = in.held_current_A;
+  b.flow_sampled = k->v.law_A;
+  b.noise_from = b.measured - k->v.law_A;  // a step of the power is no noise
+  b.reads = {Signal::motor_C};
+  b.restated = RestatedQuantity{Quantity::missing_voltage, "V", k->v.ohm.cwiseProduct(k->on)};
+  bench.for_each_constant(HeatTold::by_law, [&](const std::string& name, const BenchAtRows::Values& up,
+                                                const BenchAtRows::Values& down, double per_log) {
+    const Eigen::VectorXd slope = (up.law_A - down.law_A) * per_log;
+    if (slope.cwiseAbs().maxCoeff() > 0.0) b.constants.push_back({name, flow_sampled(slope)});
+  });
+  const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
+                       std::function<Eigen::MatrixXd()> columns) {
+    b.freedoms.push_back({std::move(submodel), variable, words, [columns](double) {
+                            return directions_of(
+                                columns(), [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+                          }});
+  };
+  add(Submodel::sensing_current, "", "the same offset at every current, none included",
+      [n] { return Eigen::MatrixXd(Eigen::VectorXd::Ones(n)); });
+  b.freedoms.back().correction = Correction{Signal::current_A, 1.0};
+  add(Submodel::electrical, "v_rms_V", "the same factor at every voltage",
+      [k] { return Eigen::MatrixXd(k->v.law_A); });
+  b.freedoms.back().or_instrument = Submodel::sensing_current;
+  add(Submodel::electrical, "motor_C", "a resistance that depends on the temperature", [k] {
+    Eigen::MatrixXd columns(k->on.size(), 2);
+    columns << k->v.law_A, k->v.law_A.cwiseProduct(((k->v.winding_C.array() - 25.0) / 10.0).matrix());
+    return columns;
+  });
+  add(Submodel::electrical, "v_rms_V", "a voltage lost that depends on the drive",
+      [k] { return scaled(hats(k->v.v_rms_V, 6), k->v.law_A); });
+  add(Submodel::electrical, "v_rms_V", "a piece of the duty that is lost", [k] {
+    Eigen::MatrixXd columns(k->on.size(), 2);
+    columns.col(0) = k->v.law_A;
+    for (Eigen::Index i = 0; i < k->on.size(); ++i)
+      columns(i, 1) =
+          k->on[i] > 0.0 ? k->v.law_A[i] * std::pow(k->v.supply_V[i] / k->v.v_rms_V[i], 2.0) : 0.0;
+    return columns;
+  });
+  add(Submodel::electrical, "v_rms_V", "a supply that gives way under load and with the charge drawn", [k] {
+    Eigen::MatrixXd columns(k->on.size(), 3);
+    columns << k->v.law_A, k->v.law_A.cwiseProduct(k->v.v_rms_V.cwiseAbs2()),
+        k->v.law_A.cwiseProduct(k->charge);
+    return columns;
+  });
+  b.variables = {{"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held},
+                 {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C},
+                 {"law_A", "A", k->v.law_A},
+                 {"t_s", "s", in.t_s}};
+  for (const Covariate& covariate : covariates) {
+    const auto z = std::make_shared<Eigen::VectorXd>(
+        covariate.name == "rate_dps" ? Eigen::VectorXd(covariate.values.cwiseAbs()) : covariate.values);
+    *z /= std::max(z->cwiseAbs().maxCoeff(), 1e-12);
+    add(Submodel::electrical, covariate.name, "a voltage lost that grows with " + covariate.name, [k, z] {
+      Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(z->size(), 2);
+      columns.col(0) = k->v.law_A;
+      for (Eigen::Index i = 0; i < z->size(); ++i)
+        if (k->v.ohm[i] > 0.0) columns(i, 1) = k->on[i] * (*z)[i] / k->v.ohm[i];
+      return columns;
+    });
+    add(Submodel::electrical, covariate.name, "a factor that changes with " + covariate.name, [k, z] {
+      Eigen::MatrixXd columns(z->size(), 2);
+      columns << k->v.law_A, k->v.law_A.cwiseProduct(*z);
+      return columns;
+    });
+    b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
+  }
+  return b;
+}
+
+/// The heat of a body, given its temperature and the air's: W.
+inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariate>& covariates,
+                            HeatTold told) {
+  struct Known {
+    BenchAtRows::Values v;
+    Eigen::VectorXd rise, loss_per_K, ambient, state;
+    double shortest_s = 0.0, longest_s = 0.0;
+  };
+  const Inputs& in = bench.inputs();
+  const auto k = std::make_shared<Known>();
+  k->v = bench.evaluate(told);
+  const Eigen::Index n = in.rows();
+  k->rise = k->v.winding_C - in.ambient_C;
+  const double mean_loss = k->v.capacity.cwiseProduct(k->v.relaxation_per_s).mean();
+  k->loss_per_K = Eigen::VectorXd::Constant(n, mean_loss > 0.0 ? mean_loss : 1.0);
+  const double slowest_s = 1.0 / std::max(k->v.relaxation_per_s.mean(), 1e-12);
+  const auto rows = bench.rows();
+  k->shortest_s = std::max(2.0 * rows->interval_s, 0.004 * slowest_s);
+  k->longest_s = std::max(0.4 * slowest_s, 1.5 * k->shortest_s);
+
+  Balance b;
+  b.quantity = Quantity::missing_heat;
+  b.unit = "W";
+  b.signal = Signal::motor_C;
+  b.instrument = Submodel::sensing_temperature;
+  b.otherwise = Submodel::thermal_heating;
+  b.given = "Given the heat and the air temperature";
+  b.form = BalanceForm::filtered;
+  b.rows = rows;
+  b.noise_from = in.of(Signal::motor_C);
+  // Where the thermometer shows the node by a known law, its readings are undone.
+  b.measured = k->v.winding_C;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!std::isfinite(in.of(Signal::motor_C)[i])) b.measured[i] = missing;
+  b.state = k->v.winding_C;
+  b.capacity = k->v.capacity;
+  b.flow_sampled = -k->v.loss_W;
+  b.flow_held = k->v.heat_W;
+  b.relaxation_per_s = k->v.relaxation_per_s;
+  if (told != HeatTold::by_law && in.heat != HeatSource::drive) b.reads = {Signal::current_A};
+  bench.for_each_constant(told, [&](const std::string& name, const BenchAtRows::Values& up,
+                                    const BenchAtRows::Values& down, double per_log) {
+    const Eigen::VectorXd heat = (up.heat_W - down.heat_W) * per_log,
+                          loss = (up.loss_W - down.loss_W) * per_log;
+    const Eigen::VectorXd store = ((up.capacity - down.capacity) * per_log).cwiseQuotient(k->v.capacity);
+    Direction direction;
+    constexpr double none = 1e-9;
+    if (heat.cwiseAbs().maxCoeff() > none) direction.push_back({BalancePart::Kind::flow_held, heat});
+    if (loss.cwiseAbs().maxCoeff() > none)
+      direction.push_back({BalancePart::Kind::flow_sampled, Eigen::VectorXd(-loss)});
+    if (store.cwiseAbs().maxCoeff() > none)
+      direction.push_back({BalancePart::Kind::store, k->v.winding_C, 0.0, 1.0, store});
+    if (!direction.empty()) b.constants.push_back({name, std::move(direction)});
+  });
+
+  const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
+                       std::function<std::vector<Direction>()> directions,
+                       double least = -std::numeric_limits<double>::infinity()) {
+    b.freedoms.push_back(
+        {std::move(submodel), variable, words, [directions](double) { return directions(); }, least});
+  };
+  const auto watts = [](const Eigen::MatrixXd& columns) {
+    return directions_of(columns, [](Eigen::VectorXd c) { return flow_held(std::move(c)); });
+  };
+  const auto contents = [k](Eigen::Index bins) {
+    const double from = k->v.winding_C.minCoeff(),
+                 width = (k->v.winding_C.maxCoeff() - from) / static_cast<double>(bins);
+    std::vector<Direction> list;
+    for (Eigen::Index i = 0; i < bins; ++i)
+      list.push_back(further_store(
+          (k->v.winding_C.array() - (from + width * static_cast<double>(i))).max(0.0).min(width).matrix()));
+    return list;
+  };
+  add(Submodel::sensing_temperature, "rise_K", "a thermometer that shows another rise than the heat makes",
+      [k, watts] { return watts(k->v.heat_W); });
+  add(Submodel::thermal_storage, "dT_dt", "another heat capacity",
+      [k] { return std::vector<Direction>{further_store(k->v.winding_C)}; });
+  add(Submodel::thermal_loss, "rise_K", "another conductance", [k, watts] { return watts(-k->v.loss_W); });
+  add(Submodel::thermal_loss, "rise_K", "a loss that is there without a rise",
+      [k, watts] { return watts(k->loss_per_K); });
+  add(Submodel::thermal_loss, "rise_K", "a conductance that depends on the rise",
+      [k, watts] { return watts(scaled(even_hats(k->rise, 4), k->loss_per_K.cwiseProduct(k->rise))); });
+  add(Submodel::thermal_storage, "motor_C", "a heat capacity that depends on the temperature",
+      [contents] { return contents(7); });
+  add(Submodel::thermal_heating, "heat_W", "a heat that is not in proportion to the law's",
+      [k, watts] { return watts(scaled(even_hats(k->v.heat_W, 4), k->v.heat_W)); });
+  if (in.power_param.size() > 0 && std::holds_alternative<ThesisThermalModel>(bench.model().thermal)) {
+    add(
+        Submodel::thermal_heating, "v_rms_V", "heat by the power at the supply and not at the motor",
+        [k, watts] {
+          Eigen::VectorXd supply(k->rise.size());
+          for (Eigen::Index i = 0; i < supply.size(); ++i)
+            supply[i] =
+                k->v.v_rms_V[i] > 0.0 ? k->v.heat_W[i] * (k->v.supply_V[i] / k->v.v_rms_V[i] - 1.0) : 0.0;
+          return watts(supply);
+        },
+        0.0);
+  }
+  add(
+      Submodel::thermal_storage, "dT_dt", "a part that follows the heat faster than the whole",
+      [k, rows] {
+        std::vector<Direction> list;
+        for (int i = 0; i < 5; ++i)
+          list.push_back(further_reading(
+              lagged(k->v.heat_W, k->shortest_s * std::pow(k->longest_s / k->shortest_s, i / 4.0), true,
+                     rows->t_s, rows->runs)));
+        return list;
+      },
+      0.0);
+  Freedom late{Submodel::sensing_temperature,
+               "dT_dt",
+               "",
+               [](double tau_s) {
+                 return std::vector<Direction>{{{BalancePart::Kind::reading_late, {}, tau_s}}};
+               },
+               0.0,
+               1};
+  for (int i = 0; i < 14; ++i)
+    late.scan.push_back(k->shortest_s * std::pow(k->longest_s / k->shortest_s, i / 13.0));
+  late.words_at = [](double tau_s) {
+    char text[80];
+    std::snprintf(text, sizeof text, "a reading that comes %.3g s after the temperature", tau_s);
+    return std::string(text);
+  };
+  b.freedoms.push_back(std::move(late));
+  b.variables = {{"rise_K", "K", k->rise, OrderingVariable::Kind::sampled, Signal::motor_C},
+                 {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C},
+                 {"heat_W", "W", k->v.heat_W, OrderingVariable::Kind::held},
+                 {"dT_dt", "K/s", k->v.winding_C, OrderingVariable::Kind::derivative, Signal::motor_C},
+                 {"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held},
+                 {"t_s", "s", in.t_s}};
+  for (const Covariate& covariate : covariates) {
+    const auto z = std::make_shared<Eigen::VectorXd>(
+        covariate.name == "rate_dps" ? Eigen::VectorXd(covariate.values.cwiseAbs()) : covariate.values);
+    const bool temperature = unit_of_column(covariate.name) == "degC";
+    const auto given = std::make_shared<Eigen::VectorXd>(covariate.values);
+    *z /= std::max(z->cwiseAbs().maxCoeff(), 1e-12);
+    add(Submodel::thermal_loss, covariate.name, "a conductance that changes with " + covariate.name,
+        [k, z, watts] {
+          Eigen::MatrixXd two(z->size(), 2);
+          const Eigen::VectorXd loss = k->loss_per_K.cwiseProduct(k->rise);
+          two.col(0) = loss.cwiseProduct(*z);
+          two.col(1) = loss.array() * z->array().sign() * z->array().abs().sqrt();
+          return watts(two);
+        });
+    if (temperature) {
+      add(Submodel::thermal_heating, covariate.name, "heat that flows in from " + covariate.name,
+          [k, given, watts] { return watts(k->loss_per_K.cwiseProduct(*given - k->v.winding_C)); });
+    } else {
+      add(Submodel::thermal_heating, covariate.name, "heat with the square of " + covariate.name,
+          [k, z, watts] { return watts(k->loss_per_K.cwiseProduct(z->cwiseAbs2())); });
+      add(Submodel::thermal_heating, covariate.name, "heat that comes with " + covariate.name, [k, z, watts] {
+        Eigen::MatrixXd two(z->size(), 2);
+        two << k->loss_per_K.cwiseProduct(*z), k->loss_per_K.cwiseProduct(z->cwiseAbs2());
+        return watts(two);
+      });
+    }
+    b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
+  }
+
+  // Both courses may lean on a loss that is constantly wrong: only what changes with time tells them apart.
+  const Eigen::Index knots =
+      std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, std::min<Eigen::Index>(n, 8000) / 20));
+  const auto course = [k, knots](const Eigen::VectorXd& size) {
+    const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(k->rise.size(), 0.0, 1.0);
+    Eigen::MatrixXd columns(order.size(), knots + 2);
+    columns << scaled(even_hats(order, static_cast<int>(knots)), size), k->loss_per_K.cwiseProduct(k->rise),
+        k->loss_per_K;
+    return columns;
+  };
+  const std::string nothing = "nothing recorded orders it; a course of its own in time";
+  b.courses.push_back({Submodel::thermal_heating, "", nothing,
+                       [k, course, watts](double) { return watts(course(k->loss_per_K)); }});
+  b.courses.push_back({Submodel::thermal_loss, "", nothing, [k, course, watts](double) {
+                         return watts(course(k->loss_per_K.cwiseProduct(k->rise)));
+                       }});
+  b.courses.back().scatters_with = "rise_K";
+  b.courses.push_back({Submodel::thermal_storage, "motor_C",
+                       "a heat capacity with a peak at some temperature",
+                       [contents](double) { return contents(24); }});
+  return b;
+}
+
+/// The balances of a bench, as far as its signals are judged. Model, catalogue and inputs must outlive them.
+inline std::vector<BalanceSource> bench_balances(const Model& model, const Catalogue& catalogue,
+                                                 const Inputs& inputs, std::vector<Covariate> covariates) {
+  std::vector<BalanceSource> list;
+  const auto shared = std::make_shared<std::vector<Covariate>>(std::move(covariates));
+  if (inputs.judged(Signal::current_A)) {
+    list.push_back({Quantity::missing_current,
+                    Signal::current_A,
+                    {Signal::motor_C},
+                    [&model, &catalogue, &inputs, shared](const ReadingOffsets& offsets) {
+                      return current_balance(BenchAtRows(model, catalogue, inputs, offsets), *shared);
+                    }});
+  }
+  if (!inputs.judged(Signal::motor_C)) return list;
+  const auto add = [&](HeatTold told, std::vector<SignalName> reads) {
+    list.push_back({Quantity::missing_heat, Signal::motor_C, std::move(reads),
+                    [&model, &catalogue, &inputs, shared, told](const ReadingOffsets& offsets) {
+                      return heat_balance(BenchAtRows(model, catalogue, inputs, offsets), *shared, told);
+                    }});
+  };
+  const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
+  const bool polynomial = std::holds_alternative<ThesisThermalModel>(model.thermal);
+  if (inputs.heat == HeatSource::law) add(HeatTold::by_law, {});
+  if (inputs.heat == HeatSource::drive) add(HeatTold::by_current, {});
+  if (inputs.held_current_A.size() > 0) {
+    const bool powered = inputs.power_param.size() > 0;
+    if (polynomial ? powered : ohmic) add(HeatTold::by_current, {Signal::current_A});
+    if (powered && !polynomial && ohmic) add(HeatTold::by_electrical_power, {Signal::current_A});
+  }
+  return list;
+}
+
+}  // namespace thermopower::plant
