@@ -47,7 +47,8 @@ public:
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
     else found = engine::localise(model_, train_recordings_, localisation, catalogue_);
     if (!model_.own)
-      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, localisation, catalogue_, found);
+      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, localisation, catalogue_,
+                              found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
