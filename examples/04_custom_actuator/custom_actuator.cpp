@@ -24,7 +24,7 @@ struct Solenoid {
 //! [law]
 // A power law of one's own: Config with standard() and validate(), step(error).
 class PressureDuty {
- public:
+public:
   struct Config {
     float full_duty_bar;
     static Config standard() { return {0.5f}; }
@@ -40,7 +40,7 @@ class PressureDuty {
     return static_cast<uint8_t>(duty < 255.0f ? duty : 255.0f);
   }
 
- private:
+private:
   Config config_;
 };
 

@@ -13,8 +13,11 @@ namespace tp = thermopower;
 
 //! [joint]
 class JointGuard {
- public:
-  JointGuard() : copper_{0.35f, 0.00393f, 25.0f}, thermal_({120.0f, 900.0f, 1.9f, {0.8f}}, 25.0f), limiter_({110.0f, 20.0f, 60.0f}) {}
+public:
+  JointGuard()
+      : copper_{0.35f, 0.00393f, 25.0f},
+        thermal_({120.0f, 900.0f, 1.9f, {0.8f}}, 25.0f),
+        limiter_({110.0f, 20.0f, 60.0f}) {}
 
   /// @return the share of the wanted torque that the winding can bear, in counts, and why
   tp::LimitedPower step(float current_A, float thermistor_C, float air_C, float dt_s) {
@@ -28,7 +31,7 @@ class JointGuard {
   }
   float winding_C() const { return thermal_.hottest_C(); }
 
- private:
+private:
   tp::OhmicCurrent<> copper_;
   tp::TwoNodeThermalModel<> thermal_;
   tp::SafetyLimiter<> limiter_;
@@ -45,10 +48,14 @@ int main() {
     share = static_cast<float>(granted.power) / 255.0f;
     housing_C += 0.002f * (guard.winding_C() - housing_C);  // stands in for the real housing
     if (second % 30 == 0) {
-      printf("%4d s %6.1f C %6.1f C %5.0f %%  %d\n", second, static_cast<double>(housing_C), static_cast<double>(guard.winding_C()),
-             static_cast<double>(100.0f * share), static_cast<int>(granted.reason));
+      printf("%4d s %6.1f C %6.1f C %5.0f %%  %d\n", second, static_cast<double>(housing_C),
+             static_cast<double>(guard.winding_C()), static_cast<double>(100.0f * share),
+             static_cast<int>(granted.reason));
     }
-    if (is_broken) return granted.reason == tp::LimitReason::temperature_not_finite && granted.power == tp::least_power() ? 0 : 1;
+    if (is_broken)
+      return granted.reason == tp::LimitReason::temperature_not_finite && granted.power == tp::least_power()
+                 ? 0
+                 : 1;
     if (guard.winding_C() > 112.0f) return 1;
   }
   return 1;

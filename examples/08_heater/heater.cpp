@@ -12,21 +12,25 @@ namespace tp = thermopower;
 
 //! [heater]
 class Heater {
- public:
-  Heater() : thermal_({40.0f, 600.0f, 2.2f, {1.1f}}, 20.0f), law_({20.0f, 25, 0.0f}), limiter_({150.0f, 5.0f, 100.0f}) {}
+public:
+  Heater()
+      : thermal_({40.0f, 600.0f, 2.2f, {1.1f}}, 20.0f),
+        law_({20.0f, 25, 0.0f}),
+        limiter_({150.0f, 5.0f, 100.0f}) {}
 
   tp::LimitedPower step(float target_C, float air_C, float dt_s) {
     const float heat_W = 240.0f * tp::duty_from_power<float>(power_);
     thermal_.step({heat_W, 0.0f, {air_C, 0.0f}}, dt_s);
     const float missing_K = target_C - thermal_.state().body_C;
-    const tp::LimitedPower granted =
-        limiter_.step({law_.step(missing_K > 0.0f ? missing_K : 0.0f), thermal_.hottest_C(), thermal_.hottest_rate_K_per_s()}, dt_s);
+    const tp::LimitedPower granted = limiter_.step({law_.step(missing_K > 0.0f ? missing_K : 0.0f),
+                                                    thermal_.hottest_C(), thermal_.hottest_rate_K_per_s()},
+                                                   dt_s);
     power_ = granted.power;
     return granted;
   }
   const tp::TwoNodeThermalModel<>::State& state() const { return thermal_.state(); }
 
- private:
+private:
   tp::TwoNodeThermalModel<> thermal_;
   tp::StepPowerLaw<tp::ContinuousPower> law_;
   tp::SafetyLimiter<> limiter_;

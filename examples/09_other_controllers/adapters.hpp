@@ -18,7 +18,8 @@ namespace tp = thermopower;
 /// The granted power becomes the voltage limit; the resistance follows the estimated temperature, because SimpleFOC turns current
 /// into voltage with it, and a hot winding with the cold value gets too little torque.
 template <class FocMotor, class AxisState>
-void drive_simple_foc(FocMotor& motor, const AxisState& axis, const tp::OhmicCurrent<>& winding, float supply_V) {
+void drive_simple_foc(FocMotor& motor, const AxisState& axis, const tp::OhmicCurrent<>& winding,
+                      float supply_V) {
   // A faulty temperature must not reach the controller as a resistance; the limiter has already granted the least power for it.
   const float motor_C = tp::detail::is_finite(axis.motor_C) ? axis.motor_C : winding.reference_C;
   motor.phase_resistance = winding.resistance_at(motor_C);
@@ -40,12 +41,13 @@ void drive_vesc(OverrideTemperature override_temp_motor, const AxisState& axis) 
 /// @param full_current_A  limit when nothing is derated
 /// @return characters written, 0 when they do not fit (nothing is sent then)
 template <class AxisState>
-size_t command_odrive(char* line, size_t capacity, int axis_number, const AxisState& axis, float full_current_A) {
+size_t command_odrive(char* line, size_t capacity, int axis_number, const AxisState& axis,
+                      float full_current_A) {
   const float share = tp::v_rms_from_power<float>(1.0f, static_cast<float>(axis.power));
   const long milliampere = static_cast<long>(full_current_A * share * 1000.0f + 0.5f);
   // Whole numbers: printf of small targets is often built without floating point.
-  const int length =
-      snprintf(line, capacity, "w axis%d.motor.config.current_lim %ld.%03ld\n", axis_number, milliampere / 1000, milliampere % 1000);
+  const int length = snprintf(line, capacity, "w axis%d.motor.config.current_lim %ld.%03ld\n", axis_number,
+                              milliampere / 1000, milliampere % 1000);
   return length > 0 && static_cast<size_t>(length) < capacity ? static_cast<size_t>(length) : 0;
 }
 

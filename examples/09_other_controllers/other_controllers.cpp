@@ -41,12 +41,13 @@ int main() {
     adapters::drive_vesc(mc_interface_override_temp_motor, state);
     const size_t length = adapters::command_odrive(line, sizeof line, 0, state, 5.0f);
     ok &= expect(length == strlen(line), "the ODrive line is complete");
-    ok &= expect(fabsf(foc.voltage_limit * foc.voltage_limit - 169.0f * static_cast<float>(state.power) / 255.0f) < 1e-3f,
+    ok &= expect(fabsf(foc.voltage_limit * foc.voltage_limit -
+                       169.0f * static_cast<float>(state.power) / 255.0f) < 1e-3f,
                  "SimpleFOC's voltage is eq 3.11");
     ok &= expect(vesc_motor_C == state.motor_C, "the VESC sees the estimate");
     if (second % 30 == 0) {
-      printf("%4d s %5.1f C %6d %8.2f %6.2f %6.2f %9.1f  %s", second, static_cast<double>(state.motor_C), state.power,
-             static_cast<double>(foc.voltage_limit), static_cast<double>(foc.current_limit),
+      printf("%4d s %5.1f C %6d %8.2f %6.2f %6.2f %9.1f  %s", second, static_cast<double>(state.motor_C),
+             state.power, static_cast<double>(foc.voltage_limit), static_cast<double>(foc.current_limit),
              static_cast<double>(foc.phase_resistance), static_cast<double>(vesc_motor_C), line);
     }
   }
@@ -57,8 +58,10 @@ int main() {
   adapters::drive_vesc(mc_interface_override_temp_motor, unknown);
   adapters::drive_simple_foc(foc, unknown, winding, 13.0f);
   ok &= expect(vesc_motor_C > 200.0f, "an unknown temperature is very hot to the VESC");
-  ok &= expect(foc.voltage_limit < 1.0f && foc.phase_resistance > 11.0f, "an unknown temperature is the least voltage to SimpleFOC");
+  ok &= expect(foc.voltage_limit < 1.0f && foc.phase_resistance > 11.0f,
+               "an unknown temperature is the least voltage to SimpleFOC");
   char small[8] = "before";
-  ok &= expect(adapters::command_odrive(small, sizeof small, 0, unknown, 5.0f) == 0, "a line that does not fit is refused");
+  ok &= expect(adapters::command_odrive(small, sizeof small, 0, unknown, 5.0f) == 0,
+               "a line that does not fit is refused");
   return ok ? 0 : 1;
 }

@@ -36,7 +36,7 @@ void print_row(uint32_t second, uint32_t power, int32_t estimate_C, int32_t wind
 
 /// No interrupt comes while one of these lives.
 class InterruptsHeldBack {
- public:
+public:
   InterruptsHeldBack() { asm volatile("cpsid i" ::: "memory"); }
   ~InterruptsHeldBack() { asm volatile("cpsie i" ::: "memory"); }
   InterruptsHeldBack(const InterruptsHeldBack&) = delete;

@@ -26,7 +26,7 @@ struct FixedDemand {
   explicit FixedDemand(const Config& config) noexcept : power_(config.power) {}
   std::uint8_t step(float) noexcept { return power_; }
 
- private:
+private:
   std::uint8_t power_;
 };
 

@@ -20,14 +20,10 @@ constexpr double panel_width = 330.0, panel_height = 215.0, plot_left = 52.0, pl
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
+    if (c == '&') out += "&amp;";
+    else if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else out += c;
   }
   return out;
 }
@@ -61,7 +57,7 @@ struct Range {
 };
 
 class Drawing {
- public:
+public:
   Drawing(std::ostream& out, const Panel& panel, double left, double top)
       : out_(out), panel_(panel), left_(left), top_(top) {
     for (const Series& series : panel.series) {
@@ -93,7 +89,7 @@ class Drawing {
          << escaped(panel_.y_label) << "</text>\n</g>\n";
   }
 
- private:
+private:
   double at_x(double x) const { return plot_left + plot_width * (x - x_.from) / (x_.to - x_.from); }
   double at_y(double y) const { return plot_top + plot_height * (1.0 - (y - y_.from) / (y_.to - y_.from)); }
 

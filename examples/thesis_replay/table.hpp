@@ -11,13 +11,13 @@ namespace thesis {
 
 /// A table cannot be read. The text names file, line and column, and says what was expected.
 class TableError : public std::runtime_error {
- public:
+public:
   using std::runtime_error::runtime_error;
 };
 
 /// One table of the thesis as a CSV file: a header row, comma separated, no line breaks inside fields.
 class Table {
- public:
+public:
   /// Reads a file and checks that every row has as many fields as the header, and that `columns` are among
   /// them.
   /// @throws TableError
@@ -34,7 +34,7 @@ class Table {
   /// always
   [[noreturn]] void refuse(size_t row, const std::string& column, const std::string& why) const;
 
- private:
+private:
   struct Row {
     size_t line;
     std::vector<std::string> fields;

@@ -8,5 +8,7 @@ namespace tp = thermopower;
 #if defined(MISUSE)
 tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::RoundedGain> axis;
 #else
-tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::GainScheduler<tp::RoundedGain> > axis;
+tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<>,
+                   tp::GainScheduler<tp::RoundedGain> >
+    axis;
 #endif

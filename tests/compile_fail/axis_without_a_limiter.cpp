@@ -6,7 +6,9 @@
 namespace tp = thermopower;
 
 #if defined(MISUSE)
-tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::PerSecond, tp::NoGain> axis;  // the rule, not the limiter
+tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::PerSecond, tp::NoGain>
+    axis;  // the rule, not the limiter
 #else
-tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<tp::PerSecond>, tp::NoGain> axis;
+tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, tp::SafetyLimiter<tp::PerSecond>, tp::NoGain>
+    axis;
 #endif

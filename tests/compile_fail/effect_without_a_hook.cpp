@@ -23,12 +23,14 @@ struct Drag {
 #ifdef MISUSE
   template <class Scalar>
   static void act(plant::AxisTerms<Scalar>& terms, const Scalar* p) {
+    terms.load_Nm -= p[size] * terms.rate_rad_per_s;
+  }
 #else
   template <class Scalar>
   static void act(const Scalar* p, plant::AxisTerms<Scalar>& terms) {
-#endif
     terms.load_Nm -= p[size] * terms.rate_rad_per_s;
   }
+#endif
 };
 
 int main() {

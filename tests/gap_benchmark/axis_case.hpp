@@ -193,13 +193,18 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
       u.motor_C = setup.first_C + setup.rise_K * 0.5 * (1.0 - std::cos(6.283 * t / (0.8 * length_s))) +
                   warmth.next(random, c.dt_s);
       switch (setup.unknown) {
-        case AxisUnknown::gusts: u.hidden_Nm = setup.unknown_size * gust.next(random, c.dt_s); break;
+        case AxisUnknown::gusts:
+          u.hidden_Nm = setup.unknown_size * gust.next(random, c.dt_s);
+          break;
         case AxisUnknown::vibration:
           u.hidden_Nm =
               setup.unknown_size * std::sin(6.2831853 * t / setup.unknown_time_s + session.unknown_phase);
           break;
-        case AxisUnknown::wear: u.hidden_wear = t > breaks_s ? setup.unknown_size : 1.0; break;
-        default: break;
+        case AxisUnknown::wear:
+          u.hidden_wear = t > breaks_s ? setup.unknown_size : 1.0;
+          break;
+        default:
+          break;
       }
       out.drive.input.push_back(u);
       labels.push_back("run" + std::to_string(run + 1));

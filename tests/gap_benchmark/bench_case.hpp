@@ -128,7 +128,8 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
         case BenchUnknown::draughts:
           u.hidden_loss = std::exp(setup.unknown_size * loss.next(random, elapsed_s));
           break;
-        default: break;
+        default:
+          break;
       }
       if (k == 0) {
         x.winding_C = x.housing_C = x.sensor_C = x.soak_C =

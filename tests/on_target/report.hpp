@@ -20,7 +20,7 @@ namespace on_target {
 ///     i -17           an integer: identical everywhere
 ///     f 41f00000 38d1b717   a number's bits, and those of how far it may be from another machine's
 class Report {
- public:
+public:
   void section(const char* name) {
     put("# ");
     put(name);
@@ -52,7 +52,7 @@ class Report {
     platform::put('\n');
   }
 
- private:
+private:
   static void put(const char* text) {
     for (; *text != '\0'; ++text) platform::put(*text);
   }

@@ -20,13 +20,13 @@ struct ByteSink {
 
 // A stream that everyone draws alike.
 class Noise {
- public:
+public:
   uint8_t next() {
     state_ = state_ * 1664525u + 1013904223u;
     return static_cast<uint8_t>(state_ >> 24);
   }
 
- private:
+private:
   uint32_t state_ = 1;
 };
 

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #include "axis.hpp"
 
+// The comments in a column, as in README.md.
+// clang-format off
 #include <thermopower/thermopower.hpp>
 namespace tp = thermopower;
 
@@ -18,3 +20,4 @@ void control_cycle(float error_deg, float supply_V, float air_C, float dt_s) {
   const Axis::State& now = axis.step({error_deg, supply_V, air_C, tp::LimitReason::none}, dt_s);
   set_motor(now.power, now.p_gain);                         // now.reason: why not more; now.motor_C: how warm
 }
+// clang-format on

@@ -29,12 +29,13 @@ void add_heating(std::vector<Sample>& samples, const std::string& number, const 
   const bool has_current = number.front() == '4';
   for (size_t row = 0; row < table.rows(); ++row) {
     samples.push_back({60.0 * table.number(row, "t_min"), table.number(row, "power_param"),
-                       has_current ? table.number(row, "I_mA") / 1000.0 : none, table.number(row, motor_column),
-                       has_current ? table.number(row, "T_air_C") : 26.0});
+                       has_current ? table.number(row, "I_mA") / 1000.0 : none,
+                       table.number(row, motor_column), has_current ? table.number(row, "T_air_C") : 26.0});
   }
 }
 
-void add_cooling(std::vector<Sample>& samples, const std::string& number, const std::string& motor, const char* motor_column) {
+void add_cooling(std::vector<Sample>& samples, const std::string& number, const std::string& motor,
+                 const char* motor_column) {
   const Table table = thesis_table(number);
   for (size_t row = 0; row < table.rows(); ++row) {
     if (table.text(row, "motor") != motor) continue;

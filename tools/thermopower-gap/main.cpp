@@ -271,7 +271,8 @@ int predict(const Arguments& arguments) {
   outputs.expect(arguments.predictions);
   const gap::Model augmented = files::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
-  std::vector<gap::Recording> recordings = read_all(arguments.recordings, column_choices(arguments), findings);
+  std::vector<gap::Recording> recordings =
+      read_all(arguments.recordings, column_choices(arguments), findings);
   const std::map<std::string, double> starts = starts_of(arguments.starts);
   for (gap::Recording& one : recordings) one = files::with_starts(std::move(one), augmented, starts);
   gap::Model bare = augmented;

@@ -14,29 +14,28 @@ namespace thermopower {
 /// least there is.
 /// @ingroup control
 enum class LimitReason : uint8_t {
-  none = 0,  ///< The demand was granted.
-  safety_temperature =
-      1,  ///< Eq 4.23: at this rate the limit would be reached within the safety time; the ceiling falls.
-  over_temperature = 2,  ///< Above the limit: least power.
-  recovering = 3,        ///< Cool again; the ceiling rises but is still below the demand.
-  winding_limit = 4,     ///< More would bring the winding to its limit within the horizon.
-  body_limit = 5,        ///< More would bring the body (or the only node) to its limit within the horizon.
-  node_limit = 6,  ///< More would bring one of several nodes to its limit; the limiter's state says which.
+  // A line each, for the reference page.
+  // clang-format off
+  none = 0,                   ///< The demand was granted.
+  safety_temperature = 1,     ///< Eq 4.23: at this rate the limit would be reached within the safety time; the ceiling falls.
+  over_temperature = 2,       ///< Above the limit: least power.
+  recovering = 3,             ///< Cool again; the ceiling rises but is still below the demand.
+  winding_limit = 4,          ///< More would bring the winding to its limit within the horizon.
+  body_limit = 5,             ///< More would bring the body (or the only node) to its limit within the horizon.
+  node_limit = 6,             ///< More would bring one of several nodes to its limit; the limiter's state says which.
 
-  no_telemetry_yet = 64,  ///< Nothing valid was ever received.
-  link_silent = 65,       ///< No telemetry for longer than the time-out.
-  error_not_finite =
-      66,  ///< The position error is NaN, infinite, or too large to be an angle (a million degrees).
-  air_implausible = 67,  ///< No thermometer gives a plausible air temperature.
-  supply_low =
-      68,  ///< The supply is below the lowest voltage at which the actuator may be driven, or negative.
-  supply_not_finite = 69,  ///< The supply voltage is NaN or infinite.
-  temperature_not_finite =
-      70,  ///< The estimated temperature or its rate is NaN or infinite, or it is below absolute zero.
-  time_invalid = 71,       ///< The time step is NaN, infinite or negative.
-  config_invalid = 72,     ///< `validate()` refused the configuration.
-  not_obeyed = 73,         ///< The board has another power in force than it was told, or confirms none.
-  supply_implausible = 74  ///< The supply reads higher than it can be.
+  no_telemetry_yet = 64,      ///< Nothing valid was ever received.
+  link_silent = 65,           ///< No telemetry for longer than the time-out.
+  error_not_finite = 66,      ///< The position error is NaN, infinite, or too large to be an angle (a million degrees).
+  air_implausible = 67,       ///< No thermometer gives a plausible air temperature.
+  supply_low = 68,            ///< The supply is below the lowest voltage at which the actuator may be driven, or negative.
+  supply_not_finite = 69,     ///< The supply voltage is NaN or infinite.
+  temperature_not_finite = 70,///< The estimated temperature or its rate is NaN or infinite, or it is below absolute zero.
+  time_invalid = 71,          ///< The time step is NaN, infinite or negative.
+  config_invalid = 72,        ///< `validate()` refused the configuration.
+  not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
+  supply_implausible = 74     ///< The supply reads higher than it can be.
+  // clang-format on
 };
 
 /// True when the reason is a fault and not the limiter doing its work.

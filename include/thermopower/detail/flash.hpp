@@ -46,15 +46,21 @@ inline Value read_flash(const Value* address) noexcept {
 #if defined(__AVR__)
 // One or two load instructions instead of a call: these are read in every control cycle.
 template <>
-inline uint8_t read_flash(const uint8_t* address) noexcept { return pgm_read_byte(address); }
+inline uint8_t read_flash(const uint8_t* address) noexcept {
+  return pgm_read_byte(address);
+}
 template <>
-inline uint16_t read_flash(const uint16_t* address) noexcept { return pgm_read_word(address); }
+inline uint16_t read_flash(const uint16_t* address) noexcept {
+  return pgm_read_word(address);
+}
 template <>
 inline int16_t read_flash(const int16_t* address) noexcept {
   return static_cast<int16_t>(pgm_read_word(address));
 }
 template <>
-inline float read_flash(const float* address) noexcept { return pgm_read_float(address); }
+inline float read_flash(const float* address) noexcept {
+  return pgm_read_float(address);
+}
 #endif
 #endif
 

@@ -33,7 +33,8 @@ TEST_CASE("the IDE's build of a sketch decides as the preset's") {
     const nano::Update& left = by_preset.updates()[index];
     const nano::Update& right = by_ide.updates()[index];
     // The same telemetry, so the same command. (A cycle more or less may move an answer into the board's next period.)
-    if (!std::equal(left.telemetry.imu_angle, left.telemetry.imu_angle + 3, right.telemetry.imu_angle)) continue;
+    if (!std::equal(left.telemetry.imu_angle, left.telemetry.imu_angle + 3, right.telemetry.imu_angle))
+      continue;
     CHECK(std::equal(left.power, left.power + 3, right.power));
     CHECK(std::equal(left.p_gain, left.p_gain + 3, right.p_gain));
   }
