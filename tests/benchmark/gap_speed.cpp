@@ -232,7 +232,7 @@ void compare_solvers() {
   problem.segments = {segment};
   Explanation explanation;
   explanation.effects = {standard_catalogue().find("radiation")};
-  const std::vector<Coordinate> list = coordinates(model, explanation, Slack{});
+  const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
   Eigen::VectorXd from(static_cast<Eigen::Index>(list.size()));
   for (std::size_t i = 0; i < list.size(); ++i) from[static_cast<Eigen::Index>(i)] = list[i].start;
 
@@ -255,7 +255,7 @@ void compare_solvers() {
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(from.size(), from.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Eigen::Index k = static_cast<Eigen::Index>(i);
-    if (list[i].prior_sd > 0.0) prior(k, k) = 1.0 / list[i].prior_sd;
+    prior(k, k) = std::sqrt(list[i].prior.weight(0.0));  // near the centre
     same.SetParameterLowerBound(at.data(), static_cast<int>(i), list[i].lower);
     same.SetParameterUpperBound(at.data(), static_cast<int>(i), list[i].upper);
   }

@@ -45,7 +45,7 @@ std::string digits(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-TEST_CASE("a simulation that matches has no gap, also with constants off by up to the slack") {
+TEST_CASE("a simulation that matches has no gap, also with constants off by less than is known of them") {
   for (const double off : {1.0, 0.97, 1.035}) {
     Model truth = bench_model();
     Recording train = bench_inputs(600, 2.0, 3, true), held_out = bench_inputs(400, 2.0, 4, true);
@@ -121,7 +121,7 @@ TEST_CASE("the missing effect is named, and held-out data shrinks to the noise")
   }
 }
 
-TEST_CASE("a constant that is off by more than the slack is a cause of its own") {
+TEST_CASE("a constant that is off by more than is known of it is a cause of its own") {
   Model truth = bench_model();
   Recording train = bench_inputs(600, 2.0, 3, true), held_out = bench_inputs(400, 2.0, 4, true);
   measure(train, truth, 5);
@@ -132,6 +132,76 @@ TEST_CASE("a constant that is off by more than the slack is a cause of its own")
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause[0].effect == "calibration.heat_capacity");
   CHECK(diagnosis.augmented.get("heat_capacity_J_per_K") == Approx(60.0).epsilon(0.02));
+}
+
+TEST_CASE("constants that were fitted with the wrong structure move back, and the missing effect is named") {
+  Model truth = bench_model();
+  truth.effects["second_thermal_mass"] = {{"winding_share", 0.3}, {"coupling", 1.0}};
+  Recording train = bench_inputs(600, 2.0, 3, true), held_out = bench_inputs(400, 2.0, 4, true);
+  measure(train, truth, 5);
+  measure(held_out, truth, 6);
+  Model model = bench_model();
+  model.set("heat_capacity_J_per_K", 60.0 * 0.6);  // what one node makes of the fast part of the steps
+  const Diagnosis diagnosis = diagnose(model, {train}, {held_out});
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause[0].effect == "second_thermal_mass");
+  CHECK(diagnosis.augmented.get("heat_capacity_J_per_K") == Approx(60.0).epsilon(0.05));
+  REQUIRE(diagnosis.constants.size() == 1);
+  CHECK(diagnosis.constants[0].name == "heat_capacity");
+}
+
+TEST_CASE("how well a constant is known decides whether it is the cause") {
+  Model truth = bench_model();
+  Recording train = bench_inputs(600, 2.0, 3, true), held_out = bench_inputs(400, 2.0, 4, true);
+  measure(train, truth, 5);
+  measure(held_out, truth, 6);
+  Model model = truth;
+  model.set("heat_capacity_J_per_K", 50.0);
+  model.uncertainty["thermal.heat_capacity_J_per_K"] = 0.2;
+  CHECK(diagnose(model, {train}, {held_out}).verdict == Verdict::no_gap);
+}
+
+TEST_CASE("a parameter of an effect that the model has is freed like a constant") {
+  Model truth = axis_model();
+  truth.effects["imbalance"] = {{"Nm", 0.006}, {"phase_rad", 0.5}};
+  Recording train = axis_inputs(1500, 0.01, 3), held_out = axis_inputs(1000, 0.01, 4);
+  measure(train, truth, 5);
+  measure(held_out, truth, 6);
+  Model model = truth;
+  model.effects["imbalance"]["Nm"] = 0.0045;
+  const Diagnosis diagnosis = diagnose(model, {train}, {held_out});
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause[0].effect == "calibration.imbalance.Nm");
+  CHECK(diagnosis.augmented.get("effects.imbalance.Nm") == Approx(0.006).epsilon(0.02));
+}
+
+TEST_CASE("a cause that leaves a rest is named with what remains, and not called an explanation of all") {
+  Model truth = axis_model();
+  truth.effects["coulomb_friction"] = {{"Nm", 0.01}};
+  Recording train = axis_inputs(1500, 0.01, 3), held_out = axis_inputs(1000, 0.01, 4);
+  for (Recording* recording : {&train, &held_out}) {
+    // It is shaken with a fifth of the friction; no column shows it.
+    const Eigen::VectorXd drive = recording->column("drive_A");
+    Eigen::VectorXd touched = drive;
+    for (Eigen::Index row = 0; row < touched.size(); ++row)
+      touched[row] += 0.02 * std::sin(recording->t_s[row] * 7.3);
+    recording->set("drive_A", touched);
+    measure(*recording, truth, recording == &train ? 5u : 6u);
+    recording->set("drive_A", drive);
+  }
+  const Diagnosis diagnosis = diagnose(axis_model(), {train}, {held_out});
+  INFO(diagnosis.reason);
+  // Forward and backward friction may differ or not: what remains hides it.
+  CHECK((diagnosis.verdict == Verdict::partial || diagnosis.verdict == Verdict::ambiguous));
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause[0].effect == "coulomb_friction");
+  REQUIRE(diagnosis.remaining);
+  CHECK(diagnosis.remaining->times_floor > 1.5);
+  CHECK(diagnosis.remaining->share > 0.0);
+  CHECK(diagnosis.remaining->share < 0.5);
+  CHECK(diagnosis.augmented.effects.count("coulomb_friction") == 1);
 }
 
 TEST_CASE("two effects at once are both named") {

@@ -63,7 +63,9 @@ TEST_CASE("writing and reading gives back the same numbers, bit by bit") {
   Model model = parse(model_text(ohmic + ", " + lumped));
   model.set("resistance_ohm", 8.2000000000000028);
   model.effects["second_thermal_mass"] = {{"winding_share", 0.1 + 0.2}, {"coupling", 1.0 / 3.0}};
+  model.uncertainty = {{"current.resistance_ohm", 0.02}, {"effects.second_thermal_mass.coupling", 0.3}};
   const Model again = parse(files::to_json(model));
+  CHECK(again.uncertainty == model.uncertainty);
   CHECK(again.get("resistance_ohm") == 8.2000000000000028);
   CHECK(again.effects == model.effects);
   CHECK(files::to_json(again) == files::to_json(model));
@@ -117,6 +119,12 @@ TEST_CASE("what a model file may not hold is named by its JSON pointer") {
        {"/effects/coulomb_friction/nm: unknown key"}},
       {model_text(R"("current": {"law": "ohmic", "resistance_ohm": 1e999})"),
        {"model.json: not usable JSON: number overflow", "expected finite numbers"}},
+      {model_text(
+           R"("current": {"law": "ohmic", "resistance_ohm": 8, "uncertainty": {"resistance_ohm": 2}})"),
+       {"/current/uncertainty/resistance_ohm: is 2; expected a share"}},
+      {model_text(
+           R"("current": {"law": "ohmic", "resistance_ohm": 8, "uncertainty": {"tempco_per_K": 0.1}})"),
+       {"/current/uncertainty/tempco_per_K: unknown key"}},
       {model_text("\"name\": \"nothing in it\""), {"model.json: ", "none of the blocks"}},
   };
   for (const auto& one : cases) {

@@ -72,6 +72,8 @@ public:
     if (root.contains("thermal")) read_thermal(root["thermal"], model);
     if (root.contains("axis")) read_axis(root["axis"], model);
     if (root.contains("effects")) read_effects(root["effects"], model);
+    for (const char* block : {"supply", "current", "thermal", "axis"})
+      if (root.contains(block)) read_uncertainty(root[block], std::string("/") + block, block, model);
     if (const auto problem = model.validate()) throw InputError(file_ + ": " + *problem);
     return model;
   }
@@ -222,7 +224,7 @@ private:
 
   void read_supply(const Json& block, Model& model) const {
     object(block, "/supply");
-    only(block, "/supply", {"nominal_V"});
+    only(block, "/supply", {"nominal_V", "uncertainty"});
     SupplyModel supply;
     supply.nominal_V = number(block, "/supply", "nominal_V", Allowed::positive);
     model.supply = supply;
@@ -232,7 +234,7 @@ private:
     const std::string here = "/current";
     object(block, here);
     if (law(block, here, {"ohmic", "thesis"}) == "ohmic") {
-      only(block, here, {"law", "resistance_ohm", "tempco_per_K", "reference_C"});
+      only(block, here, {"law", "resistance_ohm", "tempco_per_K", "reference_C", "uncertainty"});
       OhmicCurrentModel ohmic;
       ohmic.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
       ohmic.tempco_per_K = number_or(block, here, "tempco_per_K", Allowed::any, 0.0);
@@ -242,7 +244,7 @@ private:
     }
     only(block, here,
          {"law", "slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K", "base_mA", "exponent",
-          "minimum_V_rms"});
+          "minimum_V_rms", "uncertainty"});
     ThesisCurrentModel thesis;
     thesis.slope_V2_mA_per_K = number(block, here, "slope_V2_mA_per_K", Allowed::any);
     thesis.slope_V1_mA_per_K = number(block, here, "slope_V1_mA_per_K", Allowed::any);
@@ -258,7 +260,7 @@ private:
     const std::string here = "/thermal";
     object(block, here);
     if (law(block, here, {"lumped", "thesis"}) == "lumped") {
-      only(block, here, {"law", "heat_capacity_J_per_K", "conductance_W_per_K"});
+      only(block, here, {"law", "heat_capacity_J_per_K", "conductance_W_per_K", "uncertainty"});
       LumpedThermalModel lumped;
       lumped.heat_capacity_J_per_K = number(block, here, "heat_capacity_J_per_K", Allowed::positive);
       lumped.conductance_W_per_K = number(block, here, "conductance_W_per_K", Allowed::positive);
@@ -267,7 +269,7 @@ private:
     }
     only(block, here,
          {"law", "cooling_per_min", "rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0",
-          "minimum_V_rms"});
+          "minimum_V_rms", "uncertainty"});
     ThesisThermalModel thesis;
     thesis.cooling_per_min = number(block, here, "cooling_per_min", Allowed::positive);
     thesis.rinv_slope_V1 = number(block, here, "rinv_slope_V1", Allowed::any);
@@ -283,12 +285,32 @@ private:
     const std::string here = "/axis";
     object(block, here);
     law(block, here, {"rigid"});
-    only(block, here, {"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A"});
+    only(block, here,
+         {"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A", "uncertainty"});
     RigidAxisModel axis;
     axis.inertia_kgm2 = number(block, here, "inertia_kgm2", Allowed::positive);
     axis.viscous_Nms_per_rad = number(block, here, "viscous_Nms_per_rad", Allowed::not_negative);
     axis.torque_constant_Nm_per_A = number(block, here, "torque_constant_Nm_per_A", Allowed::not_zero);
     model.axis = axis;
+  }
+
+  /// How well the constants of a block are known, as shares of their values.
+  void read_uncertainty(const Json& block, const std::string& pointer, const std::string& name,
+                        Model& model) const {
+    if (!block.contains("uncertainty")) return;
+    const Json& list = block["uncertainty"];
+    const std::string here = below(pointer, "uncertainty");
+    object(list, here);
+    std::vector<std::string> constants;
+    for (const auto& item : block.items())
+      if (item.key() != "law" && item.key() != "uncertainty") constants.push_back(item.key());
+    only(list, here, constants);
+    for (const auto& item : list.items()) {
+      const double share = number(list, here, item.key().c_str(), Allowed::positive);
+      if (!(share <= 1.0))
+        fail(below(here, item.key()), "is " + number_text(share) + "; expected a share, above 0 to 1");
+      model.uncertainty[name + "." + item.key()] = share;
+    }
   }
 
   void read_effects(const Json& block, Model& model) const {
@@ -303,7 +325,9 @@ private:
       object(item.value(), here);
       std::vector<std::string> names;
       for (const auto& parameter : info->parameters) names.push_back(parameter.name);
+      names.push_back("uncertainty");
       only(item.value(), here, names);
+      read_uncertainty(item.value(), here, "effects." + item.key(), model);
       EffectParameters& parameters = model.effects[item.key()];
       for (const auto& parameter : info->parameters) {
         const bool left_out = parameter.standard && !item.value().contains(parameter.name);
@@ -357,6 +381,12 @@ std::string to_json(const Model& model) {
   for (const auto& [id, parameters] : model.effects) {
     root["effects"][id] = Json::object();
     for (const auto& [name, value] : parameters) root["effects"][id][name] = value;
+  }
+  for (const auto& [name, share] : model.uncertainty) {
+    const std::size_t dot = name.rfind('.');
+    const std::string block = name.substr(0, dot), constant = name.substr(dot + 1);
+    if (block.rfind("effects.", 0) == 0) root["effects"][block.substr(8)]["uncertainty"][constant] = share;
+    else root[block]["uncertainty"][constant] = share;
   }
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

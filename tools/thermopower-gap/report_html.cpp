@@ -128,6 +128,8 @@ private:
         return "Simulation and recording agree";
       case Verdict::explained:
         return "The gap is explained";
+      case Verdict::partial:
+        return "The gap is explained in part";
       case Verdict::ambiguous:
         return "Several explanations fit, and this recording cannot tell them apart";
       case Verdict::unexplained:
@@ -191,6 +193,17 @@ private:
       fact("How large", with_unit(readable(most->before), most->unit),
            escaped(signal_text(most->signal)) + ", RMS; noise floor " +
                with_unit(readable(most->noise_floor), most->unit));
+    }
+    if (d_.remaining) {
+      const Remaining& rest = *d_.remaining;
+      std::string more = escaped(signal_text(rest.signal)) + " at " + readable(rest.times_floor, 3) +
+                         " times its noise floor";
+      if (rest.submodel) more += "; " + breakable(to_string(*rest.submodel));
+      if (rest.regime)
+        more += ", most for <code>" + escaped(rest.regime->variable) + "</code> " +
+                readable(rest.regime->from) + " to " + readable(rest.regime->to);
+      if (!rest.looks.empty()) more += "<br>" + escaped(rest.looks);
+      fact("What remains", percent(rest.share) + " of the gap", more);
     }
     out_ += "</div>\n";
   }
@@ -535,7 +548,7 @@ private:
     }
     if (!d_.constants.empty()) {
       out_ +=
-          "<h3>The model\u2019s own constants</h3>\n<table>\n<tr><th class=\"t\">constant</th><th>as configured</th><th>in the augmented "
+          "<h3>Constants of the model that moved by more than two of their uncertainties</h3>\n<table>\n<tr><th class=\"t\">constant</th><th>as configured</th><th>in the augmented "
           "model</th><th>moved by</th></tr>\n";
       for (const auto& constant : d_.constants) {
         const double moved = constant.configured != 0.0 ? constant.fitted / constant.configured - 1.0 : 0.0;

@@ -29,16 +29,16 @@ Json parameters(const std::vector<ParameterEstimate>& list) {
   return object;
 }
 
+Json regime(const std::optional<Regime>& part) {
+  if (!part) return nullptr;
+  return {{"variable", part->variable}, {"from", number(part->from)}, {"to", number(part->to)}};
+}
+
 Json location(const Location& where) {
   Json object = {{"signal", to_string(where.signal)},
                  {"submodel", to_string(where.submodel)},
                  {"share", number(where.share)}};
-  object["regime"] = nullptr;
-  if (where.regime) {
-    object["regime"] = {{"variable", where.regime->variable},
-                        {"from", number(where.regime->from)},
-                        {"to", number(where.regime->to)}};
-  }
+  object["regime"] = regime(where.regime);
   object["evidence"] = where.evidence;
   if (!where.only_in.empty()) {
     object["only_in"] = Json::array();
@@ -49,6 +49,16 @@ Json location(const Location& where) {
                                    {"from_s", one.from_s ? number(*one.from_s) : Json(nullptr)}});
     }
   }
+  return object;
+}
+
+Json remaining(const Remaining& rest) {
+  Json object = {{"signal", to_string(rest.signal)},
+                 {"share", number(rest.share)},
+                 {"times_floor", number(rest.times_floor)},
+                 {"submodel", rest.submodel ? Json(to_string(*rest.submodel)) : Json(nullptr)},
+                 {"regime", regime(rest.regime)},
+                 {"looks", rest.looks}};
   return object;
 }
 
@@ -117,6 +127,7 @@ std::string report_json(const Diagnosis& diagnosis) {
   root["alternatives"] = diagnosis.alternatives;
   root["gap"] = Json::object();
   for (const auto& gap : diagnosis.gap) root["gap"][to_string(gap.signal)] = score(gap);
+  if (diagnosis.remaining) root["remaining"] = remaining(*diagnosis.remaining);
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
   root["none_of_these"] = number(diagnosis.none_of_these);
@@ -128,8 +139,10 @@ std::string report_json(const Diagnosis& diagnosis) {
   root["constants"] = Json::object();
   for (const auto& constant : diagnosis.constants) {
     root["constants"][constant.name] = {{"configured", number(constant.configured)},
-                                        {"fitted", number(constant.fitted)}};
+                                        {"fitted", number(constant.fitted)},
+                                        {"uncertainty", number(constant.uncertainty)}};
   }
+  root["recalibration"] = diagnosis.recalibration;
   root["ranking"] = Json::array();
   for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -18,7 +18,7 @@ h1{font-size:30px;line-height:1.2;margin:6px 0 10px;letter-spacing:-.01em}
 h2{font-size:19px;margin:46px 0 4px}h3{font-size:15px;margin:26px 0 2px;font-weight:600}
 p{margin:6px 0 12px;max-width:70ch}.soft,.lead{color:var(--soft)}.lead{font-size:17px}
 .eyebrow{font-size:13px;letter-spacing:.07em;text-transform:uppercase;color:var(--soft)}
-.explained{color:var(--good)}.no_gap{color:var(--good)}.ambiguous{color:var(--doubt)}.unexplained,.insufficient{color:var(--bad)}
+.explained{color:var(--good)}.no_gap{color:var(--good)}.ambiguous,.partial{color:var(--doubt)}.unexplained,.insufficient{color:var(--bad)}
 .facts{display:grid;grid-template-columns:repeat(auto-fit,minmax(200px,1fr));gap:14px;margin:26px 0 6px}
 .fact{background:var(--card);border-radius:10px;padding:14px 18px}.fact b{display:block;font-size:19px;line-height:1.3;margin:2px 0;overflow-wrap:anywhere}
 .fact .name{font-size:13px;color:var(--soft)}.fact .more{font-size:14px;color:var(--soft)}

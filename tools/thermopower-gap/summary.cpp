@@ -64,6 +64,8 @@ const char* headline(Verdict verdict) {
       return "NO GAP";
     case Verdict::explained:
       return "EXPLAINED";
+    case Verdict::partial:
+      return "PARTLY EXPLAINED";
     case Verdict::ambiguous:
       return "AMBIGUOUS";
     case Verdict::unexplained:
@@ -134,11 +136,32 @@ std::string summary(const Diagnosis& diagnosis) {
     out += line(first ? "which" : "", text);
     first = false;
   }
+  for (const auto& constant : diagnosis.constants) {
+    const std::string as = "calibration." + constant.name;
+    const bool is_cause = std::any_of(diagnosis.cause.begin(), diagnosis.cause.end(),
+                                      [&](const Cause& cause) { return cause.effect == as; });
+    if (!is_cause)
+      out +=
+          line("with", constant.name + " " + readable(constant.configured) + " -> " +
+                           readable(constant.fitted) + " (known to " + percent(constant.uncertainty) + ")");
+  }
+  if (diagnosis.remaining) {
+    const Remaining& rest = *diagnosis.remaining;
+    std::string text = std::string(to_string(rest.signal)) + " stays at " + readable(rest.times_floor, 3) +
+                       " times its noise floor, " + percent(rest.share) + " of the gap";
+    if (rest.submodel) text += std::string("; ") + to_string(*rest.submodel);
+    if (rest.regime)
+      text += ", most for " + rest.regime->variable + " " + readable(rest.regime->from) + " to " +
+              readable(rest.regime->to);
+    if (!rest.looks.empty()) text += "; " + rest.looks;
+    out += line("remaining", text);
+  }
   std::string others;
   for (const auto& one : diagnosis.alternatives) others += (others.empty() ? "" : "; ") + joined(one);
   if (!others.empty()) out += line("or", others + " (this recording cannot tell them apart)");
   out += gap_table(diagnosis);
   if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty()) out += "\n";
+  if (!diagnosis.recalibration.empty()) out += line("constants", diagnosis.recalibration);
   if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
   for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
   return out;
@@ -190,9 +213,9 @@ std::string catalogue_text(const std::vector<EffectInfo>& effects) {
     out += "\n";
   }
   out +=
-      "calibration.<constant>\n    a constant of the model itself is off by more than its slack: resistance, tempco, base, slope,\n"
-      "    heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant; as a factor on the\n"
-      "    configured value.\n";
+      "calibration.<constant>\n    a constant of the model itself is off by more than two of its uncertainties: resistance, tempco,\n"
+      "    base, slope, heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant, or\n"
+      "    <effect>.<parameter> of an effect in the model; as a factor on the configured value.\n";
   return out;
 }
 

@@ -18,8 +18,9 @@ namespace thermopower::gap {
 
 /// What a diagnosis concludes.
 enum class Verdict {
-  no_gap,        ///< the simulation, its constants within their slack, scores what noise allows
+  no_gap,        ///< the simulation, its constants within what is known of them, scores what noise allows
   explained,     ///< the causes bring held-out data near the noise floor, and nothing else does
+  partial,       ///< the causes take a proven part of the held-out gap away; the rest is above the noise
   ambiguous,     ///< several explanations do, and this recording cannot tell them apart
   unexplained,   ///< there is a gap, and no effect (or small set of them) of the catalogue closes it
   insufficient,  ///< too little data for any statement
@@ -32,6 +33,8 @@ inline const char* to_string(Verdict verdict) {
       return "no_gap";
     case Verdict::explained:
       return "explained";
+    case Verdict::partial:
+      return "partial";
     case Verdict::ambiguous:
       return "ambiguous";
     case Verdict::unexplained:
@@ -95,7 +98,7 @@ struct GapScore {
   std::string unit;                 ///< of the scores: degC, A, deg or deg/s
   std::optional<double> horizon_s;  ///< length of a window; none: whole runs
   double before = 0.0;              ///< the model as configured
-  double recalibrated = 0.0;        ///< its own constants refitted without a limit, no effect added
+  double recalibrated = 0.0;        ///< its own constants refitted, no effect added
   double after = 0.0;               ///< with the causes (equal to `before` where there are none)
   double noise_floor = 0.0;         ///< what a perfect model would score
   double shrunk_by = 0.0;           ///< 1 - after / before
@@ -139,19 +142,30 @@ struct RankedExplanation {
   double probability = 0.0;          ///< 0..1 over all explanations weighed and "none of these"
   double score = 0.0;                ///< reduced chi^2 on training data
   double delta_score = 0.0;          ///< evidence against it relative to the best, >= 0 (twice a log odds)
-  double held_out_ratio = 0.0;       ///< held-out score over the re-calibrated baseline's, < 1 is better
-  bool absorbed = false;             ///< re-calibration imitates it: this recording cannot show it
-  bool at_bound = false;             ///< a cause ended on the bounds of its range, and is none
-  bool refused = false;              ///< makes held-out data worse
+  double held_out_ratio = 0.0;  ///< held-out score over the model's as configured; NaN: was not looked at
+  bool absorbed = false;        ///< re-calibration imitates it: this recording cannot show it
+  bool at_bound = false;        ///< a cause ended on the bounds of its range, and is none
+  bool refused = false;         ///< makes held-out data worse
   std::vector<ParameterEstimate> parameters;  ///< named `<effect>.<parameter>`
   std::vector<Likeness> confusable;           ///< others with a likeness of 0.9 or more
 };
 
-/// A constant of the baseline as configured and as the explanation moved it (within its slack).
+/// A constant of the baseline that the explanation moved by more than two of its uncertainties.
 struct MovedConstant {
-  std::string name;         ///< id as in `calibration.<id>`
-  double configured = 0.0;  ///< as the model file has it, first field where several scale together
-  double fitted = 0.0;      ///< as the explanation has it; its ratio to `configured` is that of all fields
+  std::string name;          ///< id as in `calibration.<id>`
+  double configured = 0.0;   ///< as the model file has it, first field where several scale together
+  double fitted = 0.0;       ///< as the explanation has it; its ratio to `configured` is that of all fields
+  double uncertainty = 0.0;  ///< standard deviation that was stated or assumed, as a share of `configured`
+};
+
+/// What the named causes leave of the gap on held-out data.
+struct Remaining {
+  plant::SignalName signal;                     ///< the signal that is furthest above its noise floor
+  double share = 0.0;                           ///< of the gap above the noise as configured, 0..1
+  double times_floor = 0.0;                     ///< its score over its noise floor
+  std::optional<plant::SubmodelName> submodel;  ///< where training data see it; none where they do not
+  std::optional<Regime> regime;                 ///< where in which variable it is largest
+  std::string looks;                            ///< one sentence: how it varies in time
 };
 
 /// How long a stage took. Not part of a report: equal input gives equal reports.
@@ -174,11 +188,13 @@ struct Diagnosis {
   std::vector<std::string> not_judged;     ///< one sentence for each signal or block that lacks a column
   std::vector<Finding> findings;           ///< of the data, recording by recording
   std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
-  std::vector<MovedConstant> constants;    ///< every constant that can be off, moved or not
-  std::vector<SignalSeries> series;        ///< curves of every judged signal over the held-out recordings
+  std::vector<MovedConstant> constants;    ///< those that moved by more than two of their uncertainties
+  std::optional<Remaining> remaining;      ///< of a partial verdict
+  std::string recalibration;  ///< one sentence where refitted constants do worse on held-out data; else empty
+  std::vector<SignalSeries> series;  ///< curves of every judged signal over the held-out recordings
   std::vector<MissingQuantity> missing_quantities;  ///< what the residuals ask for, where that can be said
-  Model augmented;     ///< the model with the causes added and its constants moved within their slack
-  Model recalibrated;  ///< the model with its own constants refitted without a limit
+  Model augmented;                   ///< the model with the causes added and its constants moved along
+  Model recalibrated;                ///< the model with its own constants refitted
   std::vector<StageTiming> timings;  ///< in the order in which the stages ran
 };
 

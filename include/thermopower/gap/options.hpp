@@ -14,7 +14,6 @@ namespace thermopower::gap {
 /// What a diagnosis may be told.
 struct Options {
   double horizon_s = 0.5;          ///< length of the axis' windows in s, > 0
-  double slack = 0.04;             ///< how far constants may move for free, as a fraction, 0..0.5
   double tolerance = 0.05;         ///< shrinkage of the score below which nobody cares, as a fraction, 0..0.5
   double held_out_fraction = 0.3;  ///< held out where no recording is given for it, 0.05..0.9
   int effects_at_once = 2;         ///< the largest set of effects weighed together, 1..3
@@ -36,7 +35,6 @@ struct Options {
                            " to " + text(high));
     };
     within(horizon_s, 1e-6, 1e9, "horizon_s");
-    within(slack, 0.0, 0.5, "slack");
     within(tolerance, 0.0, 0.5, "tolerance");
     within(held_out_fraction, 0.05, 0.9, "held_out_fraction");
     within(effects_at_once, 1, 3, "effects_at_once");

@@ -138,6 +138,14 @@ public:
     HiddenStart hidden;
     hidden.coordinate = 1;
     hidden.shows_in = Signal::motor_C;  // spreads by 5 K, at a noise of 0.1 K
+    // A housing lies between the measured node and the air; a winding behind a late thermometer is as far beyond
+    // it as it is beyond the air. Sensors of body and air disagree by the margin, and a body is as uneven.
+    constexpr double margin_K = 2.0;
+    const Inputs& inputs = *segment.inputs;
+    if (inputs.ambient_C.size() > 0) {
+      const double rise_K = std::abs(inputs.held_motor_C[segment.begin] - inputs.ambient_C[segment.begin]);
+      if (std::isfinite(rise_K)) hidden.farthest = rise_K + margin_K;
+    }
     return {hidden};
   }
 

@@ -79,6 +79,12 @@ struct Parameter {
   std::optional<double> standard = {};     ///< its value where a model leaves it out; none: it must be given
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   bool degenerate_at_bounds = false;
+  /// Name of another parameter of the effect that it must exceed: below, nothing shows it, and a fit that ends
+  /// there explains nothing. Empty: none.
+  std::string exceeds = {};
+  /// It counts periods of the angle in radians per radian; so many of them must lie within the recorded travel, or
+  /// they only imitate something slower. 0: any.
+  double periods_in_travel = 0.0;
   int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
 };
 
@@ -108,6 +114,10 @@ public:
   }
   /// Its value where a model leaves it out.
   ParameterBuilder& standard(double value) { return parameter_.standard = value, *this; }
+  /// It must exceed another parameter of the effect, by name: below, the effect does not show.
+  ParameterBuilder& exceeds(std::string other) { return parameter_.exceeds = std::move(other), *this; }
+  /// It counts periods in the angle, and so many must lie within the recorded travel.
+  ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   ParameterBuilder& degenerate_at_bounds() { return parameter_.degenerate_at_bounds = true, *this; }
 

@@ -84,7 +84,7 @@ struct Instance {
       const AddedEffect<Scalar>* own = nullptr;
       for (const AddedEffect<Scalar>& one : added)
         if (one.entry == entry) own = &one;
-      parameters_.push_back(own != nullptr ? own->parameters : of_model(model, *entry));
+      parameters_.push_back(own != nullptr ? own->parameters : of_model(model, *entry, factors));
       bind(*entry, parameters_.back().data());
     }
   }
@@ -154,8 +154,10 @@ private:
     return order;
   }
 
-  static std::vector<Scalar> of_model(const Model& model, const CatalogueEntry& entry) {
+  static std::vector<Scalar> of_model(const Model& model, const CatalogueEntry& entry,
+                                      const std::vector<Scalar>& factors) {
     const EffectParameters& given = model.effects.at(entry.info.id);
+    const std::vector<CalibratedConstant> calibrated = model.calibrated();
     std::vector<Scalar> values;
     for (const Parameter& parameter : entry.info.parameters) {
       const auto found = given.find(parameter.name);
@@ -167,6 +169,9 @@ private:
         throw InvalidInput("model '" + model.name + "', effect '" + entry.info.id + "': parameter '" +
                            parameter.name + "' is missing");
       values.push_back(constant<Scalar>(found->second));
+      for (std::size_t i = 0; i < calibrated.size() && i < factors.size(); ++i)
+        if (calibrated[i].effect() == entry.info.id && calibrated[i].fields.front() == parameter.name)
+          values.back() *= factors[i];
     }
     for (const auto& value : given) {
       bool known = false;

@@ -77,10 +77,13 @@ struct NamedConstant {
 /// coefficients of one polynomial). As a cause the diagnosis calls it by its id after `calibration.`
 struct CalibratedConstant {
   std::string id;                   ///< `resistance`, `heat_capacity`, ...
-  std::string block;                ///< `current`, `thermal` or `axis`
+  std::string block;                ///< `current`, `thermal`, `axis` or `effects.<id>`
   std::vector<std::string> fields;  ///< the model's fields that scale with it
-  bool may_be_cause = true;         ///< off by more than the slack it is a cause of its own
-  bool has_slack = true;            ///< may move by the slack for free; of a polynomial each coefficient does
+  bool may_be_cause = true;         ///< off by more than what is known of it, it is a cause of its own
+  bool has_slack = true;  ///< is known by itself; of a polynomial each coefficient is, not all together
+
+  /// Id of the effect whose parameter it is; empty for a constant of a block.
+  std::string effect() const { return block.rfind("effects.", 0) == 0 ? block.substr(8) : std::string(); }
 };
 
 class Plant;
@@ -91,7 +94,7 @@ struct PlantConstant {
   std::string name;          ///< ends in its unit, as in `outflow_m3_per_s`
   std::string unit;          ///< as reports spell it; "1" for a pure number
   double value = 1.0;        ///< in that unit
-  bool may_be_cause = true;  ///< may be off by more than its slack; a known constant (gravity) is not
+  bool may_be_cause = true;  ///< may be off by more than is known of it; a known constant (gravity) is not
   bool above_zero = true;    ///< only values above 0 make sense
 };
 
@@ -114,6 +117,9 @@ struct Model {
   /// From commanded current to motion.
   std::optional<RigidAxisModel> axis;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
+  /// How well constants are known: standard deviation as a share of the value, above 0 to 1, by
+  /// `<block>.<constant>` and `effects.<id>.<parameter>`. Those that are not in it are known to 5 %.
+  std::map<std::string, double> uncertainty;
   /// A plant of one's own in place of the blocks above; none: the library's actuator.
   std::optional<PlantModel> own;
 
@@ -127,14 +133,26 @@ struct Model {
   std::vector<NamedConstant> constants() const;
 
   /// Value of a constant by its name in the file. `minimum_V_rms` exists in two blocks: qualify it as
-  /// `current.minimum_V_rms`; any name may be qualified so. @throws InvalidInput where there is none.
+  /// `current.minimum_V_rms`; any name may be qualified so, and parameters of its effects are
+  /// `effects.<id>.<parameter>`. @throws InvalidInput where there is none.
   double get(std::string_view constant_name) const;
 
   /// Sets a constant by its name in the file (qualified or not). @throws InvalidInput where there is none.
   void set(std::string_view constant_name, double value);
 
-  /// The constants that calibration may move: a few percent for free, more as a cause of its own.
+  /// The constants that calibration may move, the parameters of the model's own effects included.
   std::vector<CalibratedConstant> calibrated() const;
+
+  /// How well a constant is known, as a share of its value; of fields that scale together the worst known
+  /// counts. `otherwise` where nothing is stated.
+  double uncertainty_of(const CalibratedConstant& constant, double otherwise = 0.05) const {
+    double worst = 0.0;
+    for (const std::string& field : constant.fields) {
+      const auto found = uncertainty.find(constant.block + "." + field);
+      if (found != uncertainty.end() && found->second > worst) worst = found->second;
+    }
+    return worst > 0.0 ? worst : otherwise;
+  }
 
   /// What is wrong with it, naming the field and what was expected, or nothing. Effects are not looked into:
   /// the catalogue knows them.
@@ -191,6 +209,16 @@ auto find_constant(ModelType& model, std::string_view wanted) {
   return found;
 }
 
+/// The parameter `effects.<id>.<parameter>`, or nullptr.
+template <class Effects>
+auto find_parameter(Effects& effects, std::string_view wanted)
+    -> decltype(&effects.begin()->second.begin()->second) {
+  for (auto& effect : effects)
+    for (auto& parameter : effect.second)
+      if (wanted == "effects." + effect.first + "." + parameter.first) return &parameter.second;
+  return nullptr;
+}
+
 }  // namespace detail
 
 inline std::vector<NamedConstant> Model::constants() const {
@@ -203,6 +231,7 @@ inline std::vector<NamedConstant> Model::constants() const {
 
 inline double Model::get(std::string_view constant_name) const {
   const double* found = detail::find_constant(*this, constant_name);
+  if (found == nullptr) found = detail::find_parameter(effects, constant_name);
   if (found == nullptr)
     throw InvalidInput("model '" + name + "' has no constant '" + std::string(constant_name) + "'");
   return *found;
@@ -210,6 +239,7 @@ inline double Model::get(std::string_view constant_name) const {
 
 inline void Model::set(std::string_view constant_name, double value) {
   double* found = detail::find_constant(*this, constant_name);
+  if (found == nullptr) found = detail::find_parameter(effects, constant_name);
   if (found == nullptr)
     throw InvalidInput("model '" + name + "' has no constant '" + std::string(constant_name) + "'");
   *found = value;
@@ -251,6 +281,12 @@ inline std::vector<CalibratedConstant> Model::calibrated() const {
     for (const PlantConstant& constant : own->constants)
       if (constant.may_be_cause && constant.value != 0.0)
         list.push_back({constant.name, constant.block, {constant.name}});
+  if (!own)
+    for (const auto& effect : effects)
+      for (const auto& parameter : effect.second)
+        if (parameter.second != 0.0)
+          list.push_back(
+              {effect.first + "." + parameter.first, "effects." + effect.first, {parameter.first}});
   return list;
 }
 

@@ -68,7 +68,7 @@ Candidate fitted(const Model& model, const std::string& id, const Inputs& inputs
   problem.catalogue = &standard_catalogue();
   problem.plant().cut(inputs, 0.5, problem.segments);
   problem.sigma = {0.002, 0.05, 0.02, 0.15};
-  return Attribution(problem, Slack(), 1).fit({{standard_catalogue().find(id)}, {}}, {});
+  return Attribution(problem, 1).fit({{standard_catalogue().find(id)}, {}}, {});
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ TEST_CASE("shortening keeps the mean error of the simulation under test, block b
     problem.model = &model;
     problem.catalogue = &standard_catalogue();
     problem.plant().cut(inputs, 0.5, problem.segments);
-    const std::vector<Coordinate> list = coordinates(model, {}, Slack());
+    const std::vector<Coordinate> list = coordinates(model, {}, standard_catalogue());
     double sum = 0.0, count = 0.0;
     problem.evaluate({}, list, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(list.size())),
                      problem.measured_starts(), false, [&](std::size_t, const FitProblem::Residuals& one) {
@@ -178,7 +178,10 @@ TEST_CASE("what scores alike where it matters is told apart by its number of par
   const auto candidate = [&](const char* id, double train, double held_out) {
     Candidate one;
     if (id != nullptr) one.explanation.effects.push_back(standard_catalogue().find(id));
-    one.list = coordinates(model, one.explanation, Slack());
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    for (std::size_t i = 0; i < one.list.size(); ++i)
+      one.fit.at[static_cast<Eigen::Index>(i)] = one.list[i].start;
     one.fit.at_bound.assign(one.list.size(), false);
     one.train.samples[3] = one.held_out.samples[3] = 1e5;
     one.train.squares[3] = 1e5 * train * train;

@@ -2,7 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/decide/block_jackknife.hpp>
 #include <thermopower/gap/decide/search.hpp>
+#include <thermopower/gap/decide/thresholds.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,10 +16,12 @@ namespace thermopower::gap {
 
 /// How much the samples of each signal count.
 struct Weight {
-  std::array<double, signal_count> correlation{1, 1, 1, 1};  ///< samples that count as one
+  std::array<double, signal_count> correlation{1, 1, 1, 1};  ///< training samples that count as one
+  std::array<double, signal_count> held_out{1, 1, 1, 1};     ///< held-out samples that count as one
+  double travel_rad = 1e300;                                 ///< range of the angle in the training data
 };
 
-/// How many residuals of a candidate count as one, signal by signal.
+/// How many residuals of a candidate count as one, signal by signal, in the data it was fitted to.
 inline Weight correlation_of(const Candidate& candidate, const FitProblem& problem) {
   Weight weight;
   const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
@@ -26,10 +30,32 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
   return weight;
 }
 
+/// Whether a parameter ended where a recording can show it.
+/// @param at  its place among the candidate's coordinates
+inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
+                  std::size_t at, double travel_rad) {
+  constexpr double radians_per_turn = 6.283185307179586;
+  const auto value_at = [&](std::size_t index) {
+    const double coordinate = candidate.fit.at[static_cast<Eigen::Index>(index)];
+    return candidate.list[index].logarithmic ? std::exp(coordinate) : coordinate;
+  };
+  if (parameter.periods_in_travel > 0.0 &&
+      value_at(at) * travel_rad < parameter.periods_in_travel * radians_per_turn)
+    return false;
+  if (parameter.exceeds.empty()) return true;
+  for (std::size_t i = 0; i < candidate.list.size(); ++i)
+    if (candidate.list[i].name == entry.info.id + "." + parameter.exceeds) return value_at(at) > value_at(i);
+  return true;
+}
+
 /// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
 /// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
 /// friction does not count: at its bound friction sticks.)
-inline bool ends_on_bounds(const Candidate& candidate, const Model& model) {
+///
+/// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
+/// transition through standstill, a period longer than the travel holds.
+/// @param travel_rad  range of the angle in the training data
+inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
   if (at_bound.size() < candidate.list.size()) return false;
   for (int index : candidate.explanation.released)
@@ -39,6 +65,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model) {
     bool all = true;
     for (const Parameter& parameter : entry->info.parameters) {
       if (at_bound[at] && parameter.degenerate_at_bounds) return true;
+      if (!shows(candidate, *entry, parameter, at, travel_rad)) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
     if (all) return true;
@@ -54,58 +81,108 @@ inline double level(const Candidate& candidate, std::size_t signal) {
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
-/// Whether a candidate scores as well as another where it matters: no signal worse by more than half a
-/// percent on held-out data, nor by two percent overall. With many rows a smaller difference can still be
-/// significant; it then tells of the small errors that every model has, not of the cause.
+/// Whether a candidate scores as well as another where it matters. With many rows a smaller difference can still
+/// be significant; it then tells of the small errors that every model has, not of the cause. The further the
+/// better one is above the noise, the larger are the errors that it has itself: an explanation with fewer
+/// parameters is as good by a larger margin there.
 inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
+  const bool simpler = candidate.explanation.parameter_count() < other.explanation.parameter_count();
   for (std::size_t i = 0; i < signal_count; ++i) {
+    const double above = std::max(1.0 - 1.0 / std::max(other.held_out.mean(i), 1.0), 0.0);
+    const double margin = simpler ? decision.alike_far_from_noise * above : 0.0;
+    const double held_out = 1.0 + decision.alike_held_out + margin;
     if (candidate.held_out.samples[i] > 0.0 &&
-        candidate.held_out.mean(i) > 1.005 * 1.005 * other.held_out.mean(i))
+        candidate.held_out.mean(i) > held_out * held_out * other.held_out.mean(i))
       return false;
-    if (level(candidate, i) > 1.02 * level(other, i)) return false;
+    if (level(candidate, i) > (1.0 + decision.alike_overall + margin) * level(other, i)) return false;
   }
   return true;
 }
 
-/// Deviance of every candidate and its probability among them; 0 for those that end on their bounds.
+/// What the constants of a candidate paid for having moved, a released one included: twice a log odds.
+inline double price_of_constants(const Candidate& candidate, const Model& model) {
+  double price = 0.0;
+  Eigen::Index at = 0;
+  for (const CalibratedConstant& constant : model.calibrated())
+    price += Prior{model.uncertainty_of(constant)}.cost(candidate.fit.at[at++]);
+  return price;
+}
+
+/// Log odds that go with a difference of so many standard errors, by the normal distribution (Page 1977).
+inline double log_odds_of(double standard_errors) {
+  const double z = std::min(standard_errors, 40.0);
+  return 1.5976 * z + 0.07056 * z * z * z;
+}
+
+/// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
+inline bool in_the_running(const Candidate& candidate) {
+  return !candidate.on_bounds && candidate.held_out.any();
+}
+
+/// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
+/// judged on held-out data.
 ///
 /// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
-/// of the best candidate's residuals, so that a model error that all share does not decide by sheer number of
-/// rows; training and held-out data together, the parameters from training alone; a Bayesian information
-/// penalty for every parameter, and a further one for every effect beyond the first (effects are rare). What
-/// scores like the best is given its fit: then only the penalties differ.
+/// of the best candidate's residuals; training and held-out data together, the parameters from training alone;
+/// a Bayesian information penalty for every parameter of an effect and every start that nobody measures, the price of the constants that moved, and a
+/// penalty for every effect beyond the first. What scores like the best is given its fit: then only the
+/// penalties differ.
+///
+/// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are
+/// at most those of a difference as many standard errors large (Vuong 1989), the standard error from leaving out
+/// blocks of the training and the held-out data: where a candidate is better in some parts of the recording and
+/// worse in others, no number of rows makes it certain.
 inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, const Model& model) {
-  constexpr double rarity = 6.0;
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
   const auto penalty = [&](const Candidate& one) {
-    const double further = one.explanation.size() > 1 ? static_cast<double>(one.explanation.size() - 1) : 0.0;
-    return one.explanation.parameter_count() * std::log(std::max(samples, 2.0)) + rarity * further;
+    const std::size_t effects = one.explanation.effects.size();
+    const double further = effects > 1 ? static_cast<double>(effects - 1) : 0.0;
+    const int parameters =
+        one.explanation.parameter_count() - static_cast<int>(one.explanation.released.size());
+    return (parameters + one.hidden_starts) * std::log(std::max(samples, 2.0)) + decision.rarity * further +
+           price_of_constants(one, model);
+  };
+  const auto part = [](const SignalSums& sums, const std::array<double, signal_count>& correlation) {
+    double deviance = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (sums.samples[i] > 0.0)
+        deviance += sums.samples[i] / correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
+    return deviance;
   };
   const Candidate* best = nullptr;
   for (Candidate& one : candidates) {
-    one.deviance = penalty(one);
-    for (std::size_t i = 0; i < signal_count; ++i) {
-      const auto add = [&](const SignalSums& sums) {
-        if (sums.samples[i] > 0.0)
-          one.deviance += sums.samples[i] / weight.correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
-      };
-      add(one.train);
-      add(one.held_out);
-    }
-    one.on_bounds = ends_on_bounds(one, model);
-    if (!one.on_bounds && (best == nullptr || one.deviance < best->deviance)) best = &one;
+    one.deviance = penalty(one) + part(one.train, weight.correlation) + part(one.held_out, weight.held_out);
+    one.on_bounds = ends_on_bounds(one, model, weight.travel_rad);
+    if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   }
+  const auto standard_error = [&](const SignalSums& a, const SignalSums& b,
+                                  const std::array<double, signal_count>& correlation) {
+    std::size_t merge = 1;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (a.samples[i] > 0.0) merge = std::max(merge, blocks_to_merge(a.samples[i], correlation[i]));
+    const auto difference = [&](const SignalSums& x, const SignalSums& y) {
+      return part(x, correlation) - part(y, correlation);
+    };
+    return block_jackknife(a, b, merge, difference).standard_error;
+  };
   const double fit_of_best = best->deviance - penalty(*best);
   double least = best->deviance;
   for (Candidate& one : candidates) {
     if (&one != best && scores_alike(one, *best)) one.deviance = fit_of_best + penalty(one);
-    if (!one.on_bounds) least = std::min(least, one.deviance);
+    if (in_the_running(one)) least = std::min(least, one.deviance);
   }
   double total = 0.0;
-  for (Candidate& one : candidates)
-    total += one.probability = one.on_bounds ? 0.0 : std::exp(-0.5 * (one.deviance - least));
+  for (Candidate& one : candidates) {
+    one.probability = 0.0;
+    if (!in_the_running(one)) continue;
+    one.against = 0.5 * (one.deviance - least);
+    const double uncertain = std::hypot(standard_error(one.train, best->train, weight.correlation),
+                                        standard_error(one.held_out, best->held_out, weight.held_out));
+    if (uncertain > 0.0) one.against = std::min(one.against, log_odds_of((one.deviance - least) / uncertain));
+    total += one.probability = std::exp(-one.against);
+  }
   for (Candidate& one : candidates) one.probability /= total;
 }
 

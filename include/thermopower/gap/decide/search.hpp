@@ -48,10 +48,33 @@ public:
     }
   }
 
+  /// Fits candidates of as many causes as the best ones or fewer once more from where those ended. A smaller
+  /// explanation loses to a larger one that contains it only after it has been there: often the larger one has
+  /// only found better constants.
+  void refit_rivals(std::vector<Candidate>& candidates) const {
+    FitOptions finish;
+    finish.iterations = 12;
+    finish.relative_decrease = 1e-5;
+    const std::vector<std::size_t> order = by_fitness(candidates, 0);
+    for (std::size_t place = 0; place < std::min<std::size_t>(2, order.size()); ++place) {
+      const Candidate leader = candidates[order[place]];
+      std::vector<std::size_t> rivals;
+      std::size_t related = 0;
+      for (std::size_t index : order) {
+        if (index == order[place] || index == 0) continue;
+        if (leader.explanation.includes(candidates[index].explanation) ||
+            (is_related(candidates[index].explanation, leader.explanation) && related++ < 3))
+          rivals.push_back(index);
+      }
+      in_parallel(rivals.size(), threads_,
+                  [&](std::size_t i) { fine_.refit_from(candidates[rivals[i]], leader, finish); });
+    }
+  }
+
   /// Fits the best candidates, and looks at all others, anew: the noise has changed.
   void renew(std::vector<Candidate>& candidates) const {
     in_parallel(candidates.size(), threads_, [&](std::size_t i) {
-      candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), &candidates[i].fit.starts);
+      candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), candidates[i].fit.starts);
     });
     refine(candidates, candidates.size(), 4);
   }
@@ -75,6 +98,18 @@ public:
   }
 
 private:
+  /// Whether each of a few causes is of a submodel that the other explanation blames, too.
+  static bool is_related(const Explanation& few, const Explanation& all) {
+    if (few.effects.empty() || few.size() > all.size()) return false;
+    for (const CatalogueEntry* one : few.effects) {
+      bool related = false;
+      for (const CatalogueEntry* other : all.effects)
+        related = related || one->info.submodel == other->info.submodel;
+      if (!related) return false;
+    }
+    return true;
+  }
+
   /// A set worth fitting.
   struct Promise {
     double cost;            ///< after one linear step
@@ -111,7 +146,7 @@ private:
   void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
     std::vector<const Candidate*> seeds;
     for (std::size_t index : by_fitness(candidates, 0))
-      if (static_cast<int>(candidates[index].explanation.size()) == size - 1 && seeds.size() < 5)
+      if (static_cast<int>(candidates[index].explanation.effects.size()) == size - 1 && seeds.size() < 5)
         seeds.push_back(&candidates[index]);
     std::vector<Promise> promises;
     for (const Candidate* near : seeds)

@@ -20,10 +20,36 @@ struct Conclusion {
   std::vector<std::size_t> alternatives;    ///< indices, likeliest first
   double none_of_these = 0.0;               ///< probability that the cause is outside the catalogue
   std::string reason;                       ///< one sentence in plain words
+  bool leaves_a_rest = false;               ///< held-out data stay above the noise with the causes
+  bool second_is_open = false;              ///< sets disagree about a further cause: look at single ones
 };
 
-/// Whether a candidate shrinks some signal's score by more than the tolerance and none of its signals grows
-/// by more, on held-out data.
+/// What a cause is measured against: held-out scores without any, in units of the noise floor.
+struct Reference {
+  SignalSums as_configured;  ///< the model as its file has it
+  SignalSums recalibrated;   ///< its constants refitted
+};
+
+/// The root mean square of a held-out signal, in units of the noise floor.
+inline double held_out_level(const SignalSums& sums, std::size_t signal) {
+  return std::sqrt(sums.mean(signal));
+}
+
+/// The largest of them.
+inline double worst_level(const SignalSums& sums) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, held_out_level(sums, i));
+  return worst;
+}
+
+/// The largest root mean square of a candidate over its signals, training and held-out data together.
+inline double worst_level(const Candidate& candidate) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
+  return worst;
+}
+
+/// Whether a candidate shrinks some signal's held-out score by more than the tolerance.
 inline bool matters(const Candidate& candidate, const Candidate& than, double tolerance) {
   bool better = false;
   for (std::size_t i = 0; i < signal_count; ++i) {
@@ -34,37 +60,79 @@ inline bool matters(const Candidate& candidate, const Candidate& than, double to
   return better;
 }
 
-/// How far above the noise the worst signal of a candidate remains, as a share of what the empty explanation
-/// leaves: 0 at the noise, 1 where nothing was explained.
-inline double left_over(const Candidate& candidate, const Candidate& empty) {
+/// Logarithm of the factor by which held-out scores shrink from one model to another, the mean over the signals
+/// that are above the noise before, with its standard error over blocks.
+inline Jackknifed shrinkage(const SignalSums& before, const SignalSums& after, const Weight& weight) {
+  std::array<bool, signal_count> counts{};
+  bool any = false;
+  std::size_t merge = 1;
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    counts[i] = before.samples[i] > 0.0 && held_out_level(before, i) > decision.no_gap;
+    any = any || counts[i];
+    if (before.samples[i] > 0.0)
+      merge = std::max(merge, blocks_to_merge(before.samples[i], weight.held_out[i]));
+  }
+  const auto logarithm = [&](const SignalSums& from, const SignalSums& to) {
+    double sum = 0.0, signals = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      if (!(from.samples[i] > 0.0) || (any && !counts[i])) continue;
+      sum += 0.5 * std::log(std::max(from.mean(i), 1e-12) / std::max(to.mean(i), 1e-12));
+      signals += 1.0;
+    }
+    return signals > 0.0 ? sum / signals : 0.0;
+  };
+  return block_jackknife(before, after, merge, logarithm);
+}
+
+/// Whether a cause takes a material and proven part of the held-out gap away, and makes no signal worse.
+inline bool is_proven(const Candidate& candidate, const SignalSums& before, const Weight& weight) {
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    const double grown = held_out_level(candidate.held_out, i);
+    if (grown > decision.no_gap && grown > (1.0 + decision.may_grow) * held_out_level(before, i))
+      return false;
+  }
+  const Jackknifed shrunk = shrinkage(before, candidate.held_out, weight);
+  const double least = shrunk.value - decision.standard_errors * shrunk.standard_error;
+  return 1.0 - std::exp(-shrunk.value) > decision.material && 1.0 - std::exp(-least) > decision.proven;
+}
+
+/// How far above the noise the worst signal of a candidate remains, as a share of what is there without it: 0 at
+/// the noise, 1 where nothing was explained.
+inline double left_over(const SignalSums& after, const SignalSums& before) {
   double worst = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i) {
-    if (!(candidate.train.samples[i] > 0.0)) continue;
-    const double excess = std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
-    const double whole = std::max(level(empty, i) * level(empty, i) - 1.0, 1e-12);
+    if (!(after.samples[i] > 0.0)) continue;
+    const double excess = std::max(after.mean(i) - 1.0, 0.0), whole = std::max(before.mean(i) - 1.0, 1e-12);
     if (whole > 0.1) worst = std::max(worst, std::sqrt(excess / whole));
   }
-  return worst;
+  return std::min(worst, 1.0);
 }
 
-/// The largest root mean square of a candidate over its signals, in units of the noise.
-inline double worst_level(const Candidate& candidate) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
-  return worst;
-}
-
-/// Sum over the signals of what is above the noise, in units of its variance.
+/// Sum over the signals of what is above the noise on held-out data, in units of its variance.
 inline double excess(const Candidate& candidate) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i)
-    sum += std::max(level(candidate, i) * level(candidate, i) - 1.0, 0.0);
+  for (std::size_t i = 0; i < signal_count; ++i) sum += std::max(candidate.held_out.mean(i) - 1.0, 0.0);
   return sum;
 }
 
-/// The smallest part of a set of causes that does its work: a further cause is only named where the set
-/// without it stays clearly above the noise and the further one takes away at least half of what is left.
-/// Otherwise it mends small errors of the others' equations.
+/// Share of the blocks of held-out data in which one candidate is better than another.
+inline double share_of_blocks(const Candidate& better, const Candidate& than) {
+  double blocks = 0.0, won = 0.0;
+  for (std::size_t k = 0; k < SignalSums::block_count; ++k) {
+    double difference = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (than.held_out.squares[i] > 0.0)
+        difference += (than.held_out.block_squares[i][k] - better.held_out.block_squares[i][k]) /
+                      than.held_out.squares[i];
+    if (difference != 0.0) blocks += 1.0;
+    if (difference > 0.0) won += 1.0;
+  }
+  return blocks > 0.0 ? won / blocks : 0.0;
+}
+
+/// The smallest part of a set of causes that does its work: a further cause is only named where the set without
+/// it stays clearly above the noise and the further one takes away at least half of what is left, in nearly every
+/// part of the held-out data. Otherwise it mends small errors of the others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen) {
   for (bool smaller = true; smaller;) {
     smaller = false;
@@ -72,12 +140,14 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
     for (std::size_t i = 1; i < candidates.size(); ++i) {
       const bool within = candidates[i].explanation.size() + 1 == candidates[chosen].explanation.size() &&
                           candidates[chosen].explanation.includes(candidates[i].explanation);
-      if (within && !candidates[i].on_bounds &&
+      if (within && !candidates[i].on_bounds && candidates[i].held_out.any() &&
           (part == 0 || candidates[i].deviance < candidates[part].deviance))
         part = i;
     }
-    if (part != 0 && (worst_level(candidates[part]) < 1.4 ||
-                      excess(candidates[chosen]) > 0.5 * excess(candidates[part]))) {
+    if (part != 0 && !candidates[chosen].explanation.effects.empty() &&
+        (worst_level(candidates[part].held_out) < decision.room_for_second ||
+         excess(candidates[chosen]) > decision.second_takes * excess(candidates[part]) ||
+         share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds)) {
       chosen = part;
       smaller = true;
     }
@@ -94,16 +164,37 @@ inline double likeliest_of(const std::vector<Candidate>& candidates, const Candi
   return largest;
 }
 
+/// Whether an effect joined constants that explain everything without it: all of them moved with it, too.
+inline bool does_nothing_more(const Candidate& candidate, const Candidate& constants) {
+  if (candidate.explanation.effects.empty()) return false;
+  for (int index : constants.explanation.released) {
+    const double own = candidate.fit.at[index], theirs = constants.fit.at[index];
+    if (own * theirs <= 0.0 || std::abs(own) < 0.5 * std::abs(theirs)) return false;
+  }
+  return true;
+}
+
 /// The conclusion that the simulation holds.
 inline Conclusion nothing_missing() {
   Conclusion result;
   result.verdict = Verdict::no_gap;
-  result.reason = "with its constants within their slack the simulation scores what the noise allows";
+  result.reason =
+      "with its constants within what is known of them the simulation scores what the noise allows";
+  return result;
+}
+
+/// The conclusion that nothing known is to blame.
+inline Conclusion nothing_known(const char* reason) {
+  Conclusion result;
+  result.verdict = Verdict::unexplained;
+  result.none_of_these = 0.98;
+  result.reason = reason;
   return result;
 }
 
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
-inline Conclusion conclude(const std::vector<Candidate>& candidates, const Options& options) {
+inline Conclusion conclude(const std::vector<Candidate>& candidates, const Reference& reference,
+                           const Weight& weight, const Options& options) {
   Conclusion result;
   const Candidate& empty = candidates.front();
   for (std::size_t i = 1; i < candidates.size(); ++i)
@@ -112,42 +203,57 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Optio
   const Candidate& best = candidates[result.chosen];
   if (result.chosen == 0 || !matters(best, empty, options.tolerance)) {
     // Nothing helps: either nothing is missing, or nothing known.
-    if (worst_level(empty) < 1.25) return nothing_missing();
-    result.chosen = 0;
-    result.verdict = Verdict::unexplained;
-    result.none_of_these = 0.98;
-    result.reason = "there is a gap, and no effect of the catalogue lowers it on held-out data";
-    return result;
+    if (worst_level(empty) < decision.no_gap) return nothing_missing();
+    return nothing_known("there is a gap, and no effect of the catalogue lowers it on held-out data");
   }
-  const double level_left = worst_level(best), share_left = left_over(best, empty);
-  // Half way between "at the noise" and "clearly not": a factor 1.6 of the noise and a seventh of the gap; of
-  // two causes, which bend to more, a twentieth.
-  const double share_allowed = best.explanation.size() > 1 ? 0.05 : 0.15;
-  double doubt = std::min(4.0 * (level_left - 1.5), 30.0 * (share_left - share_allowed));
-  // Far above the noise no share is small enough: something with a structure of its own is left.
-  doubt = std::max(doubt, 2.0 * (level_left - 6.0));
-  result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
-  // Of hundreds of pairs one or the other can pass for a single cause that the catalogue lacks.
-  constexpr double pair_for_unknown = 0.15;
-  if (best.explanation.size() > 1)
-    result.none_of_these = 1.0 - (1.0 - result.none_of_these) * (1.0 - pair_for_unknown);
-  if (doubt > 0.0) {
-    result.verdict = Verdict::unexplained;
-    result.reason = "there is a gap, and the best explanation of the catalogue leaves too much of it";
-    return result;
+  const double level_left = worst_level(best.held_out);
+  const double share_left = left_over(best.held_out, reference.as_configured);
+  const bool near = level_left <= decision.near_floor;
+  const bool only_constants = best.explanation.effects.empty();
+  const bool proven = is_proven(best, reference.as_configured, weight) &&
+                      (only_constants || is_proven(best, reference.recalibrated, weight));
+  if (near) {
+    // Half way between "at the noise" and "clearly not", or a share of the gap that small.
+    const double doubt = std::min(4.0 * (level_left - decision.near_floor), 30.0 * (share_left - 0.15));
+    result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
+  } else if (only_constants || !proven) {
+    return nothing_known("there is a gap, and no effect of the catalogue takes a proven part of it away");
+  } else {
+    const double rest = std::max(share_left, left_over(best.held_out, reference.recalibrated));
+    result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);
   }
+  if (best.explanation.effects.size() > 1)
+    result.none_of_these = 1.0 - (1.0 - result.none_of_these) * (1.0 - decision.pair_for_unknown);
   std::vector<std::size_t> order;
+  double together = best.probability;
   for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (i != result.chosen && candidates[i].probability > 0.02 * likeliest_of(candidates, best) &&
-        candidates[i].explanation.size() <= best.explanation.size())
+    if (i != result.chosen &&
+        candidates[i].probability > decision.alternative * likeliest_of(candidates, best) &&
+        candidates[i].explanation.size() <= best.explanation.size() &&
+        !(only_constants && does_nothing_more(candidates[i], best))) {
       order.push_back(i);
+      together += candidates[i].probability;
+    }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return candidates[a].probability > candidates[b].probability;
   });
   result.alternatives = order;
-  result.verdict = order.empty() ? Verdict::explained : Verdict::ambiguous;
-  result.reason = order.empty() ? "the named cause brings held-out data near the noise, and nothing else does"
-                                : "several explanations bring held-out data near the noise";
+  result.leaves_a_rest = !near;
+  if (near) {
+    result.verdict = order.empty() ? Verdict::explained : Verdict::ambiguous;
+    result.reason = order.empty()
+                        ? "the named cause brings held-out data near the noise, and nothing else does"
+                        : "several explanations bring held-out data near the noise";
+  } else if (best.probability < decision.likelier_than_all * together) {
+    result.second_is_open = best.explanation.effects.size() > 1;
+    result.verdict = Verdict::ambiguous;
+    result.reason =
+        "several explanations take a proven part of the gap away, and what remains of it does not tell which";
+  } else {
+    result.verdict = Verdict::partial;
+    result.reason =
+        "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
+  }
   return result;
 }
 

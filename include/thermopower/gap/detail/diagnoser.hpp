@@ -34,7 +34,6 @@ public:
       : model_(model), options_(options), catalogue_(catalogue_of(model, catalogue)) {
     options.validate();
     if (const auto problem = model.validate()) throw InvalidInput("model '" + model.name + "': " + *problem);
-    slack_.fraction = options.slack;
   }
 
   Diagnosis run(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
@@ -45,10 +44,7 @@ public:
     localisation.slack = options_.slack;
     engine::Localisation found;
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
-    else found = engine::localise(model_, train_recordings_, localisation, catalogue_);
-    if (!model_.own)
-      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, localisation, catalogue_,
-                              found);
+    else found = localise(model_, train_recordings_);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
@@ -56,13 +52,22 @@ public:
     if (train_inputs_.front().axis() && options_.horizon_s < fit_horizon_s() && best_level(attempt) > 1.5) {
       // Over long windows small errors can send the axis into the next dip of a load: short ones forgive
       // that.
-      Attempt shorter = thorough_search(options_.horizon_s);
+      Attempt shorter = search(options_.horizon_s);
       if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
     }
     stage("which");
-    Conclusion conclusion = conclude(attempt.candidates, options_);
+    Conclusion conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_);
+    if (conclusion.second_is_open) {
+      // What is left looks a little like several effects: it is named as a rest.
+      std::vector<Candidate>& all = attempt.candidates;
+      all.erase(std::remove_if(all.begin(), all.end(),
+                               [](const Candidate& one) { return one.explanation.effects.size() > 1; }),
+                all.end());
+      weigh(all, attempt.weight, model_);
+      conclusion = conclude(all, attempt.reference, attempt.weight, options_);
+    }
     if (conclusion.verdict != Verdict::no_gap && holds(attempt)) conclusion = nothing_missing();
-    report(attempt.candidates, conclusion, attempt.problem);
+    report(attempt, conclusion);
     stage("how far");
     return std::move(result_);
   }
@@ -70,14 +75,12 @@ public:
 private:
   /// A search with windows of one length.
   struct Attempt {
-    FitProblem problem, check;            ///< of training and of held-out data
-    std::vector<Segment> all, all_check;  ///< what they have a part of
+    FitProblem problem;        ///< of training data
+    std::vector<Segment> all;  ///< what it has a part of
     std::vector<Candidate> candidates;
-  };
-
-  /// Places of segments that are fitted, or checked, besides those that are taken anyway.
-  struct Besides {
-    std::vector<std::size_t> train, held_out;
+    Weight weight;
+    Reference reference;
+    Model recalibrated;  ///< the model with its constants refitted
   };
 
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
@@ -94,7 +97,8 @@ private:
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
     FitProblem together = problem_of(all, 2500, 4000, fit_horizon_s());
     together.sigma = attempt.problem.sigma;
-    const Candidate fitted = Attribution(together, slack_, options_.threads).fit({}, {}, &empty);
+    together.correlation = attempt.problem.correlation;
+    const Candidate fitted = Attribution(together, options_.threads).fit({}, {}, &empty);
     const Model calibrated = augmented(model_, fitted.explanation, fitted.list, fitted.fit.at);
     return holds(calibrated, held_out_inputs_, attempt.problem) &&
            holds(calibrated, train_inputs_, attempt.problem);
@@ -224,7 +228,7 @@ private:
 
   /// Whether the constant's block is judged.
   bool acts(const CalibratedConstant& constant) const {
-    if (model_.own) return true;
+    if (!constant.effect().empty() || model_.own) return true;
     for (const Inputs& one : train_inputs_)
       if (constant.block == "axis"      ? one.axis()
           : constant.block == "thermal" ? one.judged(Signal::motor_C)
@@ -249,24 +253,24 @@ private:
   Attempt thorough_search(double horizon_s) {
     Attempt attempt = search(horizon_s);
     const Candidate& best = Search::best(attempt.candidates);
-    const Besides worst{overlooked(attempt.problem, attempt.all, best, options_.horizon_s),
-                        overlooked(attempt.check, attempt.all_check, best, options_.horizon_s)};
-    return worst.train.empty() && worst.held_out.empty() ? attempt : search(horizon_s, worst);
+    // Where even the windows that were fitted are far above the noise, others tell no more.
+    constexpr double fitted = 3.0;  // times the noise
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (best.train.mean(i) > fitted * fitted) return attempt;
+    const std::vector<std::size_t> worst = overlooked(attempt.problem, attempt.all, best, options_.horizon_s);
+    return worst.empty() ? attempt : search(horizon_s, worst);
   }
 
-  Attempt search(double horizon_s, const Besides& also = {}) {
+  Attempt search(double horizon_s, const std::vector<std::size_t>& also = {}) {
     Attempt attempt;
     FitProblem& problem = attempt.problem =
-        problem_of(train_inputs_, 2500, 4000, horizon_s, also.train, &attempt.all);
-    FitProblem& check = attempt.check =
-        problem_of(held_out_inputs_, 2000, 3000, horizon_s, also.held_out, &attempt.all_check);
+        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
     const double short_s = std::min(0.5, options_.horizon_s);
     FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, short_s,
-                                           short_s == horizon_s ? also.train : std::vector<std::size_t>());
+                                           short_s == horizon_s ? also : std::vector<std::size_t>());
     coarse_problem.segments = thinned_runs(coarse_problem.segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
-    const Attribution coarse(coarse_problem, slack_, options_.threads),
-        fine(problem, slack_, options_.threads);
+    const Attribution coarse(coarse_problem, options_.threads), fine(problem, options_.threads);
     for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
     problem.sigma = coarse_problem.sigma;
     const Search searching(coarse, fine, options_.threads);
@@ -274,61 +278,136 @@ private:
     candidates = searching.run_singles(causes);
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
-      coarse_problem.sigma = check.sigma = problem.sigma;
+      coarse_problem.sigma = problem.sigma;
+      problem.correlation = mean_correlation(correlation_of(Search::best(candidates), problem));
       searching.renew(candidates);
     };
     renew();
     if (options_.effects_at_once > 1) {
-      searching.run_sets(candidates, causes, options_.effects_at_once, 1.8);
+      // Constants move in every explanation: only effects are joined.
+      std::vector<Explanation> effects;
+      for (const Explanation& one : causes)
+        if (!one.effects.empty()) effects.push_back(one);
+      searching.run_sets(candidates, effects, options_.effects_at_once, 1.8);
       renew();
     }
-    judge(candidates, check);
-    weigh(candidates, correlation_of(Search::best(candidates), problem), model_);
+    searching.refit_rivals(candidates);
+    name_moved_constants(candidates, model_);
+    attempt.weight = correlation_of(Search::best(candidates), problem);
+    attempt.weight.travel_rad = travel_rad();
+    attempt.recalibrated = recalibrate(candidates, fine);
+    judge(attempt);
+    weigh(candidates, attempt.weight, model_);
     return attempt;
   }
 
-  /// Scores the empty explanation and the best ones on held-out data. The others are out of the running: they
-  /// are given what the empty one scores there.
-  void judge(std::vector<Candidate>& candidates, const FitProblem& check) const {
+  /// Range of the angle in the training data; without an angle any.
+  double travel_rad() const {
+    double low = 1e300, high = -1e300;
+    for (const Inputs& one : train_inputs_)
+      if (one.judged(Signal::angle_deg))
+        for (double angle : one.of(Signal::angle_deg))
+          if (std::isfinite(angle)) low = std::min(low, angle), high = std::max(high, angle);
+    return high > low ? (high - low) * rad_per_deg : 1e300;
+  }
+
+  static double mean_correlation(const Weight& weight) {
+    double product = 1.0, signals = 0.0;
+    for (double one : weight.correlation)
+      if (one > 1.0) product *= one, signals += 1.0;
+    return signals > 0.0 ? std::pow(product, 1.0 / signals) : 1.0;
+  }
+
+  /// The model with its constants refitted: the best explanation by constants alone, or as configured where that
+  /// scores better on the very data.
+  Model recalibrate(std::vector<Candidate>& candidates, const Attribution& fine) const {
+    Candidate* best = &candidates.front();
+    for (Candidate& one : candidates)
+      if (one.explanation.effects.empty() && Search::fitness(one) < Search::fitness(*best)) best = &one;
+    fine.polish(*best, {});
+    const Model fitted = augmented(model_, best->explanation, best->list, best->fit.at);
+    const std::vector<Segment> segments = judged_segments(train_inputs_);
+    const Errors before = errors_of(model_, segments, catalogue_),
+                 after = errors_of(fitted, segments, catalogue_);
+    double worse = 0.0;
+    for (int i = 0; i < signal_count; ++i) {
+      const Signal signal = static_cast<Signal>(i);
+      if (before.rms(signal) > 0.0 && after.rms(signal) > 0.0)
+        worse += std::log(after.rms(signal) / before.rms(signal));
+    }
+    return worse > 0.0 ? model_ : fitted;
+  }
+
+  /// Segments as a gap is judged, few enough to judge many explanations on.
+  std::vector<Segment> judged_segments(const std::vector<Inputs>& inputs) const {
+    constexpr Eigen::Index judged_rows = 20000;
+    return thinned_axis(cut(inputs, options_.horizon_s, plant_of(model_)), judged_rows);
+  }
+
+  /// Scores the empty explanation, those by constants alone, and the best ones on held-out data, as a gap is
+  /// judged. The others are out of the running.
+  void judge(Attempt& attempt) const {
+    std::vector<Candidate>& candidates = attempt.candidates;
+    const std::vector<Segment> segments = judged_segments(held_out_inputs_);
+    const auto model_of = [&](const Candidate& one) {
+      return augmented(model_, one.explanation, one.list, one.fit.at);
+    };
+    const Model best = model_of(Search::best(candidates));
+    const Errors errors = errors_of(best, segments, catalogue_);
+    const std::array<double, signal_count> floor =
+        noise_floor(best, segments, noise_of(errors, segments, held_out_inputs_), catalogue_);
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
+    const auto scored = [&](const Model& model) {
+      const Errors own = errors_of(model, segments, catalogue_);
+      SignalSums sums;
+      for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
+      return sums;
+    };
     std::vector<std::size_t> order(candidates.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return Search::fitness(candidates[a]) < Search::fitness(candidates[b]);
     });
-    order.resize(std::min<std::size_t>(order.size(), 14));
-    if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
-    in_parallel(order.size(), options_.threads, [&](std::size_t i) {
-      candidates[order[i]].held_out = Attribution::sums(candidates[order[i]], check, nullptr);
-    });
-    for (Candidate& one : candidates) {
-      double samples = 0.0;
-      for (double count : one.held_out.samples) samples += count;
-      if (!(samples > 0.0)) one.held_out = candidates.front().held_out;
+    std::vector<std::size_t> looked_at;
+    std::size_t single = 0;
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      const Explanation& one = candidates[order[place]].explanation;
+      const bool among_singles = one.size() == 1 && single++ < 7;
+      if (place < 14 || among_singles || one.effects.empty()) looked_at.push_back(order[place]);
     }
+    in_parallel(looked_at.size(), options_.threads, [&](std::size_t i) {
+      Candidate& one = candidates[looked_at[i]];
+      const Model model = model_of(one);
+      one.held_out = scored(model);
+      const auto rollout = plant_of(model).rollout(model, catalogue_, {}, {}, SimulationMode::free_running);
+      for (const Segment& segment : segments)
+        one.hidden_starts += static_cast<int>(rollout->hidden_starts(segment).size());
+    });
+    attempt.reference.as_configured = scored(model_);
+    attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
-  void report(std::vector<Candidate>& candidates, const Conclusion& conclusion, const FitProblem& problem) {
+  void report(Attempt& attempt, const Conclusion& conclusion) {
+    std::vector<Candidate>& candidates = attempt.candidates;
     result_.verdict = conclusion.verdict;
     result_.reason = conclusion.reason;
     result_.none_of_these = conclusion.none_of_these;
     const Candidate& chosen = candidates[conclusion.chosen];
-    const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous;
-    const Weight weight = correlation_of(chosen, problem);
-    rank(result_, candidates, conclusion, problem, weight);
+    const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous ||
+                       conclusion.verdict == Verdict::partial;
+    const Weight weight = correlation_of(chosen, attempt.problem);
+    rank(result_, candidates, conclusion, attempt.problem, weight);
     const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
     if (named) name_causes(result_, candidates, conclusion, model_, fitted, weight);
-
-    Explanation all;
-    const std::vector<CalibratedConstant> constants = model_.calibrated();
-    for (std::size_t i = 0; i < constants.size(); ++i)
-      if (constants[i].may_be_cause) all.released.push_back(static_cast<int>(i));
-    const Attribution attribution(problem, slack_, options_.threads);
-    const Candidate recalibrated = attribution.fit(all, {}, &candidates.front());
-    result_.recalibrated =
-        augmented(model_, recalibrated.explanation, recalibrated.list, recalibrated.fit.at);
+    result_.recalibrated = attempt.recalibrated;
     if (named) result_.augmented = fitted;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     score(result_, model_, full, held_out_inputs_, fitted, options_, catalogue_);
+    note_recalibration(result_);
+    if (named && conclusion.leaves_a_rest)
+      result_.remaining =
+          remaining(result_, model_.own ? Localisation() : localise(result_.augmented, train_recordings_));
     if (named) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)
@@ -356,7 +435,6 @@ private:
   const Model model_;
   const Options options_;
   const Catalogue& catalogue_;
-  Slack slack_;
   Diagnosis result_;
   std::vector<Recording> train_recordings_, held_out_recordings_;
   std::vector<Inputs> train_inputs_, held_out_inputs_;

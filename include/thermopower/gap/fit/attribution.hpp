@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/fit/fitter.hpp>
+#include <thermopower/gap/fit/signal_sums.hpp>
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 
@@ -14,44 +15,33 @@
 
 namespace thermopower::gap {
 
-/// Squared residuals by signal, in units of the noise.
-struct SignalSums {
-  std::array<double, signal_count> squares{};  ///< sum of squares, indexed by Signal
-  std::array<double, signal_count> samples{};  ///< how many were summed, indexed by Signal
-
-  /// Mean square of a signal; 0 without samples.
-  double mean(std::size_t signal) const {
-    return samples[signal] > 0.0 ? squares[signal] / samples[signal] : 0.0;
-  }
-};
-
 /// An explanation with its fit and what speaks for it.
 struct Candidate {
   Explanation explanation;       ///< the causes it consists of
   std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
   FitResult fit;                 ///< on training data, in the coordinates of `list`
   SignalSums train;              ///< residuals of the fit where it was fitted
-  SignalSums held_out;           ///< and where it was not; empty until somebody looks
-  double deviance = 0.0;         ///< twice the negative log evidence, without the shared constant
-  double probability = 0.0;      ///< among the candidates weighed together, 0..1
-  bool on_bounds = false;        ///< a cause ended on the bounds of its range, and is none
+  SignalSums held_out;       ///< as a gap is judged, in units of the noise floor; empty until somebody looks
+  int hidden_starts = 0;     ///< starts that the held-out score fitted, because nobody measures them
+  double deviance = 0.0;     ///< twice the negative log evidence, without the shared constant
+  double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered
+  double probability = 0.0;  ///< among the candidates weighed together, 0..1
+  bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
 };
 
 /// Fits explanations to training data.
 class Attribution {
 public:
   /// @param problem  the training data and the model; must outlive this object
-  /// @param slack    how far constants may move, free or released
   /// @param threads  for `fit_all`, 1 or more; the result does not depend on it
-  Attribution(const FitProblem& problem, const Slack& slack, unsigned threads)
-      : problem_(problem), slack_(slack), threads_(threads) {}
+  Attribution(const FitProblem& problem, unsigned threads) : problem_(problem), threads_(threads) {}
 
   /// Fits one explanation from all its starts; `near` is a fit of part of it to begin from.
   Candidate fit(const Explanation& explanation, const FitOptions& options,
                 const Candidate* near = nullptr) const {
     Candidate candidate;
     candidate.explanation = explanation;
-    candidate.list = coordinates(*problem_.model, explanation, slack_);
+    candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
     if (starts.size() > 1) {
@@ -71,7 +61,7 @@ public:
       candidate.fit = fitter.minimise(starts.front(), options);
     }
     free_from_trap(fitter, candidate, options);
-    candidate.train = sums(candidate, problem_, &candidate.fit.starts);
+    candidate.train = sums(candidate, problem_, candidate.fit.starts);
     return candidate;
   }
 
@@ -81,7 +71,7 @@ public:
     const bool same = candidate.fit.starts.size() == problem_.segments.size();
     candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
     if (options.iterations > 2) free_from_trap(fitter, candidate, options);
-    candidate.train = sums(candidate, problem_, &candidate.fit.starts);
+    candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
   /// What is fitted to.
@@ -100,7 +90,7 @@ public:
   double promise(const Candidate& near, const Explanation& together) const {
     Candidate candidate;
     candidate.explanation = together;
-    candidate.list = coordinates(*problem_.model, together, slack_);
+    candidate.list = coordinates(*problem_.model, together, *problem_.catalogue);
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     double best = 1e300;
     for (const Eigen::VectorXd& start : start_points(candidate, &near))
@@ -108,24 +98,12 @@ public:
     return best;
   }
 
-  /// Squared residuals of a candidate on a problem; with `starts` as given, else each segment's best.
+  /// Squared residuals of a candidate on a problem, segments starting as given.
   static SignalSums sums(const Candidate& candidate, const FitProblem& problem,
-                         const std::vector<Start>* starts) {
-    std::vector<Start> own;
-    if (starts == nullptr) {
-      own = best_starts(candidate, problem);
-      starts = &own;
-    }
+                         const std::vector<Start>& starts) {
+    const auto by_signal = residuals(candidate, problem, starts, nullptr);
     SignalSums result;
-    problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, *starts, false,
-                     [&](std::size_t, const FitProblem::Residuals& residuals) {
-                       for (Eigen::Index i = 0; i < residuals.value.size(); ++i) {
-                         const auto at =
-                             static_cast<std::size_t>(residuals.signal[static_cast<std::size_t>(i)]);
-                         result.squares[at] += residuals.value[i] * residuals.value[i];
-                         result.samples[at] += 1.0;
-                       }
-                     });
+    for (std::size_t i = 0; i < signal_count; ++i) result.set(i, by_signal[i], 1.0);
     return result;
   }
 
@@ -147,19 +125,41 @@ public:
     return result;
   }
 
-  /// The starts that fit the segments of a problem best while the parameters stay.
-  static std::vector<Start> best_starts(const Candidate& candidate, const FitProblem& problem) {
-    std::vector<Coordinate> held = candidate.list;
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      held[i].lower = held[i].upper = candidate.fit.at[static_cast<Eigen::Index>(i)];
-    }
-    Fitter fitter(problem, candidate.explanation, held);
-    FitOptions options;
-    options.iterations = 4;
-    return fitter.minimise(candidate.fit.at, options).starts;
+  /// Fits a candidate once more from where another one ended: its constants, and those of its parameters that
+  /// the candidate has too, under their own names or, between effects of one submodel, under the same one. Keeps
+  /// the better of both fits.
+  void refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options) const {
+    Eigen::VectorXd from = candidate.fit.at;
+    for (std::size_t i = 0; i < candidate.list.size(); ++i)
+      for (std::size_t k = 0; k < other.list.size(); ++k)
+        if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k))
+          from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.at[static_cast<Eigen::Index>(k)],
+                                                          candidate.list[i].lower, candidate.list[i].upper);
+    const std::vector<Start>* starts =
+        other.fit.starts.size() == problem_.segments.size() ? &other.fit.starts : nullptr;
+    FitResult again = Fitter(problem_, candidate.explanation, candidate.list).minimise(from, options, starts);
+    if (!(again.cost < candidate.fit.cost)) return;
+    candidate.fit = std::move(again);
+    candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
 private:
+  /// Whether two coordinates are parameters of one name in effects of one submodel.
+  static bool same_parameter(const Candidate& one, std::size_t i, const Candidate& other, std::size_t k) {
+    const auto submodel = [](const Candidate& of, std::size_t index) {
+      const std::string& name = of.list[index].name;
+      for (const CatalogueEntry* entry : of.explanation.effects)
+        if (name.compare(0, entry->info.id.size() + 1, entry->info.id + ".") == 0)
+          return &entry->info.submodel;
+      return static_cast<const decltype(EffectInfo::submodel)*>(nullptr);
+    };
+    const auto bare = [](const std::string& name) { return name.substr(name.rfind('.')); };
+    const auto first = submodel(one, i), second = submodel(other, k);
+    return first != nullptr && second != nullptr && *first == *second &&
+           bare(one.list[i].name) == bare(other.list[k].name) &&
+           one.list[i].logarithmic == other.list[k].logarithmic;
+  }
+
   /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
   /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
   /// that ended shortly before it begins once more there.
@@ -234,7 +234,6 @@ private:
   }
 
   const FitProblem& problem_;
-  Slack slack_;
   unsigned threads_;
 };
 

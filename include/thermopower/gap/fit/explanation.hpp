@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/fit/prior.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/plant/plant.hpp>
 
@@ -22,12 +23,12 @@ struct Coordinate {
   double lower = 0.0;                   ///< bound, in the fit's coordinate
   double upper = 0.0;                   ///< bound, in the fit's coordinate
   double start = 0.0;                   ///< where a fit begins, in the fit's coordinate
-  double prior_sd = 0.0;                ///< of a Gaussian around 0; 0: none
+  Prior prior = {};                     ///< around 0: what is known of a constant
   bool logarithmic = false;             ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
 };
 
-/// A set of causes: effects of the catalogue that act, and constants that are off by more than their slack.
+/// A set of causes: effects of the catalogue that act, and constants that are off by more than is known of them.
 struct Explanation {
   std::vector<const CatalogueEntry*> effects;  ///< not owned: the catalogue must outlive it
   std::vector<int> released;                   ///< indices into Model::calibrated()
@@ -66,7 +67,7 @@ struct Explanation {
     return both;
   }
 
-  /// Number of parameters of its own, the constants' slack not counted.
+  /// Number of parameters of its own, the other constants not counted.
   int parameter_count() const {
     std::size_t count = released.size();
     for (const CatalogueEntry* entry : effects) count += entry->info.parameters.size();
@@ -74,26 +75,45 @@ struct Explanation {
   }
 };
 
-/// How far constants may move.
-struct Slack {
-  double fraction = 0.04;       ///< of a constant that is not a cause
-  double released_factor = 10;  ///< of a constant that is one
-};
+/// Narrows the bounds of a constant that is a parameter of one of the model's own effects to that effect's.
+inline void stay_within_effect(const Model& model, const Catalogue& catalogue,
+                               const CalibratedConstant& constant, Coordinate& coordinate) {
+  const std::string id = constant.effect();
+  const CatalogueEntry* entry = id.empty() ? nullptr : catalogue.find(id);
+  if (entry == nullptr) return;
+  for (const Parameter& parameter : entry->info.parameters) {
+    if (parameter.name != constant.fields.front()) continue;
+    const double value = model.get(constant.block + "." + parameter.name);
+    const auto factor = [&](double bound, double otherwise) {
+      return bound / value > 0.0 ? std::log(bound / value) : otherwise;
+    };
+    const double one = factor(parameter.lower, coordinate.lower),
+                 other = factor(parameter.upper, coordinate.upper);
+    if (value > 0.0) coordinate.lower = std::max(coordinate.lower, std::min(one, 0.0));
+    if (value > 0.0) coordinate.upper = std::min(coordinate.upper, std::max(other, 0.0));
+    if (value < 0.0) coordinate.upper = std::min(coordinate.upper, std::max(one, 0.0));
+  }
+}
 
 /// The coordinates of an explanation: first one per constant (logarithm of its factor), then its effects'
-/// parameters.
+/// parameters. A constant that is a cause has no prior; the others have that of what is known of them, and in
+/// the empty explanation they also stay within it: further away, the constant is the cause.
+/// @param catalogue  knows the bounds of the model's own effects
 inline std::vector<Coordinate> coordinates(const Model& model, const Explanation& explanation,
-                                           const Slack& slack) {
+                                           const Catalogue& catalogue) {
   std::vector<Coordinate> list;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
     const bool free = std::find(explanation.released.begin(), explanation.released.end(), index) !=
                       explanation.released.end();
-    const double within = constant.has_slack ? -std::log1p(-slack.fraction) : 0.0;
-    const double reach = free ? std::log(slack.released_factor) : within;
-    // The prior only keeps combinations that no recording can tell (a common factor of all torques) in place.
-    list.push_back(
-        {"calibration." + constant.id, "1", -reach, reach, 0.0, free ? 0.0 : std::max(reach, 1e-9), true});
+    const double sd = model.uncertainty_of(constant);
+    const double reach = explanation.size() > 0 ? std::log(known_constants.farthest_factor)
+                         : constant.has_slack   ? known_constants.within * sd
+                                                : 0.0;
+    list.push_back({"calibration." + constant.id, "1", -reach, reach, 0.0, {}, true, {}});
+    if (!free) list.back().prior.sd = sd;
+    if (!free && !constant.has_slack) list.back().lower = list.back().upper = 0.0;
+    stay_within_effect(model, catalogue, constant, list.back());
     ++index;
   }
   for (const CatalogueEntry* entry : explanation.effects)
@@ -104,7 +124,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
                       to(parameter.lower),
                       to(parameter.upper),
                       to(parameter.starts.front()),
-                      0.0,
+                      {},
                       parameter.logarithmic,
                       {}});
       if (parameter.standard) list.back().standard = to(*parameter.standard);

@@ -22,6 +22,7 @@ struct FitProblem {
   const Catalogue* catalogue = nullptr;                ///< that knows the model's own effects, not owned
   std::vector<Segment> segments;                       ///< simulated one after the other
   std::array<double, signal_count> sigma{1, 1, 1, 1};  ///< noise of each signal
+  double correlation = 1.0;                            ///< samples that count as one, 1 or more
 
   /// Residuals of one segment in units of the noise, with their derivatives.
   struct Residuals {

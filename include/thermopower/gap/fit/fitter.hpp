@@ -22,7 +22,9 @@ struct FitResult {
   std::vector<Start> starts;    ///< of every segment
   double chi2 = 1e300;          ///< data only
   double cost = 1e300;          ///< data and priors
-  Eigen::MatrixXd information;  ///< inverse covariance of the coordinates, starts projected out
+  Eigen::MatrixXd information;  ///< half the cost's curvature in the coordinates, starts projected out
+  Eigen::MatrixXd scatter;      ///< of the gradients of contiguous blocks of the data, summed over the blocks
+  int blocks = 0;               ///< how many blocks that were
   Eigen::Index samples = 0;     ///< residuals that counted
   int iterations = 0;           ///< steps taken; fewer than allowed: converged
   std::vector<bool> at_bound;   ///< by coordinate
@@ -33,11 +35,22 @@ struct FitResult {
 /// The segments' starts are eliminated exactly (Schur complement), so the size of the linear system is the
 /// number of coordinates, whatever the number of windows. A step never leaves the bounds; coordinates whose
 /// gradient pushes against their bound are held there.
+///
+/// Residuals that are correlated, and larger than the noise because the model is wrong, say less than their
+/// number: priors count for as many samples as make one, times the mean square. A model that misses a cause
+/// therefore does not bend its constants far to make up for a little of it.
 class Fitter {
 public:
   /// Keeps references to its arguments: they must outlive this object.
   Fitter(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list)
-      : problem_(problem), explanation_(explanation), list_(list) {}
+      : problem_(problem), explanation_(explanation), list_(list) {
+    Eigen::VectorXd from(static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i) from[static_cast<Eigen::Index>(i)] = list[i].start;
+    const auto rollout = problem.plant().rollout(*problem.model, *problem.catalogue,
+                                                 point_of(*problem.model, explanation, list, from), {},
+                                                 SimulationMode::free_running);
+    for (const Segment& segment : problem.segments) hidden_.push_back(rollout->hidden_starts(segment));
+  }
 
   /// Minimises from a point.
   FitResult minimise(const Eigen::VectorXd& from, const FitOptions& options = {},
@@ -68,8 +81,14 @@ public:
       }
       if (!accepted || small_steps >= 1) break;
     }
+    const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
+    scatter_.setZero(count, count);
+    blocks_ = 0;
     linearise(best);
     best.information = information_;
+    best.scatter = std::move(scatter_);
+    best.blocks = blocks_;
+    scatter_.resize(0, 0);
     for (Eigen::Index i = 0; i < best.at.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
       const double margin = 1e-3 * (one.upper - one.lower);
@@ -114,13 +133,14 @@ private:
                         samples_ += residuals.value.size();
                         add_segment(i, residuals, at.starts[i], at.chi2, at.cost);
                       });
+    const double mean = samples_ > 0 ? at.chi2 / static_cast<double>(samples_) : 1.0;
+    per_prior_ = std::max(mean, 1.0) * problem_.correlation;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double sd = list_[static_cast<std::size_t>(i)].prior_sd;
-      if (!(sd > 0.0)) continue;
-      const double weight = 1.0 / (sd * sd);
+      const Prior& prior = list_[static_cast<std::size_t>(i)].prior;
+      const double weight = per_prior_ * prior.weight(at.at[i]);
       information_(i, i) += weight;
       gradient_[i] += weight * at.at[i];
-      at.cost += weight * at.at[i] * at.at[i];
+      at.cost += per_prior_ * prior.cost(at.at[i]);
     }
     at.cost += at.chi2;
     projected_cost_ += at.cost;
@@ -148,6 +168,26 @@ private:
     chi2 += residuals.value.squaredNorm();
     prior += (weight.array() * start.array().square()).sum();
     projected_cost_ -= part.gradient.dot(part.inverse * part.gradient);
+    if (scatter_.size() > 0) add_scatter(residuals, part);
+  }
+
+  /// Adds the gradients of a segment's blocks to the scatter. A segment of an axis is one block; a long run has
+  /// several.
+  void add_scatter(const FitProblem::Residuals& residuals, const Eliminated& part) {
+    constexpr Eigen::Index longest =
+        120;  // rows that count of a fit of some thousand: twenty blocks and more
+    const Eigen::Index n = static_cast<Eigen::Index>(list_.size()), rows = residuals.value.size();
+    const Eigen::Index parts = (rows + longest - 1) / longest;
+    for (Eigen::Index k = 0; k < parts; ++k) {
+      const Eigen::Index begin = rows * k / parts, count = rows * (k + 1) / parts - begin;
+      const auto jacobian = residuals.jacobian.middleRows(begin, count);
+      const auto value = residuals.value.segment(begin, count);
+      const Start by_start = jacobian.rightCols(jacobian.cols() - n).transpose() * value;
+      const Eigen::VectorXd gradient =
+          jacobian.leftCols(n).transpose() * value - part.coupling.transpose() * (part.inverse * by_start);
+      scatter_.noalias() += gradient * gradient.transpose();
+      ++blocks_;
+    }
   }
 
   FitResult stepped(const FitResult& from, double damping) const {
@@ -207,6 +247,10 @@ private:
     to.starts = from.starts;
     for (std::size_t i = 0; i < to.starts.size(); ++i)
       to.starts[i] -= eliminated_[i].inverse * (eliminated_[i].gradient + eliminated_[i].coupling * change);
+    // A start that nobody measures stays among those that a body can have.
+    for (std::size_t i = 0; i < to.starts.size(); ++i)
+      for (const HiddenStart& one : hidden_[i])
+        to.starts[i][one.coordinate] = std::clamp(to.starts[i][one.coordinate], -one.farthest, one.farthest);
     return to;
   }
 
@@ -220,7 +264,7 @@ private:
                         total += (weight.array() * starts[i].array().square()).sum();
                       });
     for (std::size_t i = 0; i < list_.size(); ++i)
-      if (list_[i].prior_sd > 0.0) total += std::pow(at[static_cast<Eigen::Index>(i)] / list_[i].prior_sd, 2);
+      total += per_prior_ * list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
     return total + chi2;
   }
 
@@ -232,6 +276,10 @@ private:
   std::vector<Eliminated> eliminated_;
   Eigen::Index samples_ = 0;
   double projected_cost_ = 0.0;
+  double per_prior_ = 1.0;                        ///< samples that a prior counts for
+  std::vector<std::vector<HiddenStart>> hidden_;  ///< of every segment
+  Eigen::MatrixXd scatter_;                       ///< empty: not asked for
+  int blocks_ = 0;
 };
 
 }  // namespace thermopower::gap

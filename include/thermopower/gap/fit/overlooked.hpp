@@ -13,7 +13,7 @@ namespace thermopower::gap {
 /// where those that were looked at speak for all. Something may happen outside of them: a limit that is reached
 /// in some windows alone.
 ///
-/// @param part       what the explanation was fitted to, or judged on
+/// @param part       what the explanation was fitted to
 /// @param all        the segments that `part` has some of, in the same order
 /// @param best       the explanation
 /// @param horizon_s  length of the windows of the comparison: short, so that an unknown start does little

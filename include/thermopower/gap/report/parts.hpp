@@ -3,26 +3,59 @@
 #pragma once
 
 #include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 namespace thermopower::gap {
 
-/// Values and intervals of an explanation's own parameters. The intervals widen with the residuals' level and
-/// correlation, and are those of the fit's coordinate carried over.
+/// Covariance of a fit's coordinates, and the quantile that makes 95 % intervals of it.
+struct Covariance {
+  Eigen::MatrixXd of;      ///< in the fit's coordinates
+  double quantile = 1.96;  ///< two-sided, 95 %
+};
+
+/// The covariance that the data's blocks show (the sandwich of White 1982, clustered): how much the pull on the
+/// parameters differs between contiguous blocks, whatever the reason, noise, its correlation, or a model that is a
+/// little wrong. At least that of the noise alone. With few blocks the noise's, widened with the residuals' level
+/// and correlation.
+inline Covariance covariance_of(const Candidate& candidate, const Weight& weight) {
+  constexpr int fewest_blocks = 12;      // below, the blocks themselves say little
+  constexpr double block_samples = 120;  // of a long run, as the fitter cuts it
+  const Eigen::MatrixXd inverse = candidate.fit.information.completeOrthogonalDecomposition().pseudoInverse();
+  double inflation = 1.0, longest = 1.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (candidate.train.samples[i] > 0.0) {
+      inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
+      longest = std::max(longest, weight.correlation[i]);
+    }
+  const double blocks = candidate.fit.blocks, free = blocks - static_cast<double>(candidate.list.size());
+  Covariance covariance;
+  if (candidate.fit.blocks < fewest_blocks || free < 0.5 * fewest_blocks) {
+    covariance.of = inverse * inflation;
+    return covariance;
+  }
+  // Neighbouring blocks of long correlation are alike: they count as one in part.
+  covariance.of =
+      inverse * candidate.fit.scatter * inverse * (blocks / free * (1.0 + longest / block_samples));
+  for (Eigen::Index i = 0; i < covariance.of.rows(); ++i)
+    covariance.of(i, i) = std::max(covariance.of(i, i), inverse(i, i));
+  const double z = 1.96;
+  covariance.quantile = z + (z * z * z + z) / (4.0 * free);  // Student's t (Cornish & Fisher)
+  return covariance;
+}
+
+/// Values and intervals of an explanation's own parameters. The intervals are those of the fit's coordinate
+/// carried over.
 inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,
                                                 const Weight& weight) {
-  double inflation = 1.0;
-  for (std::size_t i = 0; i < signal_count; ++i)
-    if (candidate.train.samples[i] > 0.0)
-      inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
-  const Eigen::MatrixXd covariance =
-      candidate.fit.information.completeOrthogonalDecomposition().pseudoInverse() * inflation;
+  const Covariance covariance = covariance_of(candidate, weight);
   const std::size_t constants = model.calibrated().size();
   std::vector<ParameterEstimate> list;
   for (std::size_t i = 0; i < candidate.list.size(); ++i) {
@@ -32,7 +65,8 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                   static_cast<int>(i)) != candidate.explanation.released.end();
     if (i < constants && !released) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
-    const double value = candidate.fit.at[at], reach = 1.96 * std::sqrt(std::max(covariance(at, at), 0.0));
+    const double value = candidate.fit.at[at],
+                 reach = covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
     const auto shown = [&](double x) { return one.logarithmic ? std::exp(x) : x; };
     ParameterEstimate estimate;
     estimate.name = i < constants ? one.name + ".scale" : one.name;
@@ -51,7 +85,8 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return candidates[a].deviance < candidates[b].deviance;
+    const bool first = candidates[a].held_out.any(), second = candidates[b].held_out.any();
+    return first != second ? first : candidates[a].deviance < candidates[b].deviance;
   });
   const double least = candidates[order.front()].deviance;
   std::vector<Eigen::VectorXd> signatures(order.size());
@@ -74,7 +109,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
       held_squares += one.held_out.squares[k];
     }
     entry.score = samples > 0.0 ? squares / samples : 0.0;
-    entry.held_out_ratio = held > 0.0 ? std::sqrt(held_squares / held) : 1.0;
+    entry.held_out_ratio = held > 0.0 && one.held_out.any() ? std::sqrt(held_squares / held) : missing;
     entry.refused = entry.held_out_ratio > 1.0;
     entry.absorbed = one.explanation.size() > 0 && squares > 0.99 * whole;
     entry.at_bound = one.on_bounds;
@@ -112,11 +147,96 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   }
   for (std::size_t index : conclusion.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
-  for (const CalibratedConstant& constant : model.calibrated())
-    if (constant.fields.size() == 1) {
-      const std::string name = constant.block + "." + constant.fields.front();
-      result.constants.push_back({constant.id, model.get(name), fitted.get(name)});
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    const std::string name = constant.block + "." + constant.fields.front();
+    const double sd = model.uncertainty_of(constant), moved = std::log(fitted.get(name) / model.get(name));
+    if (constant.fields.size() == 1 && std::abs(moved) > known_constants.within * sd)
+      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd});
+  }
+}
+
+/// Where constants alone were fitted, those that moved by more than is known of them are its causes: one that was
+/// released and stayed is none, and one that was not and went is one. Explanations that turn out to be the same,
+/// or to be empty, are dropped, the worse one.
+inline void name_moved_constants(std::vector<Candidate>& candidates, const Model& model) {
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  std::vector<Candidate> kept{std::move(candidates.front())};
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    Candidate& one = candidates[i];
+    if (one.explanation.effects.empty()) {
+      one.explanation.released.clear();
+      for (std::size_t k = 0; k < constants.size(); ++k)
+        if (std::abs(one.fit.at[static_cast<Eigen::Index>(k)]) >
+            known_constants.within * model.uncertainty_of(constants[k]) * (1.0 + 1e-9))
+          one.explanation.released.push_back(static_cast<int>(k));
+      if (one.explanation.released.empty()) continue;
+      const auto same = std::find_if(kept.begin(), kept.end(), [&](const Candidate& other) {
+        return other.explanation.effects.empty() && other.explanation.released == one.explanation.released;
+      });
+      if (same != kept.end()) {
+        if (Search::fitness(one) < Search::fitness(*same)) *same = std::move(one);
+        continue;
+      }
     }
+    kept.push_back(std::move(one));
+  }
+  candidates = std::move(kept);
+}
+
+/// Says so where refitted constants do worse on held-out data than the configured ones.
+inline void note_recalibration(Diagnosis& result) {
+  for (const GapScore& gap : result.gap)
+    if (gap.recalibrated > 1.05 * gap.before && gap.before > 0.0) {
+      if (!result.recalibration.empty()) result.recalibration += "; ";
+      result.recalibration += std::string(to_string(gap.signal)) + ": refitted constants score " +
+                              std::to_string(gap.recalibrated / gap.before) +
+                              " times the held-out error of the configured ones";
+    }
+  if (!result.recalibration.empty())
+    result.recalibration += ": they made up for something on the training data that is not a constant";
+}
+
+/// What the named causes leave. @param left  of training data, by the augmented model
+inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
+  Remaining rest;
+  double worst = 0.0;
+  for (const GapScore& gap : result.gap) {
+    const double times = gap.after / std::max(gap.noise_floor, 1e-12);
+    if (!(times > worst)) continue;
+    worst = times;
+    rest.signal = gap.signal;
+    rest.times_floor = times;
+    const double floor = gap.noise_floor * gap.noise_floor;
+    const double whole = std::max(gap.before * gap.before - floor, 1e-30);
+    rest.share = std::clamp(std::sqrt(std::max(gap.after * gap.after - floor, 0.0) / whole), 0.0, 1.0);
+  }
+  if (!left.where.empty()) {
+    rest.submodel = left.where.front().submodel;
+    rest.regime = left.where.front().regime;
+  }
+  for (const SignalSeries& series : result.series) {
+    if (series.signal != rest.signal || series.t_s.size() < 3) continue;
+    std::vector<double> errors, steps;
+    for (Eigen::Index row = 0; row < series.t_s.size(); ++row) {
+      const double error = series.augmented[row] - series.measured[row];
+      if (std::isfinite(error)) errors.push_back(error);
+      if (row > 0) steps.push_back(series.t_s[row] - series.t_s[row - 1]);
+    }
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                     steps.end());
+    const double alike_s = 0.5 * correlation_samples(errors) * steps[steps.size() / 2];
+    double mean = 0.0, square = 0.0;
+    for (double error : errors) mean += error, square += error * error;
+    mean /= std::max<double>(1.0, static_cast<double>(errors.size()));
+    square /= std::max<double>(1.0, static_cast<double>(errors.size()));
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "errors stay alike for about %.2g s; %.0f %% of them is a constant offset of %.2g %s",
+                  alike_s, 100.0 * mean * mean / std::max(square, 1e-30), mean, series.unit.c_str());
+    rest.looks = text;
+    break;
+  }
+  return rest;
 }
 
 /// The coarsest quantum of a signal among recordings; 0 where none has it.

@@ -44,6 +44,7 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
   const auto take = [&](std::size_t index, const Readings& readings) {
     const Segment& segment = segments[index];
     const Inputs& inputs = *segment.inputs;
+    if (segment.warm_up) return;
     const std::vector<Signal>& signals = plant.signals(segment);
     for (std::size_t k = 0; k < signals.size(); ++k) {
       if (!inputs.judged(signals[k])) continue;

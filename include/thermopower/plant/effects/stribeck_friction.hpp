@@ -26,6 +26,7 @@ struct StribeckFriction {
                  .unit("rad/s")
                  .within(0.005, 100.0)
                  .logarithmic()
+                 .exceeds("transition_rad_per_s")
                  .starts({0.1, 0.5, 2.0}),
              friction_transition(transition)},
             {Need::axis_model},

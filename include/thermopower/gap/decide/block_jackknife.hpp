@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/signal_sums.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace thermopower::gap {
+
+/// A statistic of the data's blocks with its standard error.
+struct Jackknifed {
+  double value = 0.0;           ///< with all blocks
+  double standard_error = 0.0;  ///< from leaving out one block after another
+  std::size_t blocks = 0;       ///< how many there were
+};
+
+/// Blocks to merge so that each holds several samples that count.
+/// @param samples      in total
+/// @param correlation  samples that count as one
+inline std::size_t blocks_to_merge(double samples, double correlation) {
+  constexpr std::size_t coarsest = 4;  // leaves six blocks
+  std::size_t merge = 1;
+  while (merge < coarsest &&
+         samples / correlation < 2.0 * static_cast<double>(SignalSums::block_count / merge))
+    merge *= 2;
+  return merge;
+}
+
+/// Delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11) of a statistic of two models' residuals.
+/// @param merge      neighbouring blocks taken as one, a divisor of SignalSums::block_count
+/// @param statistic  (a, b) -> value, of sums over some of the blocks
+template <class Statistic>
+Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t merge,
+                           Statistic&& statistic) {
+  Jackknifed result;
+  result.value = statistic(a, b);
+  std::vector<double> left_out;
+  for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
+    SignalSums rest_a = a, rest_b = b;
+    bool any = false;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      for (std::size_t k = first; k < first + merge; ++k) {
+        rest_a.squares[i] -= a.block_squares[i][k];
+        rest_a.samples[i] -= a.block_samples[i][k];
+        rest_b.squares[i] -= b.block_squares[i][k];
+        rest_b.samples[i] -= b.block_samples[i][k];
+        any = any || a.block_samples[i][k] > 0.0;
+      }
+    if (any) left_out.push_back(statistic(rest_a, rest_b));
+  }
+  result.blocks = left_out.size();
+  if (left_out.size() < 2) return result;
+  double mean = 0.0, square = 0.0;
+  for (double one : left_out) mean += one / static_cast<double>(left_out.size());
+  for (double one : left_out) square += (one - mean) * (one - mean);
+  const double count = static_cast<double>(left_out.size());
+  result.standard_error = std::sqrt((count - 1.0) / count * square);
+  return result;
+}
+
+}  // namespace thermopower::gap

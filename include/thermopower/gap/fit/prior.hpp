@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <cmath>
+
+namespace thermopower::gap {
+
+/// What is taken to be known of a model's constants.
+struct KnownConstants {
+  /// Standard deviation of a constant as a share of its value, where the model file states none. Data sheets
+  /// and careful fits are that good.
+  double uncertainty = 0.05;
+  /// In standard deviations: a constant that moved by more is listed, and by more than that it does not move
+  /// where nothing else explains it. 95 % of a normal distribution.
+  double within = 2.0;
+  /// Degrees of freedom of Student's t. With 2 a constant that is off by 10 % costs 1.6 nats, by 30 % 4.1 and by
+  /// a factor of 2 6.9: less than data that insist, more than an effect with one parameter that does as well.
+  double degrees_of_freedom = 2.0;
+  /// A constant further away than this factor is a wrong unit, or stands for something else.
+  double farthest_factor = 10.0;
+};
+
+/// The values in force.
+inline constexpr KnownConstants known_constants{};
+
+/// What is known of a coordinate before any data: Student's t around 0. Near the centre it is a normal
+/// distribution; far away its price grows with the logarithm only, so that data which insist can move it.
+struct Prior {
+  double sd = 0.0;  ///< scale, in the coordinate; 0: nothing is known, and nothing is paid
+
+  /// Twice the negative logarithm of its density, 0 at the centre.
+  double cost(double at) const {
+    if (!(sd > 0.0)) return 0.0;
+    const double degrees = known_constants.degrees_of_freedom;
+    return (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd));
+  }
+
+  /// The weight w for which w at^2 / 2 has the gradient of half the cost: what a normal distribution of the same
+  /// pull would have for an inverse variance.
+  double weight(double at) const {
+    if (!(sd > 0.0)) return 0.0;
+    const double degrees = known_constants.degrees_of_freedom;
+    return (degrees + 1.0) / (degrees * sd * sd + at * at);
+  }
+};
+
+}  // namespace thermopower::gap
