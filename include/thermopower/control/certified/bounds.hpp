@@ -112,6 +112,21 @@ struct CertifiedUse {
   }
 };
 
+/// Temperatures measured at one instant since the last plan; NaN where nothing was measured.
+struct CertifiedMeasurement {
+  float winding_C;  ///< Never below the truth at that instant.
+  float body_C;     ///< Never below the truth at that instant.
+
+  /// Whether there is one. What is below -100 degC is no measurement.
+  bool is_any() const noexcept { return winding_C >= -100.0f || body_C >= -100.0f; }
+  /// The lower of a measurement and what is known without it. @param known  a bound throughout the step
+  static detail::KelvinUnits units(float measured_C, detail::KelvinUnits known) noexcept {
+    if (!(measured_C >= -100.0f)) return known;
+    const detail::KelvinUnits measured = detail::celsius_units(measured_C) + 1;
+    return measured < known ? measured : known;
+  }
+};
+
 /// Carries a step's length through the network's two time constants: the part of the way to its final value
 /// that a node goes.
 struct CertifiedTravel {

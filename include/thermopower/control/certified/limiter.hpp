@@ -133,9 +133,10 @@ public:
     float headroom_W;        ///< Heat that could be added to the power granted.
     float seconds_to_limit;  ///< At the power granted, in the worst case; infinite when no limit is ever
                              ///< reached.
-    bool is_certified;  ///< The bounds are where the least power keeps them below the limits for ever. False
-                        ///< only after a start that was too hot already, or a late step; the guarantee then
-                        ///< begins when this turns true.
+    bool
+        is_certified;  ///< The last plan came in time, and the bounds are where the least power keeps them below
+    ///< the limits for ever. False after a start that was too hot already, and at a late plan;
+    ///< the guarantee begins when this turns true.
     uint16_t late_steps;  ///< Times longer than `hold_s` from plan to plan: the guarantee did not cover them.
                           ///< Stops at 65535.
   };
@@ -170,9 +171,17 @@ public:
   void start(const Bounds& bounds) noexcept {
     start(bounds.winding_upper_C, bounds.body_upper_C);
   }
-  /// Lowers the bounds to a measurement, for instance an observer's estimate plus its uncertainty.
-  /// @param winding_C, body_C  never below the truth; NaN where nothing was measured
-  void tighten(float winding_C, float body_C) noexcept { network_.tighten(winding_C, body_C); }
+  /// Lowers the bounds to what was measured at one instant since the last step: call it before the step or after
+  /// the one before, the result is the same. The next plan takes it for measured at the worst instant of the time
+  /// that it covers. Of several calls the last counts, because two readings of different instants prove nothing
+  /// together; a fault whose time is not known (`cut()`) forgets it.
+  /// @param winding_upper_C, body_upper_C  never below the truth: the reading plus its largest error; with an
+  ///                                       observer's estimate plus k sigmas the guarantee holds as often as that
+  ///                                       is above the truth. NaN where nothing was measured
+  void tighten(float winding_upper_C, float body_upper_C) noexcept {
+    measured_.winding_C = winding_upper_C;
+    measured_.body_C = body_upper_C;
+  }
 
   /// Says that a larger power than the one granted may have acted since the last step; call it before `step()`.
   void acted(uint8_t power) noexcept {
@@ -219,6 +228,7 @@ public:
   /// and nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     if (!is_error(config_error_)) {
+      measured_.winding_C = measured_.body_C = detail::not_a_number();
       if (pending() > 0.0f) advance();
       network_.advance_unknown(acting_);
     }
@@ -252,7 +262,9 @@ public:
                          late_steps_};
     return state;
   }
-  bool is_certified() const noexcept { return network_.is_certified(); }   ///< As in State, without the rest.
+  bool is_certified() const noexcept {
+    return !is_late_ && network_.is_certified();
+  }                                                                        ///< As in State, without the rest.
   float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
 
@@ -281,7 +293,9 @@ private:
       travel_ = network_.travel(passed_s);
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
-    network_.advance(acted_, travel_);
+    network_.advance(acted_, travel_, measured_);
+    is_late_ = travel_.is_late;
+    measured_.winding_C = measured_.body_C = detail::not_a_number();
     pending_s_ = 0.0f;
     steps_ = 0;
     acted_ = 0;
@@ -351,6 +365,8 @@ private:
   ConfigError config_error_;
   uint8_t every_, turn_;
   CertifiedNode node_ = CertifiedNode::none;
+  bool is_late_ = false;                                                              // the last plan
+  CertifiedMeasurement measured_ = {detail::not_a_number(), detail::not_a_number()};  // since the last plan
   bool is_limiting_ = false;
 };
 

@@ -82,24 +82,24 @@ public:
     }
     node_.set(detail::celsius_units(winding_C > body_C ? winding_C : body_C) + 1);
   }
-  /// Lowers the bound to a measurement that is never below the truth; NaN changes nothing.
-  void tighten(float winding_C, float) noexcept {
-    if (winding_C >= -100.0f && winding_C < detail::celsius_from(node_.below()))
-      node_.set(detail::celsius_units(winding_C) + 1);
-  }
-
   /// Prepares a step length.
   Travel travel(float dt_s) const noexcept {
     const Travel travel = {CertifiedTravel::over(fastest_per_s_, slowest_per_s_, dt_s), dt_s > hold_s_};
     return travel;
   }
   /// Carries the bound over a step during which at most `count` acted.
-  void advance(uint8_t count, const Travel& step) noexcept {
+  /// @param measured  known of one instant of the step, whichever it was; the winding's counts
+  void advance(uint8_t count, const Travel& step, const CertifiedMeasurement& measured) noexcept {
     if (step.is_late)
       to_air_now_ = to_air_;  // the winding may have cooled, and drawn more, than one hold allows for
-    node_.raise(base_);
-    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
-    node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
+    const detail::KelvinUnits passed = carry(count, step);
+    if (!measured.is_any()) return;
+    const detail::UpperBound node = node_;
+    node_.set(measured.units(measured.winding_C, passed));
+    to_air_now_ = to_air_;  // colder than the bound for which the heat was taken
+    const detail::KelvinUnits since = carry(count, step);
+    if (since < node.above()) node_.set(since);
+    else node_ = node;
   }
   /// Carries the bound over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
@@ -155,6 +155,14 @@ public:
   }
 
 private:
+  // Returns the highest that the bound was at any instant of the step.
+  detail::KelvinUnits carry(uint8_t count, const Travel& step) noexcept {
+    node_.raise(base_);
+    const detail::KelvinUnits before = node_.above();
+    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
+    node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
+    return node_.above() > before ? node_.above() : before;
+  }
   detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }
 
   float fastest_per_s_, slowest_per_s_, hold_s_;

@@ -142,18 +142,6 @@ public:
     mean_.set(body + detail::part_up(winding_.above() - body, weight_));
   }
 
-  /// Lowers the bounds to a measurement that is never below the truth; NaN changes nothing.
-  void tighten(float winding_C, float body_C) noexcept {
-    if (winding_C >= -100.0f && winding_C < detail::celsius_from(winding_.below()))
-      winding_.set(detail::celsius_units(winding_C) + 1);
-    if (body_C >= -100.0f && body_C < detail::celsius_from(mean_.below())) {
-      const detail::KelvinUnits body = detail::celsius_units(body_C) + 1;
-      const detail::KelvinUnits mean =
-          winding_.above() > body ? body + detail::part_up(winding_.above() - body, weight_) : body;
-      if (mean < mean_.below()) mean_.set(mean);
-    }
-  }
-
   /// Prepares a step length; only a length that changed costs anything.
   Travel travel(float dt_s) const noexcept {
     const Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
@@ -163,25 +151,31 @@ public:
   }
 
   /// Carries both bounds over a step during which at most `count` acted. (17) to (20)
-  void advance(uint8_t count, const Travel& step) noexcept {
-    mean_.raise(base_ + least_mean_);
-    const detail::KelvinUnits soaked =
-        step.is_late ? soaked_late(count) : mean_.above() + gap_ + detail::times(soak_now_, count);
-    winding_.raise(soaked);
-    const detail::KelvinUnits before = winding_.above();
-    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
-    winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
-    const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
-    const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
-    mean_.raise(floor);
-    const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
-    mean_.go(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
+  /// @param measured  known of one instant of the step, whichever it was. (30)
+  void advance(uint8_t count, const Travel& step, const CertifiedMeasurement& measured) noexcept {
+    const Hull passed = carry(count, step);
+    if (!measured.is_any()) return;
+    const detail::UpperBound winding = winding_, mean = mean_;
+    const detail::KelvinUnits seen_winding = measured.units(measured.winding_C, passed.winding);
+    const detail::KelvinUnits seen_body = measured.units(measured.body_C, passed.mean);
+    const detail::KelvinUnits seen_mean =
+        seen_winding > seen_body ? seen_body + detail::part_up(seen_winding - seen_body, weight_) : seen_body;
+    winding_.set(seen_winding);
+    mean_.set(seen_mean < passed.mean ? seen_mean : passed.mean);
+    // Colder than the bounds for which the heat was taken, so the heat is the highest there is.
+    take(detail::whole_fraction(), detail::whole_fraction());
+    taken_winding_ = -1000L * 262144L;
+    const Hull since = carry(count, step);
+    if (since.winding < winding.above()) winding_.set(since.winding);
+    else winding_ = winding;
+    if (since.mean < mean.above()) mean_.set(since.mean);
+    else mean_ = mean;
   }
 
   /// Carries both bounds over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
-    advance(count, travel(hold_s_));
+    carry(count, travel(hold_s_));
     winding_.raise(winding.above());
     mean_.raise(mean.above());
   }
@@ -242,7 +236,7 @@ public:
   /// Upper bound of the winding.
   float winding_C() const noexcept { return detail::celsius_from(winding_.above()); }
   /// Upper bound of the body, now and after a cut.
-  float body_C() const noexcept { return detail::celsius_from(mean_.above()); }
+  float body_C() const noexcept { return detail::celsius_from(base_ + room().mean); }
 
   /// Time until a node reaches its limit at a constant count; infinite when none does. 0 when one is there.
   float seconds_to_limit(uint8_t count) const noexcept {
@@ -264,6 +258,31 @@ public:
   }
 
 private:
+  // The highest that each bound was at any instant of a step.
+  struct Hull {
+    detail::KelvinUnits winding, mean;
+  };
+
+  Hull carry(uint8_t count, const Travel& step) noexcept {
+    mean_.raise(base_ + least_mean_);
+    // A body that is colder than the air warms without any power: (6) holds from the raised start only.
+    mean_.raise(base_ + detail::part_up(winding_.above() - base_, weight_));
+    const detail::KelvinUnits soaked =
+        step.is_late ? soaked_late(count) : mean_.above() + gap_ + detail::times(soak_now_, count);
+    winding_.raise(soaked);
+    const detail::KelvinUnits before = winding_.above();
+    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
+    winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
+    const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
+    mean_.raise(floor);
+    const detail::KelvinUnits mean_start = mean_.above();
+    const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
+    mean_.go(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
+    const Hull passed = {hottest, mean_.above() > mean_start ? mean_.above() : mean_start};
+    return passed;
+  }
+
   // All of it above the base: the temperature that the least power would reach in the hottest air (11).
   struct Room {
     detail::KelvinUnits winding, mean, weighted, apart, winding_left, mean_left;
