@@ -125,9 +125,11 @@ public:
 protected:
   /// A model's constants times a point's factors, and how each moves with its factor.
   struct Constants {
-    std::vector<double> value, per_factor;
-    std::vector<int> index;  ///< of the factor in the point; -1: none
+    std::vector<double> value;       ///< in the constant's unit
+    std::vector<double> per_factor;  ///< derivative of each by its factor
+    std::vector<int> index;          ///< of the factor in the point; -1: none
   };
+  /// The constants of a model at a point.
   static Constants constants_of(const Model& model, const ParameterPoint& point) {
     Constants result;
     int next = 0;

@@ -321,7 +321,7 @@ private:
 ///                      const Effects& effects, Scalar* signals);
 ///
 /// constants, states, inputs and signals in the order of `info()`. Scalar is `double`, a Dual in fits, and an
-/// Expression where the equations are written down for firmware: use operators, and the functions of <cmath>
+/// Expression where the equations are written down for firmware: use operators, and the functions of `cmath`
 /// after a using-declaration. Inputs are held over an interval, which is
 /// integrated with the classical Runge-Kutta rule in as many steps as it takes; derivatives are exact (by
 /// automatic differentiation). Each of Effects is a type with `static plant::EffectInfo info()` and

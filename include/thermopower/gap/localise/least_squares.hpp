@@ -130,6 +130,7 @@ struct BlockFit {
 /// cross-validated without touching a row again.
 class BlockFitter {
 public:
+  /// Keeps references to both arguments: they must outlive this object.
   BlockFitter(const Problem& problem, const std::vector<Block>& blocks) : problem_(problem), blocks_(blocks) {
     const Eigen::Index rows = problem.y.size();
     own_ = problem.nuisance.cols() + problem.free.cols();

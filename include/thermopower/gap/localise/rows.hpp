@@ -82,6 +82,7 @@ inline double half_power_period(const Eigen::VectorXd& residual, double interval
 /// Averages `stride` rows at a time inside each run, so that a million rows cost what ten thousand do.
 class Thinning {
 public:
+  /// @param most  rows that are left, about; rows where `measured` has none do not count into an average
   Thinning(const std::vector<RunSpan>& runs, const Eigen::VectorXd& measured, Eigen::Index most) {
     Eigen::Index rows = 0;
     for (const RunSpan& run : runs) rows += run.size();
@@ -97,9 +98,12 @@ public:
     }
   }
 
+  /// How many rows are left.
   Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  /// How many rows an average is of, at most.
   Eigen::Index stride() const { return stride_; }
 
+  /// The averages of columns of the full length: as many columns, rows() rows.
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
     Eigen::MatrixXd out(rows(), full.cols());
     for (Eigen::Index i = 0; i < rows(); ++i) {
@@ -111,6 +115,7 @@ public:
     return out;
   }
 
+  /// Which of `count` contiguous stretches each row belongs to, 0 to count - 1.
   Eigen::VectorXi folds(int count) const {
     Eigen::VectorXi fold(rows());
     for (Eigen::Index i = 0; i < rows(); ++i)

@@ -62,7 +62,9 @@ public:
     }
   }
 
+  /// How many there are.
   Eigen::Index size() const { return static_cast<Eigen::Index>(list_.size()); }
+  /// Each of them, in the order of the rows they begin at.
   const std::vector<One>& list() const { return list_; }
 
   /// Integral of the test function times values that are straight between their samples, each interval at its mean.

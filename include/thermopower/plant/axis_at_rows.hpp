@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/axis_rollout.hpp>
+#include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/piecewise_linear.hpp>
+#include <thermopower/plant/samples.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file axis_at_rows.hpp
+/// What an axis recorded, row by row, with what its equation says of it: for the balances of axis_balances.hpp.
+
+namespace thermopower::plant {
+
+/// Twist of a spring between two inertias, and its rate, while the near one moves as measured:
+/// q'' = -rate' - w^2 q - 2 z w q', with q of the far side relative to the near one.
+struct SpringTwist {
+  Eigen::VectorXd angle_rad;       ///< q
+  Eigen::VectorXd rate_rad_per_s;  ///< q'
+
+  /// @param rate        of the near side, rad/s, without holes
+  /// @param w_rad_per_s natural frequency of the far side on the spring, > 0
+  /// @param damping     its damping ratio, >= 0
+  SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping)
+      : angle_rad(rate.size()), rate_rad_per_s(rate.size()) {
+    constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
+    const double w = w_rad_per_s;
+    for (const RunSpan& run : rows.runs) {
+      double q = 0.0, v = 0.0;
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        angle_rad[i] = q;
+        rate_rad_per_s[i] = v;
+        if (i + 1 == run.end) break;
+        const double step = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step;
+        const int parts = std::max(1, static_cast<int>(std::ceil(w * step / longest_rad)));
+        for (int p = 0; p < parts; ++p) {
+          const double h = step / parts, k1 = pull - w * w * q - 2.0 * damping * w * v;
+          const double q2 = q + 0.5 * h * v, v2 = v + 0.5 * h * k1;
+          q += h * v2;
+          v += h * (pull - w * w * q2 - 2.0 * damping * w * v2);
+        }
+      }
+    }
+  }
+};
+
+/// What an axis recorded and what its equation says of it, row by row at the measured motion.
+class AxisAtRows {
+public:
+  /// What a balance needs of each row.
+  struct Values {
+    double inertia_kgm2 = 0.0;  ///< that moves with the instruments
+    Eigen::VectorXd motion_Nm;  ///< torques of the motion: viscous, load, dry friction, spring
+    Eigen::VectorXd drive_Nm;   ///< torque of the drive, held
+  };
+
+  /// Keeps references to model, catalogue and inputs: they must outlive this object.
+  AxisAtRows(const Model& model, const Catalogue& catalogue, const Inputs& inputs,
+             const ReadingOffsets& offsets)
+      : model_(model), catalogue_(catalogue), inputs_(inputs) {
+    rows_ = std::make_shared<BalanceRows>(
+        BalanceRows{inputs.t_s, inputs.runs, median_interval_s(inputs.t_s, inputs.runs)});
+    measure(offsets);
+  }
+
+  /// The equation with the constants multiplied by `factors` (as many as Model::calibrated(), or none).
+  Values evaluate(const std::vector<double>& factors = {}) const {
+    const Instance<double> instance(model_, factors, {}, catalogue_);
+    const AxisRollout<double> rollout(instance, inputs_);
+    const auto& shape = instance.axis_structure;
+    Values v;
+    v.inertia_kgm2 = instance.inertia_kgm2 * (shape.compliant ? 1.0 - shape.far_share : 1.0);
+    v.motion_Nm = v.drive_Nm = Eigen::VectorXd::Zero(rate.size());
+    const double rest_rad_per_s = 4.0 * rate_noise;
+    for (const RunSpan& run : inputs_.runs) {
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
+        const AxisDrive<double> drive = rollout.drive(i, run, i, t_s);
+        const double drive_Nm = drive.torque_Nm;
+        const auto now = rollout.step().torques({angle[i], rate[i], 0.0, 0.0}, t_s, drive);
+        // A transition that the noise of the rate hides is as good as none.
+        const bool sticks =
+            now.transition_rad_per_s <= std::max(friction_sticks_below_rad_per_s, rest_rad_per_s);
+        const bool rests = std::fabs(rate[i]) < rest_rad_per_s &&
+                           (i == run.begin || std::fabs(rate[i - 1]) < rest_rad_per_s) &&
+                           (i + 1 == run.end || std::fabs(rate[i + 1]) < rest_rad_per_s);
+        double friction_Nm = 0.0;
+        if (sticks && rests) {
+          // At rest dry friction takes whatever the other torques give, up to its size.
+          friction_Nm = std::clamp(now.torque_Nm, -now.backward_Nm, now.forward_Nm);
+        } else if (sticks) {
+          const double forward = forward_share(i, run);
+          friction_Nm = forward * now.forward_Nm - (1.0 - forward) * now.backward_Nm;
+        } else {
+          friction_Nm = (rate[i] >= 0.0 ? now.forward_Nm : now.backward_Nm) *
+                        std::tanh(rate[i] / std::max(now.transition_rad_per_s, 1e-12));
+        }
+        v.drive_Nm[i] = drive_Nm;
+        v.motion_Nm[i] = now.torque_Nm - drive_Nm - friction_Nm;
+      }
+    }
+    if (shape.compliant) {
+      const double w = shape.spring_rad_per_s * std::sqrt(1.0 - shape.far_share);
+      const double reduced = v.inertia_kgm2 * shape.far_share;
+      const SpringTwist twist(rate, *rows_, w, shape.spring_damping * std::sqrt(1.0 - shape.far_share));
+      v.motion_Nm +=
+          reduced * shape.spring_rad_per_s *
+          (shape.spring_rad_per_s * twist.angle_rad + 2.0 * shape.spring_damping * twist.rate_rad_per_s);
+    }
+    return v;
+  }
+
+  /// From command to torque in s, as the model's effects delay it.
+  double delay_s() const {
+    const Instance<double> instance(model_, {}, {}, catalogue_);
+    return instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0;
+  }
+
+  /// What changes with the logarithm of each constant that calibration may move.
+  template <class Use>
+  void for_each_constant(Use&& use) const {
+    constexpr double step = 1e-4;
+    const std::vector<CalibratedConstant> constants = model_.calibrated();
+    for (std::size_t k = 0; k < constants.size(); ++k) {
+      if (!constants[k].has_slack || constants[k].block != "axis") continue;
+      std::vector<double> up(constants.size(), 1.0), down = up;
+      up[k] = std::exp(step);
+      down[k] = std::exp(-step);
+      use(constants[k].id, evaluate(up), evaluate(down), 0.5 / step);
+    }
+  }
+
+  Eigen::VectorXd angle;      ///< true one by the model's readings, rad, without holes
+  Eigen::VectorXd rate;       ///< true one by the model's readings, rad/s, without holes
+  Eigen::VectorXd raw_angle;  ///< the angle with its holes
+  Eigen::VectorXd raw_rate;   ///< the rate with its holes; of an angle alone, its slopes
+  double rate_noise = 0.0;    ///< rad/s
+  bool has_rate = false;      ///< a gyroscope is judged
+  bool has_angle = false;     ///< an angle is judged
+
+  /// The rows.
+  const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
+  /// The inputs given.
+  const Inputs& inputs() const { return inputs_; }
+
+private:
+  /// Share of the time around a row, half an interval each way, in which the rate is positive; it is straight
+  /// between rows.
+  double forward_share(Eigen::Index i, const RunSpan& run) const {
+    const auto half = [&](double here, double next) {
+      const double there = 0.5 * (here + next);
+      if (here >= 0.0 && there >= 0.0) return 1.0;
+      if (here <= 0.0 && there <= 0.0) return 0.0;
+      const double before = std::fabs(here) / (std::fabs(here) + std::fabs(there));
+      return here > 0.0 ? before : 1.0 - before;
+    };
+    const double here = rate[i];
+    return 0.5 * (half(here, i > run.begin ? rate[i - 1] : here) +
+                  half(here, i + 1 < run.end ? rate[i + 1] : here));
+  }
+
+  void measure(const ReadingOffsets& offsets) {
+    const Eigen::Index n = inputs_.rows();
+    has_rate = inputs_.judged(Signal::rate_dps);
+    has_angle = inputs_.judged(Signal::angle_deg);
+    const Instance<double> instance(model_, {}, {}, catalogue_);
+    const AxisRollout<double> rollout(instance, inputs_);
+    raw_angle = raw_rate = Eigen::VectorXd::Constant(n, missing);
+    for (const RunSpan& run : inputs_.runs)
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        const double shown_deg =
+            has_angle ? inputs_.of(Signal::angle_deg)[i] - offsets[Signal::angle_deg] : missing;
+        const double shown_dps =
+            has_rate ? inputs_.of(Signal::rate_dps)[i] - offsets[Signal::rate_dps] : missing;
+        const auto state = rollout.start(i, inputs_.t_s[run.begin], shown_deg, shown_dps);
+        raw_angle[i] = state.angle_rad;
+        raw_rate[i] = state.rate_rad_per_s;
+      }
+    if (!has_rate) {  // slopes over four intervals
+      for (const RunSpan& run : inputs_.runs)
+        for (Eigen::Index i = run.begin + 2; i + 2 < run.end; ++i)
+          raw_rate[i] =
+              (2.0 * (raw_angle[i + 2] - raw_angle[i - 2]) + (raw_angle[i + 1] - raw_angle[i - 1])) /
+              (2.0 * (inputs_.t_s[i + 2] - inputs_.t_s[i - 2]) + (inputs_.t_s[i + 1] - inputs_.t_s[i - 1]));
+      rate_noise = sample_noise(raw_angle, inputs_.runs) * slope_noise_per_angle();
+    } else {
+      rate_noise = sample_noise(raw_rate, inputs_.runs);
+    }
+    angle =
+        has_angle ? without_holes(raw_angle, inputs_.runs, 0.0) : Eigen::VectorXd(Eigen::VectorXd::Zero(n));
+    rate = without_holes(raw_rate, inputs_.runs, 0.0);
+  }
+
+public:
+  /// Noise of a slope over four intervals per noise of the angle, 1/s: sqrt(10) / 10 intervals.
+  double slope_noise_per_angle() const { return 1.0 / (3.2 * rows_->interval_s); }
+
+private:
+  const Model& model_;
+  const Catalogue& catalogue_;
+  const Inputs& inputs_;
+  std::shared_ptr<const BalanceRows> rows_;
+};
+
+}  // namespace thermopower::plant
