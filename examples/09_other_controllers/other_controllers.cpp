@@ -61,7 +61,9 @@ int main() {
   ok &= expect(foc.voltage_limit < 1.0f && foc.phase_resistance > 11.0f,
                "an unknown temperature is the least voltage to SimpleFOC");
   char small[8] = "before";
-  ok &= expect(adapters::command_odrive(small, sizeof small, 0, unknown, 5.0f) == 0,
+  // Not known when it compiles: a truncation that is meant is nothing to warn of.
+  volatile size_t capacity = sizeof small;
+  ok &= expect(adapters::command_odrive(small, capacity, 0, unknown, 5.0f) == 0,
                "a line that does not fit is refused");
   return ok ? 0 : 1;
 }
