@@ -40,11 +40,11 @@ public:
     gather(train, held_out);
     stage("data gate");
     if (!enough()) return std::move(result_);
-    engine::LocalisationOptions localisation;
-    localisation.slack = options_.slack;
     engine::Localisation found;
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
-    else found = localise(model_, train_recordings_);
+    else found = engine::localise(model_, train_recordings_, {}, catalogue_);
+    if (!model_.own)
+      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
@@ -406,8 +406,9 @@ private:
     score(result_, model_, full, held_out_inputs_, fitted, options_, catalogue_);
     note_recalibration(result_);
     if (named && conclusion.leaves_a_rest)
-      result_.remaining =
-          remaining(result_, model_.own ? Localisation() : localise(result_.augmented, train_recordings_));
+      result_.remaining = remaining(
+          result_, model_.own ? engine::Localisation()
+                              : engine::localise(result_.augmented, train_recordings_, {}, catalogue_));
     if (named) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)

@@ -197,7 +197,7 @@ inline void note_recalibration(Diagnosis& result) {
 }
 
 /// What the named causes leave. @param left  of training data, by the augmented model
-inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
+inline Remaining remaining(const Diagnosis& result, const engine::Localisation& left) {
   Remaining rest;
   double worst = 0.0;
   for (const GapScore& gap : result.gap) {
