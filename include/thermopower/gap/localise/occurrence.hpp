@@ -5,6 +5,7 @@
 #include <thermopower/gap/localise/localisation.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <limits>
@@ -49,46 +50,66 @@ struct Holding {
   std::optional<double> from_s;  ///< it holds before and not after; none: no such time
 };
 
+/// The rows of a problem on one side of a stretch.
+inline Problem part_of(const Problem& whole, const Eigen::VectorXi& stretch, int from, int to) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < whole.y.size(); ++i)
+    if (stretch[i] >= from && stretch[i] < to) rows.push_back(i);
+  Problem part;
+  part.slack = whole.slack;
+  part.y = whole.y(rows);
+  part.nuisance = whole.nuisance(rows, Eigen::all);
+  part.free = whole.free(rows, Eigen::all);
+  part.folds = 1;
+  part.fold = Eigen::VectorXi::Zero(part.y.size());
+  return part;
+}
+
+/// Whether the rows before a stretch would have shown what those from it on show: where nothing is asked of a fault,
+/// its absence says nothing. What they show is told by the freedom that leaves least of it.
+inline bool could_show(const plant::Balance& balance, const Projection& projection, const Problem& whole,
+                       const Eigen::VectorXi& stretch, int held, double floor_per_row,
+                       const OccurrenceThresholds& limit) {
+  const Problem later = part_of(whole, stretch, held, limit.stretches);
+  Problem before = part_of(whole, stretch, 0, held);
+  double least = std::numeric_limits<double>::infinity();
+  for (const plant::Freedom& freedom : balance.freedoms) {
+    const Block all = block_of(freedom, projection, whole);
+    Block block = all, shown = all;
+    std::vector<Eigen::Index> after, first;
+    for (Eigen::Index i = 0; i < whole.y.size(); ++i) (stretch[i] < held ? first : after).push_back(i);
+    block.columns = all.columns(after, Eigen::all);
+    shown.columns = all.columns(first, Eigen::all);
+    const std::vector<Block> blocks{block};
+    const BlockFit fit = BlockFitter(later, blocks).fit({0});
+    if (!(fit.seen_total < least)) continue;
+    least = fit.seen_total;
+    before.y = shown.columns * fit.coefficients.tail(block.columns.cols());
+  }
+  return std::isfinite(least) && sum_of_squares_left(before, Eigen::MatrixXd(before.y.size(), 0)) >
+                                     limit.clearly * floor_per_row * static_cast<double>(before.y.size());
+}
+
 /// How a balance does in the rows of a run, its constants moving within their slack.
 inline Holding holding_of(plant::Balance balance, double slack, const OccurrenceThresholds& limit) {
-  balance.freedoms.clear();
-  balance.courses.clear();
   Holding result{balance.quantity, balance.signal, 0.0, {}};
   const LocalisationThresholds stage;
   const std::unique_ptr<Projection> projection = projection_of(balance, stage);
   const Problem whole = problem_of(balance, *projection, slack);
   if (whole.y.size() < stage.least_rows) return result;
   const double floor_per_row = projection->floor() / static_cast<double>(whole.y.size());
-  const auto left = [&](const std::vector<Eigen::Index>& rows) {
-    const Eigen::Index n = static_cast<Eigen::Index>(rows.size());
-    Problem part;
-    part.slack = slack;
-    part.y.resize(n);
-    part.nuisance.resize(n, whole.nuisance.cols());
-    part.free.resize(n, whole.free.cols());
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Index from = rows[static_cast<std::size_t>(i)];
-      part.y[i] = whole.y[from];
-      part.nuisance.row(i) = whole.nuisance.row(from);
-      part.free.row(i) = whole.free.row(from);
-    }
-    return sum_of_squares_left(part, Eigen::MatrixXd(n, 0)) / (floor_per_row * static_cast<double>(n));
-  };
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index i = 0; i < whole.y.size(); ++i) rows.push_back(i);
-  result.level = left(rows);
-  if (result.level < limit.clearly) return result;
   const Eigen::VectorXi stretch = projection->stretches(limit.stretches);
+  const auto left = [&](int end) {
+    const Problem part = part_of(whole, stretch, 0, end);
+    if (part.y.size() < stage.least_rows) return 0.0;
+    return sum_of_squares_left(part, Eigen::MatrixXd(part.y.size(), 0)) /
+           (floor_per_row * static_cast<double>(part.y.size()));
+  };
+  result.level = left(limit.stretches);
+  if (result.level < limit.clearly) return result;
   int held = 0;
-  for (int end = 1; end < limit.stretches; ++end) {
-    rows.clear();
-    for (Eigen::Index i = 0; i < whole.y.size(); ++i)
-      if (stretch[i] < end) rows.push_back(i);
-    if (rows.size() < static_cast<std::size_t>(stage.least_rows)) continue;
-    if (left(rows) > limit.holds) break;
-    held = end;
-  }
-  if (held >= limit.first) {
+  for (int end = 1; end < limit.stretches && left(end) <= limit.holds; ++end) held = end;
+  if (held >= limit.first && could_show(balance, *projection, whole, stretch, held, floor_per_row, limit)) {
     const Eigen::Index row = balance.rows->size() * held / limit.stretches;
     result.from_s = balance.rows->t_s[std::min(row, balance.rows->size() - 1)];
   }
