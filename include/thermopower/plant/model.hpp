@@ -118,7 +118,8 @@ struct Model {
   std::optional<RigidAxisModel> axis;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
   /// How well constants are known: standard deviation as a share of the value, above 0 to 1, by
-  /// `<block>.<constant>` and `effects.<id>.<parameter>`. Those that are not in it are known to 5 %.
+  /// block.constant (as in `thermal.conductance_W_per_K`) and effects.id.parameter. Those that are not in it are
+  /// known to 5 %.
   std::map<std::string, double> uncertainty;
   /// A plant of one's own in place of the blocks above; none: the library's actuator.
   std::optional<PlantModel> own;
