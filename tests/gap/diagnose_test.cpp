@@ -191,7 +191,9 @@ TEST_CASE("a cause that leaves a rest is named with what remains, and not called
     measure(*recording, truth, recording == &train ? 5u : 6u);
     recording->set("drive_A", drive);
   }
-  const Diagnosis diagnosis = diagnose(axis_model(), {train}, {held_out});
+  Options options;
+  options.effects_at_once = 1;
+  const Diagnosis diagnosis = diagnose(axis_model(), {train}, {held_out}, options);
   INFO(diagnosis.reason);
   // Forward and backward friction may differ or not: what remains hides it.
   CHECK((diagnosis.verdict == Verdict::partial || diagnosis.verdict == Verdict::ambiguous));
