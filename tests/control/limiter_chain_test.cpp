@@ -111,6 +111,65 @@ TEST_CASE("a fault found elsewhere cuts every limiter of a chain, with a time or
   CHECK(chain.limiter<2>().cuts == 3);
 }
 
+TEST_CASE("every limiter of a chain is told what acted, and the shortest time vouched for is the chain's") {
+  struct Accountant : Puppet<0> {
+    explicit Accountant(const Config& config) : Puppet<0>(config) {}
+    void acted(uint8_t power) noexcept { told = power; }
+    float hold_s() const noexcept { return 0.2f; }
+    int told = -1;
+  };
+  struct Hasty : Accountant {
+    explicit Hasty(const Config& config) : Accountant(config) {}
+    float hold_s() const noexcept { return 0.05f; }
+  };
+  typedef LimiterChain<Puppet<1>, Hasty, Puppet<2>, Accountant> Chain;
+  Chain chain;
+  chain.acted(77);
+  CHECK(chain.limiter<1>().told == 77);
+  CHECK(chain.limiter<3>().told == 77);
+  CHECK(chain.hold_s() == 0.05f);
+  // As the controllers ask.
+  detail::tell_acted(chain, 78, 0);
+  CHECK(chain.limiter<1>().told == 78);
+  CHECK(detail::hold_of(chain, 0) == 0.05f);
+  Three none = three({255, LimitReason::none}, {255, LimitReason::none}, {255, LimitReason::none});
+  none.acted(9);
+  CHECK(std::isinf(none.hold_s()));
+}
+
+TEST_CASE(
+    "a certified limiter in a chain stays above a motor whose board drives it with more than it was told") {
+  struct Motor {
+    typedef CurrentModel<OhmicCurrent<float>> Current;
+    typedef TwoNodeThermalModel<float> Thermal;
+    static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+    static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
+  };
+  typedef LimiterChain<CertifiedLimiter<>, NodeLimiter> Chain;
+  typedef AxisController<Motor, StepPowerLaw<>, Chain, NoGain> Axis;
+  Axis::Config config = Axis::Config::standard();
+  auto& certified = config.limiter.first;
+  certified.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
+  certified.use.heat =
+      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  certified.use.highest_air_C = 35.0f;
+  REQUIRE(config.validate() == ConfigError::none);
+  Axis axis(config);
+  axis.start(25.0f);
+  axis.limiter().limiter<0>().start(25.0f, 25.0f);
+  double body_C = 25.0, winding_C = 25.0;  // a plant of its own, always at full power
+  for (int i = 0; i < 3000; ++i) {
+    axis.heated_by(255);
+    axis.step({0.0f, 13.0f, 25.0f, LimitReason::none}, 0.02f);
+    CHECK(winding_C <= static_cast<double>(axis.limiter().limiter<0>().winding_upper_C()) + 1e-3);
+    const double heat_W = 13.0 * 13.0 / (8.0 * (1.0 + 0.0039 * (winding_C - 20.0)));
+    const double across_W = 1.0 * (winding_C - body_C);
+    winding_C += 0.02 * (heat_W - across_W) / 8.0;
+    body_C += 0.02 * (across_W - 0.2 * (body_C - 25.0)) / 80.0;
+  }
+  CHECK(winding_C > 45.0);  // or nothing was asked
+}
+
 TEST_CASE("a wrong field anywhere in a chain is named and keeps the power at its least") {
   Three chain = three({100, LimitReason::none}, {0, LimitReason::none}, {255, LimitReason::none});
   CHECK(chain.validate() == ConfigError::user_defined);

@@ -290,3 +290,34 @@ TEST_CASE("in the cold: the corrected laws heat where the programmed law is blin
         REQUIRE(fixed::Heating<fixed::ThesisMotor<tp::motors::Bgm5208_200_12>>::rate(level, coarse) > 0);
     }
 }
+
+TEST_CASE("three axes that disobey at once are never believed colder than they are, nor much hotter") {
+  typedef fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t>>> Axis;
+  fixed::GimbalController<Axis, Axis, Axis> gimbal;
+  fixed::Clock clock;
+  std::uint32_t now_us = 0;
+  Motor motor;
+  int power = 1;
+  double worst_below_K = 0.0, worst_above_K = 0.0;
+  // The demand goes up and down every half a second, and the board refuses every third of them.
+  for (int cycle = 0; cycle < 4000; ++cycle) {
+    Telemetry telemetry;
+    telemetry.error = cycle / 16 % 2 == 0 ? 5.0 : 0.0;
+    telemetry.reported = power;
+    gimbal.step(telemetry, clock.elapsed(now_us += static_cast<std::uint32_t>(cycle_s * 1e6)));
+    gimbal.prepare();
+    if (cycle / 16 % 3 != 0) power = gimbal.command().power[0];
+    const double believed_C[] = {static_cast<double>(gimbal.axis<0>().thermal().motor_C()),
+                                 static_cast<double>(gimbal.axis<1>().thermal().motor_C()),
+                                 static_cast<double>(gimbal.axis<2>().thermal().motor_C())};
+    for (const double one_C : believed_C) {
+      worst_below_K = std::max(worst_below_K, motor.now_C - one_C);
+      worst_above_K = std::max(worst_above_K, one_C - motor.now_C);
+    }
+    motor.spend(power, 13.0);
+  }
+  INFO("below by " << worst_below_K << " K, above by " << worst_above_K << " K, motor " << motor.now_C);
+  CHECK(worst_below_K < 0.1);  // what the arithmetic is off by, and a cycle
+  CHECK(worst_above_K < 10.0);
+  CHECK(motor.now_C > air_C + 5.0);
+}

@@ -221,3 +221,29 @@ TEST_CASE("time goes on when micros() wraps after 71.6 minutes") {
   }
   CHECK(rig.updates().back().power[0] < 250);
 }
+
+TEST_CASE("the answer comes in time in the cycle in which all three axes turn out to disobey") {
+  // Full demand and none by turns, and a board that refuses now and then: what is in force is larger than what
+  // was foreseen, in three axes at once, again and again.
+  Rig rig = make_rig("nano_gimbal.elf", [](double time_s, Rig::Board& board) {
+    Rig::Truth truth = steady(26);
+    const bool is_full = std::fmod(time_s, 0.7) < 0.35;
+    for (double& angle_deg : truth.angle_deg) angle_deg = is_full ? -5.0 : 0.0;
+    board.faults.refuses_power = std::fmod(time_s, 0.9) < 0.3;
+    return truth;
+  });
+  rig.run_until(40);
+  REQUIRE(rig.updates().size() > 1000);
+  std::uint64_t slowest = 0;
+  int surprises = 0;
+  for (std::size_t index = 2; index < rig.updates().size(); ++index) {
+    const nano::Update& update = rig.updates()[index];
+    slowest = std::max(slowest, update.response_cycles());
+    bool is_all = true;
+    for (std::uint8_t axis = 0; axis < 3; ++axis)
+      is_all = is_all && update.telemetry.motor_power[axis] > rig.updates()[index - 1].power[axis];
+    surprises += is_all ? 1 : 0;
+  }
+  CHECK(surprises > 10);  // or the test asks for nothing
+  CHECK(slowest <= 4500);
+}

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <math.h>
+
 #include "../detail/check.hpp"
 #include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
@@ -83,6 +85,8 @@ struct LimiterLinks {
   LimitedPower step(const AxisFacts&, LimitedPower granted, float) noexcept { return granted; }
   void cut(LimitReason, uint8_t, float) noexcept {}
   void cut(LimitReason, uint8_t) noexcept {}
+  void acted(uint8_t) noexcept {}
+  float hold_s() const noexcept { return static_cast<float>(INFINITY); }
   uint8_t ceiling() const noexcept { return 255; }
 };
 
@@ -113,6 +117,14 @@ struct LimiterLinks<index, First, Rest...> : LimiterLinks<index + 1, Rest...> {
   void cut(LimitReason reason, uint8_t demand) noexcept {
     limiter.cut(reason, demand);
     Next::cut(reason, demand);
+  }
+  void acted(uint8_t power) noexcept {
+    tell_acted(limiter, power, 0);
+    Next::acted(power);
+  }
+  float hold_s() const noexcept {
+    const float own = hold_of(limiter, 0), others = Next::hold_s();
+    return own < others ? own : others;
   }
   uint8_t ceiling() const noexcept {
     const uint8_t own = limiter.ceiling(), others = Next::ceiling();
@@ -175,6 +187,13 @@ public:
     links_.cut(reason, demand);
     return least(reason, demand);
   }
+
+  /// Tells every limiter that keeps account of the power that a larger one than was granted may have acted since
+  /// the last step; call it before `step()`.
+  void acted(uint8_t power) noexcept { links_.acted(power); }
+  /// How long a power may act before the next plan: the shortest time that any limiter vouches for, s; infinite
+  /// where none says.
+  float hold_s() const noexcept { return links_.hold_s(); }
 
   /// Highest power granted now: the lowest ceiling of all.
   uint8_t ceiling() const noexcept { return links_.ceiling(); }

@@ -45,6 +45,10 @@ public:
   /// Nothing was sent yet.
   constexpr PowerInForce() noexcept : largest_{}, before_{} {}
 
+  /// The largest POWER that may act until the next call, as far as is known already: what `heard()` or
+  /// `unheard()` will say is never less. @param sent  what was sent last
+  uint8_t expected(uint8_t axis, uint8_t sent) const noexcept { return greater(largest_[axis], sent); }
+
   /// A telemetry message has come. Call it for every axis in turn, then `decided()`.
   /// @param reported  POWER in force by the message, 0 when it does not say  @param sent  what was sent last
   /// @return the largest POWER that may have acted since the call before
@@ -74,8 +78,10 @@ public:
 
   /// Out of reach, or not heard of since the start: any POWER may be in force, until the board says another.
   void lost() noexcept {
-    for (uint8_t axis = 0; axis < axis_count; ++axis) largest_[axis] = 255;
+    for (uint8_t axis = 0; axis < axis_count; ++axis) lost(axis);
   }
+  /// The same of one axis.
+  void lost(uint8_t axis) noexcept { largest_[axis] = 255; }
 
   /// The board has confirmed a command, and does so for every one. Only asked of a board that reports no
   /// POWER.

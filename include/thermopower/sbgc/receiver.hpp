@@ -71,8 +71,7 @@ public:
   /// byte; it is allowed not to, frames then come with later bytes, and none is lost.
   bool receive(uint8_t byte, uint32_t now_us) noexcept {
     const bool late = is_late(now_us);
-    last_ = ticks(now_us);
-    last_high_ = high_ticks(now_us);
+    last_us_ = now_us;
     if (stage_ == Stage::payload && !late) {
       // By far the most frequent case: all bytes before this one are read, and check_header() has made room.
       bytes_[end_] = byte;
@@ -225,20 +224,13 @@ private:
     if (head_ == end_) head_ = cursor_ = end_ = stale_ = 0;
   }
 
-  /// Time in units of 256 us: on an 8-bit chip this costs a few cycles per byte, microseconds in 32 bits
-  /// dozens.
-  static uint16_t ticks(uint32_t now_us) noexcept { return static_cast<uint16_t>(now_us >> tick_shift); }
-
-  /// The eight bits above: together they wrap where the clock does.
-  static uint8_t high_ticks(uint32_t now_us) noexcept { return static_cast<uint8_t>(now_us >> 24); }
-
   /// No frame may continue across a long pause. The bytes before it may still hold whole frames: parse()
   /// gives up at the mark `stale_` whatever is incomplete there. A clock reading taken a little earlier than
   /// the last one (up to 16 s) is no pause; every other difference is.
   bool is_late(uint32_t now_us) const noexcept {
-    const uint16_t now = ticks(now_us), passed = static_cast<uint16_t>(now - last_);
-    const uint8_t turns = static_cast<uint8_t>(high_ticks(now_us) - last_high_ - (now < last_ ? 1 : 0));
-    return timeout_ != 0 && turns != 0xFFu && (turns != 0 || passed > timeout_);
+    const uint32_t passed_us = now_us - last_us_;
+    // In units of 256 us: an 8-bit chip shifts by whole bytes for nothing, and compares half as many.
+    return timeout_ != 0 && (passed_us >> tick_shift) > timeout_ && (passed_us >> 24) != 0xFFu;
   }
 
   /// There is room in front whenever the end is reached: an incomplete frame is shorter than the buffer.
@@ -258,9 +250,8 @@ private:
   uint8_t left_ = 0;
   uint8_t trailer_at_ = 0;
   Protocol protocol_;
-  uint16_t last_ = 0;      // when the last byte came, in ticks
-  uint8_t last_high_ = 0;  // and the bits above
-  uint16_t timeout_ = 0;   // in ticks; 0 waits for ever
+  uint16_t timeout_ = 0;  // in units of 256 us; 0 waits for ever
+  uint32_t last_us_ = 0;  // when the last byte came
   ReceiverCounters counters_ = ReceiverCounters();
   uint8_t bytes_[buffer_size];
 };

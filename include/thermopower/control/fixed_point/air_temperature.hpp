@@ -20,7 +20,7 @@ struct StandardAir {
   static constexpr int8_t maximum_plausible_C() { return 85; }
   /// Further apart than this the two are not averaged.
   static constexpr uint8_t maximum_difference_K() { return 15; }
-  /// A fall is believed no faster than this, K/s. Above 0, at most 1; 0: at once.
+  /// A fall is believed no faster than this, K/s. 0: at once; at most 1.
   static constexpr double fall_per_s() { return 0.2; }
 };
 /// The same for a program that believes a fall at once, as the thesis's does.
@@ -66,10 +66,15 @@ public:
       state_.source = AirSource::both;
     }
     const CoarseTemperature read = static_cast<CoarseTemperature>(doubled * 64);
-    constexpr int32_t fall =
-        static_cast<int32_t>(detail::nearest(Constants::fall_per_s() * 8388608.0 / detail::ticks_per_s()));
-    const Temperature lowest = air_ - fall * static_cast<int32_t>(ticks);
-    if (fall == 0 || !has_air_ || static_cast<CoarseTemperature>(lowest >> 16) <= read) {
+    // 16 bits, which an 8-bit chip multiplies in a third of the time that 32 take.
+    constexpr uint16_t fall =
+        static_cast<uint16_t>(detail::nearest(Constants::fall_per_s() * 8388608.0 / detail::ticks_per_s()));
+    if (fall == 0) {
+      state_.air = read;
+      return state_;
+    }
+    const Temperature lowest = air_ - static_cast<Temperature>(static_cast<uint32_t>(fall) * ticks);
+    if (!has_air_ || static_cast<CoarseTemperature>(lowest >> 16) <= read) {
       air_ = static_cast<Temperature>(read) * 65536;
       state_.air = read;
     } else {

@@ -91,11 +91,9 @@ public:
   /// the motor is as cold as can be and every step needs a fault. @param motor  saturates at -50 and 180 degC
   void start(Temperature motor) noexcept { axis_.start(motor); }
 
-  /// Says that a larger power than the one granted may have acted since the last step. Call it before
-  /// `step()`. @param power  largest power that may have been in force
-  void heated_by(uint8_t power) noexcept {
-    if (power > axis_.granted.power) axis_.thermal.heat(Thermal::heating(power, axis_.thermal.state().motor));
-  }
+  /// Says that a power larger than any that can be told in time may have acted since the last step: the next
+  /// one heats by the most there is. Call it before `step()`.
+  void heated_most() noexcept { axis_.thermal.heat(detail::most_heating()); }
   /// Says that the actuator is warmer than was thought. @param difference  above 0
   void warm_by(CoarseTemperature difference) noexcept { axis_.warm_by(difference); }
   /// Says that the actuator is not colder than this.
@@ -114,6 +112,10 @@ public:
   /// Computes the heating by the power granted last. Call it when the command is on its way: nobody waits for
   /// it there.
   void prepare() noexcept { prepare(axis_.granted.power); }
+  /// The same for another power that may be in force. @param power  the largest that may be
+  [[gnu::noinline]] void prepare(uint8_t power) noexcept {
+    axis_.thermal.heat(Thermal::heating(power, axis_.thermal.state().motor));
+  }
 
   /// Send this as P.
   uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
@@ -125,10 +127,6 @@ public:
   uint8_t ceiling() const noexcept { return axis_.limiter.ceiling(); }  ///< Highest power granted now.
 
 private:
-  [[gnu::noinline]] void prepare(uint8_t power) noexcept {
-    axis_.thermal.heat(Thermal::heating(power, axis_.thermal.state().motor));
-  }
-
   detail::SharedAxis<typename Thermal::Core, PowerLaw, Limiter> axis_;
 };
 

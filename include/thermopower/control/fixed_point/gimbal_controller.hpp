@@ -108,11 +108,13 @@ public:
     }
     const bool has_air = follow_air(telemetry.imu_C(), telemetry.frame_imu_C(), ticks);
     uint8_t acted[axis_count()];
-    for (uint8_t index = 0; index < axis_count(); ++index)
-      acted[index] = force_.heard(index, thermopower::detail::reported_power(telemetry, index, 0),
-                                  command_.power[index]);
+    for (uint8_t index = 0; index < axis_count(); ++index) {
+      const uint8_t sent = command_.power[index], expected = force_.expected(index, sent);
+      acted[index] = unless(
+          expected, force_.heard(index, thermopower::detail::reported_power(telemetry, index, 0), sent));
+    }
     // Before the first air there was no estimate to be heated.
-    if (has_telemetry_ || is_restored_) heat(acted);
+    if (has_telemetry_ || is_restored_) heat(acted, most_in_time());
     disobeyed_ = force_.decided() ? static_cast<uint16_t>(0) : saturating_sum(disobeyed_, ticks);
     if (telemetry.battery_cV() < minimum_cV) telemetry_fault_ = LimitReason::supply_low;
     else if (!has_air) telemetry_fault_ = LimitReason::air_implausible;
@@ -126,11 +128,15 @@ public:
   /// `timeout_s()`, then the power is the least. @param ticks  time since the last step or silent cycle
   const Command& step_silent(Ticks ticks) noexcept {
     silent_ = saturating_sum(silent_, ticks);
-    if (silent_ > tolerated()) force_.lost();
+    const bool is_lost = silent_ > tolerated();
     uint8_t acted[axis_count()];
-    for (uint8_t index = 0; index < axis_count(); ++index)
-      acted[index] = force_.unheard(index, command_.power[index]);
-    heat(acted);
+    for (uint8_t index = 0; index < axis_count(); ++index) {
+      const uint8_t sent = command_.power[index], expected = force_.expected(index, sent);
+      if (is_lost) force_.lost(index);
+      acted[index] = unless(expected, force_.unheard(index, sent));
+    }
+    // Nobody waits for an answer.
+    heat(acted, axis_count());
     if (!has_telemetry_) return decide(LimitReason::no_telemetry_yet, ticks);
     return decide(silent_ <= tolerated() ? telemetry_fault_ : LimitReason::link_silent, ticks);
   }
@@ -149,7 +155,8 @@ public:
     axes_.visit(visitor);
     air_.assume(air);
     is_restored_ = true;
-    force_.lost();
+    for (uint8_t index = 0; index < axis_count(); ++index) force_.lost(index);
+    prepare();
   }
   /// Was it restored?
   bool is_restored() const noexcept { return is_restored_; }
@@ -160,9 +167,10 @@ public:
     return static_cast<int16_t>((visitor.hottest >> 7) + 1);
   }
 
-  /// Computes the heating by the last command. Call it after every step, when the command is on its way.
+  /// Computes the heating by the last command, or by what else may be in force. Call it after every step, when
+  /// the command is on its way.
   void prepare() noexcept {
-    PrepareVisitor visitor;
+    PrepareVisitor visitor = {*this};
     axes_.visit(visitor);
   }
 
@@ -192,9 +200,16 @@ private:
   };
   struct ActedVisitor {
     const uint8_t* acted;
+    uint8_t in_time;
     template <class Axis>
     void operator()(uint8_t index, Axis& controller) noexcept {
-      controller.heated_by(acted[index]);
+      if (acted[index] == 0) return;
+      if (in_time == 0) {
+        controller.heated_most();
+        return;
+      }
+      --in_time;
+      controller.prepare(acted[index]);
     }
   };
   struct WarmVisitor {
@@ -220,9 +235,10 @@ private:
     }
   };
   struct PrepareVisitor {
+    BasicGimbalController& gimbal;
     template <class Axis>
-    void operator()(uint8_t, Axis& controller) noexcept {
-      controller.prepare();
+    void operator()(uint8_t index, Axis& controller) noexcept {
+      controller.prepare(gimbal.force_.expected(index, gimbal.command_.power[index]));
     }
   };
 
@@ -235,9 +251,19 @@ private:
     return LimitReason::no_telemetry_yet;
   }
 
+  // How many axes may turn out to have been heated by more than was prepared for, and be computed anew before
+  // the command goes out. Another one in the same cycle is heated by the most there is, at most 3.8 K/s, for
+  // that cycle alone: never less than it was, and the time of a step has a bound.
+  static constexpr uint8_t most_in_time() { return 2; }
+
+  // What `prepare()` foresaw needs nothing more.
+  static uint8_t unless(uint8_t expected, uint8_t acted) noexcept {
+    return acted == expected ? static_cast<uint8_t>(0) : acted;
+  }
+
   // Once for all callers: what it takes is a copy for each motor.
-  [[gnu::noinline]] void heat(const uint8_t* acted) noexcept {
-    ActedVisitor visitor = {acted};
+  [[gnu::noinline]] void heat(const uint8_t* acted, uint8_t in_time) noexcept {
+    ActedVisitor visitor = {acted, in_time};
     axes_.visit(visitor);
   }
 
