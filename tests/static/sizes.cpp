@@ -16,7 +16,8 @@ constexpr unsigned number = sizeof(float);
 static_assert(sizeof(tp::OhmicCurrent<float>) == 3 * number, "resistance, tempco, reference");
 static_assert(sizeof(tp::ThesisCurrent<float>) == 6 * number, "three slopes, base, exponent, least voltage");
 static_assert(sizeof(tp::HeatCapacityHeating<float>) == number, "C");
-static_assert(sizeof(tp::ThesisHeating<float>) == 5 * number, "two slopes, two offsets, least voltage");
+static_assert(sizeof(tp::ThesisHeating<float>) == 6 * number,
+              "two slopes, two offsets, least voltage, least capacity");
 static_assert(sizeof(tp::RateCooling<float>) == number, "k");
 static_assert(sizeof(tp::NewtonCooling<float>) == number, "G");
 static_assert(sizeof(tp::NaturalConvection<float>) == 3 * number, "G, exponent, reference");
@@ -42,8 +43,8 @@ static_assert(sizeof(tp::SafetyLimiter<tp::PerCycle>) == padded(3 * number + 1),
 static_assert(sizeof(tp::SafetyLimiter<tp::PerSecond>) == 4 * number, "three constants and the ceiling");
 static_assert(sizeof(tp::GainScheduler<>) == 2 * number, "two gains");
 static_assert(sizeof(tp::NoGain) == 1, "nothing");
-static_assert(sizeof(tp::AirTemperature) == padded(4 * number + 1),
-              "three constants, the air and its source");
+static_assert(sizeof(tp::AirTemperature) == padded(5 * number + 1) + padded(2),
+              "four constants, the air and its source, and which thermometers are awake");
 static_assert(sizeof(tp::LimitedPower) == 2, "power and reason");
 static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && sizeof(tp::AirSource) == 1,
               "bytes in a log");
@@ -51,11 +52,12 @@ static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && si
 // A whole axis and a whole gimbal of three; an ATmega328P has 2048 bytes for everything.
 typedef tp::AxisController<tp::motors::Bgm2606_90t> Axis;
 #if defined(__AVR__)
-static_assert(sizeof(Axis) <= 144, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 512, "a gimbal: a quarter of the RAM");
+static_assert(sizeof(Axis) <= 145, "an axis");
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 554,
+              "a gimbal: little more than a quarter of the RAM");
 #else
 static_assert(sizeof(Axis) <= 160, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 576, "a gimbal");
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 592, "a gimbal");
 #endif
 
 }  // namespace
