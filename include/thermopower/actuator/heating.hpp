@@ -79,10 +79,17 @@ struct ThesisHeating {
   /// From the printed unit W min/K (and W min/K^2): the one place where minutes become seconds.
   static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1,
                                             Number offset_V0, Number minimum_V_rms,
-                                            Number least_capacity_J_per_K = Number()) noexcept {
+                                            Number least_capacity_J_per_K) noexcept {
     typedef typename detail::Numeric<Number>::Real Real;
     return ThesisHeating{slope_V1 * Real(60),  slope_V0 * Real(60), offset_V1 * Real(60),
                          offset_V0 * Real(60), minimum_V_rms,       least_capacity_J_per_K};
+  }
+  /// As programmed: with a least capacity of 0. (Written as a product: a number of several lanes that is only
+  /// declared may hold anything.)
+  static constexpr ThesisHeating per_minute(Number slope_V1, Number slope_V0, Number offset_V1,
+                                            Number offset_V0, Number minimum_V_rms) noexcept {
+    return per_minute(slope_V1, slope_V0, offset_V1, offset_V0, minimum_V_rms,
+                      minimum_V_rms * typename detail::Numeric<Number>::Real(0));
   }
 
   static constexpr bool is_linear() { return false; }  ///< r depends on the temperature.

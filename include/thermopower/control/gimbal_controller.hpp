@@ -96,6 +96,16 @@ float pose_of(const Telemetry&, uint8_t, long) noexcept {
   return not_a_number();
 }
 
+/// Whether an axis has a law that asks for its pose; what is no axis is refused in a sentence further down.
+template <class Axis, bool = IsAxis<Axis>::value>
+struct AsksForPose {
+  static constexpr bool value = false;
+};
+template <class Axis>
+struct AsksForPose<Axis, true> {
+  static constexpr bool value = Axis::takes_pose();
+};
+
 /// Whether any axis has a law that asks for its pose.
 template <class... Axes>
 struct AnyTakesPose {
@@ -103,7 +113,7 @@ struct AnyTakesPose {
 };
 template <class First, class... Rest>
 struct AnyTakesPose<First, Rest...> {
-  static constexpr bool value = First::takes_pose() || AnyTakesPose<Rest...>::value;
+  static constexpr bool value = AsksForPose<First>::value || AnyTakesPose<Rest...>::value;
 };
 
 /// The poses of a gimbal's axes; nothing at all where no law asks for them.
