@@ -56,6 +56,8 @@ struct ByteLoop {
   double byte_us = 1e6 / 11520.0;        ///< One byte on the wire, 115200 baud 8N1.
   double poll_us = 100.0;                ///< The loop's own cycle.
   double compute_us = 0.0;  ///< From an answer's last byte to the command's first: 4400 on an ATmega328P.
+  double start_us = 0.0;    ///< When the controller starts; the board runs from 0 on.
+  double open_us = 0.0;     ///< Before the start: what the first step covers besides, as after a restart.
 };
 
 /// Runs a gimbal controller against the rig through an emulated board, byte by byte. @return the figures of
@@ -67,7 +69,8 @@ RigMetrics run_rig_bytes(const RigConfig& config, const Scenario& scenario, Emul
                          Gimbal& gimbal, Sink&& sink, const ByteLoop& loop = {}) {
   RigWorld world(config, scenario);
   SbgcCodec<> codec;
-  double wire_free_us = 0.0, requested_us = -1e9, stepped_us = 0.0, busy_until_us = 0.0;
+  double wire_free_us = 0.0, requested_us = -1e9, stepped_us = loop.start_us - loop.open_us,
+         busy_until_us = loop.start_us;
   bool is_waiting = false, has_telemetry = false;
   struct Wire {
     EmulatedBoard& board;
