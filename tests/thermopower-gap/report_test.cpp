@@ -4,11 +4,12 @@
 #include "../catch.hpp"
 
 #include "atomic_file.hpp"
+#include "chart.hpp"
 #include "header_export.hpp"
 #include "report_html.hpp"
 #include "report_json.hpp"
+#include "residual_statistics.hpp"
 #include "summary.hpp"
-#include "svg_chart.hpp"
 
 #include <thermopower/gap/recording.hpp>
 
@@ -18,6 +19,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
+#include <sstream>
 
 using namespace thermopower::gap;
 
@@ -62,6 +65,63 @@ Diagnosis example() {
   return d;
 }
 
+// Four runs that all begin at 0, with errors of 1 to 4 K as configured.
+std::pair<Diagnosis, std::vector<Recording>> four_runs() {
+  Diagnosis d = example();
+  Recording recording;
+  recording.name = "logs/drive.csv";
+  const Eigen::Index rows = 400;
+  recording.t_s.resize(rows);
+  Eigen::VectorXd power(rows), supply(rows), measured(rows), error(rows);
+  const char* const names[] = {"left", "right", "up", "down"};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t = static_cast<double>(i % 100);
+    recording.t_s[i] = t;
+    power[i] = t < 50 ? 200.0 : 0.0;
+    supply[i] = 12.0 - 0.01 * t;
+    measured[i] = 30.0 + 0.2 * t;
+    error[i] = 1.0 + static_cast<double>(i / 100);
+  }
+  for (int k = 0; k < 4; ++k) recording.runs.push_back({100 * k, 100 * (k + 1), names[k]});
+  recording.set("power_param", power);
+  recording.set("supply_V", supply);
+  recording.set("ambient_C", Eigen::VectorXd::Constant(rows, 20.0));
+  recording.set("motor_C", measured);
+  d.series.clear();
+  d.series.push_back({Signal::motor_C, "degC", recording.name, recording.t_s, measured, measured + error,
+                      measured + 0.5 * error, measured});
+  d.gap.resize(1);
+  return {d, {recording}};
+}
+
+std::size_t occurrences_of(const std::string& what, const std::string& text) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+// The corners of the first path of that class: "M x y", then "l dx dy dx dy ...".
+std::vector<std::pair<long, long>> points_of(const std::string& html, const std::string& role) {
+  const std::string head = "<path class=\"" + role + "\" d=\"";
+  const std::size_t svg = html.find("class=\"plot\"");
+  const std::size_t begin = html.find(head, svg) + head.size();
+  std::string text = html.substr(begin, html.find('"', begin) - begin);
+  std::vector<std::pair<long, long>> points;
+  long x = 0, y = 0, dx = 0, dy = 0;
+  for (char& one : text)
+    if (one == 'l') one = ' ';
+  std::istringstream pieces(text);
+  std::string piece;
+  while (std::getline(pieces, piece, 'M')) {
+    if (piece.empty()) continue;
+    std::istringstream in(piece);
+    in >> x >> y;
+    points.emplace_back(x, y);
+    while (in >> dx >> dy) points.emplace_back(x += dx, y += dy);
+  }
+  return points;
+}
+
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -97,25 +157,75 @@ TEST_CASE("a report survives names that are no UTF-8") {
   Diagnosis d = example();
   d.findings[0].recording = "\xff\xfe<b>.csv";
   CHECK_NOTHROW(nlohmann::json::parse(files::report_json(d)));
-  const std::string html = files::report_html(d, "\xff<script>", {});
-  CHECK_THAT(html,
-             !ContainsSubstring("\xff") && !ContainsSubstring("<script") && !ContainsSubstring("<b>.csv"));
+  const std::string html = files::report_html(d, "\xff<script>alert(1)</script>", {});
+  CHECK_THAT(html, !ContainsSubstring("\xff") && !ContainsSubstring("<script>alert") &&
+                       !ContainsSubstring("<b>.csv"));
 }
 
-TEST_CASE("the HTML report is one file without external resource or script, under a megabyte") {
+TEST_CASE("the HTML report is one file that asks for nothing, small besides its curves") {
   const std::string html = files::report_html(example(), "motor", {});
   CHECK(html.size() < 1000000);
-  for (const char* forbidden : {"http://", "https://", "src=", "<script", "<link", "@import", "url("})
+  for (const char* forbidden : {"http://", "https://", "src=", "<link", "@import", "url(", "fetch(",
+                                "XMLHttpRequest", "import(", "localStorage", "eval("})
     CHECK_THAT(html, !ContainsSubstring(forbidden));
-  for (const char* needed : {"<svg", "prefers-color-scheme:dark", "@media print", "thermal.loss", "radiation",
-                             "natural_convection", "steps of 0.1", "heat &lt;hard&gt; &amp; wait",
-                             "angle_deg: not recorded", "noise floor", "\u00b0C"}) {
+  CHECK(occurrences_of("<script", html) == 1);
+  for (const char* needed :
+       {"<svg", "prefers-color-scheme:dark", "@media print", "thermal.<wbr>loss", "radiation",
+        "natural_<wbr>convection", "steps of 0.1", "heat &lt;hard&gt; &amp; wait", "angle_deg: not recorded",
+        "noise floor", "\u00b0C"}) {
     CAPTURE(needed);
     CHECK_THAT(html, ContainsSubstring(needed));
   }
+  Diagnosis bare = example();
+  bare.series.clear();
+  CHECK(files::report_html(bare, "motor", {}).size() < 100000);
 }
 
-TEST_CASE("a thinned curve keeps its highest peak") {
+TEST_CASE("the page tells findings first, with what mends them, and where a fault shows") {
+  Diagnosis d = example();
+  d.findings.push_back({FindingKind::spiked_samples,
+                        Severity::warning,
+                        "dir/b.csv",
+                        "motor_C",
+                        "4 samples stand apart",
+                        "shield the <cable>",
+                        FindingAction::masked,
+                        {{3, 5}, {9, 11}}});
+  d.findings.push_back(d.findings.back());
+  d.findings.back().recording = "dir/c.csv";
+  d.where[0].only_in = {{"dir/b.csv", "second", true, 127.0}, {"dir/c.csv", "", false, std::nullopt}};
+  d.remaining = Remaining{Signal::motor_C, 0.4, 7.5, std::nullopt, std::nullopt, "errors stay alike for 3 s"};
+  const std::string html = files::report_html(d, "motor", {});
+  const std::size_t finding = html.find("4 samples stand apart");
+  REQUIRE(finding != std::string::npos);
+  CHECK(finding < html.find("class=\"facts\""));
+  CHECK(html.find("4 samples stand apart", finding + 1) == std::string::npos);  // once for both recordings
+  CHECK_THAT(html, ContainsSubstring("dir/<wbr>b.<wbr>csv, dir/<wbr>c.<wbr>csv") &&
+                       ContainsSubstring("Counted as missing: 4 rows") &&
+                       ContainsSubstring("shield the &lt;cable&gt;") && ContainsSubstring("What remains") &&
+                       ContainsSubstring("7.50 times its noise floor"));
+  CHECK_THAT(html,
+             ContainsSubstring("Only in b.<wbr>csv, run second (held out), from 127\u00a0s on; c.<wbr>csv"));
+  CHECK(finding < html.find("steps of 0.1"));  // notes can wait
+}
+
+TEST_CASE("runs are told apart by their names, with what drove them, also where their stamps overlap") {
+  const auto [d, held_out] = four_runs();
+  const std::string html = files::report_html(d, "motor", {}, held_out);
+  for (const char* title :
+       {"drive.<wbr>csv, run left", "drive.<wbr>csv, run right", "drive.<wbr>csv, run up"})
+    CHECK_THAT(html, ContainsSubstring(std::string("<h3>") + title + "</h3>"));
+  CHECK_THAT(html, ContainsSubstring("input: power (0 to 255)") && ContainsSubstring("supply voltage / V"));
+  CHECK_THAT(html, !ContainsSubstring("air temperature"));  // stands still
+  // Each run has an error of its own: 1, 2, 3 and 4 K, then nothing.
+  for (const char* row : {">1.00 \u2192 0<", ">2.00 \u2192 0<", ">3.00 \u2192 0<", ">4.00 \u2192 0<"})
+    CHECK_THAT(html, ContainsSubstring(row));
+  // Without the recordings a run begins where stamps fall.
+  CHECK_THAT(files::report_html(d, "motor", {}), ContainsSubstring("drive.<wbr>csv, run 3"));
+  std::ofstream(THERMOPOWER_PAGE) << html;
+}
+
+TEST_CASE("a thinned curve keeps its highest peak, in its place") {
   files::Chart chart;
   files::Series series{"x", "measured", files::Series::Style::line, {}, {}, {}, {}};
   for (int i = 0; i < 100000; ++i) {
@@ -123,12 +233,73 @@ TEST_CASE("a thinned curve keeps its highest peak") {
     series.y.push_back(i == 54321 ? 100.0 : 0.0);
   }
   chart.series.push_back(series);
-  const std::string svg = files::to_svg(chart);
-  CHECK(svg.size() < 60000);
-  const double x = 58.0 + 54321.0 / 99999.0 * (860 - 14 - 58);
-  char point[32];
-  std::snprintf(point, sizeof point, "%.1f ", x);
-  CHECK_THAT(svg, ContainsSubstring(point));
+  const std::string html = files::to_html(chart);
+  CHECK(html.size() < 60000);
+  // 0 to 100 and 6 % more on both ends: the peak is 6/112 below the top, 54321/99999 from the left.
+  long least = 1000000, at = 0;
+  for (const auto& [x, y] : points_of(html, "curve measured")) {
+    if (y < least) at = x;
+    least = std::min(least, y);
+  }
+  CHECK(least == 536);
+  CHECK(at == 54322);
+}
+
+TEST_CASE("a curve that is shown in part keeps its detail there") {
+  files::Chart chart;
+  files::Series series{"x", "measured", files::Series::Style::line, {}, {}, {}, {}};
+  for (int i = 0; i < 100000; ++i) {
+    series.x.push_back(0.01 * i);
+    series.y.push_back(std::sin(2.0 * i));
+  }
+  chart.series.push_back(series);
+  chart.view = {500.0, 501.0};
+  std::size_t inside = 0;
+  const auto points = points_of(files::to_html(chart), "curve measured");
+  for (const auto& [x, y] : points) inside += x >= 50000 && x <= 50100 ? 1 : 0;
+  CHECK(inside >= 100);
+  CHECK(points.size() < 3000);
+}
+
+TEST_CASE("errors' histogram and correlation are what they are of known errors") {
+  files::RunErrors of;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  double alike = 0.0;
+  std::vector<double> white;
+  for (int i = 0; i < 60000; ++i) {
+    alike = 0.9 * alike + std::sqrt(1.0 - 0.81) * normal(random);
+    of.errors.push_back(alike);
+    of.t_s.push_back(0.5 * i);
+    white.push_back(normal(random));
+  }
+  of.runs.push_back({0, 60000, {}});
+  const files::Curve correlation = files::autocorrelation(of);
+  REQUIRE(correlation.x.size() > 20);
+  CHECK(correlation.y[0] == Approx(1.0));
+  for (std::size_t i = 1; i < correlation.x.size(); ++i)
+    CHECK(correlation.y[i] == Approx(std::pow(0.9, correlation.x[i] / 0.5)).margin(0.06));
+  of.errors = white;
+  const files::Curve none = files::autocorrelation(of);
+  for (std::size_t i = 1; i < none.y.size(); ++i) CHECK(std::fabs(none.y[i]) < 0.03);
+
+  const files::Curve counted = files::histogram(white, 4.0), expected = files::normal_histogram(4.0, 1.0);
+  double all = 0.0;
+  for (std::size_t i = 0; i < counted.x.size(); ++i) {
+    CHECK(counted.y[i] == Approx(expected.y[i]).margin(0.01));
+    all += counted.y[i];
+  }
+  CHECK(all == Approx(1.0));
+  CHECK(files::histogram({0.0, 100.0, missing}, 4.0).y.back() == 0.5);
+  // Two runs are no neighbours: alternating runs of +1 and -1 correlate in themselves and not with each other.
+  files::RunErrors two;
+  for (int run = 0; run < 2; ++run)
+    for (int i = 0; i < 30; ++i) {
+      two.errors.push_back(run == 0 ? 1.0 : -1.0);
+      two.t_s.push_back(i);
+    }
+  two.runs = {{0, 30, "a"}, {30, 60, "b"}};
+  for (const double y : files::autocorrelation(two).y) CHECK(y == Approx(1.0));
 }
 
 TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same") {
@@ -136,7 +307,7 @@ TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same"
        std::vector<std::vector<double>>{{}, {1.0}, {missing, missing}, {1e300, -1e300}, {5.0, 5.0}}) {
     files::Chart chart;
     chart.series.push_back({"x", "measured", files::Series::Style::line, values, values, {}, {}});
-    const std::string svg = files::to_svg(chart);
+    const std::string svg = files::to_html(chart);
     CHECK_THAT(svg, ContainsSubstring("</svg>") && !ContainsSubstring("nan") && !ContainsSubstring("inf"));
   }
 }

@@ -5,7 +5,7 @@
 
 #include "report_json.hpp"
 #include "summary.hpp"
-#include "svg_chart.hpp"
+#include "html_text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -26,12 +26,6 @@ std::string percent(double share) {
                               : "%.0f %%",
                 100.0 * share);
   return text;
-}
-
-std::string joined(const std::vector<std::string>& list) {
-  std::string out;
-  for (const auto& one : list) out += (out.empty() ? "" : ", ") + one;
-  return out;
 }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -68,7 +62,7 @@ std::string check_text(const DataReport& report) {
       out += row;
     }
     for (const auto& one : report.only_together)
-      out += summary_line("together", joined(one.constants) + ": move by " + percent(one.sd) +
+      out += summary_line("together", joined(one.constants, ", ") + ": move by " + percent(one.sd) +
                                           " together unnoticed (a minus: the other way)");
   }
   std::vector<std::string> shown, hidden, absorbed;
@@ -77,14 +71,15 @@ std::string check_text(const DataReport& report) {
     if (one.absorbed) absorbed.push_back(one.effect);
     else if (one.visible < visible) hidden.push_back(one.effect);
     else shown.push_back(one.effect);
-    if (!one.alike.empty()) alike += summary_line("alike", one.effect + " looks like " + joined(one.alike));
+    if (!one.alike.empty())
+      alike += summary_line("alike", one.effect + " looks like " + joined(one.alike, ", "));
   }
   if (!report.effects.empty()) out += "\n";
-  if (!shown.empty()) out += summary_line("can show", joined(shown));
+  if (!shown.empty()) out += summary_line("can show", joined(shown, ", "));
   if (!hidden.empty())
-    out += summary_line("too small", joined(hidden) + " (of usual size, against the noise)");
+    out += summary_line("too small", joined(hidden, ", ") + " (of usual size, against the noise)");
   if (!absorbed.empty())
-    out += summary_line("absorbed", joined(absorbed) + " (moved constants look the same)");
+    out += summary_line("absorbed", joined(absorbed, ", ") + " (moved constants look the same)");
   out += alike;
   for (const auto& one : report.need_columns) out += summary_line("log, too", one);
   return out;

@@ -205,7 +205,7 @@ int diagnose(const Arguments& arguments) {
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
     if (!arguments.html.empty())
-      outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list()));
+      outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list(), held_out));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
                   files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
@@ -316,7 +316,7 @@ int run(int count, char** values) {
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 a diagnosis was made, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand.");
+      "Exit status: 0 a diagnosis was made, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand.");
   Arguments arguments;
 
   CLI::App* const diagnosing = app.add_subcommand("diagnose", "find the missing effect");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/effect.hpp>
 
 #include <string>
@@ -10,11 +11,15 @@
 
 namespace thermopower::gap::files {
 
-/// @brief The report for people: one self-contained HTML page (inline CSS and SVG, no script, no external
-/// resource), light and dark, printable, under a megabyte whatever the length of the recordings.
+/// @brief The report for people: one self-contained HTML page, light and dark, printable, legible on a telephone,
+/// under a megabyte whatever the length of the recordings.
+///
+/// Style, pictures and a small script are inside, nothing is loaded. The script adds zoom and values under the
+/// pointer; everything reads without it.
 /// @param model_name as in the model file
 /// @param effects the catalogue, for what an effect is in words
+/// @param held_out the recordings it was judged on: they tell runs apart and show what drove them
 std::string report_html(const Diagnosis& diagnosis, const std::string& model_name,
-                        const std::vector<EffectInfo>& effects);
+                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out = {});
 
 }  // namespace thermopower::gap::files

@@ -3,7 +3,7 @@
 
 #include "summary.hpp"
 
-#include "svg_chart.hpp"
+#include "html_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,6 @@ std::string line(const std::string& label, const std::string& text) {
   return head + wrapped(text, 14) + "\n";
 }
 
-std::string joined(const std::vector<std::string>& ids) {
-  std::string out;
-  for (const auto& id : ids) out += (out.empty() ? "" : " + ") + id;
-  return out;
-}
-
 std::string percent(double share) {
   if (!std::isfinite(share)) return "?";
   char text[16];
@@ -54,7 +48,8 @@ std::string percent(double share) {
   return text;
 }
 
-std::string with_unit(const std::string& number, const std::string& unit) {
+// As the terminal writes it: `ohm`, not a sign.
+std::string plain_unit(const std::string& number, const std::string& unit) {
   return unit == "1" || unit.empty() ? number : number + " " + unit;
 }
 
@@ -130,7 +125,7 @@ std::string summary(const Diagnosis& diagnosis) {
     std::string text = cause.effect + " (" + percent(cause.probability) + ")";
     for (const auto& parameter : cause.parameters) {
       text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
-              with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
+              plain_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
               ", " + readable(parameter.ci95.high) + "]";
     }
     out += line(first ? "which" : "", text);
