@@ -87,6 +87,9 @@ enum class ConfigError : uint8_t {
   longest_s = 70,             ///< Must be finite and not below interval_s.
   maximum_supply_V = 71,      ///< Must be finite and above supply_V.
   current_offset_A = 72,      ///< Must be finite and not negative.
+  warning_percent = 73,       ///< Must be finite and above 0.
+  error_percent = 74,         ///< Must be finite and above warning_percent.
+  hysteresis_percent = 75,    ///< Must be finite and not negative.
   user_defined = 128          ///< Codes from here up are free for policies of your own.
 };
 

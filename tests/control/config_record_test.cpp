@@ -123,7 +123,7 @@ TEST_CASE("the configuration of every actuator model goes through a record") {
                   config_record_size(TemperatureObserverConfig::standard({})) - 10 + 6);
   WindingResistance::Config copper = WindingResistance::Config::standard();
   copper.resistance_ohm = 8.0f;
-  check_component("WindingResistance", copper, 28);
+  check_component("WindingResistance", copper, 32);
 }
 
 TEST_CASE("the configuration of every policy goes through a record") {
@@ -147,6 +147,9 @@ TEST_CASE("the configuration of every policy goes through a record") {
   gain.gain_low_power = 60.0f;
   check_component("VoltageGain", gain, 22);
   check_component("EasedGain", EasedGain<VoltageGain>::Config{gain, 1.5f, 3}, 27);
+  UtilisationConfig utilisation = UtilisationConfig::standard();
+  utilisation.maximum_winding_C = 110.0f, utilisation.maximum_body_C = 60.0f;
+  check_component("Utilisation", utilisation, 20);
   check_component("AirTemperature", AirTemperature::Config::standard(), 16);
   check_component("GimbalController", GimbalConfig::standard(), 32);
 }

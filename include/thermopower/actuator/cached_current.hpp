@@ -38,8 +38,11 @@ public:
     const bool is_same_voltage = detail::is_same(power_param, power_) && detail::is_same(supply_V, supply_V_);
     const bool is_same_winding = is_near(motor_C);
     if (is_same_voltage && is_same_winding) return state_;
-    if (!detail::is_same(power_param, power_)) share_ = v_rms_from_power<float>(1.0f, power_param);
-    power_ = power_param;
+    if (!detail::is_same(power_param, power_)) {
+      share_ = v_rms_from_power<float>(1.0f, power_param);
+      power_ = power_param;
+      count_ = 0;
+    }
     supply_V_ = supply_V;
     if (!is_same_winding) {
       motor_C_ = motor_C;
@@ -52,11 +55,10 @@ public:
 
   /// The same from a whole POWER: only one that changed is converted.
   const State& at_count(uint8_t power_param, float supply_V, float motor_C) noexcept {
-    if (power_param != count_) {
-      count_ = power_param;
-      counted_ = static_cast<float>(power_param);
-    }
-    return at_power(counted_, supply_V, motor_C);
+    const bool is_known = power_param == count_ && count_ != 0;
+    const State& state = at_power(is_known ? power_ : static_cast<float>(power_param), supply_V, motor_C);
+    count_ = power_param;
+    return state;
   }
 
   const Config& config() const noexcept { return model_.config(); }  ///< The law with its constants.
@@ -97,8 +99,7 @@ private:
   float power_ = -1.0f, supply_V_ = 0.0f, motor_C_ = 0.0f, asked_C_ = 0.0f;
   float share_ = 0.0f;          // V_rms / V_supply
   float conductance_S_ = 0.0f;  // at `motor_C_`
-  float counted_ = 0.0f;        // `count_`
-  uint8_t count_ = 0;
+  uint8_t count_ = 0;           // `power_` where that came as one; 0 where not
   bool is_near_ = false;
 };
 

@@ -12,8 +12,9 @@ namespace thermopower {
 
 /// A temperature with how far it may be off.
 struct MeasuredTemperature {
-  float value_C;  ///< NaN when there is none.
-  float std_K;    ///< Standard deviation, above 0.
+  float value_C;         ///< NaN when there is none.
+  float std_K;           ///< Standard deviation of what is another in each reading, above 0.
+  float standing_std_K;  ///< Standard deviation of what is the same in all readings of this sensor, >= 0.
   bool is_valid;  ///< False: too little voltage or current to say anything, or a reading that no winding
                   ///< gives.
 };
@@ -28,22 +29,25 @@ public:
     float reference_C;     ///< -50 .. 200.
     float minimum_V_rms;  ///< Below this nothing is measured: dead time and back-EMF outweigh the resistance.
                           ///< >= 0.
-    float current_std_A;  ///< Noise of the current sensor. Above 0.
+    float current_std_A;  ///< Noise of the current sensor, another in each reading. Above 0.
+    float current_offset_A;  ///< Standing error of the current, 1 sigma. >= 0.
     float
         current_step_A;  ///< Resolution of the current: REALTIME_DATA_4 sends whole milliampere, 0.001. >= 0.
-    float voltage_std_fraction;  ///< Relative error of V_rms. >= 0.
+    float
+        voltage_std_fraction;  ///< Standing relative error of V_rms and of the resistance together, 1 sigma.
+                               ///< >= 0.
 
-    /// Copper, milliampere, 5 mA noise, 1 % of the voltage, from 3 V up; the resistance is NaN until it is
-    /// set.
+    /// Copper, milliampere, 5 mA noise and 5 mA offset, 1 % of the voltage, from 3 V up; the resistance is NaN
+    /// until it is set.
     static Config standard() noexcept {
-      const Config config = {detail::not_a_number(), 0.00393f, 20.0f, 3.0f, 0.005f, 0.001f, 0.01f};
+      const Config config = {detail::not_a_number(), 0.00393f, 20.0f, 3.0f, 0.005f, 0.005f, 0.001f, 0.01f};
       return config;
     }
     /// Hands each field to an archive, in the order of a record: config_record.hpp.
     template <class Self, class Archive>
     static void each_field(Self& self, Archive& archive) {
       archive(self.resistance_ohm, self.tempco_per_K, self.reference_C, self.minimum_V_rms,
-              self.current_std_A, self.current_step_A, self.voltage_std_fraction);
+              self.current_std_A, self.current_offset_A, self.current_step_A, self.voltage_std_fraction);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -58,7 +62,8 @@ public:
       if (is_error(detail::require_positive(current_std_A, ConfigError::current_std_A)))
         return ConfigError::current_std_A;
       return first_error(
-          detail::require_not_negative(current_step_A, ConfigError::current_step_A),
+          first_error(detail::require_not_negative(current_offset_A, ConfigError::current_offset_A),
+                      detail::require_not_negative(current_step_A, ConfigError::current_step_A)),
           detail::require_not_negative(voltage_std_fraction, ConfigError::voltage_std_fraction));
     }
   };
@@ -68,29 +73,41 @@ public:
     per_ohm_ = 1.0f / config.resistance_ohm;
     per_tempco_ = 1.0f / config.tempco_per_K;
     // A value rounded to steps has a variance of step^2 / 12.
-    current_variance_ = config.current_std_A * config.current_std_A +
-                        config.current_step_A * config.current_step_A * (1.0f / 12.0f);
-    voltage_variance_ = config.voltage_std_fraction * config.voltage_std_fraction;
+    current_std_A_ = sqrtf(config.current_std_A * config.current_std_A +
+                           config.current_step_A * config.current_step_A * (1.0f / 12.0f));
+    least_A_ = 3.0f * current_std_A_ + 5.0f * config.current_offset_A;
   }
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
 
-  /// @param v_rms_V    voltage at the winding  @param current_A  current in this winding alone, RMS
-  MeasuredTemperature measure(float v_rms_V, float current_A) const noexcept {
-    MeasuredTemperature measured = {detail::not_a_number(), detail::not_a_number(), false};
+  /// @param v_rms_V     voltage at the winding  @param current_A  current in this winding alone, RMS
+  /// @param expected_C  about how warm the winding is, for how sure the reading is; NaN: as the reading says.
+  ///                    Who averages readings must say it: noise that makes a current larger makes its reading
+  ///                    colder, and would make it look surer, too
+  MeasuredTemperature measure(float v_rms_V, float current_A,
+                              float expected_C = detail::not_a_number()) const noexcept {
+    MeasuredTemperature measured = {detail::not_a_number(), detail::not_a_number(), 0.0f, false};
     // Asked this way round so that NaN is not valid. A current under three times its noise could also be a
-    // broken wire.
-    if (!(v_rms_V >= config_.minimum_V_rms && v_rms_V < 1.0e4f) || !(current_A > 0.0f && current_A < 1.0e4f))
+    // broken wire, and one near its offset makes no temperature whose error is in proportion to it.
+    if (!(v_rms_V >= config_.minimum_V_rms && v_rms_V < 1.0e4f) ||
+        !(current_A > least_A_ && current_A < 1.0e4f))
       return measured;
-    if (!(current_A * current_A > 9.0f * current_variance_)) return measured;
-    const float per_A = 1.0f / current_A;
-    const float ratio = v_rms_V * per_A * per_ohm_;
-    const float slope_K = ratio * per_tempco_;
-    const float value_C = config_.reference_C + slope_K - per_tempco_;
+    const float volt_per_ohm = v_rms_V * per_ohm_;  // current at the reference
+    float ratio = volt_per_ohm / current_A;
+    const float value_C = config_.reference_C + (ratio - 1.0f) * per_tempco_;
     if (!(value_C > -60.0f && value_C < 400.0f)) return measured;
     measured.value_C = value_C;
-    measured.std_K = slope_K * sqrtf(current_variance_ * per_A * per_A + voltage_variance_);
+    if (expected_C > -60.0f && expected_C < 400.0f)
+      ratio = 1.0f + config_.tempco_per_K * (expected_C - config_.reference_C);
+    const float slope_K = ratio * per_tempco_;
+    const float slope_K_per_A = slope_K * ratio / volt_per_ohm;
+    // A standing error of the voltage, and one of the current, which grows as the current falls: taken together
+    // as one, which is never too little.
+    const float offset_K = slope_K_per_A * config_.current_offset_A;
+    const float voltage_K = slope_K * config_.voltage_std_fraction;
+    measured.std_K = slope_K_per_A * current_std_A_;
+    measured.standing_std_K = sqrtf(offset_K * offset_K + voltage_K * voltage_K);
     measured.is_valid = measured.std_K > 0.0f;
     return measured;
   }
@@ -99,7 +116,7 @@ public:
 
 private:
   Config config_;
-  float per_ohm_, per_tempco_, current_variance_, voltage_variance_;
+  float per_ohm_, per_tempco_, current_std_A_, least_A_;
 };
 
 }  // namespace thermopower

@@ -62,32 +62,31 @@ public:
   void start(float motor_C) noexcept {
     if (detail::is_finite(motor_C)) observer_.start(motor_C, motor_C, 2.0f, 2.0f, 0.5f);
     else observer_.start_unknown(maximum_C_, 0.0f);
-    store(0.0f);
+    winding_rate_K_per_s_ = 0.0f;
   }
   /// What an axis calls when nobody told it a temperature: worst case. @param air_C  the coolest it can be
   void start_in(float air_C) noexcept {
     observer_.start_unknown(maximum_C_, air_C);
-    store(0.0f);
+    winding_rate_K_per_s_ = 0.0f;
   }
 
   /// Advances by `dt_s` seconds (>= 0). Heat or air that is NaN makes the temperatures NaN, which every
   /// limiter treats as hot.
-  const State& step(const Inputs& inputs, float dt_s) noexcept {
+  State step(const Inputs& inputs, float dt_s) noexcept {
     float power_W = inputs.power_W;
     if (every_ > 1) {
       // Steps of equal length add up their powers alone; the time is counted.
       if (!detail::is_same(dt_s, each_s_)) {
         fold();
         each_s_ = dt_s;
-        turn_s_ = dt_s * static_cast<float>(every_);
       }
       sum_W_ += power_W;
       ++count_;
-      if (++turn_ < every_) return state_;
+      if (++turn_ < every_) return state();
       turn_ = 0;
       if (count_ == every_) {
         power_W = sum_W_ * per_turn_;
-        dt_s = turn_s_;
+        dt_s = each_s_ * static_cast<float>(every_);
       } else {
         fold();
         dt_s = pending_s_;
@@ -96,27 +95,27 @@ public:
       pending_s_ = pending_J_ = sum_W_ = 0.0f;
       count_ = 0;
     }
-    const float across_W = coupling_W_per_K_ * (state_.winding_C - state_.body_C);
+    const TemperatureObserver::State& state = observer_.state();
+    const float across_W = coupling_W_per_K_ * (state.winding_C - state.body_C);
+    winding_rate_K_per_s_ = (power_W - across_W) * per_capacity_;
     observer_.step(power_W, inputs.around.air_C, dt_s);
-    store((power_W - across_W) * per_capacity_);
-    return state_;
+    return this->state();
   }
 
-  TemperatureObserver& observer() noexcept { return observer_; }  ///< To take in measurements.
-  const TemperatureObserver& observer() const noexcept {
-    return observer_;
-  }                                                        ///< Estimates and their uncertainty.
-  const State& state() const noexcept { return state_; }   ///< After the last step.
-  float hottest_C() const noexcept { return hottest_C_; }  ///< The node that decides.
-  float hottest_rate_K_per_s() const noexcept { return state_.winding_rate_K_per_s; }  ///< dT_w/dt.
+  TemperatureObserver& observer() noexcept { return observer_; }              ///< To take in measurements.
+  const TemperatureObserver& observer() const noexcept { return observer_; }  ///< Estimates, and how sure.
+  /// After the last step, and with every measurement since.
+  State state() const noexcept {
+    const State state = {observer_.state().winding_C, observer_.state().body_C, winding_rate_K_per_s_};
+    return state;
+  }
+  /// The node that decides.
+  float hottest_C() const noexcept {
+    return detail::at_least(observer_.state().winding_C, observer_.state().body_C);
+  }
+  float hottest_rate_K_per_s() const noexcept { return winding_rate_K_per_s_; }  ///< dT_w/dt.
 
 private:
-  void store(float rate_K_per_s) noexcept {
-    state_.winding_C = observer_.state().winding_C;
-    state_.body_C = observer_.state().body_C;
-    state_.winding_rate_K_per_s = rate_K_per_s;
-    hottest_C_ = detail::at_least(state_.winding_C, state_.body_C);
-  }
   void fold() noexcept {
     if (count_ == 0) return;
     pending_s_ += each_s_ * static_cast<float>(count_);
@@ -126,11 +125,10 @@ private:
   }
 
   TemperatureObserver observer_;
-  State state_;
-  float maximum_C_, per_capacity_, coupling_W_per_K_;
-  float hottest_C_ = 0.0f, per_turn_;
-  float each_s_ = 0.0f, turn_s_ = 0.0f, sum_W_ = 0.0f;  // steps of one length
-  float pending_s_ = 0.0f, pending_J_ = 0.0f;           // and of other lengths before them
+  float maximum_C_, per_capacity_, coupling_W_per_K_, per_turn_;
+  float winding_rate_K_per_s_ = 0.0f;
+  float each_s_ = 0.0f, sum_W_ = 0.0f;         // steps of one length
+  float pending_s_ = 0.0f, pending_J_ = 0.0f;  // and of other lengths before them
   uint8_t every_, turn_, count_ = 0;
 };
 

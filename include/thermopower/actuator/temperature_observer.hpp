@@ -8,6 +8,11 @@
 /// @file temperature_observer.hpp
 /// Winding and body temperature with a standard deviation, from the model and from whatever is measured: an
 /// extended Kalman filter with two states and scalar updates, small enough for an 8-bit chip.
+///
+/// Most errors here are standing ones: heat that is a fifth too high stays so, and a voltage that reads 1 % low
+/// reads low in every sample. Averaging a thousand samples takes no such error away, so the filter carries for
+/// each of them how much of it is in the estimate (a Schmidt-Kalman filter: the errors are considered, not
+/// estimated).
 
 namespace thermopower {
 
@@ -16,7 +21,7 @@ struct TemperatureObserverConfig {
   TwoNodeThermalModel<float>::Config thermal;  ///< The model.
   float heat_error;   ///< The computed heat may be wrong by this fraction (1 sigma), for good. Above 0, at
                       ///< most 1.
-  float air_error_K;  ///< The air may be off by this (1 sigma). >= 0.
+  float air_error_K;  ///< The air may be off by this (1 sigma), for good. >= 0.
   float gate_sigma;   ///< A measurement further away than this many sigma is not believed. Above 0; 3 to 5.
   float variance_s;  ///< The variances are carried in steps of this, the temperatures in every step. Above 0.
 
@@ -45,7 +50,8 @@ struct TemperatureObserverConfig {
 ///
 /// The model is stepped with `step()`; a measurement, when there is one, is taken in with `correct_winding()`
 /// or `correct_body()`, at any rate. Without measurements the standard deviation grows to what the model's
-/// own errors allow and no further. It starts worst case (`start_unknown`): as hot as its limits, and not
+/// own errors allow and no further; with measurements it does not fall below what their standing errors leave.
+/// It starts worst case (`start_unknown`): as hot as its limits, and not
 /// sure. A measurement that is hotter than expected is believed sooner than one that is colder: a wrong "hot"
 /// costs power, a wrong "cold" costs the motor.
 class TemperatureObserver {
@@ -68,17 +74,9 @@ public:
   /// @param hottest_C  where an unknown actuator is assumed to be: its limit  @param air_C  the coolest it
   /// can be
   TemperatureObserver(const Config& config, float hottest_C, float air_C) noexcept : config_(config) {
-    const float coupling = config.thermal.coupling_W_per_K,
-                conductance = config.thermal.cooling.conductance_W_per_K;
-    per_coupling_ = 1.0f / coupling;
-    per_conductance_ = 1.0f / conductance;
-    // Noise whose standing variance is (heat_error * rise)^2: for a lag of time constant t that is a density
-    // of 2 var / t.
-    const float heat = 2.0f * config.heat_error * config.heat_error * config.variance_s;
-    winding_noise_ = heat * per_coupling_ / config.thermal.winding_heat_capacity_J_per_K;
-    body_noise_ = heat * per_conductance_ / config.thermal.body_heat_capacity_J_per_K;
-    air_noise_ = 2.0f * config.air_error_K * config.air_error_K * config.variance_s * conductance /
-                 config.thermal.body_heat_capacity_J_per_K;
+    per_coupling_ = 1.0f / config.thermal.coupling_W_per_K;
+    per_conductance_ = 1.0f / config.thermal.cooling.conductance_W_per_K;
+    heat_error_per_s_ = config.heat_error / config.variance_s;
     variance_way_ = transition(config.variance_s);
     way_ = variance_way_;
     way_s_ = config.variance_s;
@@ -108,8 +106,13 @@ public:
                          0,
                          0};
     state_ = state;
-    pending_s_ = 0.0f;
-    heat_J2_ = 0.0f;
+    for (uint8_t cause = 0; cause < cause_count; ++cause)
+      standing_[cause].winding_K = standing_[cause].body_K = 0.0f;
+    causes_ = body_sensor;
+    // Half a carry ahead: between two of them the variances are early as long as they are late.
+    pending_s_ = 0.5f * config_.variance_s;
+    pending_J_ = 0.0f;
+    stage_ = 0;
   }
 
   /// Carries the estimate over a step of constant heat. @param power_W  in the winding  @param dt_s  >= 0
@@ -126,24 +129,28 @@ public:
         state_.winding_C + (way_.from_winding_to_winding * winding + way_.from_body_to_winding * body);
     state_.body_C = state_.body_C + (way_.from_winding_to_body * winding + way_.from_body_to_body * body);
     pending_s_ += dt_s;
-    heat_J2_ = power_W * power_W;
-    if (pending_s_ >= config_.variance_s) {
-      pending_s_ -= config_.variance_s;
-      if (pending_s_ > config_.variance_s)
-        pending_s_ = config_.variance_s;  // after a long gap: no more than two steps' lag
-      carry_variances();
-    }
+    pending_J_ += power_W * dt_s;
+    if (pending_s_ >= config_.variance_s) carry_variances(dt_s);
     return state_;
   }
 
   /// Takes in a temperature of the winding. @return true when it was believed
   bool correct_winding(const MeasuredTemperature& measured) noexcept {
-    return measured.is_valid ? correct(measured.value_C, measured.std_K, true) : reject();
+    return measured.is_valid ? correct(measured, true) : reject();
+  }
+  /// Takes in voltage and current of the winding. @return true when they were believed
+  /// @param winding    what makes a temperature of them  @param v_rms_V, current_A  as its `measure()` takes them
+  bool correct_winding(const WindingResistance& winding, float v_rms_V, float current_A) noexcept {
+    return correct_winding(winding.measure(v_rms_V, current_A, state_.winding_C));
   }
   /// Takes in a temperature of the body. @return true when it was believed
   bool correct_body(const MeasuredTemperature& measured) noexcept {
-    return measured.is_valid ? correct(measured.value_C, measured.std_K, false) : reject();
+    return measured.is_valid ? correct(measured, false) : reject();
   }
+
+  /// True for a few steps in every `variance_s`, while the variances are being carried. A measurement may come
+  /// at any time; one that comes now pays for what is left of that, and a chip with little time asks first.
+  bool is_carrying() const noexcept { return stage_ != 0; }
 
   /// Estimate plus some standard deviations, for `CertifiedLimiter::tighten()`. @param sigmas  3 covers 99.9
   /// % of normal errors
@@ -168,56 +175,149 @@ private:
   Transition transition(float dt_s) const noexcept {
     const float out = config_.thermal.coupling_W_per_K / config_.thermal.winding_heat_capacity_J_per_K;
     const float in = config_.thermal.coupling_W_per_K / config_.thermal.body_heat_capacity_J_per_K;
-    const float air =
+    const float to_air =
         config_.thermal.cooling.conductance_W_per_K / config_.thermal.body_heat_capacity_J_per_K;
-    const TwoNodeRates<float> rates = two_node_rates(out, in, air);
+    const TwoNodeRates<float> rates = two_node_rates(out, in, to_air);
     const float fast = rates.fast_per_s, slow = rates.slow_per_s;
     const float slow_change = -slow * dt_s * detail::mean_decay(slow * dt_s);
     const float mix = (1.0f + slow_change) * dt_s * detail::mean_decay((fast - slow) * dt_s);
     const Transition way = {slow_change + mix * (slow - out), mix * out, mix * in,
-                            slow_change + mix * (slow - in - air)};
+                            slow_change + mix * (slow - in - to_air)};
     return way;
   }
 
-  void carry_variances() noexcept {
-    const Transition& way = variance_way_;
-    const float ww = 1.0f + way.from_winding_to_winding, wb = way.from_body_to_winding;
-    const float bw = way.from_winding_to_body, bb = 1.0f + way.from_body_to_body;
+  // Standing errors of one standard deviation each, independent of each other.
+  enum Cause : uint8_t { heat = 0, air = 1, winding_sensor = 2, body_sensor = 3, cause_count = 4 };
+  // How much of one is in each estimate: the covariance of estimate and cause.
+  struct Standing {
+    float winding_K, body_K;
+  };
+
+  // Temperatures move in seconds: of short steps each does a fourth of the work.
+  void carry_variances(float dt_s) noexcept {
+    const bool is_long_step = dt_s * 10.0f > config_.variance_s;
+    // A gap of more than a thousand carries leaves nothing to be learnt from the next.
+    const float most_s = 1000.0f * config_.variance_s;
+    if (pending_s_ > most_s) {
+      pending_J_ *= most_s / pending_s_;
+      pending_s_ = most_s;
+    }
+    do {
+      carry_stage();
+    } while (is_long_step && pending_s_ >= config_.variance_s);
+  }
+  // x becomes F x + (what the causes add), one row of F after the other: each stage alone is a linear map of
+  // estimates and causes, so that a covariance stays one.
+  void carry_stage() noexcept {
+    const uint8_t stage = stage_;
+    stage_ = static_cast<uint8_t>(stage < 3 ? stage + 1 : 0);
+    if (stage == 0) carry_winding();
+    else if (stage == 1) carry_body();
+    else if (stage == 2) add_air();
+    else add_heat();
+  }
+  void carry_winding() noexcept {
+    const float own = 1.0f + variance_way_.from_winding_to_winding,
+                other = variance_way_.from_body_to_winding;
     const float v = state_.winding_variance_K2, c = state_.shared_variance_K2, u = state_.body_variance_K2;
-    const float first = ww * v + wb * c, second = ww * c + wb * u, third = bw * c + bb * u;
-    state_.winding_variance_K2 = ww * first + wb * second + winding_noise_ * heat_J2_;
-    state_.shared_variance_K2 = bw * first + bb * second;
-    state_.body_variance_K2 = bw * (bw * v + bb * c) + bb * third + body_noise_ * heat_J2_ + air_noise_;
+    state_.shared_variance_K2 = own * c + other * u;
+    state_.winding_variance_K2 = own * (own * v + other * c) + other * state_.shared_variance_K2;
+    for (uint8_t cause = 0; cause < causes_; ++cause)
+      standing_[cause].winding_K = own * standing_[cause].winding_K + other * standing_[cause].body_K;
+  }
+  void carry_body() noexcept {
+    // From the winding as it is carried already.
+    const float other = variance_way_.from_winding_to_body / (1.0f + variance_way_.from_winding_to_winding);
+    const float own = 1.0f + variance_way_.from_body_to_body - other * variance_way_.from_body_to_winding;
+    const float v = state_.winding_variance_K2, c = state_.shared_variance_K2, u = state_.body_variance_K2;
+    state_.shared_variance_K2 = own * c + other * v;
+    state_.body_variance_K2 = own * (own * u + other * c) + other * state_.shared_variance_K2;
+    for (uint8_t cause = 0; cause < causes_; ++cause)
+      standing_[cause].body_K = own * standing_[cause].body_K + other * standing_[cause].winding_K;
+  }
+  // What a step leaves of a settled rise: in the air's, both nodes take part alike.
+  void add_air() noexcept {
+    const Transition& way = variance_way_;
+    add(air, -config_.air_error_K * (way.from_winding_to_winding + way.from_body_to_winding),
+        -config_.air_error_K * (way.from_winding_to_body + way.from_body_to_body));
+  }
+  void add_heat() noexcept {
+    // All the energy since the last time, whether that was a step more or less than a carry ago: none is lost,
+    // and no division is needed. Only of a long step a part is left for the next carry.
+    float energy_J = pending_J_, rest_J = 0.0f;
+    const float rest_s = pending_s_ - config_.variance_s;
+    if (rest_s >= config_.variance_s) {
+      energy_J *= config_.variance_s / pending_s_;
+      rest_J = pending_J_ - energy_J;
+    }
+    pending_s_ = rest_s;
+    pending_J_ = rest_J;
+    const float heat_W = energy_J * heat_error_per_s_;
+    const float body_K = heat_W * per_conductance_, winding_K = body_K + heat_W * per_coupling_;
+    const Transition& way = variance_way_;
+    add(heat, -(way.from_winding_to_winding * winding_K + way.from_body_to_winding * body_K),
+        -(way.from_winding_to_body * winding_K + way.from_body_to_body * body_K));
+  }
+  void add(Cause cause, float winding_K, float body_K) noexcept {
+    Standing& standing = standing_[cause];
+    const float before_winding_K = standing.winding_K, before_body_K = standing.body_K;
+    standing.winding_K += winding_K;
+    standing.body_K += body_K;
+    state_.winding_variance_K2 += winding_K * (before_winding_K + standing.winding_K);
+    state_.shared_variance_K2 += winding_K * standing.body_K + before_winding_K * body_K;
+    state_.body_variance_K2 += body_K * (before_body_K + standing.body_K);
   }
 
-  bool correct(float value_C, float std_K, bool is_winding) noexcept {
-    const float own = is_winding ? state_.winding_variance_K2 : state_.body_variance_K2;
-    const float innovation_K = value_C - (is_winding ? state_.winding_C : state_.body_C);
-    const float variance = own + std_K * std_K;
+  bool correct(const MeasuredTemperature& measured, bool is_winding) noexcept {
+    while (is_carrying()) carry_stage();
+    const Cause sensor = is_winding ? winding_sensor : body_sensor;
+    if (!is_winding) causes_ = cause_count;
+    float& own_C = is_winding ? state_.winding_C : state_.body_C;
+    float& other_C = is_winding ? state_.body_C : state_.winding_C;
+    float& own_variance = is_winding ? state_.winding_variance_K2 : state_.body_variance_K2;
+    float& other_variance = is_winding ? state_.body_variance_K2 : state_.winding_variance_K2;
+    const float own_K = is_winding ? standing_[sensor].winding_K : standing_[sensor].body_K;
+    const float other_K = is_winding ? standing_[sensor].body_K : standing_[sensor].winding_K;
+
+    // A standing error that is in the estimate already is in the measurement again: `standing_[]` is the
+    // estimate's error, so the innovation has the sum of both.
+    const float standing_K = measured.standing_std_K;
+    const float innovation_K = measured.value_C - own_C;
+    const float noise = measured.std_K * measured.std_K;
+    const float shared = own_K * standing_K;
+    const float own_share = own_variance + shared;
+    const float square = standing_K * standing_K;
+    const float variance = own_share + shared + square + noise;
     state_.innovation_K = innovation_K;
     if (!(innovation_K * innovation_K <= config_.gate_sigma * config_.gate_sigma * variance)) {
       if (innovation_K > 0.0f && ++state_.hot_in_a_row >= 5) {
         // Five in a row are no stray: widen until the next one is believed. Colder ones never get this
         // credit.
         state_.hot_in_a_row = 0;
-        (is_winding ? state_.winding_variance_K2 : state_.body_variance_K2) += innovation_K * innovation_K;
+        own_variance += innovation_K * innovation_K;
       }
       return reject();
     }
     state_.hot_in_a_row = 0;
     const float per_variance = 1.0f / variance;
-    const float own_gain = own * per_variance, other_gain = state_.shared_variance_K2 * per_variance;
-    float& own_C = is_winding ? state_.winding_C : state_.body_C;
-    float& other_C = is_winding ? state_.body_C : state_.winding_C;
-    float& own_variance = is_winding ? state_.winding_variance_K2 : state_.body_variance_K2;
-    float& other_variance = is_winding ? state_.body_variance_K2 : state_.winding_variance_K2;
+    const float other_share = state_.shared_variance_K2 + other_K * standing_K;
+    const float own_gain = own_share * per_variance, other_gain = other_share * per_variance;
     own_C += own_gain * innovation_K;
     other_C += other_gain * innovation_K;
-    // Joseph's form for the measured node: positive whatever is rounded.
-    const float rest = 1.0f - own_gain;
-    other_variance = detail::at_least(other_variance - other_gain * state_.shared_variance_K2, 1.0e-6f);
-    own_variance = rest * rest * own + own_gain * own_gain * std_K * std_K;
-    state_.shared_variance_K2 *= rest;
+    // own - own_share^2 / variance, of positive parts alone: what stands in an estimate is part of its variance.
+    const float random_part = detail::at_least(own_variance - own_K * own_K, 0.0f);
+    own_variance = detail::at_least((own_variance * noise + square * random_part) * per_variance, 1.0e-6f);
+    other_variance = detail::at_least(other_variance - other_gain * other_share, 1.0e-6f);
+    state_.shared_variance_K2 -= own_gain * other_share;
+    const float winding_gain = is_winding ? own_gain : other_gain;
+    const float body_gain = is_winding ? other_gain : own_gain;
+    for (uint8_t cause = 0; cause < causes_; ++cause) {
+      Standing& standing = standing_[cause];
+      float seen_K = is_winding ? standing.winding_K : standing.body_K;
+      if (cause == sensor) seen_K += standing_K;
+      standing.winding_K -= winding_gain * seen_K;
+      standing.body_K -= body_gain * seen_K;
+    }
     if (state_.accepted < 65535u) ++state_.accepted;
     return true;
   }
@@ -230,8 +330,12 @@ private:
   Config config_;
   State state_;
   Transition way_, variance_way_;
-  float way_s_, pending_s_ = 0.0f, heat_J2_ = 0.0f;
-  float per_coupling_, per_conductance_, winding_noise_, body_noise_, air_noise_;
+  Standing standing_[cause_count];
+  float way_s_, pending_s_ = 0.0f, pending_J_ = 0.0f;
+  float per_coupling_, per_conductance_;
+  float heat_error_per_s_;        // over the length of a carry
+  uint8_t causes_ = body_sensor;  // a body's sensor costs nothing until there is one
+  uint8_t stage_ = 0;
 };
 
 }  // namespace thermopower

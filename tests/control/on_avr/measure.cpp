@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// measure <budget> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and prints,
-// as a Markdown table, how many cycles its marked work takes and how much flash and RAM it needs beyond the
-// first program, which is empty. Fails when the last program's work ever exceeds the budget.
+// measure <mean> <longest> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and
+// prints, as a Markdown table, how many cycles its marked work takes, how much flash and RAM it needs beyond the
+// first program, which is empty, and how deep the stack goes. Fails when the last program's work exceeds one of the
+// two budgets in cycles, when a stack meets the data below it, and when a program writes to GPIOR1 that what it
+// measures was not done. The first two axes alone may look cheap: a stack that overwrote the third did.
 
 #include <algorithm>
 #include <cstdio>
@@ -21,8 +23,25 @@ struct Marks {
   avr_cycle_count_t begun = 0;
   unsigned long long sum = 0, longest = 0;
   unsigned count = 0, calls = 0;
+  unsigned refused = 0;
   bool is_done = false;
 };
+
+// The stack pointer is written in two halves; it can be trusted where it is used.
+bool is_stack_used(const avr_t* avr) {
+  const unsigned code = avr->flash[avr->pc] | static_cast<unsigned>(avr->flash[avr->pc + 1]) << 8;
+  const bool is_push = (code & 0xfe0f) == 0x920f;
+  const bool is_call = (code & 0xfe0e) == 0x940e || (code & 0xf000) == 0xd000 || code == 0x9509;
+  return is_push || is_call;
+}
+unsigned stack_pointer(const avr_t* avr) {
+  return avr->data[0x5d] | static_cast<unsigned>(avr->data[0x5e]) << 8;
+}
+
+void on_refusal(avr_t* avr, avr_io_addr_t address, std::uint8_t value, void* parameter) {
+  avr->data[address] = value;
+  static_cast<Marks*>(parameter)->refused += value;
+}
 
 void on_mark(avr_t* avr, avr_io_addr_t address, std::uint8_t value, void* parameter) {
   Marks& marks = *static_cast<Marks*>(parameter);
@@ -41,7 +60,8 @@ void on_mark(avr_t* avr, avr_io_addr_t address, std::uint8_t value, void* parame
 
 struct Cost {
   unsigned long long mean, longest;
-  unsigned flash, ram;
+  unsigned flash, ram, stack, refused;
+  bool is_stack_free;
 };
 
 bool run(const char* path, Cost& cost) {
@@ -53,8 +73,12 @@ bool run(const char* path, Cost& cost) {
   firmware.frequency = 16000000;
   avr_load_firmware(avr, &firmware);
   Marks marks;
-  avr_register_io_write(avr, 0x3e, on_mark, &marks);  // GPIOR0
+  avr_register_io_write(avr, 0x3e, on_mark, &marks);     // GPIOR0
+  avr_register_io_write(avr, 0x4a, on_refusal, &marks);  // GPIOR1
+  unsigned deepest = avr->ramend;
   while (!marks.is_done && avr->cycle < 4000000000ULL) {
+    // What an instruction pushes lies at the pointer and, of a call, below.
+    if (is_stack_used(avr) && stack_pointer(avr) > 0x100) deepest = std::min(deepest, stack_pointer(avr) - 2);
     const int state = avr_run(avr);
     if (state == cpu_Crashed || (state == cpu_Done && !marks.is_done)) return false;
   }
@@ -63,37 +87,51 @@ bool run(const char* path, Cost& cost) {
   cost.longest = marks.longest;
   cost.flash = firmware.flashsize;
   cost.ram = firmware.datasize + firmware.bsssize;
+  cost.stack = avr->ramend - deepest;
+  cost.is_stack_free = deepest >= 0x100 + cost.ram;
+  cost.refused = marks.refused;
   return true;
 }
 
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  if (argument_count < 6 || argument_count % 2 != 0) {
-    std::fprintf(stderr, "usage: measure <budget> <name> <elf> [<name> <elf> ...]\n");
+  if (argument_count < 7 || argument_count % 2 != 1) {
+    std::fprintf(stderr, "usage: measure <mean> <longest> <name> <elf> [<name> <elf> ...]\n");
     return 2;
   }
-  const unsigned long long budget = std::strtoull(arguments[1], nullptr, 10);
+  const unsigned long long mean = std::strtoull(arguments[1], nullptr, 10);
+  const unsigned long long longest = std::strtoull(arguments[2], nullptr, 10);
   std::printf(
-      "| step of | cycles, mean | cycles, longest | flash, bytes | RAM, bytes |\n|---|---|---|---|---|\n");
+      "| step of | cycles, mean | cycles, longest | flash, bytes | RAM, bytes | stack, bytes |\n"
+      "|---|---|---|---|---|---|\n");
   Cost empty = {}, cost = {};
-  for (int i = 2; i < argument_count; i += 2) {
+  bool is_good = true;
+  for (int i = 3; i < argument_count; i += 2) {
     if (!run(arguments[i + 1], cost)) {
       std::fprintf(stderr, "%s: did not run\n", arguments[i + 1]);
       return 1;
     }
-    if (i == 2) {
+    if (!cost.is_stack_free) {
+      std::fprintf(stderr, "%s: the stack overwrites its data\n", arguments[i]);
+      is_good = false;
+    }
+    if (cost.refused != 0) {
+      std::fprintf(stderr, "%s: %u steps were refused\n", arguments[i], cost.refused);
+      is_good = false;
+    }
+    if (i == 3) {
       empty = cost;
       continue;
     }
     cost.mean -= empty.mean;
     cost.longest -= empty.mean;
-    std::printf("| %s | %llu | %llu | %u | %u |\n", arguments[i], cost.mean, cost.longest,
-                cost.flash - empty.flash, cost.ram - empty.ram);
+    std::printf("| %s | %llu | %llu | %u | %u | %u |\n", arguments[i], cost.mean, cost.longest,
+                cost.flash - empty.flash, cost.ram - empty.ram, cost.stack);
   }
   std::printf(
-      "\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most; allowed: %llu "
-      "cycles.\n",
-      static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0, budget);
-  return cost.longest <= budget ? 0 : 1;
+      "\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most; allowed: %llu and "
+      "%llu cycles.\n",
+      static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0, mean, longest);
+  return is_good && cost.mean <= mean && cost.longest <= longest ? 0 : 1;
 }

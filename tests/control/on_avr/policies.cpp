@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 
 // One policy per program (THERMOPOWER_POLICY), so that its flash and RAM can be told from the size of the
-// program. The work is marked in GPIOR0: 1 begins, 2 ends; 3 says that all is done. Inputs come from volatile
-// memory and change from call to call.
+// program. The work is marked in GPIOR0: 1 begins, 2 ends; 3 says that all is done. GPIOR1 says that a step was
+// refused, which costs less than one that is not. Inputs come from volatile memory and change from call to call.
 
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -124,7 +124,7 @@ static void work() { observer.step(heat_W, air_C, cycle_s); }
 #elif THERMOPOWER_POLICY == 11
 static TemperatureObserver observer = new_observer();
 static WindingResistance winding(copper());
-static void work() { result = observer.correct_winding(winding.measure(8.0f, current_A)) ? 1 : 0; }
+static void work() { result = observer.correct_winding(winding, 8.0f, current_A) ? 1 : 0; }
 #elif THERMOPOWER_POLICY == 12
 static GainScheduler<> gain(GainConfig{20.0f, 4.0f});
 static void work() { result = gain.step(demand); }
@@ -178,26 +178,41 @@ static Axis roll(axis_config(0)), pitch(axis_config(1)), yaw(axis_config(2));
 static WindingResistance winding(copper());
 static void step(Axis& axis, float dt_s) {
   const Axis::Inputs inputs = {error_deg, supply_V, air_C, LimitReason::none};
-  result = axis.step(inputs, dt_s).power;
+  const Axis::State& state = axis.step(inputs, dt_s);
+  result = state.power;
+  if (is_fault(state.reason)) GPIOR1 = 1;
 }
-static void measure(Axis& axis) {
-  axis.thermal().observer().correct_winding(winding.measure(8.0f, current_A));
+static MeasuredTemperature measured = {0.0f, 1.0f, 0.0f, false};
+static void measure(const Axis& axis) {
+  measured = winding.measure(8.0f, current_A, axis.thermal().observer().state().winding_C);
 }
+static void correct(Axis& axis) {
+  if (axis.thermal().observer().is_carrying()) return;  // in its next turn
+  if (measured.is_valid) axis.thermal().observer().correct_winding(measured);
+  measured.is_valid = false;
+}
+static Axis& axis_of(uint8_t index) { return index == 0 ? roll : (index == 1 ? pitch : yaw); }
 #if THERMOPOWER_POLICY == 18  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
   step(pitch, cycle_s);
   step(yaw, cycle_s);
-  const uint8_t turn = static_cast<uint8_t>(call % 9);
-  if (turn == 0) measure(roll);
-  if (turn == 3) measure(pitch);
-  if (turn == 6) measure(yaw);
+  // Every third cycle is left for this by plans and observers: in one an axis is read, in the next the reading
+  // is taken in. So each is measured every 270 ms, and no cycle does more than one of all that there is to do.
+  static uint8_t turn = 0;
+  Axis& axis = axis_of(static_cast<uint8_t>(turn / 9));
+  if (turn % 9 == 0) measure(axis);
+  if (turn % 9 == 3) correct(axis);
+  turn = static_cast<uint8_t>(turn < 26 ? turn + 1 : 0);
 }
 #else  // one in every cycle of 10 ms, in turn: each axis every 30 ms, as the original program
 static void work() {
-  Axis& axis = call % 3 == 0 ? roll : (call % 3 == 1 ? pitch : yaw);
+  Axis& axis = axis_of(static_cast<uint8_t>(call % 3));
   step(axis, 3.0f * cycle_s);
-  if ((call / 3) % 3 == 0) measure(axis);
+  if ((call / 3) % 3 == 0) {
+    measure(axis);
+    correct(axis);
+  }
 }
 #endif
 #endif

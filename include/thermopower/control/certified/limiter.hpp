@@ -94,7 +94,7 @@ public:
     /// First constant out of its range, or ConfigError::none. `highest_air_C` is also refused when the
     /// actuator would be too hot in that air at the least power: no limiter could help.
     ConfigError validate() const noexcept {
-      return is_error(validate_fields()) ? validate_fields() : Network(network, use).feasible();
+      return is_error(validate_fields()) ? validate_fields() : Network::feasible(network, use);
     }
     /// The same, but for whether the bounds can be met together.
     ConfigError validate_fields() const noexcept {
@@ -147,15 +147,12 @@ public:
       : network_(config.network, config.use),
         travel_(network_.travel(0.0f)),
         highest_air_C_(config.use.highest_air_C),
-        air_upper_C_(config.use.highest_air_C),
         air_error_K_(config.air_error_K),
-        coldest_C_(config.use.heat.coldest_C),
         per_supply_V_(config.use.heat.supply_error < 1.0f
                           ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
                           : detail::not_a_number()),
         count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
-        hold_s_(config.use.hold_s),
-        config_error_(first_error(config.validate_fields(), network_.feasible())),
+        config_error_(config.validate()),
         every_(config.use.every),
         turn_(config.use.phase) {}
 
@@ -190,7 +187,7 @@ public:
     if (count > acted_) acted_ = count;
   }
   /// How long a power may act before the next plan, as declared.
-  float hold_s() const noexcept { return hold_s_; }
+  float hold_s() const noexcept { return network_.hold_s(); }
 
   /// @param dt_s  time since the last step, during which the power granted then acted, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
@@ -263,7 +260,7 @@ public:
     return state;
   }
   bool is_certified() const noexcept {
-    return !is_late_ && network_.is_certified();
+    return !travel_.is_late && network_.is_certified();
   }                                                                        ///< As in State, without the rest.
   float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
@@ -294,7 +291,6 @@ private:
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
     network_.advance(acted_, travel_, measured_);
-    is_late_ = travel_.is_late;
     measured_.winding_C = measured_.body_C = detail::not_a_number();
     pending_s_ = 0.0f;
     steps_ = 0;
@@ -327,8 +323,7 @@ private:
     if (!detail::is_same(air_C, read_air_C_)) {
       read_air_C_ = air_C;
       const float warmest_C = air_C + air_error_K_;
-      air_upper_C_ = highest_air_C_;
-      if (warmest_C < air_upper_C_) air_upper_C_ = detail::at_least(warmest_C, coldest_C_);
+      network_.set_air(warmest_C < highest_air_C_ ? warmest_C : highest_air_C_);
     }
     if (!detail::is_same(supply_V, read_supply_V_)) {
       read_supply_V_ = supply_V;
@@ -336,7 +331,7 @@ private:
       const bool is_used = detail::is_from_zero_to(ratio, 1.0f);
       supply_squared_ = is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
     }
-    network_.surroundings(air_upper_C_, supply_squared_);
+    network_.take_warm_winding(supply_squared_);
   }
 
   LimitedPower least(LimitReason reason, uint8_t demand) noexcept {
@@ -352,7 +347,7 @@ private:
 
   Network network_;
   typename Network::Travel travel_;
-  float highest_air_C_, air_upper_C_, air_error_K_, coldest_C_, per_supply_V_, count_W_, hold_s_;
+  float highest_air_C_, air_error_K_, per_supply_V_, count_W_;
   float travelled_s_ = 0.0f;  // length of each of the `travelled_` steps that `travel_` is for
   float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number();
   detail::UnitFraction supply_squared_ = detail::whole_fraction();
@@ -365,7 +360,6 @@ private:
   ConfigError config_error_;
   uint8_t every_, turn_;
   CertifiedNode node_ = CertifiedNode::none;
-  bool is_late_ = false;                                                              // the last plan
   CertifiedMeasurement measured_ = {detail::not_a_number(), detail::not_a_number()};  // since the last plan
   bool is_limiting_ = false;
 };

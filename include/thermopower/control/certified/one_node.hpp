@@ -62,17 +62,22 @@ public:
     coldest_ = detail::celsius_units(use.heat.coldest_C);
     limit_ = detail::celsius_units(config.maximum_C - 0.0005f);
     relief_.set(use.heat, config.maximum_C, config.maximum_C);
-    feasible_ = ConfigError::none;
-    if (!(config.maximum_C > use.highest_air_C + detail::celsius_from(to_air_) + 0.01f))
-      feasible_ = ConfigError::highest_air_C;
-    if (!(255.0f * detail::celsius_from(to_air_) < detail::highest_rise_K()))
-      feasible_ = ConfigError::heat_when_cold_W;
     node_.set(limit_);
-    surroundings(use.highest_air_C, detail::whole_fraction());
+    set_air(use.highest_air_C);
+    take_warm_winding(detail::whole_fraction());
   }
 
   /// A bound that cannot be met: see CertifiedTwoNode.
-  ConfigError feasible() const noexcept { return feasible_; }
+  static ConfigError feasible(const Config& config, const CertifiedUse& use) noexcept {
+    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
+    const float to_air_K =
+        detail::celsius_from(detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K));
+    if (!(255.0f * to_air_K < detail::highest_rise_K())) return ConfigError::heat_when_cold_W;
+    return config.maximum_C > use.highest_air_C + to_air_K + 0.01f ? ConfigError::none
+                                                                   : ConfigError::highest_air_C;
+  }
+  /// How long a count may act, as declared.
+  float hold_s() const noexcept { return hold_s_; }
 
   /// Sets the bound to what is known. @param winding_C, body_C  the hotter counts; NaN starts at the limit
   void start(float winding_C, float body_C) noexcept {
@@ -107,12 +112,14 @@ public:
     const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
     if (way > 0) node_.go(way, travel(hold_s_).body.heating);
   }
-  /// Takes note of the air and the supply until the next step. See CertifiedTwoNode.
-  void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
-    if (!detail::is_same(air_C, air_C_)) {
-      air_C_ = air_C;
-      base_ = detail::celsius_units(air_C) + 1 + to_air_;
-    }
+  /// Takes note of the air from now on. See CertifiedTwoNode.
+  void set_air(float air_C) noexcept {
+    detail::KelvinUnits air = detail::celsius_units(air_C) + 1;
+    if (air <= coldest_) air = coldest_ + 1;
+    base_ = air + to_air_;
+  }
+  /// Takes note of the supply until the next step. See CertifiedTwoNode.
+  void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
     const detail::KelvinUnits above = room();
     const detail::UnitFraction relief = relief_.at(base_ + above - detail::part_up(above, hold_) - coldest_);
     to_air_now_ = detail::part_up(
@@ -171,7 +178,6 @@ private:
   CertifiedRelief relief_;
   detail::UpperBound node_;
   detail::KelvinUnits base_ = 0;
-  float air_C_ = detail::not_a_number();
   ConfigError feasible_;
 };
 

@@ -85,27 +85,22 @@ public:
   /// Constants once; both bounds start at the limits (hot), the safe guess for an actuator that this limiter
   /// has guarded before.
   CertifiedTwoNode(const Config& config, const CertifiedUse& use) noexcept {
+    const Derived derived(config, use);
     const Bounds& winding = config.winding_heat_capacity_J_per_K;
     const Bounds& body = config.body_heat_capacity_J_per_K;
-    const float least_capacity = winding.lowest + body.lowest;
-    const float winding_share = body.highest / (winding.lowest + body.highest);  // 1 - mu, largest
-    const float body_share = body.lowest / (winding.highest + body.lowest);      // 1 - mu, smallest
-    const float winding_rate = config.least_coupling_W_per_K / winding_share;  // W/K between winding and mean
-    const float body_rate = config.least_conductance_W_per_K / body_share;     // W/K between mean and air
-    fastest_winding_per_s_ = winding_rate / winding.lowest;
-    slowest_winding_per_s_ = winding_rate / winding.highest;
-    fastest_body_per_s_ = body_rate / least_capacity;
-    slowest_body_per_s_ = body_rate / (winding.highest + body.highest);
+    fastest_winding_per_s_ = derived.winding_rate / winding.lowest;
+    slowest_winding_per_s_ = derived.winding_rate / winding.highest;
+    fastest_body_per_s_ = derived.body_rate / (winding.lowest + body.lowest);
+    slowest_body_per_s_ = derived.body_rate / (winding.highest + body.highest);
 
-    const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
-    across_ = detail::kelvin_per_count_up(count_W / winding_rate);
-    soak_ = detail::kelvin_per_count_up(count_W * use.hold_s / least_capacity);
-    to_air_ = detail::kelvin_per_count_up(count_W / body_rate);
-    gap_ = across_ + soak_;  // (12): what the least power keeps between the two
-    base_over_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
-    weight_ = detail::fraction_up(1.0f - body_share);
+    across_ = derived.across;
+    soak_ = derived.soak;
+    to_air_ = derived.to_air;
+    gap_ = derived.gap;
+    base_over_air_ = derived.base_over_air;
+    weight_ = detail::fraction_up(derived.weight);
     least_mean_ = detail::kelvin_up(
-        detail::at_most(detail::celsius_from(gap_) * (1.0f - body_share) / body_share, 1000.0f));
+        detail::at_most(detail::celsius_from(gap_) * derived.weight / (1.0f - derived.weight), 1000.0f));
 
     hold_s_ = use.hold_s;
     hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
@@ -116,18 +111,24 @@ public:
         1.0f - detail::Numeric<float>::exponential(-fastest_body_per_s_ * use.horizon_s));
 
     coldest_ = detail::celsius_units(use.heat.coldest_C);
-    set_limits(config, use, 1.0f - body_share, count_W);
+    mean_limit_ = derived.mean_limit;
+    winding_limit_ = derived.winding_limit;
     // A chord for each bound, so that each is exact at its own limit.
     winding_relief_.set(use.heat, config.maximum_winding_C, config.maximum_winding_C);
     mean_relief_.set(use.heat, config.maximum_winding_C, detail::celsius_from(mean_limit_));
     winding_.set(winding_limit_);
     mean_.set(mean_limit_);
-    surroundings(use.highest_air_C, detail::whole_fraction());
+    set_air(use.highest_air_C);
+    take_warm_winding(detail::whole_fraction());
   }
 
   /// A bound that cannot be met: in the hottest air even the least power is too much, or full power is out of
   /// the arithmetic's range.
-  ConfigError feasible() const noexcept { return feasible_; }
+  static ConfigError feasible(const Config& config, const CertifiedUse& use) noexcept {
+    return Derived(config, use).feasible;
+  }
+  /// How long a count may act, as declared.
+  float hold_s() const noexcept { return hold_s_; }
 
   /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the
   /// limit starts at the limit
@@ -180,15 +181,33 @@ public:
     mean_.raise(mean.above());
   }
 
-  /// Takes note of the air and the supply until the next step.
-  /// @param air_C  never below the truth  @param supply_squared  (supply / highest supply)^2, never below the
-  /// truth
-  void surroundings(float air_C, detail::UnitFraction supply_squared) noexcept {
-    if (!detail::is_same(air_C, air_C_)) {
-      air_C_ = air_C;
-      base_ = detail::celsius_units(air_C) + 1 + base_over_air_;
-    }
-    take_warm_winding(supply_squared);
+  /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
+  void set_air(float air_C) noexcept {
+    detail::KelvinUnits air = detail::celsius_units(air_C) + 1;
+    if (air <= coldest_) air = coldest_ + 1;
+    base_ = air + base_over_air_;
+  }
+  /// Takes note of the supply until the next step; heat falls as the winding warms. Taken where each bound will
+  /// be lowest within the next hold, less a little, so that it need not be taken anew before a bound has moved by
+  /// about as much.
+  /// @param supply_squared  (supply / highest supply)^2, never below the truth
+  void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
+    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
+    // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
+    if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
+        winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
+        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
+      return;
+    taken_supply_ = supply_squared;
+    taken_winding_ = winding;
+    taken_mean_ = mean;
+    // How far each may fall within a hold, also when it has first moved by the slack, and the air by
+    // anything.
+    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
+    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
+    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
+    take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
+         supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
   }
 
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
@@ -258,6 +277,50 @@ public:
   }
 
 private:
+  // What follows from the declaration alone.
+  struct Derived {
+    Derived(const Config& config, const CertifiedUse& use) noexcept {
+      const Bounds& winding = config.winding_heat_capacity_J_per_K;
+      const Bounds& body = config.body_heat_capacity_J_per_K;
+      const float winding_share = body.highest / (winding.lowest + body.highest);  // 1 - mu, largest
+      const float body_share = body.lowest / (winding.highest + body.lowest);      // 1 - mu, smallest
+      weight = 1.0f - body_share;
+      winding_rate = config.least_coupling_W_per_K / winding_share;
+      body_rate = config.least_conductance_W_per_K / body_share;
+      const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
+      across = detail::kelvin_per_count_up(count_W / winding_rate);
+      soak = detail::kelvin_per_count_up(count_W * use.hold_s / (winding.lowest + body.lowest));
+      to_air = detail::kelvin_per_count_up(count_W / body_rate);
+      gap = across + soak;
+      base_over_air = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
+      const float rise_K = 255.0f * count_W *
+                           (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
+                            use.hold_s / body.lowest);
+      feasible = rise_K < detail::highest_rise_K() ? ConfigError::none : ConfigError::heat_when_cold_W;
+      set_limits(config, use.highest_air_C + detail::celsius_from(base_over_air + 2),
+                 detail::celsius_from(gap + 2));
+    }
+    void set_limits(const Config& config, float base_C, float gap_K) noexcept {
+      const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
+      // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
+      const float winding_C =
+          detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
+      const float rounding_K = 0.0005f;
+      mean_limit = detail::celsius_units(mean_C - rounding_K);
+      winding_limit = detail::celsius_units(winding_C - rounding_K);
+      if (is_error(feasible)) return;
+      if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) ||
+          !(winding_C > mean_C + gap_K - 0.001f))
+        feasible = ConfigError::highest_air_C;
+    }
+    float winding_rate, body_rate;             // W/K between winding and mean, and between mean and air
+    float weight;                              // mu, largest
+    detail::KelvinUnits across, soak, to_air;  // kelvin per count
+    detail::KelvinUnits gap;                   // (12): what the least power keeps between the two
+    detail::KelvinUnits base_over_air, mean_limit, winding_limit;
+    ConfigError feasible;
+  };
+
   // The highest that each bound was at any instant of a step.
   struct Hull {
     detail::KelvinUnits winding, mean;
@@ -335,26 +398,6 @@ private:
     return mean + gap_ + detail::times(soak_now_, count);
   }
 
-  // Heat falls as the winding warms; taken where each bound will be lowest within the next hold, less a
-  // little, so that it need not be taken anew before a bound has moved by about as much.
-  void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
-    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
-    // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
-    if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
-        winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
-        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
-      return;
-    taken_supply_ = supply_squared;
-    taken_winding_ = winding;
-    taken_mean_ = mean;
-    // How far each may fall within a hold, also when it has first moved by the slack, and the air by
-    // anything.
-    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
-    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
-    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
-    take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
-         supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
-  }
   static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
   static detail::UnitFraction supply(detail::UnitFraction relief,
                                      detail::UnitFraction supply_squared) noexcept {
@@ -377,26 +420,6 @@ private:
     sizes_.fed = fed + detail::part_up(to_air_now_, hold_body_);
   }
 
-  void set_limits(const Config& config, const CertifiedUse& use, float weight, float count_W) noexcept {
-    const float base_C = use.highest_air_C + detail::celsius_from(base_over_air_ + 2);
-    const float gap_K = detail::celsius_from(gap_ + 2);
-    const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
-    // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
-    const float winding_C =
-        detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
-    const float rounding_K = 0.0005f;
-    mean_limit_ = detail::celsius_units(mean_C - rounding_K);
-    winding_limit_ = detail::celsius_units(winding_C - rounding_K);
-    feasible_ = ConfigError::none;
-    if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) ||
-        !(winding_C > mean_C + gap_K - 0.001f))
-      feasible_ = ConfigError::highest_air_C;
-    const float rise_K = 255.0f * count_W *
-                         (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
-                          use.hold_s / config.body_heat_capacity_J_per_K.lowest);
-    if (!(rise_K < detail::highest_rise_K())) feasible_ = ConfigError::heat_when_cold_W;
-  }
-
   float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
   detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
   detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step
@@ -408,8 +431,6 @@ private:
   detail::UnitFraction taken_supply_ = 0;
   detail::UpperBound winding_, mean_;
   detail::KelvinUnits base_ = 0;
-  float air_C_ = detail::not_a_number();
-  ConfigError feasible_;
 };
 
 }  // namespace thermopower
