@@ -175,6 +175,7 @@ inline std::vector<Trial> trials() {
       {"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.4}}, true},
       {"compliance", {{"far_share", 0.4}, {"frequency_Hz", 8.0}, {"damping", 0.05}}, true},
       {"actuation_delay", {{"s", 0.0173}}, true},
+      {"servo_delay", {{"s", 0.0173}}, true},
       {"torque_saturation", {{"A", 0.2}}, true},
       {"torque_fade", {{"per_K", 0.006}}, true},
       {"constant_torque", {{"Nm", 0.004}}, true},
@@ -192,6 +193,7 @@ inline std::vector<Trial> trials() {
 inline Model baseline_of(const Trial& trial) {
   Model model = trial.axis ? axis_model() : bench_model();
   if (trial.id == "winding_tempco") model.set("tempco_per_K", 0.0);
+  if (trial.id == "servo_delay") model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};
   return model;
 }
 
@@ -201,6 +203,11 @@ inline Recording recorded(const Trial& trial, std::uint64_t seed) {
   truth.effects[trial.id] = trial.parameters;
   Recording recording =
       trial.axis ? axis_inputs(1500, 0.01, seed) : bench_inputs(600, 2.0, seed, trial.id != "supply_sag");
+  if (truth.has_servo()) {  // what was a current, is a target in degrees
+    const Eigen::VectorXd target = 100.0 * recording.column("drive_A");
+    recording.columns.erase(recording.columns.begin());
+    recording.set("target_deg", target);
+  }
   measure(recording, truth, seed + 1);
   return recording;
 }

@@ -46,6 +46,17 @@ struct AxisSetup {
   bool jitter = false, missing_cells = false;
   std::vector<std::string> decoys;
   double unknown_size = 0.0, unknown_time_s = 1.0;
+  bool servo = false;  ///< a position servo moves it, and the log holds the target
+
+  /// Its gains, A/deg and A s/deg: those of the position loop that follows a goal, for the axis as it should be.
+  double kp_A_per_deg() const {
+    const double omega = 6.283185307179586 * bandwidth_Hz;
+    return context.model[inertia] * omega * omega / degrees_per_radian / context.model[torque_constant];
+  }
+  double kd_A_s_per_deg() const {
+    const double omega = 6.283185307179586 * bandwidth_Hz;
+    return context.model[inertia] * 1.6 * omega / degrees_per_radian / context.model[torque_constant];
+  }
 };
 
 /// What one experiment on the axis is: it can be done again, with other switching times and noise.
@@ -77,7 +88,7 @@ public:
   double next(Random& random, double t_s, double angle_deg, double rate_dps) {
     const AxisParameters& p = setup_.context.model;
     const double two_pi = 6.283185307179586;
-    double goal_deg = 0.0, goal_dps = 0.0;
+    goal_deg = goal_dps = 0.0;
     switch (session_.motion) {
       case Motion::follow_sines:
         for (int i = 0; i < 4; ++i) {
@@ -135,12 +146,20 @@ public:
                        home(angle_deg));
       }
     }
+    if (setup_.servo) {
+      goal_deg = quantise(goal_deg, 1e-4);
+      goal_dps = quantise(goal_dps, 1e-3);
+      return clipped(setup_.kp_A_per_deg() * (goal_deg - angle_deg) +
+                     setup_.kd_A_s_per_deg() * (goal_dps - rate_dps));
+    }
     const double omega = two_pi * setup_.bandwidth_Hz;
     const double torque =
         p[inertia] * (omega * omega * (goal_deg - angle_deg) + 1.6 * omega * (goal_dps - rate_dps)) +
         p[viscous] * goal_dps;
     return clipped(torque / degrees_per_radian / p[torque_constant]);
   }
+
+  double goal_deg = 0.0, goal_dps = 0.0;  ///< what was asked of a loop that follows a goal
 
 private:
   const AxisSetup& setup_;
@@ -189,6 +208,8 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
           source.next(random, t, x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
                       x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss());
       u.drive_A = quantise(u.drive_A, 1e-5);
+      out.drive.servo.target_deg.push_back(source.goal_deg);
+      out.drive.servo.target_dps.push_back(source.goal_dps);
       // The motor warms up, and cools in a pause of the bench: both directions in every recording.
       u.motor_C = setup.first_C + setup.rise_K * 0.5 * (1.0 - std::cos(6.283 * t / (0.8 * length_s))) +
                   warmth.next(random, c.dt_s);
@@ -222,7 +243,16 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
   const auto lost = [&](std::size_t k) { return k > 0 && setup.missing_cells && random.chance(0.006); };
   column("t_s", 5, [&](std::size_t k) { return out.drive.t_s[k]; });
   if (session.runs > 1) out.log.run = labels;
-  column("drive_A", 5, [&](std::size_t k) { return out.drive.input[k].drive_A; });
+  out.drive.servo.closed = setup.servo;
+  out.drive.servo.kp_A_per_deg = setup.kp_A_per_deg();
+  out.drive.servo.kd_A_s_per_deg = setup.kd_A_s_per_deg();
+  out.drive.servo.limit_A = setup.top_A;
+  if (setup.servo) {
+    column("target_deg", 4, [&](std::size_t k) { return out.drive.servo.target_deg[k]; });
+    column("target_dps", 3, [&](std::size_t k) { return out.drive.servo.target_dps[k]; });
+  } else {
+    column("drive_A", 5, [&](std::size_t k) { return out.drive.input[k].drive_A; });
+  }
   column("angle_deg", 4, [&](std::size_t k) {
     const double noisy = quantise(out.truth.angle_deg[k] + angle_noise.next(random), setup.quantum_angle_deg);
     return lost(k) ? missing : noisy;

@@ -9,7 +9,8 @@ namespace gap_benchmark {
 
 constexpr double axis_horizon_s = 0.5;
 
-inline nlohmann::ordered_json axis_model_json(const AxisContext& c) {
+inline nlohmann::ordered_json axis_model_json(const AxisSetup& s) {
+  const AxisContext& c = s.context;
   nlohmann::ordered_json j;
   j["format"] = "thermopower-model/1";
   j["name"] = "bench axis";
@@ -17,6 +18,12 @@ inline nlohmann::ordered_json axis_model_json(const AxisContext& c) {
                {"inertia_kgm2", c.model[inertia]},
                {"viscous_Nms_per_rad", c.model[viscous]},
                {"torque_constant_Nm_per_A", c.model[torque_constant]}};
+  if (s.servo)
+    j["servo"] = {{"law", "position_pid"},
+                  {"kp_A_per_deg", s.kp_A_per_deg()},
+                  {"kd_A_s_per_deg", s.kd_A_s_per_deg()},
+                  {"limit_A", s.top_A},
+                  {"period_s", c.dt_s}};
   return j;
 }
 
@@ -191,11 +198,17 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
   for (int attempt = 0; attempt < 80; ++attempt) {
     AxisSetup setup = draw_axis(order.effects, random);
     AxisContext& c = setup.context;
-    AxisSession train{any_motion(random), random.pick({25.0, 30.0, 40.0, 40.0, 60.0}), 0.0, 1, 0};
+    setup.servo = order.half == Half::servo;
+    if (setup.servo) setup.jitter = false;  // it samples at the rows
+    const auto motion = [&] {
+      if (!setup.servo) return any_motion(random);
+      return random.pick({Motion::follow_sines, Motion::follow_steps, Motion::follow_chirp});
+    };
+    AxisSession train{motion(), random.pick({25.0, 30.0, 40.0, 40.0, 60.0}), 0.0, 1, 0};
     while (train.length_s / c.dt_s > 22000.0) train.length_s *= 0.7;
     if (random.chance(0.15)) train.runs = random.integer(2, 3);
     AxisSession heldout = train;
-    heldout.motion = random.chance(0.6) ? train.motion : any_motion(random);
+    heldout.motion = random.chance(0.6) ? train.motion : motion();
     heldout.length_s *= 0.62;
     heldout.runs = 1;
     train.unknown_phase = random.uniform(0.0, 6.28);
@@ -268,12 +281,15 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
       add_errors(c.model, drive_from_log(setup, again), again, false, all_before);
       add_errors(setup.plant, drive_from_log(setup, again), again, false, all_perfect);
     }
-    drawn.model = axis_model_json(c);
+    drawn.model = axis_model_json(setup);
     drawn.train = first.log;
     drawn.heldout = second.log;
     auto& label = drawn.label;
     label["kind"] = "axis";
     label["effects"] = order.effects;
+    // A torque that comes late and a servo that answers late are one where no current is logged.
+    if (setup.servo && !order.effects.empty() && order.effects.front() == "actuation_delay")
+      label["effects"] = {"servo_delay"};
     label["unknown"] =
         unknown == AxisUnknown::none
             ? nlohmann::ordered_json()

@@ -10,11 +10,25 @@
 
 namespace gap_benchmark {
 
+/// A position servo that samples at the rows of the log.
+struct AxisServo {
+  bool closed = false;  ///< it makes the command; else the command is given
+  double kp_A_per_deg = 0.0, kd_A_s_per_deg = 0.0, limit_A = 0.0;
+  std::vector<double> target_deg, target_dps;
+
+  double command_A(std::size_t row, double angle_deg, double rate_dps) const {
+    const double wanted =
+        kp_A_per_deg * (target_deg[row] - angle_deg) + kd_A_s_per_deg * (target_dps[row] - rate_dps);
+    return std::clamp(wanted, -limit_A, limit_A);
+  }
+};
+
 /// Everything that goes into a replay of an axis.
 struct AxisDrive {
   std::vector<double> t_s;
   std::vector<AxisInput> input;
   std::vector<std::size_t> run_start;
+  AxisServo servo;
 };
 
 struct AxisOutput {
@@ -44,12 +58,17 @@ inline void advance_row(const AxisPlant& plant, AxisState& x, const AxisDrive& d
 }
 
 /// Replay in windows that restart from what was measured.
+/// With a servo in the loop, commands that were given before a window are those that were given.
 /// @param restarted receives true for the rows at which a window began
-inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& drive, const AxisOutput& measured,
+inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& given, const AxisOutput& measured,
                          double window_s, double step_scale = 1.0, bool absolute = false,
                          std::vector<char>* restarted = nullptr,
                          std::size_t rows = static_cast<std::size_t>(-1)) {
   const AxisPlant plant(parameters, step_scale);
+  constexpr double longest_delay_s = 0.1;
+  AxisDrive looped;
+  if (given.servo.closed) looped = given;
+  const AxisDrive& drive = given.servo.closed ? looped : given;
   AxisOutput out;
   AxisState x;
   std::size_t run = 0, first = 0;
@@ -69,6 +88,12 @@ inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& driv
     if (again) {
       plant.restart(x, measured.angle_deg[k], measured.rate_dps[k], run_time_s, starts, absolute);
       window_start_s = drive.t_s[k];
+    }
+    if (given.servo.closed) {
+      for (std::size_t j = k; again && j-- > first && drive.t_s[k] - drive.t_s[j] < longest_delay_s;)
+        looped.input[j].drive_A = given.input[j].drive_A;
+      looped.input[k].drive_A =
+          given.servo.command_A(k, x.angle * degrees_per_radian, x.rate * degrees_per_radian);
     }
     if (restarted) restarted->push_back(again);
     out.angle_deg.push_back(plant.sensed_angle_deg(x, run_time_s));

@@ -16,13 +16,14 @@ namespace gap_benchmark {
 
 /// Which half of the benchmark a case belongs to.
 enum class Half {
-  clean,        ///< the plant's physics are the catalogue's, the log is as a careful person records it
-  dirty,        ///< the same physics, and a log as logs are
-  misspecified  ///< constants fitted with the wrong structure, or physics of another form than the catalogue's
+  clean,         ///< the plant's physics are the catalogue's, the log is as a careful person records it
+  dirty,         ///< the same physics, and a log as logs are
+  misspecified,  ///< constants fitted with the wrong structure, or physics of another form than the catalogue's
+  servo          ///< the log of an axis holds the target of its servo, and not the current
 };
 
 inline const char* name(Half half) {
-  static const char* const names[] = {"clean", "dirty", "misspecified"};
+  static const char* const names[] = {"clean", "dirty", "misspecified", "servo"};
   return names[static_cast<int>(half)];
 }
 

@@ -102,7 +102,7 @@ inline std::string title(const CaseOrder& order) {
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
-/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty` or `misspecified`; everything when empty
+/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `servo` or `misspecified`; everything when empty
 /// With 5 recordings per effect: 190 single effects, 60 none, 48 pairs, 45 outside the catalogue; 104 dirty; 60
 /// misspecified.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
@@ -196,6 +196,17 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
         orders.push_back(order);
       }
     }
+  // Position-target twins of the single effects of an axis.
+  if (wanted("servo"))
+    for (const auto& id : all_ids(true))
+      for (int i = 0; i < std::max(1, 2 * count / 5); ++i) {
+        CaseOrder order;
+        order.half = Half::servo;
+        order.axis = true;
+        order.effects = {id};
+        order.clear = true;
+        orders.push_back(order);
+      }
   // The misspecified half: constants that were fitted without the effect, and effects of another form.
   if (wanted("misspecified"))
     for (const bool axis : {false, true}) {

@@ -111,6 +111,7 @@ private:
     const std::string half = text(label, "half");
     if (half == "dirty") return judge_dirty(job, label, v, truth);
     if (half == "misspecified") return judge_misspecified(job, label, v, truth);
+    if (half == "servo") return judge_servo(job, label, v, truth);
     const bool unknown = label["unknown"].is_string();
     const std::string name = unknown ? text(label, "unknown") : truth.empty() ? "none" : join(truth);
     confusion_[unknown ? "outside the catalogue"
@@ -276,6 +277,13 @@ private:
       if (number(label, "confusability", 0.0) < 0.9) tallies_.add("dirty_named", right);
     }
     if (!right) miss(job, wrong ? "dirty, confident" : "dirty", title, v, why(v, label, truth));
+  }
+
+  void judge_servo(const std::string& job, const Json& label, const Verdict& v, const Explanation& truth) {
+    const bool right = v.named() && v.cause == truth;
+    tallies_.add("servo_class", in_class(v, truth));
+    if (number(label, "confusability", 0.0) < 0.9) tallies_.add("servo_named", right);
+    if (!right) miss(job, "servo", join(truth) + ", target logged", v, why(v, label, truth));
   }
 
   void judge_misspecified(const std::string& job, const Json& label, const Verdict& v,

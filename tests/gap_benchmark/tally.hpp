@@ -77,6 +77,8 @@ private:
       {"dirty_none", "dirty: no gap where there is none", "at least 98 %"},
       {"dirty_unknown", "dirty: cause outside the catalogue not named", "at least 90 %"},
       {"dirty_confident", "dirty: a wrong name stated at 0.9 or more", "below 1 %", true},
+      {"servo_named", "target logged and no current: cause named, where no wrong cause passes for it", ""},
+      {"servo_class", "target logged and no current: truth inside the reported class", ""},
       {"refitted", "constants fitted without the effect: effect inside the reported class", ""},
       {"other_form", "effect of another form than the catalogue's: the nearest inside the class", ""},
       {"misspecified_confident", "misspecified: a wrong name stated at 0.9 or more", "below 1 %", true},

@@ -240,6 +240,14 @@ struct Axis<M, true, true> {
   }
 };
 
+// A motor at a voltage has a torque that depends on its rate.
+inline float drive_at(float (*torque_Nm)(float, float), float command, float motor_C, double) {
+  return torque_Nm(command, motor_C);
+}
+inline float drive_at(float (*torque_Nm)(float, float, float), float command, float motor_C, double rate) {
+  return torque_Nm(command, motor_C, static_cast<float>(rate));
+}
+
 /// Angle and rate over rows from the first readings, printed as run_bench() prints.
 template <class M>
 void run_axis(const Row* rows, int count, const double* angle_readings, const double* rate_readings) {
@@ -268,13 +276,15 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
       int from = i;
       while (from >= 0 && rows[from].t_s > now_s) --from;
       const float motor = static_cast<float>(rows[i].motor_C);
-      const float drive = M::drive_Nm(static_cast<float>(from >= 0 ? rows[from].drive_A : 0.0), motor);
+      const float command = static_cast<float>(from >= 0 ? rows[from].drive_A : 0.0);
+      const float drive = drive_at(&M::drive_Nm, command, motor, rate);
       const auto slope = [&](double a, double w, double s, double u, double& dw, double& du) {
         const float fa = static_cast<float>(a), fw = static_cast<float>(w);
+        const float now = drive_at(&M::drive_Nm, command, motor, w);
         const double pull = springy ? spring * s + damper * u : 0.0;
-        const double torque = static_cast<double>(drive) + Joint::load(fa, fw, drive, own) -
+        const double torque = static_cast<double>(now) + Joint::load(fa, fw, now, own) -
                               static_cast<double>(M::viscous_Nms_per_rad()) * w -
-                              Joint::dry(fa, fw, drive, motor, own) + pull;
+                              Joint::dry(fa, fw, now, motor, own) + pull;
         dw = torque / near;
         du = springy ? -pull / (inertia * far) - dw : 0.0;
       };

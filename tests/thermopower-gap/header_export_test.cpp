@@ -43,6 +43,7 @@ struct Trial {
   std::string name;
   std::map<std::string, EffectParameters> effects;
   bool axis = false;
+  double resistance_ohm = 0.0;  ///< of a motor at a voltage
 };
 
 /// Values at which each effect shows in the recordings of this test.
@@ -99,6 +100,7 @@ std::vector<Trial> trials() {
       {"cogging", {{"cogging", {{"sin_Nm", 0.01}, {"cos_Nm", 0.004}, {"cycles_per_turn", 7.0}}}}, true},
       {"compliance", {{"compliance", {{"far_share", 0.4}, {"frequency_Hz", 9.0}, {"damping", 0.05}}}}, true},
       {"actuation_delay", {{"actuation_delay", {{"s", 0.023}}}}, true},
+      {"servo_delay", {{"servo_delay", {{"s", 0.023}}}}, true},
       {"torque_saturation", {{"torque_saturation", {{"A", 0.1}}}}, true},
       {"torque_fade", {{"torque_fade", {{"per_K", 0.004}}}}, true},
       {"angle_scale", {{"angle_scale", {{"gain", -1.7}}}}, true},
@@ -125,6 +127,13 @@ std::vector<Trial> trials() {
         {"imbalance", {{"Nm", 0.03}, {"phase_rad", 0.4}}},
         {"presliding_friction", {{"Nm", 0.02}, {"bend_rad", 0.05}, {"damping_s", 0.0}}}},
        true},
+      {"at_a_voltage", {}, true, 0.5},
+      {"at_a_voltage_with_fade_and_lag",
+       {{"torque_fade", {{"per_K", 0.004}}},
+        {"drive_lag", {{"lag_s", 0.06}}},
+        {"load_friction", {{"share", 0.3}, {"transition_rad_per_s", 0.2}}}},
+       true,
+       0.5},
       {"paddle", {{"paddle", {{"drag", 2e-4}, {"bump_Nm", 0.01}}}}, true},
   };
 }
@@ -132,7 +141,7 @@ std::vector<Trial> trials() {
 Model model_of(const Trial& trial) {
   Model model;
   model.name = trial.name;
-  if (trial.axis) model.axis = RigidAxisModel{1e-3, 2e-3, 0.2};
+  if (trial.axis) model.axis = RigidAxisModel{1e-3, 2e-3, 0.2, trial.resistance_ohm};
   else {
     model.supply = SupplyModel{12.0};
     model.current = OhmicCurrentModel{6.0, 0.002, 25.0};
@@ -160,6 +169,7 @@ Inputs inputs_of(bool axis, unsigned seed) {
   for (Eigen::Index i = 0; i < rows; ++i)
     if (share(random) < 0.2) inputs.power_param[i] = 0.0;
   inputs.drive_A = column(-0.3, 0.3);
+  inputs.voltage_V = inputs.drive_A;
   inputs.supply_V = column(11.0, 13.0);
   inputs.ambient_C = column(18.0, 24.0);
   inputs.airspeed_mps = column(0.0, 3.0);

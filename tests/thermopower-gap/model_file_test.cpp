@@ -59,6 +59,31 @@ TEST_CASE("the thesis's laws are read for current and temperature") {
   CHECK(model.get("rinv_offset_V0") == -0.105);
 }
 
+TEST_CASE("an axis at a voltage and the servos are read, and written as they were") {
+  const std::string axis =
+      R"("axis": {"law": "voltage", "inertia_kgm2": 1e-3, "viscous_Nms_per_rad": 0, "torque_constant_Nm_per_A": 0.2,
+          "resistance_ohm": 2.5})";
+  const std::string position =
+      R"("servo": {"law": "position_pid", "kp_A_per_deg": 0.04, "ki_A_per_deg_s": 0.1, "limit_A": 2, "period_s": 0.005})";
+  const std::string velocity =
+      R"("servo": {"law": "velocity_pi", "kp_A_s_per_deg": 0.01, "ki_A_per_deg": 0.1, "limit_A": 2, "period_s": 0.005,
+          "delay_s": 0.003, "uncertainty": {"kp_A_s_per_deg": 0.2}})";
+  const Model pid = parse(model_text(axis + ", " + position));
+  CHECK(pid.axis->voltage_driven());
+  CHECK(pid.get("axis.resistance_ohm") == 2.5);
+  CHECK(pid.get("servo.kp_A_per_deg") == 0.04);
+  CHECK(pid.get("servo.kd_A_s_per_deg") == 0.0);
+  CHECK(pid.get("servo.period_s") == 0.005);
+  const Model pi = parse(model_text(axis + ", " + velocity));
+  CHECK(pi.get("servo.delay_s") == 0.003);
+  CHECK(pi.uncertainty.at("servo.kp_A_s_per_deg") == 0.2);
+  for (const Model& model : {pid, pi})
+    CHECK(files::to_json(parse(files::to_json(model))) == files::to_json(model));
+  CHECK_THAT(error_of(model_text(axis + R"(, "servo": {"law": "pid"})")),
+             ContainsSubstring("/servo/law: is \"pid\"; expected \"position_pid\" or \"velocity_pi\""));
+  CHECK_THAT(error_of(model_text(position)), ContainsSubstring("expected both"));
+}
+
 TEST_CASE("writing and reading gives back the same numbers, bit by bit") {
   Model model = parse(model_text(ohmic + ", " + lumped));
   model.set("resistance_ohm", 8.2000000000000028);
@@ -108,6 +133,12 @@ TEST_CASE("what a model file may not hold is named by its JSON pointer") {
       {model_text(
            R"("axis": {"law": "rigid", "inertia_kgm2": 1, "viscous_Nms_per_rad": 1, "torque_constant_Nm_per_A": 0})"),
        {"/axis/torque_constant_Nm_per_A: is 0; expected a number other than 0"}},
+      {model_text(
+           R"("axis": {"law": "voltage", "inertia_kgm2": 1, "viscous_Nms_per_rad": 1, "torque_constant_Nm_per_A": 1})"),
+       {"/axis/resistance_ohm: is missing; expected a number above 0"}},
+      {model_text(
+           R"("axis": {"law": "rigid", "inertia_kgm2": 1, "viscous_Nms_per_rad": 1, "torque_constant_Nm_per_A": 1, "resistance_ohm": 1})"),
+       {"/axis/resistance_ohm: unknown key"}},
       {model_text(ohmic + R"(, "effects": {"gremlins": {}})"),
        {"/effects/gremlins: no such effect", "thermopower-gap effects"}},
       {model_text(ohmic + R"(, "effects": {"a/b": {}})"), {"/effects/a~1b: no such effect"}},

@@ -243,9 +243,14 @@ private:
     plant::DriveTerms<Expression> terms;
     terms.t_s = GivenExpression(trace.symbol("t_s"));
     terms.motor_C = GivenExpression(trace.symbol("motor_C"));
-    terms.drive_A = trace.symbol("command_A");
+    const bool voltage_driven = m_.axis && m_.axis->voltage_driven();
+    terms.drive_A = voltage_driven ? trace.symbol("command_V") / Expression(m_.axis->resistance_ohm)
+                                   : trace.symbol("command_A");
     terms.torque_constant_Nm_per_A = m_.axis ? m_.axis->torque_constant_Nm_per_A : 1.0;
     for (const Written& one : effects) one.act(terms);
+    if (voltage_driven)  // less what the motor's own voltage holds back
+      terms.drive_A -=
+          terms.torque_constant_Nm_per_A * trace.symbol("rate_rad_per_s") / m_.axis->resistance_ohm;
     return terms.torque_constant_Nm_per_A * terms.drive_A;
   }
 
@@ -620,6 +625,11 @@ private:
     constant("Inertia of the axis, kg m^2.", "inertia_kgm2", m_.axis->inertia_kgm2);
     constant("Viscous friction, N m s/rad.", "viscous_Nms_per_rad", m_.axis->viscous_Nms_per_rad);
     constant("Torque per ampere, N m/A.", "torque_constant_Nm_per_A", m_.axis->torque_constant_Nm_per_A);
+    if (m_.axis->voltage_driven())
+      constant("Resistance of the motor, ohm.", "resistance_ohm", m_.axis->resistance_ohm);
+    for (const NamedConstant& one : m_.constants())
+      if (one.block == "servo")
+        constant("Of the servo, in the unit its name ends in.", "servo_" + one.name, one.value);
     plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, false, false};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
     if (shape.delayed) constant("From command to torque, s.", "delay_s", shape.delay_s);
@@ -632,8 +642,11 @@ private:
     Trace trace;
     const Expression drive_Nm =
         trace.every_branch([&] { return std::vector<Expression>{drive(trace, written_)}; })[0];
-    body_ += function("Torque of the drive, N m." + with([](const HookSet& hooks) { return hooks.drive; }),
-                      "drive_Nm", {"command_A", "motor_C"}, drive_Nm);
+    body_ += function(
+        "Torque of the drive, N m." + with([](const HookSet& hooks) { return hooks.drive; }), "drive_Nm",
+        m_.axis->voltage_driven() ? std::vector<std::string>{"command_V", "motor_C", "rate_rad_per_s"}
+                                  : std::vector<std::string>{"command_A", "motor_C"},
+        drive_Nm);
     const Torques all = torques_in_every_branch(trace, written_);
     std::vector<std::string> load_takes = {"angle_rad", "rate_rad_per_s", "drive_torque_Nm"},
                              friction_takes = load_takes;

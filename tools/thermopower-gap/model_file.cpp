@@ -57,7 +57,7 @@ public:
     if (!root.is_object())
       fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" +
                    format_id + "\"");
-    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "effects"});
+    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "effects"});
     if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
     if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
       fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"");
@@ -71,8 +71,9 @@ public:
     if (root.contains("current")) read_current(root["current"], model);
     if (root.contains("thermal")) read_thermal(root["thermal"], model);
     if (root.contains("axis")) read_axis(root["axis"], model);
+    if (root.contains("servo")) read_servo(root["servo"], model);
     if (root.contains("effects")) read_effects(root["effects"], model);
-    for (const char* block : {"supply", "current", "thermal", "axis"})
+    for (const char* block : {"supply", "current", "thermal", "axis", "servo"})
       if (root.contains(block)) read_uncertainty(root[block], std::string("/") + block, block, model);
     if (const auto problem = model.validate()) throw InputError(file_ + ": " + *problem);
     return model;
@@ -284,14 +285,46 @@ private:
   void read_axis(const Json& block, Model& model) const {
     const std::string here = "/axis";
     object(block, here);
-    law(block, here, {"rigid"});
-    only(block, here,
-         {"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A", "uncertainty"});
+    const bool voltage_driven = law(block, here, {"rigid", "voltage"}) == "voltage";
+    std::vector<std::string> keys{"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A"};
+    if (voltage_driven) keys.emplace_back("resistance_ohm");
+    keys.emplace_back("uncertainty");
+    only(block, here, keys);
     RigidAxisModel axis;
     axis.inertia_kgm2 = number(block, here, "inertia_kgm2", Allowed::positive);
     axis.viscous_Nms_per_rad = number(block, here, "viscous_Nms_per_rad", Allowed::not_negative);
     axis.torque_constant_Nm_per_A = number(block, here, "torque_constant_Nm_per_A", Allowed::not_zero);
+    if (voltage_driven) axis.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
     model.axis = axis;
+  }
+
+  void read_servo(const Json& block, Model& model) const {
+    const std::string here = "/servo";
+    object(block, here);
+    const auto common = [&](auto& servo) {
+      servo.limit_A = number(block, here, "limit_A", Allowed::positive);
+      servo.period_s = number(block, here, "period_s", Allowed::positive);
+      servo.delay_s = number_or(block, here, "delay_s", Allowed::not_negative, 0.0);
+    };
+    if (law(block, here, {"position_pid", "velocity_pi"}) == "position_pid") {
+      only(block, here,
+           {"law", "kp_A_per_deg", "kd_A_s_per_deg", "ki_A_per_deg_s", "limit_A", "period_s", "delay_s",
+            "uncertainty"});
+      PositionPidServo servo;
+      servo.kp_A_per_deg = number(block, here, "kp_A_per_deg", Allowed::not_zero);
+      servo.kd_A_s_per_deg = number_or(block, here, "kd_A_s_per_deg", Allowed::any, 0.0);
+      servo.ki_A_per_deg_s = number_or(block, here, "ki_A_per_deg_s", Allowed::any, 0.0);
+      common(servo);
+      model.servo = servo;
+      return;
+    }
+    only(block, here,
+         {"law", "kp_A_s_per_deg", "ki_A_per_deg", "limit_A", "period_s", "delay_s", "uncertainty"});
+    VelocityPiServo servo;
+    servo.kp_A_s_per_deg = number(block, here, "kp_A_s_per_deg", Allowed::not_zero);
+    servo.ki_A_per_deg = number_or(block, here, "ki_A_per_deg", Allowed::any, 0.0);
+    common(servo);
+    model.servo = servo;
   }
 
   /// How well the constants of a block are known, as shares of their values.
@@ -376,7 +409,9 @@ std::string to_json(const Model& model) {
   if (std::holds_alternative<ThesisCurrentModel>(model.current)) root["current"]["law"] = "thesis";
   if (std::holds_alternative<LumpedThermalModel>(model.thermal)) root["thermal"]["law"] = "lumped";
   if (std::holds_alternative<ThesisThermalModel>(model.thermal)) root["thermal"]["law"] = "thesis";
-  if (model.axis) root["axis"]["law"] = "rigid";
+  if (model.axis) root["axis"]["law"] = model.axis->voltage_driven() ? "voltage" : "rigid";
+  if (std::holds_alternative<PositionPidServo>(model.servo)) root["servo"]["law"] = "position_pid";
+  if (std::holds_alternative<VelocityPiServo>(model.servo)) root["servo"]["law"] = "velocity_pi";
   for (const auto& constant : model.constants()) root[constant.block][constant.name] = constant.value;
   for (const auto& [id, parameters] : model.effects) {
     root["effects"][id] = Json::object();

@@ -49,11 +49,14 @@ struct Start {
 
 Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
   const bool powered = recording.has("power_param") && (model.supply || recording.has("supply_V"));
-  const bool heated =
-      (model.has_current() && powered) || recording.has("current_A") || recording.has("drive_A");
+  const bool heated = (model.has_current() && powered) || recording.has("current_A") ||
+                      recording.has("drive_A") || recording.has("heat_W");
   const double missing_value = std::numeric_limits<double>::quiet_NaN();
   const bool body = model.has_thermal() && recording.has("ambient_C") && heated;
-  const bool joint = model.has_axis() && recording.has("drive_A");
+  const bool commanded =
+      model.has_axis() && recording.has(model.axis->voltage_driven() ? "voltage_V" : "drive_A");
+  const bool joint =
+      commanded || (model.has_servo() && (recording.has("target_deg") || recording.has("target_dps")));
   for (const Start& start : {Start{Signal::motor_C, body, missing_value},
                              Start{Signal::current_A, model.has_current() && powered, 0.0},
                              Start{Signal::angle_deg, joint, 0.0}, Start{Signal::rate_dps, joint, 0.0}}) {
@@ -93,7 +96,7 @@ std::string predictions_csv(const Model& baseline, const Model& augmented,
     throw InputError(
         (recordings.empty() ? std::string() : recordings.front().name + ": ") +
         "nothing to predict: the columns that the model's laws need (power_param with a supply and "
-        "ambient_C, or drive_A) are not recorded");
+        "ambient_C, or heat_W and ambient_C, or drive_A, voltage_V or a servo's target) are not recorded");
   }
   std::string out = "t_s";
   if (runs > 1) out += ",run";

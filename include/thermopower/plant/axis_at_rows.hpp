@@ -59,8 +59,8 @@ public:
   /// What a balance needs of each row.
   struct Values {
     double inertia_kgm2 = 0.0;  ///< that moves with the instruments
-    Eigen::VectorXd motion_Nm;  ///< torques of the motion: viscous, load, dry friction, spring
-    Eigen::VectorXd drive_Nm;   ///< torque of the drive, held
+    Eigen::VectorXd motion_Nm;  ///< torques of the motion: viscous, load, dry friction, spring, back-EMF
+    Eigen::VectorXd drive_Nm;   ///< torque of the drive, of a motor at a voltage at standstill; held
   };
 
   /// Keeps references to model, catalogue and inputs: they must outlive this object.
@@ -84,7 +84,8 @@ public:
     for (const RunSpan& run : inputs_.runs) {
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
-        const AxisDrive<double> drive = rollout.drive(i, run, i, t_s);
+        const AxisDrive<double> drive = inputs_.closed_loop ? rollout.drive(rollout.servo_A(i, run), i, t_s)
+                                                            : rollout.drive(i, run, i, t_s);
         const double drive_Nm = drive.torque_Nm;
         const auto now = rollout.step().torques({angle[i], rate[i], 0.0, 0.0}, t_s, drive);
         // A transition that the noise of the rate hides is as good as none.
@@ -105,7 +106,7 @@ public:
                         std::tanh(rate[i] / std::max(now.transition_rad_per_s, 1e-12));
         }
         v.drive_Nm[i] = drive_Nm;
-        v.motion_Nm[i] = now.torque_Nm - drive_Nm - friction_Nm;
+        v.motion_Nm[i] = now.torque_Nm - drive_Nm - drive.external_Nm - friction_Nm;
       }
     }
     if (shape.compliant) {
@@ -122,7 +123,8 @@ public:
   /// From command to torque in s, as the model's effects delay it.
   double delay_s() const {
     const Instance<double> instance(model_, {}, {}, catalogue_);
-    return instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0;
+    return (instance.axis_structure.delayed ? instance.axis_structure.delay_s : 0.0) +
+           (inputs_.closed_loop ? instance.servo.delay_s : 0.0);
   }
 
   /// What changes with the logarithm of each constant that calibration may move.
@@ -131,7 +133,9 @@ public:
     constexpr double step = 1e-4;
     const std::vector<CalibratedConstant> constants = model_.calibrated();
     for (std::size_t k = 0; k < constants.size(); ++k) {
-      if (!constants[k].has_slack || constants[k].block != "axis") continue;
+      const bool acts =
+          constants[k].block == "axis" || (constants[k].block == "servo" && inputs_.closed_loop);
+      if (!constants[k].has_slack || !acts) continue;
       std::vector<double> up(constants.size(), 1.0), down = up;
       up[k] = std::exp(step);
       down[k] = std::exp(-step);
@@ -151,6 +155,14 @@ public:
   const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
   /// The inputs given.
   const Inputs& inputs() const { return inputs_; }
+  /// The column that commands the axis; of a closed loop, what the servo makes of its target.
+  std::string command_name() const {
+    return inputs_.closed_loop ? "servo_A" : model_.axis->voltage_driven() ? "voltage_V" : "drive_A";
+  }
+  /// Its values.
+  const Eigen::VectorXd& command() const {
+    return inputs_.closed_loop ? inputs_.servo_A : plant::command(inputs_, model_.axis->voltage_driven());
+  }
 
 private:
   /// Share of the time around a row, half an interval each way, in which the rate is positive; it is straight

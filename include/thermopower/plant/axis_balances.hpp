@@ -84,7 +84,7 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
   });
   add("rate_dps", "a friction that depends on rate and direction",
       [a, sampled] { return sampled(hats(a->rate, 9)); });
-  add("drive_A", "a friction that grows with the torque", [direction, drive_Nm] {
+  add(a->command_name(), "a friction that grows with the torque", [direction, drive_Nm] {
     return std::vector<Direction>{flow_held(direction->cwiseProduct(drive_Nm->cwiseAbs()))};
   });
 }
@@ -101,11 +101,11 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
   const auto held = [](const Eigen::MatrixXd& columns) {
     return directions_of(columns, [](Eigen::VectorXd c) { return flow_held(std::move(c)); });
   };
-  add("drive_A", "another torque constant", [drive_Nm, held] { return held(*drive_Nm); });
-  add("drive_A", "a torque that is not in proportion to the command",
+  add(a->command_name(), "another torque constant", [drive_Nm, held] { return held(*drive_Nm); });
+  add(a->command_name(), "a torque that is not in proportion to the command",
       [drive_Nm, held] { return held(scaled(hats(drive_Nm->cwiseAbs(), 6), *drive_Nm)); });
   add(
-      "drive_A_per_s", "a torque that comes after the command",
+      a->command_name() + "_per_s", "a torque that comes after the command",
       [a, drive_Nm] {
         const double unit_s = std::max(a->rows()->interval_s, 0.004);
         std::vector<Direction> list;
@@ -219,6 +219,7 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   b.flow_sampled = v.motion_Nm;
   b.flow_held = v.drive_Nm;
   b.held_delay_s = a->delay_s();
+  if (in.torque_Nm.size() > 0) (b.held_delay_s > 0.0 ? b.flow_sampled : b.flow_held) += in.torque_Nm;
   b.half_widths = {4, 24};
   b.picture_half_width = 6;
   a->for_each_constant([&](const std::string& name, const AxisAtRows::Values& up,
@@ -236,10 +237,12 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   detail::add_drive_freedoms(b, a, drive_Nm);
   detail::add_load_freedoms(b, a);
   constexpr double deg = 1.0 / rad_per_deg;
+  const std::string name = a->command_name(), unit = name == "voltage_V" ? "V" : "A";
+  const Eigen::VectorXd& commanded = a->command();
   b.variables = {
       {"rate_dps", "deg/s", a->rate * deg, OrderingVariable::Kind::sampled, Signal::rate_dps},
-      {"drive_A", "A", in.drive_A, OrderingVariable::Kind::held},
-      {"drive_A_per_s", "A/s", in.drive_A, OrderingVariable::Kind::derivative},
+      {name, unit, commanded, OrderingVariable::Kind::held},
+      {name + "_per_s", unit + "/s", commanded, OrderingVariable::Kind::derivative},
       {"acceleration_rad_per_s2", "rad/s2", a->rate, OrderingVariable::Kind::derivative, Signal::rate_dps},
       {"t_s", "s", in.t_s}};
   if (a->has_angle)

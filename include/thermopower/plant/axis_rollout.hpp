@@ -4,11 +4,19 @@
 
 #include <thermopower/plant/axis_step.hpp>
 #include <thermopower/plant/rows.hpp>
+#include <thermopower/plant/servo_loop.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace thermopower::plant {
+
+/// The column that commands an axis: `voltage_V` of a motor at a voltage, else `drive_A`.
+inline const Eigen::VectorXd& command(const Inputs& inputs, bool voltage_driven) {
+  return voltage_driven ? inputs.voltage_V : inputs.drive_A;
+}
 
 /// Simulates angle and rate of one axis over the rows of a window.
 template <class Scalar>
@@ -37,6 +45,10 @@ public:
   void window(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state,
               Sink&& sink) const {
     const double start_s = inputs_.t_s[run.begin];
+    if (inputs_.closed_loop) {
+      closed_loop(run, begin, end, state, sink);
+      return;
+    }
     const double delay_s =
         instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
     // Row whose command reaches the drive now; before its first row a run is idle.
@@ -57,23 +69,95 @@ public:
 
   /// The drive at a row, from the command of row `commanded` (of none where that lies before the run).
   AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
+    const double value = commanded >= run.begin ? command(inputs_, instance_.voltage_driven)[commanded] : 0.0;
+    if (instance_.voltage_driven) return drive(Scalar(value / instance_.motor_ohm), row, t_s);
+    return drive(constant<Scalar>(value), row, t_s);
+  }
+
+  /// The drive at a row under a command in A; of a motor at a voltage, the current at standstill.
+  AxisDrive<Scalar> drive(const Scalar& command_A, Eigen::Index row, double t_s) const {
     DriveTerms<Scalar> terms;
     terms.t_s = t_s;
     terms.motor_C = inputs_.covariate_motor_C.size() > 0 ? inputs_.covariate_motor_C[row] : missing;
-    terms.drive_A = constant<Scalar>(commanded >= run.begin ? inputs_.drive_A[commanded] : 0.0);
+    terms.drive_A = command_A;
     terms.torque_constant_Nm_per_A = instance_.torque_constant_Nm_per_A;
     for (const auto& effect : instance_.drive) effect(terms);
-    return {Scalar(terms.torque_constant_Nm_per_A * terms.drive_A), terms.motor_C};
+    const double external_Nm = inputs_.torque_Nm.size() > 0 ? inputs_.torque_Nm[row] : 0.0;
+    AxisDrive<Scalar> drive{Scalar(terms.torque_constant_Nm_per_A * terms.drive_A), terms.motor_C,
+                            external_Nm};
+    if (instance_.voltage_driven)
+      drive.back_Nms_per_rad =
+          terms.torque_constant_Nm_per_A * terms.torque_constant_Nm_per_A / instance_.motor_ohm;
+    return drive;
+  }
+
+  /// What the servo makes of the motion measured around a row, its delay left out.
+  double servo_A(Eigen::Index row, const RunSpan& run) const {
+    const auto at = [&](Eigen::Index i) {
+      const auto [angle_deg, rate_dps] = seen(i, run, inputs_.seen_deg[i], inputs_.seen_dps[i]);
+      return value_of(instance_.servo.command_A(
+          angle_deg, rate_dps, inputs_.target_deg.size() > 0 ? inputs_.target_deg[row] : 0.0,
+          inputs_.target_dps.size() > 0 ? inputs_.target_dps[row] : 0.0,
+          constant<Scalar>(inputs_.servo_integral[std::min(i + 1, run.end - 1)])));
+    };
+    if (row + 1 >= run.end) return at(row);
+    const double from_s = inputs_.t_s[row] - inputs_.t_s[run.begin],
+                 to_s = inputs_.t_s[row + 1] - inputs_.t_s[run.begin], period_s = instance_.servo.period_s;
+    // Of several samples in an interval the mean; of none the one before.
+    if (period_s < 0.7 * (to_s - from_s)) return 0.5 * (at(row) + at(row + 1));
+    const long sample = std::max(0L, first_sample(to_s, period_s) - 1);
+    while (row > run.begin &&
+           inputs_.t_s[row] - inputs_.t_s[run.begin] > (static_cast<double>(sample) + 0.5) * period_s)
+      --row;
+    return at(row);
   }
 
   /// The equations of motion.
   const AxisStep<Scalar>& step() const { return step_; }
 
 private:
+  /// True angle in deg and rate in deg/s behind readings at a row.
+  std::pair<Scalar, Scalar> seen(Eigen::Index row, const RunSpan& run, double angle_deg,
+                                 double rate_dps) const {
+    const AxisState<Scalar> state = start(row, inputs_.t_s[run.begin], angle_deg, rate_dps);
+    return {Scalar(state.angle_rad * (1.0 / rad_per_deg)),
+            Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))};
+  }
+
   AxisReadings<Scalar> read(double t_s, const Scalar& angle_deg, const Scalar& rate_dps) const {
     AxisReadings<Scalar> readings{t_s, angle_deg, rate_dps};
     for (const auto& effect : instance_.axis_readings) effect(readings);
     return readings;
+  }
+
+  /// The same as window() with a servo in the loop.
+  template <class Sink>
+  void closed_loop(const RunSpan& run, Eigen::Index begin, Eigen::Index end, AxisState<Scalar>& state,
+                   Sink&& sink) const {
+    const double start_s = inputs_.t_s[run.begin];
+    const auto& shape = instance_.axis_structure;
+    ServoLoop<Scalar> servo(instance_.servo, inputs_, run,
+                            shape.delayed ? shape.delay_s : constant<Scalar>(0.0));
+    servo.start(begin, [&](Eigen::Index row, double angle_deg, double rate_dps) {
+      return seen(row, run, angle_deg, rate_dps);
+    });
+    if (state.own.count != instance_.own_states)
+      step_.settle(state, inputs_.t_s[begin] - start_s,
+                   drive(servo.command_A(), begin, inputs_.t_s[begin] - start_s));
+    const auto sense = [&] {
+      return std::pair<Scalar, Scalar>(state.angle_rad * (1.0 / rad_per_deg),
+                                       state.rate_rad_per_s * (1.0 / rad_per_deg));
+    };
+    for (Eigen::Index row = begin; row < end; ++row) {
+      const double t_s = inputs_.t_s[row] - start_s;
+      const auto [angle_deg, rate_dps] = sense();
+      sink(row, read(t_s, angle_deg, rate_dps));
+      if (row + 1 < run.end)
+        servo.interval(row, t_s, inputs_.t_s[row + 1] - start_s, sense,
+                       [&](double now_s, const Scalar& length_s) {
+                         step_.advance(state, now_s, length_s, drive(servo.command_A(), row, now_s));
+                       });
+    }
   }
 
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,

@@ -39,8 +39,11 @@ struct AxisState {
 /// What drives the axis over an interval.
 template <class Scalar>
 struct AxisDrive {
-  Scalar torque_Nm;          ///< after the drive's own effects
+  Scalar torque_Nm;          ///< after the drive's own effects; of a motor at a voltage, at standstill
   double motor_C = missing;  ///< recorded; NaN where it is not
+  double external_Nm = 0.0;  ///< recorded torque on the driven inertia
+  Scalar back_Nms_per_rad =
+      constant<Scalar>(0.0);  ///< what a motor at a voltage loses of its torque by its rate
 };
 
 /// Integrates the axis under a constant drive, with dry friction.
@@ -67,13 +70,18 @@ public:
       damper_Nms_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_damping * 2.0;
     }
     per_near_inertia_ = 1.0 / near_inertia_kgm2;
-    double fastest = std::abs(value_of(instance.viscous_Nms_per_rad) / value_of(near_inertia_kgm2));
+    double drag_Nms_per_rad = value_of(instance.viscous_Nms_per_rad);
+    if (instance.voltage_driven)
+      drag_Nms_per_rad +=
+          std::pow(value_of(instance.torque_constant_Nm_per_A), 2.0) / value_of(instance.motor_ohm);
+    double fastest = std::abs(drag_Nms_per_rad / value_of(near_inertia_kgm2));
     if (shape.compliant) fastest = std::fmax(fastest, value_of(shape.spring_rad_per_s));
     longest_s_ = 0.6 / std::fmax(fastest, 1e-9);
     const Scalar zero = constant<Scalar>(0.0);
     AxisState<Scalar> rest{zero, zero, zero, zero, {}};
-    settle(rest, 0.0, {zero});
-    const Torques at_rest = torques(rest, 0.0, {zero});
+    const AxisDrive<Scalar> none{zero};
+    settle(rest, 0.0, none);
+    const Torques at_rest = torques(rest, 0.0, none);
     soft_ = value_of(at_rest.transition_rad_per_s) > 1.001 * friction_sticks_below_rad_per_s;
     dry_ = at_rest.dry && !soft_;
   }
@@ -124,8 +132,12 @@ public:
     const Scalar zero = constant<Scalar>(0.0);
     for (int i = 0; i < instance_.own_states; ++i)
       own[i] = {i < state.own.count ? state.own.at[i] : zero, zero, zero};
-    AxisTerms<Scalar> terms{t_s,  state.angle_rad, state.rate_rad_per_s, drive.torque_Nm,
-                            zero, drive.torque_Nm};
+    Scalar at_rate_Nm;
+    if (instance_.voltage_driven)
+      at_rate_Nm = drive.torque_Nm - drive.back_Nms_per_rad * state.rate_rad_per_s;
+    const Scalar& drive_Nm = instance_.voltage_driven ? at_rate_Nm : drive.torque_Nm;
+    AxisTerms<Scalar> terms{
+        t_s, state.angle_rad, state.rate_rad_per_s, drive_Nm, constant<Scalar>(drive.external_Nm), drive_Nm};
     for (const auto& effect : instance_.axis) {
       terms.own = own + effect.own_states;
       effect(terms);
@@ -192,6 +204,8 @@ private:
       rate.angle = state.rate_rad_per_s;
       if (instance_.axis.empty() && instance_.friction.empty()) {
         rate.rate = drive.torque_Nm - instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
+        if (instance_.voltage_driven) rate.rate -= drive.back_Nms_per_rad * state.rate_rad_per_s;
+        rate.rate += drive.external_Nm;
       } else {
         const Torques now = torques(state, t_s, drive, rate.own);
         rate.rate = now.torque_Nm;

@@ -26,6 +26,7 @@ enum class HeatTold {
   by_law,               ///< the circuit's law at the measured temperature
   by_current,           ///< the measured current and the winding's resistance
   by_electrical_power,  ///< the measured current and the voltage at the motor
+  by_record,            ///< it is recorded itself
 };
 
 /// What the laws of a bench say at the rows of a recording, each at its measured inputs. Behind a thermometer that
@@ -91,7 +92,11 @@ public:
         charge_Ah += true_A * rollout.charge_share(i) * step_s / 3600.0;
         if (!instance.lumped && !instance.thesis_thermal) continue;
         BenchRollout<double>::Circuit electrical = law;
-        if (heat != HeatTold::by_law) electrical = rollout.driven_by(i, t_s, true_A, winding_C, charge_Ah);
+        if (heat == HeatTold::by_record && !std::isfinite(measured_A) && !powered)
+          electrical = rollout.heated(i);
+        else if (heat != HeatTold::by_law)
+          electrical = rollout.driven_by(i, t_s, true_A, winding_C, charge_Ah);
+        if (heat == HeatTold::by_record) electrical.winding_W = inputs_.heat_W[i];
         if (heat == HeatTold::by_electrical_power) electrical.winding_W = law.v_rms_V * true_A;
         body(instance, rollout, electrical, i, t_s, step_s, winding_C, surface_C, v);
       }
@@ -118,7 +123,7 @@ public:
     constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
     const std::vector<CalibratedConstant> constants = model_.calibrated();
     for (std::size_t k = 0; k < constants.size(); ++k) {
-      if (!constants[k].has_slack || constants[k].block == "axis") continue;
+      if (!constants[k].has_slack || constants[k].block == "axis" || constants[k].block == "servo") continue;
       std::vector<double> up(constants.size(), 1.0), down = up;
       up[k] = std::exp(step);
       down[k] = std::exp(-step);

@@ -161,7 +161,8 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   b.flow_sampled = -k->v.loss_W;
   b.flow_held = k->v.heat_W;
   b.relaxation_per_s = k->v.relaxation_per_s;
-  if (told != HeatTold::by_law && in.heat != HeatSource::drive) b.reads = {Signal::current_A};
+  if (told != HeatTold::by_law && told != HeatTold::by_record && in.heat != HeatSource::drive)
+    b.reads = {Signal::current_A};
   bench.for_each_constant(told, [&](const std::string& name, const BenchAtRows::Values& up,
                                     const BenchAtRows::Values& down, double per_log) {
     const Eigen::VectorXd heat = (up.heat_W - down.heat_W) * per_log,
@@ -327,6 +328,10 @@ inline std::vector<BalanceSource> bench_balances(const Model& model, const Catal
   };
   const bool ohmic = std::holds_alternative<OhmicCurrentModel>(model.current);
   const bool polynomial = std::holds_alternative<ThesisThermalModel>(model.thermal);
+  if (inputs.heat_W.size() > 0) {  // known better than by any law
+    add(HeatTold::by_record, {});
+    return list;
+  }
   if (inputs.heat == HeatSource::law) add(HeatTold::by_law, {});
   if (inputs.heat == HeatSource::drive) add(HeatTold::by_current, {});
   if (inputs.held_current_A.size() > 0) {

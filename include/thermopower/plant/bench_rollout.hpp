@@ -138,6 +138,12 @@ public:
     return result;
   }
 
+  /// What is known of the circuit where the heat is recorded and nothing else.
+  Circuit heated(Eigen::Index row) const {
+    const Scalar zero = constant<Scalar>(0.0), nominal_V = constant<Scalar>(inputs_.nominal_V);
+    return {nominal_V, nominal_V, zero, constant<Scalar>(inputs_.heat_W[row])};
+  }
+
   /// The heat balance of the body at an instant.
   struct HeatFlows {
     Scalar heat_W;        ///< into the winding node
@@ -214,8 +220,15 @@ private:
   }
 
   Circuit powered(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
+    Circuit result = circuit_of_source(row, t_s, state);
+    if (inputs_.heat_W.size() > 0) result.winding_W = constant<Scalar>(inputs_.heat_W[row]);
+    return result;
+  }
+
+  Circuit circuit_of_source(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {
     if (inputs_.heat == HeatSource::law && !feed_.measured_current)
       return circuit(row, t_s, state.winding_C, state.charge_Ah);
+    if (inputs_.heat == HeatSource::recorded && !feed_.measured_current) return heated(row);
     const double recorded =
         inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
     return driven_by(row, t_s, recorded, state.winding_C, state.charge_Ah);

@@ -199,7 +199,8 @@ private:
                               need == Need::ohmic_without_tempco || need == Need::supply_not_logged ||
                               need == Need::current_A || need == Need::power_param ||
                               need == Need::airspeed_mps || need == Need::neighbour_C;
-      const bool axis_only = need == Need::axis_model || need == Need::angle_deg;
+      const bool axis_only = need == Need::axis_model || need == Need::angle_deg || need == Need::open_loop ||
+                             need == Need::closed_loop;
       if ((bench_only && !hooks.any_bench()) || (axis_only && !hooks.any_axis()))
         throw InvalidInput(effect + ": needs '" + to_string(need) +
                            "', which none of its hooks has to do with");

@@ -25,7 +25,9 @@ enum class Need {
   power_param,           ///< recorded
   airspeed_mps,          ///< recorded
   neighbour_C,           ///< recorded
-  supply_not_logged      ///< there is no column `supply_V`
+  supply_not_logged,     ///< there is no column `supply_V`
+  open_loop,             ///< the command is recorded
+  closed_loop            ///< the model has a servo, its target is recorded and the command is not
 };
 
 /// As lists of effects print it.
@@ -55,6 +57,10 @@ inline const char* to_string(Need need) {
       return "neighbour_C";
     case Need::supply_not_logged:
       return "no supply_V";
+    case Need::open_loop:
+      return "command recorded";
+    case Need::closed_loop:
+      return "servo and target, no command";
   }
   return "?";
 }

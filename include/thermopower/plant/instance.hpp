@@ -7,6 +7,7 @@
 #include <thermopower/actuator/thesis_current.hpp>
 #include <thermopower/plant/catalogue.hpp>
 #include <thermopower/plant/model.hpp>
+#include <thermopower/plant/servo_loop.hpp>
 
 #include <string>
 #include <vector>
@@ -52,6 +53,9 @@ struct Instance {
   Scalar inertia_kgm2;                        ///< near and far side together, where `rigid`
   Scalar viscous_Nms_per_rad;                 ///< where `rigid`
   Scalar torque_constant_Nm_per_A;            ///< where `rigid`
+  bool voltage_driven = false;                ///< the drive is a voltage
+  Scalar motor_ohm;                           ///< where `voltage_driven`
+  ServoGains<Scalar> servo;                   ///< where the model has a servo
 
   ThermalStructure<Scalar> thermal_structure;  ///< after the effects that shape it
   AxisStructure<Scalar> axis_structure;        ///< after the effects that shape it
@@ -136,6 +140,11 @@ private:
       viscous_Nms_per_rad = scaled("axis", "viscous_Nms_per_rad", model.axis->viscous_Nms_per_rad);
       torque_constant_Nm_per_A =
           scaled("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
+      voltage_driven = model.axis->voltage_driven();
+      if (model.has_servo())
+        servo = servo_gains<Scalar>(
+            model, [&](const char* field, double value) { return scaled("servo", field, value); });
+      if (voltage_driven) motor_ohm = scaled("axis", "resistance_ohm", model.axis->resistance_ohm);
     }
   }
 

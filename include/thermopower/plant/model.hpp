@@ -56,11 +56,38 @@ struct ThesisThermalModel {
   double minimum_V_rms = 1.0;    ///< V, at or below which there is no heat
 };
 
-/// `"law": "rigid"`: J dw/dt = Kt drive - b w.
+/// `"law": "rigid"`: J dw/dt = Kt drive - b w, for a drive that commands the current. `"law": "voltage"`:
+/// J dw/dt = Kt (u - Kt w) / R - b w, for a brushed motor at a voltage u.
 struct RigidAxisModel {
   double inertia_kgm2 = 1e-3;             ///< kg m^2, > 0
   double viscous_Nms_per_rad = 1e-3;      ///< N m s/rad, >= 0
   double torque_constant_Nm_per_A = 0.1;  ///< N m/A, not 0
+  double resistance_ohm = 0.0;            ///< ohm, > 0, of a motor at a voltage; 0: its current is commanded
+
+  /// Whether a voltage drives the motor, and not a current.
+  bool voltage_driven() const { return resistance_ohm != 0.0; }
+};
+
+/// `"law": "position_pid"`: from `target_deg` to a command, sampled every `period_s` and held until the next one:
+/// kp (target - angle) + kd (target rate - rate) + ki times the integral of the error. The target's rate is
+/// `target_dps` where that is recorded, else 0. The integral is held where it alone asks for the limit.
+struct PositionPidServo {
+  double kp_A_per_deg = 0.05;   ///< A/deg
+  double kd_A_s_per_deg = 0.0;  ///< A s/deg
+  double ki_A_per_deg_s = 0.0;  ///< A/(deg s)
+  double limit_A = 1.0;         ///< of the command, > 0
+  double period_s = 1e-3;       ///< between samples, > 0
+  double delay_s = 0.0;         ///< from a sample to the torque, >= 0
+};
+
+/// `"law": "velocity_pi"`: from `target_dps` to a command, sampled alike: kp (target - rate) + ki times the integral
+/// of the error.
+struct VelocityPiServo {
+  double kp_A_s_per_deg = 0.01;  ///< A per deg/s
+  double ki_A_per_deg = 0.0;     ///< A/deg
+  double limit_A = 1.0;          ///< of the command, > 0
+  double period_s = 1e-3;        ///< between samples, > 0
+  double delay_s = 0.0;          ///< from a sample to the torque, >= 0
 };
 
 /// Parameters of one effect by name.
@@ -68,7 +95,7 @@ using EffectParameters = std::map<std::string, double>;
 
 /// One constant of a model: the block and name it has in the model file, and its value.
 struct NamedConstant {
-  std::string block;   ///< `supply`, `current`, `thermal` or `axis`
+  std::string block;   ///< `supply`, `current`, `thermal`, `axis` or `servo`
   std::string name;    ///< as in the file, such as `resistance_ohm`
   double value = 0.0;  ///< in the unit the name ends in
 };
@@ -77,7 +104,7 @@ struct NamedConstant {
 /// coefficients of one polynomial). As a cause the diagnosis calls it by its id after `calibration.`
 struct CalibratedConstant {
   std::string id;                   ///< `resistance`, `heat_capacity`, ...
-  std::string block;                ///< `current`, `thermal`, `axis` or `effects.<id>`
+  std::string block;                ///< `current`, `thermal`, `axis`, `servo` or `effects.<id>`
   std::vector<std::string> fields;  ///< the model's fields that scale with it
   bool may_be_cause = true;         ///< off by more than what is known of it, it is a cause of its own
   bool has_slack = true;  ///< is known by itself; of a polynomial each coefficient is, not all together
@@ -114,8 +141,11 @@ struct Model {
   std::variant<std::monostate, OhmicCurrentModel, ThesisCurrentModel> current;
   /// From heat to temperature; `std::monostate`: absent.
   std::variant<std::monostate, LumpedThermalModel, ThesisThermalModel> thermal;
-  /// From commanded current to motion.
+  /// From commanded current, or voltage, to motion.
   std::optional<RigidAxisModel> axis;
+  /// From target to command, where the recording holds a target and no command; `std::monostate`: absent. Commands
+  /// are currents; of a motor at a voltage, currents at standstill.
+  std::variant<std::monostate, PositionPidServo, VelocityPiServo> servo;
   std::map<std::string, EffectParameters> effects;  ///< id -> parameter -> value
   /// How well constants are known: standard deviation as a share of the value, above 0 to 1, by
   /// block.constant (as in `thermal.conductance_W_per_K`) and effects.id.parameter. Those that are not in it are
@@ -128,7 +158,8 @@ struct Model {
     return !std::holds_alternative<std::monostate>(current);
   }  ///< electrical block?
   bool has_thermal() const { return !std::holds_alternative<std::monostate>(thermal); }  ///< thermal block?
-  bool has_axis() const { return axis.has_value(); }  ///< mechanical block?
+  bool has_axis() const { return axis.has_value(); }                                 ///< mechanical block?
+  bool has_servo() const { return !std::holds_alternative<std::monostate>(servo); }  ///< servo block?
 
   /// Every constant of every block present, in a fixed order.
   std::vector<NamedConstant> constants() const;
@@ -193,6 +224,21 @@ void for_each_constant(ModelType& model, Visitor&& visit) {
     visit("axis", "inertia_kgm2", model.axis->inertia_kgm2);
     visit("axis", "viscous_Nms_per_rad", model.axis->viscous_Nms_per_rad);
     visit("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
+    if (model.axis->voltage_driven()) visit("axis", "resistance_ohm", model.axis->resistance_ohm);
+  }
+  if (auto* servo = std::get_if<PositionPidServo>(&model.servo)) {
+    visit("servo", "kp_A_per_deg", servo->kp_A_per_deg);
+    visit("servo", "kd_A_s_per_deg", servo->kd_A_s_per_deg);
+    visit("servo", "ki_A_per_deg_s", servo->ki_A_per_deg_s);
+    visit("servo", "limit_A", servo->limit_A);
+    visit("servo", "period_s", servo->period_s);
+    visit("servo", "delay_s", servo->delay_s);
+  } else if (auto* velocity = std::get_if<VelocityPiServo>(&model.servo)) {
+    visit("servo", "kp_A_s_per_deg", velocity->kp_A_s_per_deg);
+    visit("servo", "ki_A_per_deg", velocity->ki_A_per_deg);
+    visit("servo", "limit_A", velocity->limit_A);
+    visit("servo", "period_s", velocity->period_s);
+    visit("servo", "delay_s", velocity->delay_s);
   }
   if (model.own)
     for (auto& constant : model.own->constants)
@@ -277,6 +323,18 @@ inline std::vector<CalibratedConstant> Model::calibrated() const {
     list.push_back({"inertia", "axis", {"inertia_kgm2"}});
     if (axis->viscous_Nms_per_rad != 0.0) list.push_back({"viscous", "axis", {"viscous_Nms_per_rad"}});
     list.push_back({"torque_constant", "axis", {"torque_constant_Nm_per_A"}});
+    if (axis->voltage_driven()) list.push_back({"motor_resistance", "axis", {"resistance_ohm"}});
+  }
+  const auto gain = [&](const char* id, const char* field) {
+    if (get(std::string("servo.") + field) != 0.0) list.push_back({id, "servo", {field}});
+  };
+  if (std::holds_alternative<PositionPidServo>(servo)) {
+    gain("kp", "kp_A_per_deg");
+    gain("kd", "kd_A_s_per_deg");
+    gain("ki", "ki_A_per_deg_s");
+  } else if (std::holds_alternative<VelocityPiServo>(servo)) {
+    gain("kp", "kp_A_s_per_deg");
+    gain("ki", "ki_A_per_deg");
   }
   if (own)
     for (const PlantConstant& constant : own->constants)
@@ -295,7 +353,8 @@ inline std::optional<std::string> Model::validate() const {
   std::optional<std::string> problem;
   const auto positive = [](std::string_view field) {
     return field == "nominal_V" || field == "resistance_ohm" || field == "heat_capacity_J_per_K" ||
-           field == "conductance_W_per_K" || field == "cooling_per_min" || field == "inertia_kgm2";
+           field == "conductance_W_per_K" || field == "cooling_per_min" || field == "inertia_kgm2" ||
+           field == "limit_A" || field == "period_s";
   };
   detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
     if (problem) return;
@@ -308,6 +367,9 @@ inline std::optional<std::string> Model::validate() const {
     problem = "axis.viscous_Nms_per_rad is negative, expected 0 or more";
   if (!problem && axis && axis->torque_constant_Nm_per_A == 0.0)
     problem = "axis.torque_constant_Nm_per_A is 0, expected another number";
+  if (!problem && has_servo() && get("servo.delay_s") < 0.0)
+    problem = "servo.delay_s is negative, expected 0 or more";
+  if (!problem && has_servo() && !axis) problem = "there is a servo block and no axis block: expected both";
   if (own && !problem)
     for (const PlantConstant& constant : own->constants)
       if (constant.above_zero && !(constant.value > 0.0))

@@ -35,6 +35,7 @@ enum class HeatSource {
   law,       ///< the current law, from `power_param`
   measured,  ///< the recorded `current_A`
   drive,     ///< the recorded `drive_A`
+  recorded,  ///< nothing but the recorded `heat_W`
   none,      ///< nothing recorded: temperature is not judged
 };
 
@@ -46,6 +47,16 @@ struct Inputs {
   // Held inputs and covariates by row; empty where not recorded. Holes hold the value before them.
   Eigen::VectorXd power_param;              ///< POWER, 0..255
   Eigen::VectorXd drive_A;                  ///< commanded current of the axis
+  Eigen::VectorXd voltage_V;                ///< at a brushed motor that drives the axis
+  Eigen::VectorXd torque_Nm;                ///< external torque on the driven inertia
+  Eigen::VectorXd heat_W;                   ///< into the body, in the place of the winding's
+  bool closed_loop = false;                 ///< the command is not recorded: a servo makes it of its target
+  Eigen::VectorXd target_deg;               ///< of the servo
+  Eigen::VectorXd target_dps;               ///< of the servo
+  Eigen::VectorXd seen_deg;                 ///< measured angle without holes, of a closed loop; else empty
+  Eigen::VectorXd seen_dps;                 ///< measured rate without holes, of a closed loop; else empty
+  Eigen::VectorXd servo_A;                  ///< of a closed loop: what the servo makes of the measured motion
+  Eigen::VectorXd servo_integral;           ///< of a closed loop: the servo's integral before each row
   Eigen::VectorXd supply_V;                 ///< supply voltage
   Eigen::VectorXd ambient_C;                ///< air temperature
   Eigen::VectorXd airspeed_mps;             ///< of the air past the motor

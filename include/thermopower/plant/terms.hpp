@@ -77,7 +77,8 @@ struct DriveTerms {
   Given<Scalar> t_s = 0.0;      ///< time since the start of the run
   Given<Scalar> motor_C = 0.0;  ///< recorded; NaN where it is not
   // to change
-  Scalar drive_A;                   ///< command, delayed where there is a delay
+  /// Command, delayed where there is a delay. Of a motor at a voltage: the current that it drives at standstill.
+  Scalar drive_A;
   Scalar torque_constant_Nm_per_A;  ///< as in the model file, to be multiplied
 };
 
@@ -105,7 +106,7 @@ struct AxisTerms {
   const Scalar& rate_rad_per_s;  ///< its derivative
   const Scalar& drive_Nm;        ///< torque that is asked of the drive, after its own effects
   // to change
-  Scalar load_Nm;                   ///< added to the drive
+  Scalar load_Nm;                   ///< added to the drive; starts from the recorded external torque
   Scalar delivered_Nm;              ///< what arrives of the drive's torque; starts from all of it
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
 };

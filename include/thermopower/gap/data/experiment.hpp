@@ -31,9 +31,18 @@ inline double largest_command(const Inputs& inputs) {
     if (values.size() > 0) most = std::fmax(most, values.cwiseAbs().maxCoeff());
   };
   if (inputs.axis() || inputs.heat == HeatSource::drive) look(inputs.drive_A);
-  if (inputs.bench()) look(inputs.power_param);
+  if (inputs.axis()) look(inputs.voltage_V), look(inputs.torque_Nm), look(inputs.servo_A);
+  if (inputs.bench()) look(inputs.power_param), look(inputs.heat_W);
   if (inputs.bench() && inputs.heat == HeatSource::measured) look(inputs.held_current_A);
   return most;
+}
+
+/// The column that commands what is judged.
+inline std::string command_column(const Inputs& inputs) {
+  if (inputs.closed_loop) return inputs.target_deg.size() > 0 ? "target_deg" : "target_dps";
+  if (inputs.axis())
+    return inputs.drive_A.size() > 0 || inputs.voltage_V.size() == 0 ? "drive_A" : "voltage_V";
+  return inputs.heat == HeatSource::recorded ? "heat_W" : "power_param";
 }
 
 /// 5th to 95th percentile of a judged signal.
@@ -121,7 +130,7 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
     driven = std::max(driven, most);
   }
   if (any_command && !(driven > 0.0) && !train.empty())
-    add(FindingKind::never_driven, train.front(), train.front().inputs().axis() ? "drive_A" : "power_param",
+    add(FindingKind::never_driven, train.front(), command_column(train.front().inputs()),
         "is 0 throughout: nothing was driven", "record while the actuator is driven at several levels");
   std::array<double, signal_count> ranges{};
   for (const PreparedRecording& one : train)

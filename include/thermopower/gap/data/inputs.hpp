@@ -5,9 +5,11 @@
 #include <thermopower/gap/data/own_inputs.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/rows.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -60,6 +62,23 @@ inline Eigen::VectorXd unwrapped(const Eigen::VectorXd& angle_deg, const std::ve
   return result;
 }
 
+/// Lets the model's servo make the command: of its target and of the motion that was measured.
+inline void close_loop(const Model& model, Inputs& inputs) {
+  inputs.closed_loop = true;
+  const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(inputs.rows());
+  inputs.seen_deg = angle ? held(inputs.of(Signal::angle_deg), inputs.runs) : none;
+  inputs.seen_dps = rate ? held(inputs.of(Signal::rate_dps), inputs.runs) : none;
+  for (const RunSpan& run : inputs.runs)
+    for (Eigen::Index row = run.begin; !rate && row < run.end; ++row) {  // slopes of the angle
+      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
+      if (after > before)
+        inputs.seen_dps[row] =
+            (inputs.seen_deg[after] - inputs.seen_deg[before]) / (inputs.t_s[after] - inputs.t_s[before]);
+    }
+  replay_servo(model, inputs);
+}
+
 }  // namespace detail
 
 /// Takes from a recording what the model needs, and notes what cannot be judged and why.
@@ -96,6 +115,8 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   else if (recording.has("current_A") && (ohmic || (powered && model.has_current())))
     inputs.heat = HeatSource::measured;
   else if (inputs.drive_A.size() > 0 && ohmic) inputs.heat = HeatSource::drive;
+  if (model.has_thermal()) inputs.heat_W = take("heat_W");
+  if (inputs.heat == HeatSource::none && inputs.heat_W.size() > 0) inputs.heat = HeatSource::recorded;
   if (recording.has("current_A")) inputs.held_current_A = take("current_A");
   if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
 
@@ -112,7 +133,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     else if (inputs.heat == HeatSource::none)
       notes.push_back(
           "motor_C is not judged: neither power_param (with a current law and a supply) nor current_A nor "
-          "drive_A tells the heat");
+          "drive_A nor heat_W tells the heat");
     else measure(Signal::motor_C);
   } else if (recording.has("motor_C") && !model.has_axis()) {
     notes.push_back("motor_C is not judged: the model has no thermal block");
@@ -125,8 +146,24 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     else measure(Signal::current_A);
   }
   if (model.has_axis()) {
-    if (inputs.drive_A.size() == 0) {
-      lack("the axis", "drive_A");
+    const bool voltage_driven = model.axis->voltage_driven();
+    inputs.voltage_V = take("voltage_V");
+    inputs.torque_Nm = take("torque_Nm");
+    const bool commanded = command(inputs, voltage_driven).size() > 0;
+    const bool position = std::holds_alternative<PositionPidServo>(model.servo);
+    const char* const target = position ? "target_deg" : "target_dps";
+    const char* const senses = position ? "angle_deg" : "rate_dps";
+    if (model.has_servo() && !commanded) {
+      inputs.target_deg = take("target_deg");
+      inputs.target_dps = take("target_dps");
+    }
+    if (!commanded && model.has_servo() && !recording.has(target)) {
+      lack("the axis", target);
+    } else if (!commanded && model.has_servo() && !recording.has(senses) &&
+               !(recording.has("angle_deg") && !position)) {
+      lack("the axis", senses);
+    } else if (!commanded && !model.has_servo()) {
+      lack("the axis", voltage_driven ? "voltage_V" : "drive_A");
     } else if (!recording.has("rate_dps") && !recording.has("angle_deg")) {
       notes.push_back("the axis is not judged: the recording has neither angle_deg nor rate_dps");
     } else {
@@ -137,6 +174,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
             detail::unwrapped(recording.column("angle_deg"), inputs.runs);
       else lack("angle_deg", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
+      if (!commanded) detail::close_loop(model, inputs);
     }
   }
   if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");

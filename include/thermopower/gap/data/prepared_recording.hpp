@@ -89,7 +89,8 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   believed_.runs = cut_at(believed_.runs, starts);
   moves_ = model.has_axis();
   electrical_ = model.has_current() && recorded.has("power_param");
-  drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && model.has_thermal();
+  drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
+                       model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(recorded, list);
   interval_s_ = median_interval_s(believed_);

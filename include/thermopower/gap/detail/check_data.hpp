@@ -141,15 +141,22 @@ inline bool is_column(plant::Need need) {
 }
 
 /// A parameter of usual size: where fits begin.
-inline double usual_size(const Parameter& parameter, const Recording& recording) {
+inline double usual_size(const Parameter& parameter, const Model& model, const Recording& recording) {
   double value = parameter.starts.front();
-  const char* const input = parameter.starts_relative_to == plant::Input::drive_A       ? "drive_A"
+  const bool voltage_driven = model.axis && model.axis->voltage_driven();
+  const char* const input = parameter.starts_relative_to == plant::Input::drive_A
+                                ? (voltage_driven ? "voltage_V" : "drive_A")
                             : parameter.starts_relative_to == plant::Input::power_param ? "power_param"
                             : parameter.starts_relative_to == plant::Input::supply_V    ? "supply_V"
                                                                                         : nullptr;
-  if (input != nullptr && recording.has(input)) {
+  if (input != nullptr && !recording.has(input) && parameter.starts_relative_to == plant::Input::drive_A &&
+      model.has_servo()) {
+    value *= model.get("servo.limit_A");
+  } else if (input != nullptr && recording.has(input)) {
     std::vector<double> sizes = finite_samples(recording.column(input).cwiseAbs());
     value *= quantile_of(sizes, 1.0);
+    if (parameter.starts_relative_to == plant::Input::drive_A && voltage_driven)
+      value /= model.axis->resistance_ohm;  // as a current at standstill
   }
   constexpr double of_range = 0.1;
   if (value == 0.0) value = of_range * (parameter.upper > 0.0 ? parameter.upper : parameter.lower);
@@ -231,7 +238,7 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
     Model with = model;
     EffectParameters& parameters = with.effects[entry.info.id];
     for (const Parameter& parameter : entry.info.parameters)
-      parameters[parameter.name] = usual_size(parameter, recording);
+      parameters[parameter.name] = usual_size(parameter, model, recording);
     Eigen::VectorXd change = responses.of(with) - responses.base();
     if (!(change.squaredNorm() > 0.0)) {  // a gain starts at 1, where it does nothing
       for (auto& [name, value] : parameters) value *= limit.gain;

@@ -231,6 +231,7 @@ private:
     if (!constant.effect().empty() || model_.own) return true;
     for (const Inputs& one : train_inputs_)
       if (constant.block == "axis"      ? one.axis()
+          : constant.block == "servo"   ? one.closed_loop
           : constant.block == "thermal" ? one.judged(Signal::motor_C)
                                         : one.bench())
         return true;

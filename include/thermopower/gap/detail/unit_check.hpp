@@ -226,9 +226,24 @@ private:
     scaled("supply_V", "mV", 1e-3, "is in millivolts where volts are expected");
     scaled("current_A", "mA", 1e-3, "is in milliamperes where amperes are expected");
     turned("current_A", "A", "has the wrong sign: a motor's current is positive where its voltage is");
+    if (model.has_thermal()) {
+      scaled("heat_W", "mW", 1e-3, "is in milliwatts where watts are expected");
+      scaled("heat_W", "kW", 1e3, "is in kilowatts where watts are expected");
+      turned("heat_W", "W", "has the wrong sign: it cools the body");
+    }
     if (moves(model, recording_)) {
       scaled("drive_A", "mA", 1e-3, "is in milliamperes where amperes are expected");
       scaled("voltage_V", "mV", 1e-3, "is in millivolts where volts are expected");
+      if (model.has_servo() && !recording_.has("drive_A")) {
+        const double deg = 1.0 / rad_per_deg;
+        scaled("target_deg", "rad", deg, "is in radians where degrees are expected");
+        scaled("target_dps", "rad/s", deg, "is in radians per second where degrees per second are expected");
+        turned("target_deg", "deg", "has the wrong sign: the axis moves the other way");
+        turned("target_dps", "deg/s", "has the wrong sign: the axis moves the other way");
+      }
+      scaled("torque_Nm", "mNm", 1e-3, "is in millinewton metres where newton metres are expected");
+      scaled("torque_Nm", "Ncm", 1e-2, "is in newton centimetres where newton metres are expected");
+      turned("torque_Nm", "Nm", "has the wrong sign: it accelerates the axis backwards");
       turned("drive_A", "A", "has the wrong sign: it accelerates the axis backwards");
       turned("voltage_V", "V", "has the wrong sign: it accelerates the axis backwards");
     }
@@ -326,17 +341,18 @@ inline void check_drive_clock(const Model& model, const Recording& sample, doubl
                               const Catalogue& catalogue, FindingList& list) {
   constexpr Eigen::Index furthest = 8;
   constexpr double least_misfit = 0.02;
-  if (!moves(model, sample) || !sample.has("drive_A") || !(now > least_misfit)) return;
+  const char* const commands = model.axis && model.axis->voltage_driven() ? "voltage_V" : "drive_A";
+  if (!moves(model, sample) || !sample.has(commands) || !(now > least_misfit)) return;
   double best = now;
   Eigen::Index at = 0;
   for (Eigen::Index k = 1; k <= furthest; ++k) {
     Recording early = sample;
-    early.set("drive_A", shifted(sample.column("drive_A"), -k));
+    early.set(commands, shifted(sample.column(commands), -k));
     const double left = misfit(model, early, catalogue);
     if (left < best) best = left, at = k;
   }
   if (at > 0 && best < UnitThresholds().shifted_axis * now)
-    list.add(FindingKind::clock_shift, Severity::warning, "drive_A",
+    list.add(FindingKind::clock_shift, Severity::warning, commands,
              "is stamped " + short_number(static_cast<double>(at) * interval_s) +
                  " s later than the motion it causes",
              "log both with one clock");

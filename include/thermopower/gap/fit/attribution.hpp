@@ -226,9 +226,16 @@ private:
                                       : input == Input::power_param ? &inputs.power_param
                                       : input == Input::supply_V    ? &inputs.supply_V
                                                                     : nullptr;
+      double per_unit = 1.0;
+      if (input == Input::drive_A && inputs.closed_loop) values = &inputs.servo_A;
+      else if (input == Input::drive_A && problem_.model->axis && problem_.model->axis->voltage_driven()) {
+        values = &inputs.voltage_V;  // as a current at standstill
+        per_unit = 1.0 / problem_.model->axis->resistance_ohm;
+      }
       if (values != nullptr && values->size() > 0)
-        largest = std::max(largest,
-                           values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
+        largest = std::max(
+            largest,
+            per_unit * values->segment(segment.begin, segment.end - segment.begin).cwiseAbs().maxCoeff());
     }
     return largest > 0.0 ? largest : 1.0;
   }
@@ -284,6 +291,12 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
           break;
         case Need::axis_model:
           here = model.has_axis() && axis;
+          break;
+        case Need::open_loop:
+          here = inputs.axis() && !inputs.closed_loop;
+          break;
+        case Need::closed_loop:
+          here = inputs.axis() && inputs.closed_loop;
           break;
         case Need::ohmic_without_tempco:
           here = ohmic != nullptr && ohmic->tempco_per_K == 0.0;

@@ -41,6 +41,7 @@ public:
       for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(full_.t_s[i] - full_.t_s[i - 1]);
     const double interval_s = engine::median_of(steps);
     if (!(interval_s > 0.0)) return full_;
+    if (full_.closed_loop) return full_;  // a servo answers each sample
     auto rows = static_cast<Eigen::Index>(horizon_s / (AveragingThresholds().rows_per_horizon * interval_s));
     while (rows > 1 && !smooth_within(rows)) rows /= 2;
     return rows > 1 ? averaged(rows) : full_;
@@ -121,13 +122,14 @@ private:
       values.resize(count);
       for (Eigen::Index i = 0; i < count; ++i) values[i] = whole[blocks[static_cast<std::size_t>(i)].first];
     };
-    for (Eigen::VectorXd* values :
-         {&thin.power_param, &thin.supply_V, &thin.ambient_C, &thin.airspeed_mps, &thin.neighbour_C,
-          &thin.covariate_rate_dps, &thin.covariate_motor_C, &thin.held_current_A, &thin.held_motor_C})
+    for (Eigen::VectorXd* values : {&thin.power_param, &thin.supply_V, &thin.ambient_C, &thin.airspeed_mps,
+                                    &thin.neighbour_C, &thin.covariate_rate_dps, &thin.covariate_motor_C,
+                                    &thin.held_current_A, &thin.held_motor_C, &thin.heat_W})
       picked(*values);
     // The value of a parabola at its middle has 9/4 times the variance of a mean.
     thin.repeats = Eigen::VectorXd::Constant(count, std::max(1.0, 4.0 / 9.0 * static_cast<double>(rows)));
-    if (full_.drive_A.size() > 0) thin.drive_A = held_means(full_.drive_A, thin);
+    for (Eigen::VectorXd Inputs::*input : {&Inputs::drive_A, &Inputs::voltage_V, &Inputs::torque_Nm})
+      if ((full_.*input).size() > 0) thin.*input = held_means(full_.*input, thin);
     for (std::size_t k = 0; k < thin.measured.size(); ++k) {
       if (full_.measured[k].size() == 0) continue;
       const bool moves =

@@ -58,6 +58,7 @@ public:
     gather(full_.held_motor_C, thin.held_motor_C, false);
     gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
     gather(full_.held_current_A, thin.held_current_A, true);
+    gather(full_.heat_W, thin.heat_W, false);
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (std::isfinite(rows_[i].rate_dps))
         thin.covariate_rate_dps[static_cast<Eigen::Index>(i)] = rows_[i].rate_dps;
@@ -120,14 +121,21 @@ private:
   double level(Eigen::Index row) const {
     if (full_.power_param.size() > 0) return full_.power_param[row];
     if (full_.heat == HeatSource::drive) return std::abs(full_.drive_A[row]);
+    if (full_.heat == HeatSource::recorded) return full_.heat_W[row];
     return full_.held_current_A.size() > 0 ? full_.held_current_A[row] : 0.0;
+  }
+
+  /// Whether a heat that is recorded itself is the same at two rows, to a twentieth.
+  bool same_heat(Eigen::Index one, Eigen::Index other) const {
+    return full_.heat_W.size() == 0 ||
+           std::abs(full_.heat_W[one] - full_.heat_W[other]) <= 0.05 * std::abs(full_.heat_W[other]);
   }
 
   Eigen::Index constant_until(Eigen::Index row, Eigen::Index limit) const {
     Eigen::Index end = row + 1;
     // A measured current is never constant: what is within a twentieth counts as such.
     const double slack = full_.power_param.size() > 0 ? 0.0 : 0.05 * std::abs(level(row));
-    while (end < limit && std::abs(level(end) - level(row)) <= slack) ++end;
+    while (end < limit && std::abs(level(end) - level(row)) <= slack && same_heat(end, row)) ++end;
     return end;
   }
 

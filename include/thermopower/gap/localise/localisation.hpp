@@ -98,14 +98,16 @@ public:
     if (model.has_axis()) {
       const Recording part = all.rows() > axis_rows ? stretches(all, axis_rows) : all;
       axis_ = prepare(model, part);
-      append(plant::axis_balances(model, catalogue, axis_,
-                                  covariates(part, {"drive_A", "rate_dps", "angle_deg", "motor_C"})));
+      std::vector<std::string> known{"drive_A",   "rate_dps",  "angle_deg", "motor_C",
+                                     "voltage_V", "torque_Nm", "heat_W"};
+      if (axis_.closed_loop) known.insert(known.end(), {"target_deg", "target_dps"});
+      append(plant::axis_balances(model, catalogue, axis_, covariates(part, known)));
     }
     if (!model.has_current() && !model.has_thermal()) return;
     bench_ = prepare(model, all);
     append(plant::bench_balances(model, catalogue, bench_,
                                  covariates(all, {"power_param", "drive_A", "supply_V", "ambient_C",
-                                                  "current_A", "motor_C", "angle_deg"})));
+                                                  "current_A", "motor_C", "angle_deg", "heat_W"})));
   }
   RecordedBalances(const RecordedBalances&) = delete;  // the balances refer to its rows
   RecordedBalances& operator=(const RecordedBalances&) = delete;

@@ -29,6 +29,7 @@
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
 #include <thermopower/plant/effects/series_resistance.hpp>
+#include <thermopower/plant/effects/servo_delay.hpp>
 #include <thermopower/plant/effects/stribeck_friction.hpp>
 #include <thermopower/plant/effects/supply_power_heating.hpp>
 #include <thermopower/plant/effects/supply_sag.hpp>
@@ -73,6 +74,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<Cogging>();
     all.add<Compliance>();
     all.add<ActuationDelay>();
+    all.add<ServoDelay>();
     all.add<TorqueSaturation>();
     all.add<TorqueFade>();
     all.add<ConstantTorque>();

@@ -20,7 +20,7 @@ struct ActuationDelay {
             "drive(t) = u(t - s)",
             "The torque comes later than the command.",
             {parameter(delay_s, "s").unit("s").within(0.0, 1.0).starts({0.002, 0.01, 0.03, 0.08})},
-            {Need::axis_model},
+            {Need::axis_model, Need::open_loop},
             "fast reversals, recorded at a high rate"};
   }
 

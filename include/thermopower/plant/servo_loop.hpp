@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/model.hpp>
+#include <thermopower/plant/rows.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace thermopower::plant {
+
+/// A servo's gains in the scalar of a rollout.
+template <class Scalar>
+struct ServoGains {
+  bool position = true;    ///< from `target_deg`; else from `target_dps`
+  Scalar proportional;     ///< A/deg of a position servo, A s/deg of a velocity servo
+  Scalar derivative;       ///< A s/deg; of a position servo
+  Scalar integral;         ///< A/(deg s) of a position servo, A/deg of a velocity servo
+  double limit_A = 0.0;    ///< of the command, > 0
+  double period_s = 1e-3;  ///< between samples, > 0
+  Scalar delay_s;          ///< from a sample to its command, >= 0
+
+  /// The command of a sample, within the limits.
+  /// @param accumulated  what integrate() has made of the errors so far, this sample's included
+  Scalar command_A(const Scalar& angle_deg, const Scalar& rate_dps, double target_deg, double target_dps,
+                   const Scalar& accumulated) const {
+    Scalar command = integral * accumulated;
+    if (position) command += proportional * (target_deg - angle_deg) + derivative * (target_dps - rate_dps);
+    else command += proportional * (target_dps - rate_dps);
+    if (value_of(command) > limit_A) return constant<Scalar>(limit_A);
+    if (value_of(command) < -limit_A) return constant<Scalar>(-limit_A);
+    return command;
+  }
+
+  /// Adds the error of a sample to the integral (deg s of a position servo, deg of a velocity servo), which is
+  /// held where it alone asks for the limit.
+  void integrate(Scalar& accumulated, const Scalar& angle_deg, const Scalar& rate_dps, double target_deg,
+                 double target_dps) const {
+    if (!(std::abs(value_of(integral)) > 0.0)) return;
+    const Scalar error = position ? Scalar(target_deg - angle_deg) : Scalar(target_dps - rate_dps);
+    accumulated += error * period_s;
+    const Scalar most = limit_A / magnitude(integral);
+    if (value_of(accumulated) > value_of(most)) accumulated = most;
+    else if (value_of(accumulated) < -value_of(most)) accumulated = -most;
+  }
+};
+
+/// The gains of a model's servo, each multiplied by a factor. `Factor` is callable as factor(name).
+template <class Scalar, class Factor>
+ServoGains<Scalar> servo_gains(const Model& model, Factor&& factor) {
+  ServoGains<Scalar> gains;
+  gains.derivative = constant<Scalar>(0.0);
+  const auto common = [&](const auto& servo) {
+    gains.limit_A = servo.limit_A;
+    gains.period_s = servo.period_s;
+    gains.delay_s = constant<Scalar>(servo.delay_s);
+  };
+  if (const auto* position = std::get_if<PositionPidServo>(&model.servo)) {
+    common(*position);
+    gains.proportional = factor("kp_A_per_deg", position->kp_A_per_deg);
+    gains.derivative = factor("kd_A_s_per_deg", position->kd_A_s_per_deg);
+    gains.integral = factor("ki_A_per_deg_s", position->ki_A_per_deg_s);
+  } else if (const auto* velocity = std::get_if<VelocityPiServo>(&model.servo)) {
+    common(*velocity);
+    gains.position = false;
+    gains.proportional = factor("kp_A_s_per_deg", velocity->kp_A_s_per_deg);
+    gains.integral = factor("ki_A_per_deg", velocity->ki_A_per_deg);
+  }
+  return gains;
+}
+
+/// Number of the first sample of a servo at or after an instant of a run; samples are taken at multiples of the
+/// period from the run's first row on.
+inline long first_sample(double t_s, double period_s) {
+  constexpr double rounding = 1e-6;  // of a period: stamps have few digits
+  return static_cast<long>(std::max(0.0, std::ceil(t_s / period_s - rounding)));
+}
+
+/// How many samples a servo has taken up to an instant of a run, that instant included.
+inline long samples_until(double t_s, double period_s) {
+  constexpr double rounding = 1e-6;  // of a period
+  return std::max(0L, static_cast<long>(std::floor(t_s / period_s + rounding)) + 1);
+}
+
+/// What a servo made of the motion that was measured: where a window starts, its memory is known from that.
+///
+/// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and
+/// `inputs.servo_integral`, what was accumulated before each row. Motion and targets must be without holes.
+inline void replay_servo(const Model& model, Inputs& inputs) {
+  const ServoGains<double> gains =
+      servo_gains<double>(model, [](const char*, double value) { return value; });
+  const Eigen::Index rows = inputs.rows();
+  inputs.servo_A = inputs.servo_integral = Eigen::VectorXd::Zero(rows);
+  for (const RunSpan& run : inputs.runs) {
+    double accumulated = 0.0, command = 0.0;
+    const double start_s = inputs.t_s[run.begin];
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      inputs.servo_integral[row] = accumulated;
+      const double from_s = inputs.t_s[row] - start_s;
+      const double to_s = row + 1 < run.end ? inputs.t_s[row + 1] - start_s : from_s + gains.period_s;
+      const double target_deg = inputs.target_deg.size() > 0 ? inputs.target_deg[row] : 0.0,
+                   target_dps = inputs.target_dps.size() > 0 ? inputs.target_dps[row] : 0.0;
+      double sum = 0.0;
+      long count = 0;
+      const long end = std::max(first_sample(from_s, gains.period_s), first_sample(to_s, gains.period_s));
+      for (long k = first_sample(from_s, gains.period_s); k < end; ++k, ++count) {
+        const double share =
+            std::clamp((static_cast<double>(k) * gains.period_s - from_s) / (to_s - from_s), 0.0, 1.0);
+        const Eigen::Index next = std::min(row + 1, run.end - 1);
+        const double angle = inputs.seen_deg[row] + share * (inputs.seen_deg[next] - inputs.seen_deg[row]),
+                     rate = inputs.seen_dps[row] + share * (inputs.seen_dps[next] - inputs.seen_dps[row]);
+        gains.integrate(accumulated, angle, rate, target_deg, target_dps);
+        sum += command = gains.command_A(angle, rate, target_deg, target_dps, accumulated);
+      }
+      inputs.servo_A[row] = count > 0 ? sum / static_cast<double>(count) : command;
+    }
+  }
+}
+
+/// A servo under way in a window: samples the simulated motion, and lets each command act when its time has come.
+template <class Scalar>
+class ServoLoop {
+public:
+  /// Keeps references to all arguments.
+  /// @param late_s  added to the servo's own delay
+  ServoLoop(const ServoGains<Scalar>& gains, const Inputs& inputs, const RunSpan& run, const Scalar& late_s)
+      : gains_(gains),
+        inputs_(inputs),
+        run_(run),
+        start_s_(inputs.t_s[run.begin]),
+        delay_s_(gains.delay_s + late_s) {}
+
+  /// Sets out at a row with the memory that the measured motion leaves the servo.
+  /// @param seen  true angle in deg and rate in deg/s of measured ones: `seen(row, angle_deg, rate_dps)` as a pair
+  template <class Seen>
+  void start(Eigen::Index begin, Seen&& seen) {
+    const double now_s = inputs_.t_s[begin] - start_s_;
+    next_ = first_sample(now_s, gains_.period_s);
+    accumulated_ = constant<Scalar>(inputs_.servo_integral[begin]);
+    // Back to the sample whose command acts now; before that of the first one a servo is idle.
+    const double acting_s = now_s - value_of(delay_s_);
+    const long acting = std::min(next_, samples_until(acting_s, gains_.period_s));
+    const long first = std::max(0L, acting - 1);
+    Eigen::Index row = begin;
+    while (row > run_.begin && inputs_.t_s[row] - start_s_ > static_cast<double>(first) * gains_.period_s)
+      --row;
+    pending_.clear();
+    if (acting == 0) pending_.push_back({constant<Scalar>(0.0), constant<Scalar>(0.0)});
+    for (long k = first; k < next_; ++k) {
+      const double sample_s = static_cast<double>(k) * gains_.period_s;
+      while (row + 1 < run_.end && inputs_.t_s[row + 1] - start_s_ <= sample_s) ++row;
+      const Eigen::Index after = std::min(row + 1, run_.end - 1);
+      const double from_s = inputs_.t_s[row] - start_s_, length_s = inputs_.t_s[after] - inputs_.t_s[row];
+      const double share = length_s > 0.0 ? std::clamp((sample_s - from_s) / length_s, 0.0, 1.0) : 0.0;
+      const auto [angle_deg, rate_dps] =
+          seen(row, inputs_.seen_deg[row] + share * (inputs_.seen_deg[after] - inputs_.seen_deg[row]),
+               inputs_.seen_dps[row] + share * (inputs_.seen_dps[after] - inputs_.seen_dps[row]));
+      pending_.push_back(
+          {delay_s_ + sample_s, gains_.command_A(angle_deg, rate_dps, target(inputs_.target_deg, row),
+                                                 target(inputs_.target_dps, row),
+                                                 constant<Scalar>(inputs_.servo_integral[after]))});
+    }
+  }
+
+  /// The command that acts.
+  const Scalar& command_A() const { return pending_.front().command_A; }
+
+  /// Goes through the interval from a row to the next one.
+  /// @param sense    the motion as the servo sees it: a pair of angle in deg and rate in deg/s
+  /// @param advance  moves the axis: `advance(t_s, length_s)` under command_A()
+  template <class Sense, class Advance>
+  void interval(Eigen::Index row, double from_s, double to_s, Sense&& sense, Advance&& advance) {
+    Scalar now_s = constant<Scalar>(from_s);
+    const long end = std::max(next_, first_sample(to_s, gains_.period_s));
+    for (;;) {
+      const double sample_s = next_ < end ? static_cast<double>(next_) * gains_.period_s : 1e300;
+      const double switch_s = pending_.size() > 1 ? value_of(pending_[1].from_s) : 1e300;
+      if (switch_s <= sample_s && switch_s < to_s) {
+        if (switch_s > value_of(now_s)) {
+          advance(value_of(now_s), Scalar(pending_[1].from_s - now_s));
+          now_s = pending_[1].from_s;
+        }
+        pending_.erase(pending_.begin());
+        continue;
+      }
+      if (sample_s < 1e300) {
+        if (sample_s > value_of(now_s)) {
+          advance(value_of(now_s), Scalar(sample_s - now_s));
+          now_s = constant<Scalar>(sample_s);
+        }
+        const auto [angle_deg, rate_dps] = sense();
+        const double target_deg = target(inputs_.target_deg, row),
+                     target_dps = target(inputs_.target_dps, row);
+        gains_.integrate(accumulated_, angle_deg, rate_dps, target_deg, target_dps);
+        pending_.push_back({delay_s_ + sample_s,
+                            gains_.command_A(angle_deg, rate_dps, target_deg, target_dps, accumulated_)});
+        ++next_;
+        continue;
+      }
+      break;
+    }
+    if (to_s > value_of(now_s)) advance(value_of(now_s), Scalar(to_s - now_s));
+  }
+
+private:
+  /// A command and the instant at which it begins to act, since the start of the run.
+  struct Pending {
+    Scalar from_s, command_A;
+  };
+
+  static double target(const Eigen::VectorXd& values, Eigen::Index row) {
+    return values.size() > 0 ? values[row] : 0.0;
+  }
+
+  const ServoGains<Scalar>& gains_;
+  const Inputs& inputs_;
+  const RunSpan& run_;
+  double start_s_;
+  Scalar delay_s_;
+  Scalar accumulated_ = constant<Scalar>(0.0);
+  long next_ = 0;
+  std::vector<Pending> pending_;  ///< the first acts
+};
+
+}  // namespace thermopower::plant

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#include "../catch.hpp"
+#include "plants.hpp"
+
+#include <thermopower/gap/diagnose.hpp>
+
+#include <algorithm>
+#include <deque>
+
+// Recordings that hold a servo's target and not its current. Joint and servo are stepped here, apart from the library's
+// equations: the servo at its own period, its commands late by a delay, the joint fifty times in between.
+
+using namespace thermopower::gap;
+
+namespace {
+
+struct Gains {
+  double kp = 0.04, kd = 0.002, ki = 0.0, limit = 2.0, delay_s = 0.0;
+  bool velocity = false;
+};
+
+struct Joint {
+  double inertia = 1e-3, viscous = 1e-3, torque_constant = 0.2, coulomb_Nm = 0.0, gravity_Nm = 0.0;
+};
+
+constexpr double period_s = 0.005;
+
+/// @param with_drive  the current is recorded, too
+Recording record(const Joint& joint, const Gains& servo, int rows, std::uint64_t seed,
+                 bool with_drive = false) {
+  test::Noise noise(seed), faces(seed + 100);
+  Recording r;
+  r.name = "servo";
+  r.t_s.resize(rows);
+  Eigen::VectorXd target(rows), drive(rows), angle(rows), rate(rows);
+  double theta = 0.0, omega = 0.0, sum = 0.0, command = 0.0, level = 0.0, acting = 0.0;
+  std::deque<std::pair<double, double>> late;
+  const double deg = 57.29577951308232;
+  constexpr int samples = 2, steps = 50;  // of the servo in a row, of the joint in a sample
+  for (int i = 0; i < rows; ++i) {
+    r.t_s[i] = 0.01 * i;
+    const double t = r.t_s[i];
+    if (i % 60 == 0) level = 8.0 * faces();
+    target[i] = servo.velocity ? 10.0 * level * std::sin(0.9 * t) + 40.0 * std::sin(5.0 * t)
+                               : level + 12.0 * std::sin(2.7 * t) + 5.0 * std::sin(7.1 * t + 1.0);
+    angle[i] = theta * deg + 0.02 * noise();
+    rate[i] = omega * deg + 0.15 * noise();
+    for (int k = 0; k < samples; ++k) {
+      const double error = target[i] - (servo.velocity ? omega : theta) * deg;
+      sum += error * period_s;
+      command = servo.kp * error + servo.ki * sum - (servo.velocity ? 0.0 : servo.kd * omega * deg);
+      command = std::clamp(command, -servo.limit, servo.limit);
+      late.emplace_back(t + k * period_s + servo.delay_s, command);
+      if (k == 0) drive[i] = command;
+      for (int n = 0; n < steps; ++n) {
+        const double h = period_s / steps, now = t + k * period_s + n * h;
+        while (!late.empty() && late.front().first <= now + 1e-9)
+          acting = late.front().second, late.pop_front();
+        const double push =
+            joint.torque_constant * acting - joint.viscous * omega - joint.gravity_Nm * std::sin(theta + 0.5);
+        const double next = omega + h * push / joint.inertia, brake = h * joint.coulomb_Nm / joint.inertia;
+        omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
+        theta += h * omega;
+      }
+    }
+  }
+  r.set(servo.velocity ? "target_dps" : "target_deg", target);
+  if (with_drive) r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
+}
+
+Model model_with(const Gains& servo) {
+  Model model;
+  model.name = "servo";
+  model.axis = RigidAxisModel{1e-3, 1e-3, 0.2};
+  if (servo.velocity) model.servo = VelocityPiServo{servo.kp, servo.ki, servo.limit, period_s, servo.delay_s};
+  else model.servo = PositionPidServo{servo.kp, servo.kd, servo.ki, servo.limit, period_s, servo.delay_s};
+  return model;
+}
+
+Diagnosis diagnosed(const Model& model, const Joint& joint, const Gains& servo, bool with_drive = false) {
+  Options options;
+  options.effects_at_once = 1;
+  return diagnose(model, {record(joint, servo, 1000, 3, with_drive)},
+                  {record(joint, servo, 600, 8, with_drive)}, options);
+}
+
+const Cause* named(const Diagnosis& diagnosis, const std::string& id) {
+  for (const Cause& one : diagnosis.cause)
+    if (one.effect == id) return &one;
+  return nullptr;
+}
+
+bool named_or_listed(const Diagnosis& diagnosis, const std::string& id) {
+  for (const auto& alternative : diagnosis.alternatives)
+    if (std::find(alternative.begin(), alternative.end(), id) != alternative.end()) return true;
+  return named(diagnosis, id) != nullptr;
+}
+
+/// A gain of the augmented model as a stiffness or damping of the axis: what closed loops determine of it.
+double per_inertia(const Diagnosis& diagnosis, const std::string& gain) {
+  const Model& model = diagnosis.augmented;
+  return model.get(gain) * model.get("torque_constant_Nm_per_A") / model.get("inertia_kgm2");
+}
+
+const std::vector<Gains>& five_gain_sets() {
+  static const std::vector<Gains> sets{{0.04, 0.002, 0.0},
+                                       {0.01, 0.0008, 0.0},
+                                       {0.12, 0.004, 0.0},
+                                       {0.05, 0.0025, 0.2},
+                                       {0.03, 0.003, 0.05, 2.0, 0.006}};
+  return sets;
+}
+
+}  // namespace
+
+TEST_CASE("a servo that is as its file says has no gap, at any gains") {
+  std::vector<Gains> sets = five_gain_sets();
+  sets.push_back({0.004, 0.0, 0.02, 2.0, 0.0, true});
+  for (const Gains& servo : sets) {
+    const Diagnosis diagnosis = diagnosed(model_with(servo), {}, servo);
+    INFO("kp " << servo.kp << ": " << diagnosis.reason);
+    CHECK(diagnosis.verdict == Verdict::no_gap);
+    REQUIRE(diagnosis.gap.size() == 2);
+    for (const GapScore& gap : diagnosis.gap) CHECK(gap.before < 1.15 * gap.noise_floor);
+  }
+}
+
+TEST_CASE("what is identified does not depend on the gains") {
+  Joint rubbing;
+  rubbing.coulomb_Nm = 0.012;
+  Joint heavy;
+  heavy.inertia = 1.5e-3;
+  for (const Gains& servo : five_gain_sets()) {
+    INFO("kp " << servo.kp << ", ki " << servo.ki << ", delay " << servo.delay_s);
+    const Diagnosis friction = diagnosed(model_with(servo), rubbing, servo);
+    INFO(friction.reason);
+    const Cause* coulomb = named(friction, "coulomb_friction");
+    REQUIRE(coulomb != nullptr);
+    CHECK(coulomb->parameters.front().value == Approx(0.012).epsilon(0.05));
+    const Diagnosis inertia = diagnosed(model_with(servo), heavy, servo);
+    INFO(inertia.reason);
+    // A heavier axis and a weaker drive differ in the bearing's drag alone: what is determined is their ratio.
+    CHECK((named_or_listed(inertia, "calibration.inertia") ||
+           named_or_listed(inertia, "calibration.torque_constant")));
+    CHECK(inertia.augmented.get("inertia_kgm2") / inertia.augmented.get("torque_constant_Nm_per_A") ==
+          Approx(1.5e-3 / 0.2).epsilon(0.03));
+  }
+}
+
+TEST_CASE("gains that are not those of the file, a delay and a limit are causes") {
+  const Gains file;
+  Gains stiff = file;
+  stiff.kp *= 1.4;
+  const Diagnosis kp = diagnosed(model_with(file), {}, stiff);
+  INFO(kp.reason);
+  REQUIRE(named(kp, "calibration.kp") != nullptr);
+  CHECK(per_inertia(kp, "kp_A_per_deg") == Approx(stiff.kp * 0.2 / 1e-3).epsilon(0.02));
+
+  Gains damped = file;
+  damped.kd *= 0.6;
+  const Diagnosis kd = diagnosed(model_with(file), {}, damped);
+  INFO(kd.reason);
+  REQUIRE(named(kd, "calibration.kd") != nullptr);
+  CHECK(per_inertia(kd, "kd_A_s_per_deg") == Approx(damped.kd * 0.2 / 1e-3).epsilon(0.02));
+
+  Gains slow = file;
+  slow.delay_s = 0.013;
+  const Diagnosis delay = diagnosed(model_with(file), {}, slow);
+  INFO(delay.reason);
+  const Cause* late = named(delay, "servo_delay");
+  REQUIRE(late != nullptr);
+  CHECK(late->parameters.front().value == Approx(0.013).margin(0.0005));
+  REQUIRE_FALSE(delay.where.empty());
+  CHECK(delay.where.front().submodel == Submodel::mechanical_drive);
+
+  Gains weak = file;
+  weak.limit = 0.15;
+  const Diagnosis limit = diagnosed(model_with(file), {}, weak);
+  INFO(limit.reason);
+  const Cause* saturated = named(limit, "torque_saturation");
+  REQUIRE(saturated != nullptr);
+  CHECK(saturated->parameters.front().value == Approx(0.15).epsilon(0.05));
+}
+
+TEST_CASE("where the current is recorded it is the input, whatever the gains are") {
+  Gains file, true_gains;
+  file.kp *= 2.0;
+  Gains each_row = true_gains;
+  Recording train = record({}, each_row, 1500, 3, true), held_out = record({}, each_row, 900, 8, true);
+  const Diagnosis diagnosis = diagnose(model_with(file), {train}, {held_out});
+  for (const Cause& cause : diagnosis.cause) CHECK(cause.effect.find("kp") == std::string::npos);
+  // The same without a servo in the file.
+  Model bare = model_with(file);
+  bare.servo = std::monostate();
+  const Diagnosis open = diagnose(bare, {train}, {held_out});
+  CHECK(open.verdict == diagnosis.verdict);
+  REQUIRE(open.gap.size() == diagnosis.gap.size());
+  for (std::size_t i = 0; i < open.gap.size(); ++i) CHECK(open.gap[i].before == diagnosis.gap[i].before);
+}
