@@ -57,8 +57,9 @@ public:
   float winding_C(float seconds) const noexcept { return at(winding_, seconds); }  ///< After a time, >= 0.
   float body_C(float seconds) const noexcept { return at(body_, seconds); }        ///< After a time, >= 0.
 
-  /// Until the first node reaches its limit. @return s; 0 when one is there, infinite when none ever is, NaN when
-  /// anything given was NaN
+  /// Until the first node reaches its limit.
+  /// @param limits  of both
+  /// @return s; 0 when one is there, infinite when none ever is, NaN when anything given was NaN
   float seconds_to(const Limits& limits) const noexcept {
     const float winding_s = seconds_to(winding_, limits.winding_C);
     const float body_s = seconds_to(body_, limits.body_C);
@@ -68,6 +69,7 @@ public:
   /// Until another heat could act for a while without either limit being passed: when full power is back.
   /// @param config     as given to the constructor  @param air_C  as given there
   /// @param full_W     the heat that is to be bearable  @param horizon_s  and for how long, > 0
+  /// @param limits     of both
   /// @return s; 0 when it is bearable now, infinite when cooling at the present heat never makes it so
   float seconds_until(const Config& config, float air_C, float full_W, float horizon_s,
                       const Limits& limits) const noexcept {
