@@ -224,6 +224,64 @@ TEST_CASE("little is wasted against the best possible with the true actuator kno
   }
 }
 
+TEST_CASE("what is wasted over random motors, the median and the worst of them") {
+  std::printf("tolerance | heat granted / best possible, random motors: median | worst\n");
+  for (const double fraction : {0.0, 0.1, 0.2}) {
+    Random random(97);
+    std::vector<double> shares;
+    while (shares.size() < 20) {
+      // A motor in the middle of its bounds: a minute to an hour to warm up, one to fifteen times what it bears.
+      Truth truth = nominal_truth();
+      truth.conductance_W_per_K = log_uniform(random, 0.05, 2.0);
+      truth.coupling_W_per_K = truth.conductance_W_per_K * log_uniform(random, 1.0, 10.0);
+      truth.body_J_per_K = truth.conductance_W_per_K * log_uniform(random, 100.0, 1000.0);
+      truth.winding_J_per_K = truth.body_J_per_K * log_uniform(random, 0.03, 0.4);
+      truth.air_C = uniform(random, 0.0, 30.0);
+      const double body_C = uniform(random, 50.0, 100.0), winding_C = body_C + uniform(random, 10.0, 60.0);
+      const double bearable_W = truth.conductance_W_per_K * (body_C - truth.air_C);
+      truth.resistance_ohm = 13.0 * 13.0 / (bearable_W * log_uniform(random, 1.0, 15.0));
+      const auto around = [&](double value, double part) {
+        return Bounds::around(static_cast<float>(value), static_cast<float>(part * fraction));
+      };
+      CertifiedLimiter<>::Config config = bench_motor(0.0f);
+      config.network = {around(truth.winding_J_per_K, 1.0),
+                        around(truth.body_J_per_K, 1.0),
+                        around(truth.coupling_W_per_K, 1.0).lowest,
+                        around(truth.conductance_W_per_K, 1.0).lowest,
+                        static_cast<float>(winding_C),
+                        static_cast<float>(body_C)};
+      config.use.heat = HeatBounds::ohmic(13.0f, 1.0f, around(truth.resistance_ohm, 0.25), {0.0039f, 0.0039f},
+                                          20.0f, 0.0f, static_cast<float>(winding_C));
+      config.use.highest_air_C = 35.0f;  // it is measured: that is what bounds it
+      config.air_error_K = 0.0f;
+      CertifiedLimiter<> limiter(config);
+      if (is_error(limiter.validate())) continue;
+      const auto air_C = static_cast<float>(truth.air_C);
+      limiter.start(air_C, air_C);
+      Plant ours = {truth.air_C, truth.air_C}, best = ours;
+      double ours_J = 0.0, best_J = 0.0, best_W = 0.0;
+      const int steps = static_cast<int>(30.0 * truth.body_J_per_K / truth.conductance_W_per_K);  // of 0.1 s
+      std::uint8_t held = 1;
+      for (int i = 0; i < steps; ++i) {
+        const double ours_W = truth.heat_W(limiter.step({255, 13.0f, air_C}, 0.1f).power, ours.winding_C);
+        ours.step(truth, ours_W, 0.1);
+        ours_J += ours_W;
+        if (i % 10 == 0) held = best_power(best, truth, winding_C, body_C, 1.0);
+        best_W = truth.heat_W(held, best.winding_C);
+        best.step(truth, best_W, 0.1);
+        best_J += best_W;
+      }
+      CHECK(ours.winding_C <= winding_C);
+      CHECK(ours.body_C <= body_C);
+      shares.push_back(ours_J / best_J);
+    }
+    std::sort(shares.begin(), shares.end());
+    std::printf("  +-%4.0f %% | %.3f | %.3f\n", 100.0 * fraction, 0.5 * (shares[9] + shares[10]), shares[0]);
+    CHECK(shares.back() <= 1.001);  // the best is planned once a second
+    CHECK(shares.front() > 0.3);    // what it grants is worth having
+  }
+}
+
 TEST_CASE("headroom and time to the limit say what happens next") {
   CertifiedLimiter<>::Config config = bench_motor(0.0f);
   config.use.highest_air_C = 25.0f;
