@@ -90,6 +90,7 @@ enum class ConfigError : uint8_t {
   warning_percent = 73,       ///< Must be finite and above 0.
   error_percent = 74,         ///< Must be finite and above warning_percent.
   hysteresis_percent = 75,    ///< Must be finite and not negative.
+  is_waived = 76,             ///< Must be 0 or 1.
   user_defined = 128          ///< Codes from here up are free for policies of your own.
 };
 

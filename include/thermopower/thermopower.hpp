@@ -48,6 +48,7 @@
 #include "control/safety_limiter.hpp"
 #include "control/reserve_law.hpp"
 #include "control/sag_aware_law.hpp"
+#include "control/sensor_limiter.hpp"
 #include "control/step_power_law.hpp"
 #include "control/utilisation.hpp"
 #include "control/voltage_gain.hpp"

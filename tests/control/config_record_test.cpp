@@ -149,6 +149,7 @@ TEST_CASE("the configuration of every policy goes through a record") {
   check_component("EasedGain", EasedGain<VoltageGain>::Config{gain, 1.5f, 3}, 27);
   UtilisationConfig utilisation = UtilisationConfig::standard();
   utilisation.maximum_winding_C = 110.0f, utilisation.maximum_body_C = 60.0f;
+  check_component("SensorLimiter", SensorLimiter::Config::standard(), 5);
   check_component("Utilisation", utilisation, 20);
   check_component("AirTemperature", AirTemperature::Config::standard(), 16);
   check_component("GimbalController", GimbalConfig::standard(), 32);

@@ -34,7 +34,8 @@ enum class LimitReason : uint8_t {
   time_invalid = 71,          ///< The time step is NaN, infinite or negative.
   config_invalid = 72,        ///< `validate()` refused the configuration.
   not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
-  supply_implausible = 74     ///< The supply reads higher than it can be.
+  supply_implausible = 74,    ///< The supply reads higher than it can be.
+  sensor_missing = 75         ///< The motor has to be measured, and is not.
   // clang-format on
 };
 
