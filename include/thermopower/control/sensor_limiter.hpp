@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "../detail/check.hpp"
 #include "axis_facts.hpp"
 
 /// @file control/sensor_limiter.hpp
