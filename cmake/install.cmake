@@ -3,8 +3,8 @@
 
 include(CMakePackageConfigHelpers)
 
-# Components: `headers` needs nothing built, `gap` the library of the diagnosis, `programs` the programs.
-#   cmake --install <build> --prefix <prefix> --component headers
+# Components: `headers` needs nothing built, `gap` the library of the diagnosis, `io` that of its files, `programs` the programs.
+# What has not been built is left out, and the package says so to whoever asks for it.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/thermopower)
 
 # The firmware floor is a package of its own: whoever takes only that needs no Eigen.
@@ -20,18 +20,29 @@ install(DIRECTORY include/thermopower/actuator include/thermopower/control inclu
 if(THERMOPOWER_DESKTOP)
   install(TARGETS thermopower_desktop EXPORT thermopowerDesktopTargets)
   install(EXPORT thermopowerDesktopTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT headers)
-  install(FILES include/thermopower/desktop.hpp include/thermopower/gap.hpp
+  install(FILES include/thermopower/desktop.hpp include/thermopower/gap.hpp include/thermopower/io.hpp
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
-  install(DIRECTORY include/thermopower/gap include/thermopower/plant include/thermopower/simulation
+  install(DIRECTORY include/thermopower/gap include/thermopower/io include/thermopower/plant include/thermopower/simulation
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
 endif()
+# thermopower_install_library(<target> <component>): the library, and what find_package() tells of it.
+function(thermopower_install_library target component)
+  string(SUBSTRING ${component} 0 1 first)
+  string(SUBSTRING ${component} 1 -1 rest)
+  string(TOUPPER ${first} first)
+  install(TARGETS ${target} EXPORT thermopower${first}${rest}Targets DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component} OPTIONAL)
+  install(EXPORT thermopower${first}${rest}Targets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT ${component})
+endfunction()
 if(THERMOPOWER_GAP_LIBRARY)
-  install(TARGETS thermopower_gap EXPORT thermopowerGapTargets DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT gap)
-  install(EXPORT thermopowerGapTargets NAMESPACE thermopower:: DESTINATION ${package_dir} COMPONENT gap)
+  thermopower_install_library(thermopower_gap gap)
+  if(TARGET thermopower_io)
+    thermopower_install_library(thermopower_io io)
+  endif()
 endif()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/thermopowerConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake INSTALL_DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake INSTALL_DESTINATION ${package_dir}
+  PATH_VARS CMAKE_INSTALL_LIBDIR)
 # Below 1.0 a minor version may break its users.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/thermopowerConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake ${PROJECT_BINARY_DIR}/thermopowerConfigVersion.cmake

@@ -6,14 +6,21 @@
 // Notation: w rate in rad/s, i current in A, c drag in N m s^2/rad^2; angles in recordings in degrees.
 //
 // The effect is one type in one file, air_drag.hpp. Because it exists it is simulated, fitted (derivatives by
-// automatic differentiation), weighed against all others, and reported.
+// automatic differentiation), weighed against all others, and reported. With a folder as argument it writes what
+// the program thermopower-gap would: report, page, augmented model and a header for firmware, with the equation
+// of air_drag.hpp in it.
 #include "air_drag.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
 
+#ifdef OWN_EFFECT_WRITES_FILES
+#include <thermopower/io.hpp>
+#endif
+
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
 
 namespace gap = thermopower::gap;
 
@@ -51,7 +58,7 @@ gap::Recording record(double seconds, unsigned seed) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** values) {
   gap::Model model;
   model.name = "axis with a paddle";
   model.axis = gap::RigidAxisModel{1.02e-3, 1e-3, 0.2};  // the inertia is 2 % off, as constants are
@@ -80,5 +87,23 @@ int main() {
     std::printf("gap:     %-10s %.3g -> %.3g %s (noise floor %.3g)\n", to_string(score.signal).c_str(),
                 score.before, score.after, score.unit.c_str(), score.noise_floor);
   }
+#ifdef OWN_EFFECT_WRITES_FILES
+  if (count > 1) {
+    //! [writing files]
+    namespace io = thermopower::io;
+    const std::string folder = values[1];
+    io::OutputFiles files;
+    files.put(folder + "/report.json", io::report_json(diagnosis));
+    files.put(folder + "/report.html", io::report_html(diagnosis, model.name, catalogue.list(), held_out));
+    files.put(folder + "/augmented.json", io::to_json(diagnosis.augmented));
+    files.put(folder + "/motor_model.hpp",
+              io::motor_model_header(diagnosis.augmented, io::one_sentence(diagnosis), catalogue).text);
+    files.commit();  // all of them, or none
+    //! [writing files]
+  }
+#else
+  static_cast<void>(count);
+  static_cast<void>(values);
+#endif
   return found ? 0 : 1;
 }

@@ -11,10 +11,10 @@
 #include <thermopower/gap.hpp>
 
 #ifdef OWN_PLANT_WRITES_FILES
-#include "header_export.hpp"
-#include "model_file.hpp"
-#include "report_html.hpp"
-#include "report_json.hpp"
+#include <thermopower/io/header_export.hpp>
+#include <thermopower/io/model_file.hpp>
+#include <thermopower/io/report_html.hpp>
+#include <thermopower/io/report_json.hpp>
 
 #include <fstream>
 #endif
@@ -94,14 +94,14 @@ int main(int count, char** values) {
                 one.after, one.unit.c_str(), one.noise_floor);
 #ifdef OWN_PLANT_WRITES_FILES
   if (count > 1) {
-    namespace files = tp::gap::files;
+    namespace io = tp::io;
     const std::string folder = values[1];
-    std::ofstream(folder + "/report.json") << files::report_json(diagnosis);
+    std::ofstream(folder + "/report.json") << io::report_json(diagnosis);
     std::ofstream(folder + "/report.html")
-        << files::report_html(diagnosis, simulation.name, simulation.own->equations->effects()->list());
-    std::ofstream(folder + "/augmented.json") << files::to_json(diagnosis.augmented);
+        << io::report_html(diagnosis, simulation.name, simulation.own->equations->effects()->list());
+    std::ofstream(folder + "/augmented.json") << io::to_json(diagnosis.augmented);
     std::ofstream(folder + "/tank_model.hpp")
-        << files::motor_model_header(diagnosis.augmented, "heated tank").text;
+        << io::motor_model_header(diagnosis.augmented, "heated tank").text;
   }
 #else
   static_cast<void>(count);

@@ -9,10 +9,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic_file.hpp>
 #include <cstdio>
 #include <iostream>
 #include <numeric>
+
+#include <thermopower/io/output_files.hpp>
 
 #include "rig.hpp"
 #include "story.hpp"
@@ -144,7 +145,7 @@ int main(int count, char** arguments) {
   try {
     if (::access(elf.c_str(), R_OK) != 0)
       throw std::runtime_error(elf + ": no such program. Build it first: cmake --workflow --preset avr-nano");
-    thermopower::gap::files::OutputFiles files;
+    thermopower::io::OutputFiles files;
     if (!csv.empty()) files.expect(csv);
     if (!svg.empty()) files.expect(svg);
 
@@ -160,7 +161,7 @@ int main(int count, char** arguments) {
     if (!csv.empty()) files.put(csv, trace.csv());
     if (!svg.empty()) files.put(svg, trace.svg());
     files.commit();
-  } catch (const thermopower::gap::files::OutputError& error) {
+  } catch (const thermopower::io::OutputError& error) {
     std::cerr << "nano_demo: " << error.what() << '\n';
     return 3;
   } catch (const std::exception& error) {

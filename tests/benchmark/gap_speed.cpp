@@ -6,8 +6,8 @@
 // written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
 // least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
-#include "engine.hpp"
-#include "recording_file.hpp"
+#include <thermopower/gap/diagnose.hpp>
+#include <thermopower/io/recording_file.hpp>
 
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/data/inputs.hpp>
@@ -31,6 +31,7 @@
 #include <random>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 
 namespace {
 
@@ -161,13 +162,13 @@ void measure(const char* what, const Model& model, const std::string& path, Eige
     return;
   }
   const double begin = now_s();
-  Recording recording = files::read_recording(path).recording;
+  Recording recording = io::read_recording(path).recording;
   const double read = now_s();
   auto [train, held_out] = split(recording, 0.3);
   recording = Recording();
   Options options;
   options.threads = threads;
-  const Diagnosis diagnosis = files::run_diagnosis(model, {train}, {held_out}, options);
+  const Diagnosis diagnosis = diagnose(model, {train}, {held_out}, options);
   const double end = now_s();
   std::printf("%-13s %8td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", what,
               static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(),

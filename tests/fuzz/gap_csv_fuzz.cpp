@@ -3,14 +3,15 @@
 
 // Any bytes are either a recording that keeps its promises, or an InputError that names the file.
 
-#include "input_error.hpp"
-#include "recording_file.hpp"
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/recording_file.hpp>
 
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 
 std::vector<std::string> fuzz_seeds() {
   return {"t_s,run,power_param,motor_C\n0,a,100,21.5\n1,a,120,21.6\n0,b,0,nan\n2,b,,22\n",
@@ -31,10 +32,10 @@ std::vector<std::string> fuzz_pieces() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const auto file = files::to_recording(
-        files::parse_csv("fuzz.csv", reinterpret_cast<const char*>(data), size, files::known_columns()));
+    const auto file = io::to_recording(
+        io::parse_csv("fuzz.csv", reinterpret_cast<const char*>(data), size, io::known_columns()));
     if (file.recording.validate() || file.recording.rows() == 0 || file.recording.runs.empty()) std::abort();
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     if (std::strncmp(error.what(), "fuzz.csv:", 9) != 0) std::abort();
   }
   return 0;

@@ -3,8 +3,8 @@
 
 // Any bytes are either a model that can be written and read again, or an InputError that names the file.
 
-#include "input_error.hpp"
-#include "model_file.hpp"
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/model_file.hpp>
 
 #include <thermopower/plant/standard_catalogue.hpp>
 
@@ -13,6 +13,7 @@
 #include <cstring>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 
 std::vector<std::string> fuzz_seeds() {
   return {
@@ -44,12 +45,12 @@ std::vector<std::string> fuzz_pieces() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const Model model = files::parse_model(
-        "fuzz.json", std::string(reinterpret_cast<const char*>(data), size), standard_catalogue());
-    const std::string text = files::to_json(model);
-    if (model.validate() || files::to_json(files::parse_model("again", text, standard_catalogue())) != text)
+    const Model model = io::parse_model("fuzz.json", std::string(reinterpret_cast<const char*>(data), size),
+                                        standard_catalogue());
+    const std::string text = io::to_json(model);
+    if (model.validate() || io::to_json(io::parse_model("again", text, standard_catalogue())) != text)
       std::abort();
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     if (std::strncmp(error.what(), "fuzz.json:", 10) != 0) std::abort();
   }
   return 0;

@@ -3,8 +3,10 @@
 
 #include "../catch.hpp"
 
-#include "input_error.hpp"
-#include "recording_file.hpp"
+#include <thermopower/io/column_choice.hpp>
+#include <thermopower/io/column_list.hpp>
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/recording_file.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -13,18 +15,19 @@
 #include <random>
 
 using namespace thermopower::gap;
-using files::CsvTable;
+namespace io = thermopower::io;
+using io::CsvTable;
 
 namespace {
 
 CsvTable parse(const std::string& text) {
-  return files::parse_csv("log.csv", text.data(), text.size(), files::known_columns());
+  return io::parse_csv("log.csv", text.data(), text.size(), io::known_columns());
 }
 
 std::string error_of(const std::string& text) {
   try {
     parse(text);
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     return error.what();
   }
   return "no error";
@@ -89,7 +92,7 @@ TEST_CASE("a text column nobody knows is left out, and said to be") {
   const CsvTable table = parse("t_s,note,motor_C\n0,warm,1\n1,\"cold\nand wet\",2\n");
   CHECK(table.columns.size() == 2);
   CHECK(table.ignored_text == std::vector<std::string>{"note"});
-  const auto file = files::to_recording(table);
+  const auto file = io::to_recording(table);
   REQUIRE(file.findings.size() == 1);
   CHECK(file.findings[0].kind == FindingKind::text_column_ignored);
   CHECK(file.findings[0].column == "note");
@@ -113,7 +116,7 @@ TEST_CASE("every kind of malformed input is refused with file, line, column and 
       {"t_s,x,x\n0,1,2\n", {"log.csv:1: ", "column 'x' appears twice", "distinct names"}},
       {"t_s,,x\n0,1,2\n", {"log.csv:1: ", "name of column number 2 is empty"}},
       {"time,motor_C\n0,1\n", {"log.csv:1: ", "no column 't_s'", "found 'time', 'motor_C'"}},
-      {"t_s;motor_C\n0;1\n", {"log.csv:1: ", "no column 't_s'", "separated by commas"}},
+      {"t_s|motor_C\n0|1\n", {"log.csv:1: ", "no column 't_s'", "separated by commas, semicolons or tabs"}},
       {"t_s,motor_C\n0,1\n0,2\n", {"log.csv:3: ", "column 't_s'", "0 s follows 0 s", "strictly increasing"}},
       {"t_s,motor_C\n1,1\n0.5,2\n", {"log.csv:3: ", "0.5 s follows 1 s"}},
       {"t_s,motor_C\n,1\n", {"log.csv:2: ", "column 't_s'", "time is missing"}},
@@ -154,19 +157,19 @@ TEST_CASE("an excerpt of binary junk is readable, short and pure ASCII") {
 
 TEST_CASE("what is no readable file is told apart") {
   const auto folder = std::filesystem::temp_directory_path();
-  CHECK_THROWS_WITH(files::read_recording(folder.string()),
+  CHECK_THROWS_WITH(io::read_recording(folder.string()),
                     ContainsSubstring("is a directory; expected a CSV file"));
-  CHECK_THROWS_WITH(files::read_recording((folder / "there is no such file").string()),
+  CHECK_THROWS_WITH(io::read_recording((folder / "there is no such file").string()),
                     ContainsSubstring("cannot be read: No such file"));
 }
 
 TEST_CASE("columns go by other names and units where they are asked for so") {
-  const auto choice = [](const char* text) { return files::parse_column_choice(text); };
+  const auto choice = [](const char* text) { return io::parse_column_choice(text); };
   const std::string text = "stamp,temp,duty,current,motor_C\n0,77,0.5,-250,1\n1000,86,1,-500,2\n";
-  const auto table = files::parse_csv("log.csv", text.data(), text.size(), files::known_columns(),
-                                      {choice("t_s=stamp:ms"), choice("motor_C=temp:degF"),
-                                       choice("power_param=duty:1"), choice("drive_A=current:-mA")});
-  const Recording r = files::to_recording(table).recording;
+  const auto table = io::parse_csv("log.csv", text.data(), text.size(), io::known_columns(),
+                                   {choice("t_s=stamp:ms"), choice("motor_C=temp:degF"),
+                                    choice("power_param=duty:1"), choice("drive_A=current:-mA")});
+  const Recording r = io::to_recording(table).recording;
   REQUIRE(r.rows() == 2);
   CHECK(r.t_s[1] == Approx(1.0));
   CHECK(r.column("motor_C")[0] == Approx(25.0));
@@ -179,8 +182,8 @@ TEST_CASE("columns go by other names and units where they are asked for so") {
 TEST_CASE("what --column cannot mean is said") {
   const auto said = [](const char* text) {
     try {
-      files::parse_column_choice(text);
-    } catch (const files::InputError& error) {
+      io::parse_column_choice(text);
+    } catch (const io::InputError& error) {
       return std::string(error.what());
     }
     return std::string("nothing");
@@ -192,11 +195,88 @@ TEST_CASE("what --column cannot mean is said") {
   CHECK(said("motor_C=temp") == "nothing");
   const std::string text = "t_s,a\n0,1\n";
   try {
-    files::parse_csv("log.csv", text.data(), text.size(), files::known_columns(),
-                     {files::parse_column_choice("motor_C=temp")});
+    io::parse_csv("log.csv", text.data(), text.size(), io::known_columns(),
+                  {io::parse_column_choice("motor_C=temp")});
     FAIL("a column that is not there");
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     CHECK_THAT(error.what(),
                ContainsSubstring("log.csv:1: no column 'temp' in the header row (asked for as motor_C)"));
   }
+}
+
+TEST_CASE("semicolons, tabs, decimal commas and comments are read as the same numbers") {
+  const io::CsvTable plain = parse("t_s,motor_C,run\n0,20.5,a\n1,,a\n2.5,-1e3,a\n");
+  for (const char* text :
+       {"t_s;motor_C;run\n0;20,5;a\n1;;a\n2,5;-1e3;a\n", "t_s;motor_C;run\n0;20.5;a\n1;;a\n2.5;-1e3;a\n",
+        "t_s\tmotor_C\trun\n0\t20,5\ta\n1\t\ta\n2,5\t-1e3\ta\n",
+        "# a rig, 3 runs; noon\n\n#\nt_s,motor_C,run\n# begin\n0,20.5,a\n1,,a\n#2,99,b\n2.5,-1e3,a\n# end",
+        "# made by a program\n# t_s, motor_C, run\n0,20.5,1\n1,,1\n2.5,-1e3,1\n",
+        "#t_s;motor_C;run\r\n0;20,5;1\r\n1;;1\r\n2,5;-1e3;1\r\n"}) {
+    CAPTURE(text);
+    const io::CsvTable other = parse(text);
+    REQUIRE(other.rows == plain.rows);
+    REQUIRE(other.columns.size() == 2);
+    for (std::size_t column = 0; column < 2; ++column) {
+      CHECK(other.columns[column].name == plain.columns[column].name);
+      for (std::size_t row = 0; row < plain.rows; ++row) {
+        const double a = plain.columns[column].values[row], b = other.columns[column].values[row];
+        CHECK((a == b || (std::isnan(a) && std::isnan(b))));
+      }
+    }
+    CHECK(other.run_labels.size() == 1);
+  }
+}
+
+TEST_CASE("what might change a number a thousandfold is refused, and lines are still counted") {
+  CHECK_THROWS_WITH(parse("t_s;motor_C\n0;20.5\n1;1,234\n"),
+                    ContainsSubstring("log.csv:3: column 'motor_C'") &&
+                        ContainsSubstring("another decimal separator than line 2"));
+  CHECK_THROWS_WITH(parse("t_s;motor_C\n0;1.234,5\n"), ContainsSubstring("is not a number"));
+  CHECK_THROWS_WITH(parse("# one\n# two\nt_s,motor_C\n# four\n0,1\n0,2\n"), ContainsSubstring("log.csv:6: "));
+  CHECK_THROWS_WITH(parse("# only a comment"), ContainsSubstring("the file is empty"));
+  // A quoted field that begins a line with '#' is no comment; a '#' inside a row begins none.
+  const io::CsvTable quoted = parse("t_s,note\n0,\"two\n# lines\"\n1,a # b\n");
+  CHECK(quoted.rows == 2);
+  // A comment as long as the blocks in which files are read.
+  const io::CsvTable broad =
+      parse("t_s,x\n# " + std::string(200000, 'c') + "\n0,1\n" + "# " + std::string(70000, '#') + "\n1,2\n");
+  CHECK(broad.rows == 2);
+}
+
+TEST_CASE("a file's columns are listed, and what they may be is proposed") {
+  const std::string text =
+      "stamp [ms];Motor Temp (degF);duty;jointVelocity_rad_s;cmd current;supply voltage;note;kettle;motor_C\n"
+      "20;70;0,8;-3;1;12;a;5;1\n0;;0;3;2;12;b;6;2\n10;71;0,5;0;3;12;c;7;3\n";
+  const std::vector<io::ListedColumn> list = io::list_columns("log.csv", text.data(), text.size());
+  REQUIRE(list.size() == 9);
+  const auto column = [&](const std::string& header) {
+    for (const auto& one : list)
+      if (one.header == header) return one;
+    FAIL(header);
+    return io::ListedColumn();
+  };
+  const auto check = [&](const char* header, const char* name, const char* unit) {
+    CAPTURE(header);
+    CHECK(column(header).proposed == name);
+    CHECK(column(header).unit == unit);
+  };
+  check("stamp [ms]", "t_s", "ms");
+  check("duty", "power_param", "1");
+  check("jointVelocity_rad_s", "rate_dps", "rad/s");
+  check("cmd current", "drive_A", "");
+  check("supply voltage", "supply_V", "");
+  check("kettle", "", "");
+  check("motor_C", "motor_C", "");
+  check("Motor Temp (degF)", "", "");  // the one of that name is it
+  CHECK(column("note").text);
+  CHECK(column("Motor Temp (degF)").missing == 1);
+  CHECK(column("jointVelocity_rad_s").least == -3.0);
+  const std::string shown = io::columns_text(list);
+  CHECK_THAT(shown, ContainsSubstring("--column 't_s=stamp [ms]:ms'") &&
+                        ContainsSubstring("--column rate_dps=jointVelocity_rad_s:rad/s") &&
+                        !ContainsSubstring("No column looks like time"));
+  // What is proposed is what the option reads.
+  for (const auto& one : list)
+    if (!one.proposed.empty() && !one.unit.empty())
+      CHECK(io::parse_column_choice(one.proposed + "=" + one.header + ":" + one.unit).header == one.header);
 }

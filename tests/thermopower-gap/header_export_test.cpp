@@ -8,7 +8,7 @@
 
 #include "expression_text.hpp"
 #include "own_effects.hpp"
-#include "header_export.hpp"
+#include <thermopower/io/header_export.hpp>
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
@@ -21,6 +21,7 @@
 #include <sstream>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 using namespace thermopower::plant;
 namespace fs = std::filesystem;
 
@@ -253,7 +254,7 @@ TEST_CASE("every effect, the user's own too, writes itself as firmware that does
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Trial& trial = all[i];
     CAPTURE(trial.name);
-    const files::MotorModelHeader header = files::motor_model_header(model_of(trial), "a test", catalogue());
+    const io::MotorModelHeader header = io::motor_model_header(model_of(trial), "a test", catalogue());
     CHECK(header.left_out.empty());
     std::ofstream(folder / (trial.name + ".hpp")) << header.text;
     const Shown shown = simulated(trial, trial.axis ? axis : bench);
@@ -313,7 +314,7 @@ TEST_CASE("every effect, the user's own too, writes itself as firmware that does
 
 TEST_CASE("an equation that cannot be followed is listed, with its constants, and the rest is written") {
   Trial trial{"rounded", {{"rounded", {{"step_V", 0.5}}}, {"dead_time", {{"duty_lost", 0.1}}}}};
-  const files::MotorModelHeader header = files::motor_model_header(model_of(trial), "a test", catalogue());
+  const io::MotorModelHeader header = io::motor_model_header(model_of(trial), "a test", catalogue());
   REQUIRE(header.left_out.size() == 1);
   CHECK(header.left_out[0].rfind("rounded: ", 0) == 0);
   CHECK(header.text.find("// Left out: rounded: ") != std::string::npos);
@@ -338,17 +339,17 @@ TEST_CASE("an expression keeps each step once, folds constants, follows branches
   CHECK((x + 0.0).node() == x.node());
   CHECK((x * 0.0).is_constant());
   CHECK((x - x).is_constant());
-  CHECK(files::expression_text(Expression(2.0) * (x + y), files::Spelling::firmware) == "2.0f * (x + y)");
-  CHECK(files::expression_text(x - (y - 1.0), files::Spelling::formula) == "x - (y - 1)");
-  CHECK(files::expression_text(x / (y * x), files::Spelling::firmware) == "x / (y * x)");
+  CHECK(io::expression_text(Expression(2.0) * (x + y), io::Spelling::firmware) == "2.0f * (x + y)");
+  CHECK(io::expression_text(x - (y - 1.0), io::Spelling::formula) == "x - (y - 1)");
+  CHECK(io::expression_text(x / (y * x), io::Spelling::firmware) == "x / (y * x)");
   const auto joined = trace.every_branch([&] {
     Expression result = x;
     if (x > 0.0) result = y;
     else if (y > 1.0) result = -x;
     return std::vector<Expression>{result};
   });
-  CHECK(files::expression_text(joined[0], files::Spelling::firmware) == "0.0f < x ? y : 1.0f < y ? -x : x");
-  CHECK(files::expression_text(derivative(x * x * y, x), files::Spelling::firmware) == "(x + x) * y");
+  CHECK(io::expression_text(joined[0], io::Spelling::firmware) == "0.0f < x ? y : 1.0f < y ? -x : x");
+  CHECK(io::expression_text(derivative(x * x * y, x), io::Spelling::firmware) == "(x + x) * y");
   const auto endless = [&] {
     Expression sum = x;
     for (int i = 0; i < 40; ++i)

@@ -3,12 +3,13 @@
 
 #include "../catch.hpp"
 
-#include "input_error.hpp"
-#include "model_file.hpp"
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/model_file.hpp>
 
 #include <thermopower/plant/standard_catalogue.hpp>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 
 namespace {
 
@@ -20,12 +21,12 @@ const std::string lumped =
 std::string model_text(const std::string& body) {
   return "{\"format\": \"thermopower-model/1\", " + body + "}";
 }
-Model parse(const std::string& text) { return files::parse_model("model.json", text, standard_catalogue()); }
+Model parse(const std::string& text) { return io::parse_model("model.json", text, standard_catalogue()); }
 
 std::string error_of(const std::string& text) {
   try {
     parse(text);
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     return error.what();
   }
   return "no error";
@@ -77,8 +78,7 @@ TEST_CASE("an axis at a voltage and the servos are read, and written as they wer
   const Model pi = parse(model_text(axis + ", " + velocity));
   CHECK(pi.get("servo.delay_s") == 0.003);
   CHECK(pi.uncertainty.at("servo.kp_A_s_per_deg") == 0.2);
-  for (const Model& model : {pid, pi})
-    CHECK(files::to_json(parse(files::to_json(model))) == files::to_json(model));
+  for (const Model& model : {pid, pi}) CHECK(io::to_json(parse(io::to_json(model))) == io::to_json(model));
   CHECK_THAT(error_of(model_text(axis + R"(, "servo": {"law": "pid"})")),
              ContainsSubstring("/servo/law: is \"pid\"; expected \"position_pid\" or \"velocity_pi\""));
   CHECK_THAT(error_of(model_text(position)), ContainsSubstring("expected both"));
@@ -89,11 +89,11 @@ TEST_CASE("writing and reading gives back the same numbers, bit by bit") {
   model.set("resistance_ohm", 8.2000000000000028);
   model.effects["second_thermal_mass"] = {{"winding_share", 0.1 + 0.2}, {"coupling", 1.0 / 3.0}};
   model.uncertainty = {{"current.resistance_ohm", 0.02}, {"effects.second_thermal_mass.coupling", 0.3}};
-  const Model again = parse(files::to_json(model));
+  const Model again = parse(io::to_json(model));
   CHECK(again.uncertainty == model.uncertainty);
   CHECK(again.get("resistance_ohm") == 8.2000000000000028);
   CHECK(again.effects == model.effects);
-  CHECK(files::to_json(again) == files::to_json(model));
+  CHECK(io::to_json(again) == io::to_json(model));
 }
 
 TEST_CASE("what a model file may not hold is named by its JSON pointer") {
@@ -167,8 +167,8 @@ TEST_CASE("what a model file may not hold is named by its JSON pointer") {
 }
 
 TEST_CASE("what is no readable model file is told apart") {
-  CHECK_THROWS_WITH(files::read_model("/", standard_catalogue()),
+  CHECK_THROWS_WITH(io::read_model("/", standard_catalogue()),
                     ContainsSubstring("is a directory; expected a model file"));
-  CHECK_THROWS_WITH(files::read_model("/no such file", standard_catalogue()),
+  CHECK_THROWS_WITH(io::read_model("/no such file", standard_catalogue()),
                     ContainsSubstring("cannot be read"));
 }

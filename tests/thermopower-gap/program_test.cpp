@@ -4,7 +4,7 @@
 #include "../catch.hpp"
 
 #include "../gap/plants.hpp"
-#include "model_file.hpp"
+#include <thermopower/io/model_file.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -17,6 +17,7 @@
 #include <sstream>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 namespace fs = std::filesystem;
 
 namespace {
@@ -53,7 +54,7 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 
   void bench(const test::BenchFault& fault) const {
-    write(path / "model.json", files::to_json(test::bench_model()));
+    write(path / "model.json", io::to_json(test::bench_model()));
     write(path / "train.csv", csv(test::bench_recording(fault, 900, 1)));
     write(path / "heldout.csv", csv(test::bench_recording(fault, 600, 2)));
   }

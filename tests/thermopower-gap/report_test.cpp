@@ -3,13 +3,13 @@
 
 #include "../catch.hpp"
 
-#include "atomic_file.hpp"
+#include <thermopower/io/output_files.hpp>
 #include "chart.hpp"
-#include "header_export.hpp"
-#include "report_html.hpp"
-#include "report_json.hpp"
+#include <thermopower/io/header_export.hpp>
+#include <thermopower/io/report_html.hpp>
+#include <thermopower/io/report_json.hpp>
 #include "residual_statistics.hpp"
-#include "summary.hpp"
+#include <thermopower/io/summary.hpp>
 
 #include <thermopower/gap/recording.hpp>
 
@@ -23,6 +23,7 @@
 #include <sstream>
 
 using namespace thermopower::gap;
+namespace io = thermopower::io;
 
 namespace {
 
@@ -131,7 +132,7 @@ std::string text_of(const std::filesystem::path& path) {
 
 TEST_CASE(
     "the JSON report has the keys of its format, in their order, and numbers that read back bit by bit") {
-  const std::string text = files::report_json(example());
+  const std::string text = io::report_json(example());
   const auto json = nlohmann::ordered_json::parse(text);
   std::vector<std::string> keys;
   for (const auto& item : json.items()) keys.push_back(item.key());
@@ -150,20 +151,20 @@ TEST_CASE(
   for (const char* key : {"unit", "before", "recalibrated", "after", "noise_floor", "shrunk_by", "ci95"})
     CHECK(json["gap"]["motor_C"].contains(key));
   CHECK(json["not_judged"][0] == "angle_deg: not recorded");
-  CHECK(text == files::report_json(example()));
+  CHECK(text == io::report_json(example()));
 }
 
 TEST_CASE("a report survives names that are no UTF-8") {
   Diagnosis d = example();
   d.findings[0].recording = "\xff\xfe<b>.csv";
-  CHECK_NOTHROW(nlohmann::json::parse(files::report_json(d)));
-  const std::string html = files::report_html(d, "\xff<script>alert(1)</script>", {});
+  CHECK_NOTHROW(nlohmann::json::parse(io::report_json(d)));
+  const std::string html = io::report_html(d, "\xff<script>alert(1)</script>", {});
   CHECK_THAT(html, !ContainsSubstring("\xff") && !ContainsSubstring("<script>alert") &&
                        !ContainsSubstring("<b>.csv"));
 }
 
 TEST_CASE("the HTML report is one file that asks for nothing, small besides its curves") {
-  const std::string html = files::report_html(example(), "motor", {});
+  const std::string html = io::report_html(example(), "motor", {});
   CHECK(html.size() < 1000000);
   for (const char* forbidden : {"http://", "https://", "src=", "<link", "@import", "url(", "fetch(",
                                 "XMLHttpRequest", "import(", "localStorage", "eval("})
@@ -178,7 +179,7 @@ TEST_CASE("the HTML report is one file that asks for nothing, small besides its 
   }
   Diagnosis bare = example();
   bare.series.clear();
-  CHECK(files::report_html(bare, "motor", {}).size() < 100000);
+  CHECK(io::report_html(bare, "motor", {}).size() < 100000);
 }
 
 TEST_CASE("the page tells findings first, with what mends them, and where a fault shows") {
@@ -195,7 +196,7 @@ TEST_CASE("the page tells findings first, with what mends them, and where a faul
   d.findings.back().recording = "dir/c.csv";
   d.where[0].only_in = {{"dir/b.csv", "second", true, 127.0}, {"dir/c.csv", "", false, std::nullopt}};
   d.remaining = Remaining{Signal::motor_C, 0.4, 7.5, std::nullopt, std::nullopt, "errors stay alike for 3 s"};
-  const std::string html = files::report_html(d, "motor", {});
+  const std::string html = io::report_html(d, "motor", {});
   const std::size_t finding = html.find("4 samples stand apart");
   REQUIRE(finding != std::string::npos);
   CHECK(finding < html.find("class=\"facts\""));
@@ -211,7 +212,7 @@ TEST_CASE("the page tells findings first, with what mends them, and where a faul
 
 TEST_CASE("runs are told apart by their names, with what drove them, also where their stamps overlap") {
   const auto [d, held_out] = four_runs();
-  const std::string html = files::report_html(d, "motor", {}, held_out);
+  const std::string html = io::report_html(d, "motor", {}, held_out);
   for (const char* title :
        {"drive.<wbr>csv, run left", "drive.<wbr>csv, run right", "drive.<wbr>csv, run up"})
     CHECK_THAT(html, ContainsSubstring(std::string("<h3>") + title + "</h3>"));
@@ -221,19 +222,19 @@ TEST_CASE("runs are told apart by their names, with what drove them, also where 
   for (const char* row : {">1.00 \u2192 0<", ">2.00 \u2192 0<", ">3.00 \u2192 0<", ">4.00 \u2192 0<"})
     CHECK_THAT(html, ContainsSubstring(row));
   // Without the recordings a run begins where stamps fall.
-  CHECK_THAT(files::report_html(d, "motor", {}), ContainsSubstring("drive.<wbr>csv, run 3"));
+  CHECK_THAT(io::report_html(d, "motor", {}), ContainsSubstring("drive.<wbr>csv, run 3"));
   std::ofstream(THERMOPOWER_PAGE) << html;
 }
 
 TEST_CASE("a thinned curve keeps its highest peak, in its place") {
-  files::Chart chart;
-  files::Series series{"x", "measured", files::Series::Style::line, {}, {}, {}, {}};
+  io::Chart chart;
+  io::Series series{"x", "measured", io::Series::Style::line, {}, {}, {}, {}};
   for (int i = 0; i < 100000; ++i) {
     series.x.push_back(i);
     series.y.push_back(i == 54321 ? 100.0 : 0.0);
   }
   chart.series.push_back(series);
-  const std::string html = files::to_html(chart);
+  const std::string html = io::to_html(chart);
   CHECK(html.size() < 60000);
   // 0 to 100 and 6 % more on both ends: the peak is 6/112 below the top, 54321/99999 from the left.
   long least = 1000000, at = 0;
@@ -246,8 +247,8 @@ TEST_CASE("a thinned curve keeps its highest peak, in its place") {
 }
 
 TEST_CASE("a curve that is shown in part keeps its detail there") {
-  files::Chart chart;
-  files::Series series{"x", "measured", files::Series::Style::line, {}, {}, {}, {}};
+  io::Chart chart;
+  io::Series series{"x", "measured", io::Series::Style::line, {}, {}, {}, {}};
   for (int i = 0; i < 100000; ++i) {
     series.x.push_back(0.01 * i);
     series.y.push_back(std::sin(2.0 * i));
@@ -255,14 +256,14 @@ TEST_CASE("a curve that is shown in part keeps its detail there") {
   chart.series.push_back(series);
   chart.view = {500.0, 501.0};
   std::size_t inside = 0;
-  const auto points = points_of(files::to_html(chart), "curve measured");
+  const auto points = points_of(io::to_html(chart), "curve measured");
   for (const auto& [x, y] : points) inside += x >= 50000 && x <= 50100 ? 1 : 0;
   CHECK(inside >= 100);
   CHECK(points.size() < 3000);
 }
 
 TEST_CASE("errors' histogram and correlation are what they are of known errors") {
-  files::RunErrors of;
+  io::RunErrors of;
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0.0, 1.0);
   double alike = 0.0;
@@ -274,46 +275,46 @@ TEST_CASE("errors' histogram and correlation are what they are of known errors")
     white.push_back(normal(random));
   }
   of.runs.push_back({0, 60000, {}});
-  const files::Curve correlation = files::autocorrelation(of);
+  const io::Curve correlation = io::autocorrelation(of);
   REQUIRE(correlation.x.size() > 20);
   CHECK(correlation.y[0] == Approx(1.0));
   for (std::size_t i = 1; i < correlation.x.size(); ++i)
     CHECK(correlation.y[i] == Approx(std::pow(0.9, correlation.x[i] / 0.5)).margin(0.06));
   of.errors = white;
-  const files::Curve none = files::autocorrelation(of);
+  const io::Curve none = io::autocorrelation(of);
   for (std::size_t i = 1; i < none.y.size(); ++i) CHECK(std::fabs(none.y[i]) < 0.03);
 
-  const files::Curve counted = files::histogram(white, 4.0), expected = files::normal_histogram(4.0, 1.0);
+  const io::Curve counted = io::histogram(white, 4.0), expected = io::normal_histogram(4.0, 1.0);
   double all = 0.0;
   for (std::size_t i = 0; i < counted.x.size(); ++i) {
     CHECK(counted.y[i] == Approx(expected.y[i]).margin(0.01));
     all += counted.y[i];
   }
   CHECK(all == Approx(1.0));
-  CHECK(files::histogram({0.0, 100.0, missing}, 4.0).y.back() == 0.5);
+  CHECK(io::histogram({0.0, 100.0, missing}, 4.0).y.back() == 0.5);
   // Two runs are no neighbours: alternating runs of +1 and -1 correlate in themselves and not with each other.
-  files::RunErrors two;
+  io::RunErrors two;
   for (int run = 0; run < 2; ++run)
     for (int i = 0; i < 30; ++i) {
       two.errors.push_back(run == 0 ? 1.0 : -1.0);
       two.t_s.push_back(i);
     }
   two.runs = {{0, 30, "a"}, {30, 60, "b"}};
-  for (const double y : files::autocorrelation(two).y) CHECK(y == Approx(1.0));
+  for (const double y : io::autocorrelation(two).y) CHECK(y == Approx(1.0));
 }
 
 TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same") {
   for (const auto& values :
        std::vector<std::vector<double>>{{}, {1.0}, {missing, missing}, {1e300, -1e300}, {5.0, 5.0}}) {
-    files::Chart chart;
-    chart.series.push_back({"x", "measured", files::Series::Style::line, values, values, {}, {}});
-    const std::string svg = files::to_html(chart);
+    io::Chart chart;
+    chart.series.push_back({"x", "measured", io::Series::Style::line, values, values, {}, {}});
+    const std::string svg = io::to_html(chart);
     CHECK_THAT(svg, ContainsSubstring("</svg>") && !ContainsSubstring("nan") && !ContainsSubstring("inf"));
   }
 }
 
 TEST_CASE("the summary says verdict, where, which, what else, how far and what next") {
-  const std::string text = files::summary(example());
+  const std::string text = io::summary(example());
   for (const char* part : {"AMBIGUOUS", "motor_C, thermal.loss (83 % of the gap)", "rise_K 12.0 to 40.0",
                            "radiation (61 %)", "natural_convection; ambient_bias + series_resistance", "4.40",
                            "0.140", "97 % [96.0, 98.0]", "heat <hard> & wait", "angle_deg: not recorded"}) {
@@ -326,22 +327,21 @@ TEST_CASE("outputs appear together and complete, or not at all") {
   const auto folder = std::filesystem::temp_directory_path() / "thermopower_outputs";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
-  files::OutputFiles outputs;
+  io::OutputFiles outputs;
   outputs.expect((folder / "a").string());
   CHECK(std::filesystem::is_empty(folder));
   outputs.put((folder / "a").string(), "first");
   outputs.put((folder / "no such folder" / "b").string(), "second");
-  CHECK_THROWS_AS(outputs.commit(), files::OutputError);
+  CHECK_THROWS_AS(outputs.commit(), io::OutputError);
   CHECK(std::filesystem::is_empty(folder));
-  files::OutputFiles fine;
+  io::OutputFiles fine;
   fine.put((folder / "a").string(), "first");
   fine.put((folder / "b").string(), std::string("second\0", 7));
   fine.commit();
   CHECK(text_of(folder / "a") == "first");
   CHECK(text_of(folder / "b") == std::string("second\0", 7));
-  CHECK_THROWS_AS(files::OutputFiles().expect((folder / "no such folder" / "b").string()),
-                  files::OutputError);
-  CHECK_THROWS_AS(files::OutputFiles().expect(folder.string()), files::OutputError);
+  CHECK_THROWS_AS(io::OutputFiles().expect((folder / "no such folder" / "b").string()), io::OutputError);
+  CHECK_THROWS_AS(io::OutputFiles().expect(folder.string()), io::OutputError);
   std::filesystem::remove_all(folder);
 }
 
@@ -353,7 +353,7 @@ TEST_CASE("a header holds the equation of every effect of the catalogue, and lis
   model.effects["natural_convection"] = {{"exponent", 0.25}, {"reference_K", 20.0}};
   model.effects["dead_time"] = {{"duty_lost", 0.02}};
   model.effects["my own/effect"] = {{"a b", 2.0}};
-  const files::MotorModelHeader header = files::motor_model_header(model, "origin");
+  const io::MotorModelHeader header = io::motor_model_header(model, "origin");
   CHECK_THAT(header.text, ContainsSubstring("struct Cooling") && ContainsSubstring("/ 20.0f, 0.25f)"));
   CHECK_THAT(header.text, ContainsSubstring("duty - 0.02f"));
   CHECK_THAT(header.text, ContainsSubstring("static float my_own_effect_a_b() { return 2.0f; }"));

@@ -4,19 +4,9 @@
 // thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the
 // gap shrinks with it.
 
-#include "atomic_file.hpp"
-#include "check_report.hpp"
-#include "engine.hpp"
-#include "header_export.hpp"
-#include "input_error.hpp"
-#include "model_file.hpp"
-#include "predictions_file.hpp"
-#include "recording_file.hpp"
-#include "report_html.hpp"
-#include "report_json.hpp"
-#include "summary.hpp"
-
+#include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/io.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 #include <thermopower/version.hpp>
 
@@ -42,7 +32,7 @@
 #include <vector>
 
 namespace gap = thermopower::gap;
-namespace files = thermopower::gap::files;
+namespace io = thermopower::io;
 
 namespace {
 
@@ -53,7 +43,11 @@ struct UsageError : std::runtime_error {
 };
 
 struct Arguments {
-  std::string model, report, html, predictions, augmented, header;
+  std::string model, report, html, predictions, augmented, header, mjcf, urdf;
+  /// Every output that may be asked for.
+  std::vector<const std::string*> outputs() const {
+    return {&report, &html, &predictions, &augmented, &header, &mjcf, &urdf};
+  }
   std::vector<std::string> recordings, held_out, without, columns, starts;
   bool as_recorded = false;
   double horizon_s = 0.5;
@@ -103,22 +97,22 @@ private:
   std::thread thread_;
 };
 
-std::vector<files::ColumnChoice> column_choices(const Arguments& arguments) {
-  std::vector<files::ColumnChoice> choices;
+std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
+  std::vector<io::ColumnChoice> choices;
   try {
-    for (const auto& text : arguments.columns) choices.push_back(files::parse_column_choice(text));
-  } catch (const files::InputError& error) {
+    for (const auto& text : arguments.columns) choices.push_back(io::parse_column_choice(text));
+  } catch (const io::InputError& error) {
     throw UsageError(error.what());
   }
   return choices;
 }
 
 std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
-                                     const std::vector<files::ColumnChoice>& choices,
+                                     const std::vector<io::ColumnChoice>& choices,
                                      std::vector<gap::Finding>& findings) {
   std::vector<gap::Recording> list;
   for (const auto& path : paths) {
-    files::RecordingFile file = files::read_recording(path, choices);
+    io::RecordingFile file = io::read_recording(path, choices);
     list.push_back(std::move(file.recording));
     findings.insert(findings.end(), file.findings.begin(), file.findings.end());
   }
@@ -138,8 +132,7 @@ void refuse_overlaps(const Arguments& arguments) {
   std::vector<std::string> taken = arguments.recordings;
   taken.insert(taken.end(), arguments.held_out.begin(), arguments.held_out.end());
   taken.push_back(arguments.model);
-  for (const auto* output : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
-                             &arguments.header}) {
+  for (const auto* output : arguments.outputs()) {
     if (output->empty()) continue;
     std::error_code error;
     const bool special =
@@ -166,21 +159,66 @@ void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalo
   }
 }
 
+// What a model is in other words; what cannot be said there is said on the screen, too.
+void write_exports(const Arguments& arguments, const gap::Model& model, const std::string& origin,
+                   const gap::Catalogue& catalogue, io::OutputFiles& outputs) {
+  const auto put = [&outputs](const std::string& path, const std::string& text,
+                              const std::vector<std::string>& left_out) {
+    for (const std::string& one : left_out)
+      std::fprintf(stderr, "%s: left out: %s\n", path.c_str(), one.c_str());
+    outputs.put(path, text);
+  };
+  if (!arguments.header.empty()) {
+    const io::MotorModelHeader header = io::motor_model_header(model, origin, catalogue);
+    put(arguments.header, header.text, header.left_out);
+  }
+  if (!arguments.mjcf.empty()) {
+    const io::SimulatorFile file = io::mjcf(model, origin);
+    put(arguments.mjcf, file.text, file.left_out);
+  }
+  if (!arguments.urdf.empty()) {
+    const io::SimulatorFile file = io::urdf(model, origin);
+    put(arguments.urdf, file.text, file.left_out);
+  }
+}
+
+// Found out before a computation, not after it.
+gap::Model read_model(const Arguments& arguments, const gap::Catalogue& catalogue) {
+  gap::Model model = io::read_model(arguments.model, catalogue);
+  if (!model.axis && !(arguments.mjcf.empty() && arguments.urdf.empty()))
+    throw io::InputError(arguments.model + ": /axis is missing; MJCF and URDF describe nothing else");
+  return model;
+}
+
+int export_model(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  refuse_overlaps(arguments);
+  if (arguments.header.empty() && arguments.mjcf.empty() && arguments.urdf.empty())
+    throw UsageError("export: expected at least one of --mjcf, --urdf and --header");
+  io::OutputFiles outputs;
+  for (const auto* path : arguments.outputs())
+    if (!path->empty()) outputs.expect(*path);
+  const gap::Model model = read_model(arguments, catalogue);
+  write_exports(arguments, model, "from " + plain_path(arguments.model).filename().string(), catalogue,
+                outputs);
+  outputs.commit();
+  return made;
+}
+
 int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
   check_ids(arguments.without, catalogue);
-  const std::vector<files::ColumnChoice> choices = column_choices(arguments);
-  files::OutputFiles outputs;
-  for (const auto* path : {&arguments.report, &arguments.html, &arguments.predictions, &arguments.augmented,
-                           &arguments.header}) {
+  const std::vector<io::ColumnChoice> choices = column_choices(arguments);
+  io::OutputFiles outputs;
+  for (const auto* path : arguments.outputs()) {
     if (!path->empty()) outputs.expect(*path);
   }
   gap::Diagnosis diagnosis;
   gap::Model model;
   {
     Progress progress;
-    model = files::read_model(arguments.model, catalogue);
+    model = read_model(arguments, catalogue);
     std::vector<gap::Finding> findings;
     std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
     std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
@@ -200,39 +238,34 @@ int diagnose(const Arguments& arguments) {
       }
     }
     progress.stage("diagnosing");
-    diagnosis = files::run_diagnosis(model, recordings, held_out, options);
+    diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
     diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
     progress.stage("writing");
-    if (!arguments.report.empty()) outputs.put(arguments.report, files::report_json(diagnosis));
+    if (!arguments.report.empty()) outputs.put(arguments.report, io::report_json(diagnosis));
     if (!arguments.html.empty())
-      outputs.put(arguments.html, files::report_html(diagnosis, model.name, catalogue.list(), held_out));
+      outputs.put(arguments.html, io::report_html(diagnosis, model.name, catalogue.list(), held_out));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
-                  files::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s));
+                  io::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s, catalogue));
     }
-    if (!arguments.augmented.empty()) outputs.put(arguments.augmented, files::to_json(diagnosis.augmented));
-    if (!arguments.header.empty()) {
-      const files::MotorModelHeader header =
-          files::motor_model_header(diagnosis.augmented, files::one_sentence(diagnosis), catalogue);
-      for (const std::string& one : header.left_out)
-        std::fprintf(stderr, "%s: left out: %s\n", arguments.header.c_str(), one.c_str());
-      outputs.put(arguments.header, header.text);
-    }
+    if (!arguments.augmented.empty()) outputs.put(arguments.augmented, io::to_json(diagnosis.augmented));
+    write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);
     outputs.commit();
   }
-  std::fputs(files::summary(diagnosis).c_str(), stdout);
+  std::fputs(io::summary(diagnosis).c_str(), stdout);
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
 int check(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
-  const std::vector<files::ColumnChoice> choices = column_choices(arguments);
-  files::OutputFiles outputs;
+  const std::vector<io::ColumnChoice> choices = column_choices(arguments);
+  io::OutputFiles outputs;
   if (!arguments.report.empty()) outputs.expect(arguments.report);
   gap::DataReport report;
   {
     Progress progress;
-    const gap::Model model = files::read_model(arguments.model, gap::standard_catalogue());
+    const gap::Model model = io::read_model(arguments.model, catalogue);
     std::vector<gap::Finding> findings;
     const std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
     const std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
@@ -240,12 +273,12 @@ int check(const Arguments& arguments) {
     options.horizon_s = arguments.horizon_s;
     options.as_recorded = arguments.as_recorded;
     progress.stage("checking");
-    report = files::run_check(model, recordings, held_out, options);
+    report = gap::check_data(model, recordings, held_out, options, catalogue);
     report.findings.insert(report.findings.end(), findings.begin(), findings.end());
-    if (!arguments.report.empty()) outputs.put(arguments.report, files::check_json(report));
+    if (!arguments.report.empty()) outputs.put(arguments.report, io::check_json(report));
     outputs.commit();
   }
-  std::fputs(files::check_text(report).c_str(), stdout);
+  std::fputs(io::check_text(report).c_str(), stdout);
   return gap::deciding(report.findings) != nullptr ? too_little_data : made;
 }
 
@@ -267,18 +300,18 @@ std::map<std::string, double> starts_of(const std::vector<std::string>& texts) {
 int predict(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
-  files::OutputFiles outputs;
+  io::OutputFiles outputs;
   outputs.expect(arguments.predictions);
-  const gap::Model augmented = files::read_model(arguments.model, catalogue);
+  const gap::Model augmented = io::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
   std::vector<gap::Recording> recordings =
       read_all(arguments.recordings, column_choices(arguments), findings);
   const std::map<std::string, double> starts = starts_of(arguments.starts);
-  for (gap::Recording& one : recordings) one = files::with_starts(std::move(one), augmented, starts);
+  for (gap::Recording& one : recordings) one = io::with_starts(std::move(one), augmented, starts);
   gap::Model bare = augmented;
   bare.effects.clear();
   outputs.put(arguments.predictions,
-              files::predictions_csv(bare, augmented, recordings, arguments.horizon_s));
+              io::predictions_csv(bare, augmented, recordings, arguments.horizon_s, catalogue));
   outputs.commit();
   return made;
 }
@@ -379,6 +412,20 @@ int run(int count, char** values) {
                     "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
                     "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
 
+  CLI::App* const exporting =
+      app.add_subcommand("export", "write a model in the words of other simulators, or as a header");
+  exporting->add_option("--model", arguments.model, "a model, with effects or without (JSON)")->required();
+  for (CLI::App* const one : {diagnosing, exporting}) {
+    one->add_option("--mjcf", arguments.mjcf, "write the axis as a model of MuJoCo (MJCF)");
+    one->add_option("--urdf", arguments.urdf, "write the axis as a joint (URDF)");
+  }
+  exporting->add_option("--header", arguments.header, "write a C++11 header for firmware");
+
+  std::string listed;
+  CLI::App* const columns =
+      app.add_subcommand("columns", "list what is in a file, and propose what its columns are");
+  columns->add_option("file", listed, "a table of numbers (CSV), - for standard input")->required();
+
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
 
   for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -391,10 +438,15 @@ int run(int count, char** values) {
     return app.exit(error) == 0 ? made : wrong_usage;
   }
   if (*listing) {
-    std::fputs(files::catalogue_text(gap::standard_catalogue().list()).c_str(), stdout);
+    std::fputs(io::catalogue_text(gap::standard_catalogue().list()).c_str(), stdout);
     return made;
   }
   if (*checking) return check(arguments);
+  if (*columns) {
+    std::fputs(io::columns_text(io::list_columns(listed)).c_str(), stdout);
+    return made;
+  }
+  if (*exporting) return export_model(arguments);
   return *predicting ? predict(arguments) : diagnose(arguments);
 }
 
@@ -412,10 +464,10 @@ int main(int count, char** values) {
   } catch (const UsageError& error) {
     complain(error.what());
     return wrong_usage;
-  } catch (const files::InputError& error) {
+  } catch (const io::InputError& error) {
     complain(error.what());
     return invalid_input;
-  } catch (const files::OutputError& error) {
+  } catch (const io::OutputError& error) {
     complain(error.what());
     return invalid_input;
   } catch (const gap::InvalidInput& error) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace thermopower::io {
+
+/// @brief Which column of a file is meant by a name of the format, and how its numbers become the format's unit:
+/// value = (number - offset) * factor.
+struct ColumnChoice {
+  std::string name;    ///< of the format, such as `motor_C`; any other name is a covariate
+  std::string header;  ///< in the file's header row
+  double factor =
+      1.0;  ///< of the format's unit per unit of the file, negative where the sign is turned round
+  double offset = 0.0;  ///< in the file's unit
+};
+
+/// @brief Reads `NAME=HEADER[:UNIT]`, such as `motor_C=temp:degF`, `t_s=stamp:ms`, `power_param=duty:1` or
+/// `drive_A=current:-mA` (a minus turns the sign round). A header that holds a colon needs a unit after it.
+/// @throws InputError that says what is wrong and which units the name knows
+ColumnChoice parse_column_choice(const std::string& text);
+
+/// @brief The units that a name knows, its own first; empty for a name without a unit.
+std::vector<std::string> units_of(const std::string& name);
+
+}  // namespace thermopower::io

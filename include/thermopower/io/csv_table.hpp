@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/io/column_choice.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace thermopower::io {
+
+/// @brief A CSV file in memory, column by column, before anybody gives the columns a meaning.
+struct CsvTable {
+  /// A column of numbers. Missing samples (an empty cell, or `nan` in any case) are NaN; every other value is
+  /// finite.
+  struct Column {
+    std::string name;            ///< as in the header row
+    std::vector<double> values;  ///< one per data row
+  };
+
+  std::string file;             ///< path, for messages
+  std::vector<Column> columns;  ///< in the order of the file, without text columns
+  std::vector<std::string>
+      run_labels;  ///< distinct consecutive values of the `run` column; one empty label without the column
+  std::vector<std::size_t> run_begin;  ///< first row of each run; a change of the label starts a run
+  std::vector<std::string>
+      ignored_text;  ///< names of columns that hold text and are not `run`: read, checked, and left out
+  std::vector<std::size_t> line_of_run;  ///< line in the file at which each run starts (1 is the header row)
+  std::size_t rows = 0;                  ///< data rows
+  bool ends_with_line_break =
+      true;  ///< false: the last row has all its fields, but a cut in its last one would be invisible
+};
+
+/// @brief Reads a CSV file as RFC 4180 describes it: a header row, optional quotes, LF or CRLF, optional UTF-8
+/// byte-order mark. Columns are separated by commas, or by semicolons or tabs where the header row has more of
+/// those; then numbers may have a decimal comma, all of them. Lines that begin with `#` are comments; the last one above
+/// the first row is the header row where the first row holds numbers only.
+///
+/// Strict, because a number that was read wrongly is worse than a file that was refused. Checked on the way:
+/// header names present and distinct; as many fields in each row as in the header; numbers complete, finite
+/// and in decimal notation; `t_s` present, never missing, strictly increasing inside a run;
+/// `power_param` inside 0..255. Columns whose first non-missing value is no number are text: `run` is the
+/// label of independent runs, any other is ignored and listed in CsvTable::ignored_text. A column of
+/// INTERFACE columns (numeric by definition) may not hold text.
+///
+/// Blank lines are skipped. Numbers are parsed with std::from_chars, so that no locale can change their
+/// meaning.
+///
+/// @param path file to read, `-` for standard input; a directory or an unreadable file is an error, too
+/// @param numeric names of columns that must be numbers
+/// @param choices columns that go by another name or unit in the file; a column of the file whose own name is
+/// taken by another one is left out
+/// @throws InputError with file, line, column and what was expected
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric,
+                  const std::vector<ColumnChoice>& choices = {});
+
+/// @brief The same on bytes in memory; `name` stands in messages where a path would.
+CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
+                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices = {});
+
+/// @brief Reads any table of numbers: as read_csv(), but no column is required, none has a meaning, and rows may be in
+/// any order.
+CsvTable read_any_csv(const std::string& path);
+
+/// @brief The same on bytes in memory.
+CsvTable parse_any_csv(const std::string& name, const char* bytes, std::size_t size);
+
+}  // namespace thermopower::io

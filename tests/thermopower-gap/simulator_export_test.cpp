@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "../catch.hpp"
+
+#include <thermopower/io/simulator_export.hpp>
+
+using namespace thermopower::gap;
+namespace io = thermopower::io;
+
+namespace {
+
+Model axis() {
+  Model model;
+  model.name = "joint \"1\" <a>";
+  model.axis = RigidAxisModel{2e-3, 3e-3, 0.05};
+  return model;
+}
+
+std::size_t count_of(const std::string& what, const std::string& text) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("a joint's constants are where MuJoCo and robots look for them") {
+  Model model = axis();
+  model.effects["coulomb_friction"] = {{"Nm", 0.02}, {"transition_rad_per_s", 0.0}};
+  model.effects["torque_saturation"] = {{"A", 1.5}};
+  const io::SimulatorFile mujoco = io::mjcf(model, "a test");
+  CHECK(mujoco.left_out.empty());
+  CHECK_THAT(mujoco.text, ContainsSubstring("damping=\"0.003\" frictionloss=\"0.02\"") &&
+                              ContainsSubstring("gainprm=\"0.05\"") &&
+                              ContainsSubstring("diaginertia=\"0.002 0.002 0.002\"") &&
+                              ContainsSubstring("ctrlrange=\"-1.5 1.5\"") &&
+                              ContainsSubstring("model=\"joint &quot;1&quot; &lt;a>\""));
+  const io::SimulatorFile robot = io::urdf(model, "a test");
+  CHECK_THAT(robot.text, ContainsSubstring("<dynamics damping=\"0.003\" friction=\"0.02\"/>") &&
+                             ContainsSubstring("effort=\"0.075") && ContainsSubstring("izz=\"0.002\""));
+  REQUIRE(robot.left_out.size() == 1);
+  CHECK_THAT(robot.left_out[0], ContainsSubstring("A to N m: 0.05"));
+}
+
+TEST_CASE("nothing is dropped in silence: each effect is in the file or in the list, with its numbers") {
+  Model model = axis();
+  model.effects["cogging"] = {{"sin_Nm", 0.011}, {"cos_Nm", 0.012}, {"cycles_per_turn", 7.0}};
+  model.effects["actuation_delay"] = {{"s", 0.013}};
+  model.effects["asymmetric_friction"] = {
+      {"forward_Nm", 0.014}, {"backward_Nm", 0.016}, {"transition_rad_per_s", 0.017}};
+  model.effects["my--effect"] = {{"size", 0.018}};
+  model.thermal = LumpedThermalModel{};
+  for (const io::SimulatorFile& file : {io::mjcf(model, "x --> y"), io::urdf(model, "x --> y")}) {
+    for (const char* value :
+         {"0.011", "0.012", " 7", "0.013", "0.014", "0.016", "0.017", "0.018", "temperature"}) {
+      CAPTURE(value);
+      std::string all;
+      for (const std::string& one : file.left_out) all += one + "\n";
+      CHECK_THAT(all, ContainsSubstring(value));
+      CHECK_THAT(file.text, ContainsSubstring(value));
+    }
+    CHECK_THAT(file.text, ContainsSubstring("0.015"));  // the mean of both directions
+    // Comments stay comments, whatever names are in them.
+    CHECK(count_of("<!--", file.text) == count_of("-->", file.text));
+  }
+  model.axis.reset();
+  CHECK_THROWS_AS(io::mjcf(model, ""), InvalidInput);
+  CHECK_THROWS_AS(io::urdf(model, ""), InvalidInput);
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/column_choice.hpp>
+
+#include <thermopower/io/input_error.hpp>
+
+#include <utility>
+
+namespace thermopower::io {
+namespace {
+
+struct Unit {
+  const char* text;
+  double factor;
+  double offset;
+};
+
+struct Quantity {
+  const char* ending;  // of the names that have it
+  std::vector<Unit> units;
+};
+
+constexpr double deg_per_rad = 57.29577951308232;
+constexpr double ice_K = 273.15, ice_F = 32.0;
+
+const std::vector<Quantity>& quantities() {
+  static const std::vector<Quantity> list = {
+      {"t_s",
+       {{"s", 1.0, 0.0},
+        {"ms", 1e-3, 0.0},
+        {"us", 1e-6, 0.0},
+        {"ns", 1e-9, 0.0},
+        {"min", 60.0, 0.0},
+        {"h", 3600.0, 0.0}}},
+      {"power_param", {{"255", 1.0, 0.0}, {"%", 2.55, 0.0}, {"1", 255.0, 0.0}}},
+      {"_dps",
+       {{"deg/s", 1.0, 0.0},
+        {"dps", 1.0, 0.0},
+        {"rad/s", deg_per_rad, 0.0},
+        {"rpm", 6.0, 0.0},
+        {"rev/s", 360.0, 0.0}}},
+      {"_mps", {{"m/s", 1.0, 0.0}, {"km/h", 1.0 / 3.6, 0.0}}},
+      {"_deg",
+       {{"deg", 1.0, 0.0},
+        {"rad", deg_per_rad, 0.0},
+        {"mrad", 1e-3 * deg_per_rad, 0.0},
+        {"rev", 360.0, 0.0}}},
+      {"_Nm", {{"Nm", 1.0, 0.0}, {"mNm", 1e-3, 0.0}, {"Ncm", 1e-2, 0.0}}},
+      {"_A", {{"A", 1.0, 0.0}, {"mA", 1e-3, 0.0}, {"uA", 1e-6, 0.0}}},
+      {"_V", {{"V", 1.0, 0.0}, {"mV", 1e-3, 0.0}}},
+      {"_W", {{"W", 1.0, 0.0}, {"mW", 1e-3, 0.0}, {"kW", 1e3, 0.0}}},
+      {"_C",
+       {{"degC", 1.0, 0.0},
+        {"C", 1.0, 0.0},
+        {"degF", 5.0 / 9.0, ice_F},
+        {"F", 5.0 / 9.0, ice_F},
+        {"K", 1.0, ice_K}}},
+  };
+  return list;
+}
+
+const Quantity* quantity_of(const std::string& name) {
+  for (const auto& one : quantities()) {
+    const std::string ending = one.ending;
+    if (name.size() >= ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0)
+      return &one;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<std::string> units_of(const std::string& name) {
+  std::vector<std::string> list;
+  if (const Quantity* quantity = quantity_of(name))
+    for (const auto& unit : quantity->units) list.emplace_back(unit.text);
+  return list;
+}
+
+ColumnChoice parse_column_choice(const std::string& text) {
+  const auto fail = [&](const std::string& what) {
+    throw InputError("--column " + excerpt(text) + ": " + what);
+  };
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    fail("expected NAME=HEADER or NAME=HEADER:UNIT, such as motor_C=temp:degF");
+  ColumnChoice choice;
+  choice.name = text.substr(0, equals);
+  choice.header = text.substr(equals + 1);
+  const std::size_t colon = choice.header.rfind(':');
+  if (colon == std::string::npos) return choice;
+  std::string unit = choice.header.substr(colon + 1);
+  choice.header.resize(colon);
+  if (choice.header.empty()) fail("the header is empty; expected NAME=HEADER:UNIT");
+  const bool turned = !unit.empty() && unit[0] == '-';
+  if (turned) unit.erase(0, 1);
+  const Quantity* quantity = quantity_of(choice.name);
+  std::string known;
+  for (const auto& one : quantity != nullptr ? quantity->units : std::vector<Unit>()) {
+    if (unit == one.text) {
+      choice.factor = turned ? -one.factor : one.factor;
+      choice.offset = one.offset;
+      return choice;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(one.text);
+  }
+  fail(excerpt(unit) + " is no unit of " + choice.name +
+       (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
+  return choice;
+}
+
+}  // namespace thermopower::io

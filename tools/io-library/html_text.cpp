@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "html_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace thermopower::io {
+namespace {
+
+// Length of the UTF-8 sequence at `i`; 0 where there is none.
+std::size_t sequence_at(const std::string& text, std::size_t i) {
+  const unsigned char byte = static_cast<unsigned char>(text[i]);
+  const std::size_t length = byte < 0x80                   ? 1
+                             : byte >= 0xc2 && byte < 0xe0 ? 2
+                             : byte >= 0xe0 && byte < 0xf0 ? 3
+                             : byte >= 0xf0 && byte < 0xf5 ? 4
+                                                           : 0;
+  if (length == 1 && byte < 0x20 && byte != '\n' && byte != '\t') return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
+struct Words {
+  const char* name;
+  const char* text;
+  const char* unit;
+};
+
+constexpr Words words[] = {
+    {"t_s", "time", "s"},
+    {"power_param", "power (0 to 255)", ""},
+    {"drive_A", "drive current", "A"},
+    {"voltage_V", "voltage", "V"},
+    {"v_rms_V", "RMS voltage", "V"},
+    {"target_deg", "target angle", "\u00b0"},
+    {"target_dps", "target rate", "\u00b0/s"},
+    {"torque_Nm", "external torque", "N m"},
+    {"heat_W", "heat", "W"},
+    {"supply_V", "supply voltage", "V"},
+    {"ambient_C", "air temperature", "\u00b0C"},
+    {"airspeed_mps", "air speed", "m/s"},
+    {"neighbour_C", "temperature of the neighbour", "\u00b0C"},
+    {"current_A", "motor current", "A"},
+    {"motor_C", "motor temperature", "\u00b0C"},
+    {"angle_deg", "angle", "\u00b0"},
+    {"rate_dps", "angular rate", "\u00b0/s"},
+    {"rate_rad_per_s", "angular rate", "rad/s"},
+    {"acceleration_rad_per_s2", "angular acceleration", "rad/s\u00b2"},
+    {"rise_K", "temperature above the air", "K"},
+    {"dT_dt", "rate of heating", "K/s"},
+};
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  out.reserve(text.size() + 16);
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = sequence_at(text, i);
+    if (length == 0) {
+      out += "\uFFFD";
+      ++i;
+      continue;
+    }
+    if (length > 1) out.append(text, i, length);
+    else if (text[i] == '&') out += "&amp;";
+    else if (text[i] == '<') out += "&lt;";
+    else if (text[i] == '>') out += "&gt;";
+    else if (text[i] == '"') out += "&quot;";
+    else out += text[i];
+    i += length;
+  }
+  return out;
+}
+
+std::string breakable(const std::string& id) {
+  std::string out;
+  for (const char one : escaped(id)) {
+    out += one;
+    if (one == '_' || one == '/' || one == '.') out += "<wbr>";
+  }
+  return out;
+}
+
+std::string readable(double value, int digits) {
+  if (!std::isfinite(value)) return "\u2013";
+  const double size = std::fabs(value);
+  char text[48];
+  if (size != 0.0 && (size < 1e-3 || size >= 1e5)) {
+    std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  } else {
+    const int decimals =
+        size == 0.0 ? 0 : std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  }
+  return text;
+}
+
+std::string percent_html(double share) {
+  if (!std::isfinite(share)) return "\u2013";
+  if (share > 0.99 && share < 1.0) return "&gt;\u200a99\u00a0%";
+  if (share > 0.0 && share < 0.01) return "&lt;\u200a1\u00a0%";
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f\u00a0%%", 100.0 * share);
+  return text;
+}
+
+std::string unit_text(const std::string& unit) {
+  if (unit == "degC") return "\u00b0C";
+  if (unit == "deg") return "\u00b0";
+  if (unit == "deg/s" || unit == "dps") return "\u00b0/s";
+  if (unit == "ohm") return "\u03a9";
+  if (unit == "1") return "";
+  return unit;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  const std::string text = unit_text(unit);
+  return text.empty() ? number : number + "\u00a0" + text;
+}
+
+std::string signal_text(const plant::SignalName& signal) {
+  const std::string name = to_string(signal);
+  return signal.known() ? variable_text(name).text : name;
+}
+
+VariableText variable_text(const std::string& name, const std::string& unit) {
+  for (const Words& one : words)
+    if (name == one.name) return {one.text, one.unit};
+  return {name, unit_text(unit), false};
+}
+
+std::string axis_label(const VariableText& variable) {
+  return variable.unit.empty() ? variable.text : variable.text + " / " + variable.unit;
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& ids, const char* between) {
+  std::string out;
+  for (const auto& id : ids) out += (out.empty() ? "" : between) + id;
+  return out;
+}
+
+}  // namespace thermopower::io

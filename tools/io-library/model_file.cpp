@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/model_file.hpp>
+
+#include <thermopower/io/input_error.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <vector>
+
+namespace thermopower::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t largest_file = 1 << 20;
+constexpr const char* format_id = "thermopower-model/1";
+
+std::string number_text(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+std::string line_and_column(const std::string& text, std::size_t byte) {
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+    if (text[i] == '\n') {
+      ++line;
+      column = 1;
+    } else {
+      ++column;
+    }
+  }
+  return std::to_string(line) + ":" + std::to_string(column);
+}
+
+/// What a constant may be.
+enum class Allowed { any, positive, not_negative, not_zero };
+
+class Reader {
+public:
+  Reader(const std::string& file, const Catalogue& catalogue) : file_(file), catalogue_(catalogue) {}
+
+  Model read(const std::string& text) {
+    const Json root = parse(text);
+    if (!root.is_object())
+      fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" +
+                   format_id + "\"");
+    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "effects"});
+    if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
+    if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
+      fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"");
+    }
+    Model model;
+    if (root.contains("name")) {
+      if (!root["name"].is_string()) fail("/name", "is " + shown(root["name"]) + "; expected text");
+      model.name = root["name"].get<std::string>();
+    }
+    if (root.contains("supply")) read_supply(root["supply"], model);
+    if (root.contains("current")) read_current(root["current"], model);
+    if (root.contains("thermal")) read_thermal(root["thermal"], model);
+    if (root.contains("axis")) read_axis(root["axis"], model);
+    if (root.contains("servo")) read_servo(root["servo"], model);
+    if (root.contains("effects")) read_effects(root["effects"], model);
+    for (const char* block : {"supply", "current", "thermal", "axis", "servo"})
+      if (root.contains(block)) read_uncertainty(root[block], std::string("/") + block, block, model);
+    if (const auto problem = model.validate()) throw InputError(file_ + ": " + *problem);
+    return model;
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& pointer, const std::string& what) const {
+    throw InputError(file_ + ": " + (pointer.empty() ? "" : pointer + ": ") + what);
+  }
+
+  static std::string shown(const Json& value) {
+    const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() > 40 ? text.substr(0, 40) + "..." : text;
+  }
+
+  static std::string below(const std::string& pointer, const std::string& key) {
+    std::string safe;  // RFC 6901
+    for (const char c : key) safe += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return pointer + "/" + safe;
+  }
+
+  Json parse(const std::string& text) const {
+    Watch watch(file_, text);
+    Json::sax_parse(text, &watch);
+    return Json::parse(text);
+  }
+
+  /// Reads along and stops at what the parser would take without a word, or refuse without saying where.
+  class Watch : public nlohmann::json_sax<Json> {
+  public:
+    Watch(const std::string& file, const std::string& text) : file_(file), text_(text) {}
+
+    bool null() override { return value(); }
+    bool boolean(bool) override { return value(); }
+    bool number_integer(number_integer_t) override { return value(); }
+    bool number_unsigned(number_unsigned_t) override { return value(); }
+    bool number_float(number_float_t, const string_t&) override { return value(); }
+    bool string(string_t&) override { return value(); }
+    bool binary(binary_t&) override { return value(); }
+    bool start_object(std::size_t) override { return open(false); }
+    bool start_array(std::size_t) override { return open(true); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override {
+      Level& level = levels_.back();
+      level.at = name;
+      // The parser keeps the last of two equal keys; which of them the author meant nobody knows.
+      if (!level.keys.insert(name).second)
+        throw InputError(file_ + ": " + pointer() +
+                         ": this key appears twice in one object; expected it once");
+      return true;
+    }
+    bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
+      const std::string where = file_ + ":" + line_and_column(text_, position) + ": ";
+      if (dynamic_cast<const Json::out_of_range*>(&error) != nullptr)
+        throw InputError(where + pointer() + ": " + excerpt(token) +
+                         " is too large for a number; expected a finite number");
+      std::string what = error.what();
+      const auto colon = what.find(": ", what.find("column"));
+      if (colon != std::string::npos) what = what.substr(colon + 2);
+      throw InputError(where + "not JSON: " + what);
+    }
+
+  private:
+    struct Level {
+      bool array = false;
+      std::size_t index = 0;
+      std::string at;
+      std::set<std::string> keys;
+    };
+    bool value() {
+      if (!levels_.empty() && levels_.back().array) ++levels_.back().index;
+      return true;
+    }
+    bool open(bool array) {
+      if (levels_.size() >= deepest)
+        throw InputError(file_ + ": " + pointer() + ": nested more than " + std::to_string(deepest) +
+                         " levels deep; expected a model");
+      levels_.push_back({array, 0, {}, {}});
+      return true;
+    }
+    bool close() {
+      levels_.pop_back();
+      return value();
+    }
+    std::string pointer() const {
+      std::string text;
+      for (const Level& level : levels_)
+        text = below(text, level.array ? std::to_string(level.index) : level.at);
+      return text;
+    }
+
+    static constexpr std::size_t deepest = 64;
+    const std::string& file_;
+    const std::string& text_;
+    std::vector<Level> levels_;
+  };
+
+  void object(const Json& value, const std::string& pointer) const {
+    if (!value.is_object()) fail(pointer, "is " + shown(value) + "; expected an object");
+  }
+
+  void only(const Json& value, const std::string& pointer, std::initializer_list<const char*> keys) const {
+    only(value, pointer, std::vector<std::string>(keys.begin(), keys.end()));
+  }
+
+  void only(const Json& value, const std::string& pointer, const std::vector<std::string>& keys) const {
+    for (const auto& item : value.items()) {
+      if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
+      std::string known;
+      for (const auto& key : keys) known += (known.empty() ? "" : ", ") + key;
+      fail(below(pointer, item.key()), "unknown key; expected one of " + known);
+    }
+  }
+
+  double number(const Json& block, const std::string& pointer, const char* key, Allowed allowed) const {
+    const std::string here = below(pointer, key);
+    const char* const expected = allowed == Allowed::positive       ? "a number above 0"
+                                 : allowed == Allowed::not_negative ? "a number, 0 or more"
+                                 : allowed == Allowed::not_zero     ? "a number other than 0"
+                                                                    : "a number";
+    if (!block.contains(key)) fail(here, std::string("is missing; expected ") + expected);
+    const Json& value = block[key];
+    if (!value.is_number()) fail(here, "is " + shown(value) + "; expected " + expected);
+    const double x = value.get<double>();
+    const bool fine =
+        std::isfinite(x) &&
+        (allowed == Allowed::any || (allowed == Allowed::positive && x > 0.0) ||
+         (allowed == Allowed::not_negative && x >= 0.0) || (allowed == Allowed::not_zero && x != 0.0));
+    if (!fine) fail(here, "is " + shown(value) + "; expected " + expected);
+    return x;
+  }
+
+  double number_or(const Json& block, const std::string& pointer, const char* key, Allowed allowed,
+                   double otherwise) const {
+    return block.contains(key) ? number(block, pointer, key, allowed) : otherwise;
+  }
+
+  std::string law(const Json& block, const std::string& pointer,
+                  std::initializer_list<const char*> laws) const {
+    std::string expected;
+    for (const char* name : laws) expected += (expected.empty() ? "\"" : " or \"") + std::string(name) + "\"";
+    if (!block.contains("law")) fail(pointer + "/law", "is missing; expected " + expected);
+    for (const char* name : laws) {
+      if (block["law"].is_string() && block["law"].get<std::string>() == name) return name;
+    }
+    fail(pointer + "/law", "is " + shown(block["law"]) + "; expected " + expected);
+  }
+
+  void read_supply(const Json& block, Model& model) const {
+    object(block, "/supply");
+    only(block, "/supply", {"nominal_V", "uncertainty"});
+    SupplyModel supply;
+    supply.nominal_V = number(block, "/supply", "nominal_V", Allowed::positive);
+    model.supply = supply;
+  }
+
+  void read_current(const Json& block, Model& model) const {
+    const std::string here = "/current";
+    object(block, here);
+    if (law(block, here, {"ohmic", "thesis"}) == "ohmic") {
+      only(block, here, {"law", "resistance_ohm", "tempco_per_K", "reference_C", "uncertainty"});
+      OhmicCurrentModel ohmic;
+      ohmic.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
+      ohmic.tempco_per_K = number_or(block, here, "tempco_per_K", Allowed::any, 0.0);
+      ohmic.reference_C = number_or(block, here, "reference_C", Allowed::any, 25.0);
+      model.current = ohmic;
+      return;
+    }
+    only(block, here,
+         {"law", "slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K", "base_mA", "exponent",
+          "minimum_V_rms", "uncertainty"});
+    ThesisCurrentModel thesis;
+    thesis.slope_V2_mA_per_K = number(block, here, "slope_V2_mA_per_K", Allowed::any);
+    thesis.slope_V1_mA_per_K = number(block, here, "slope_V1_mA_per_K", Allowed::any);
+    thesis.slope_V0_mA_per_K = number(block, here, "slope_V0_mA_per_K", Allowed::any);
+    thesis.base_mA = number(block, here, "base_mA", Allowed::any);
+    thesis.exponent = number(block, here, "exponent", Allowed::any);
+    thesis.minimum_V_rms =
+        number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    model.current = thesis;
+  }
+
+  void read_thermal(const Json& block, Model& model) const {
+    const std::string here = "/thermal";
+    object(block, here);
+    if (law(block, here, {"lumped", "thesis"}) == "lumped") {
+      only(block, here, {"law", "heat_capacity_J_per_K", "conductance_W_per_K", "uncertainty"});
+      LumpedThermalModel lumped;
+      lumped.heat_capacity_J_per_K = number(block, here, "heat_capacity_J_per_K", Allowed::positive);
+      lumped.conductance_W_per_K = number(block, here, "conductance_W_per_K", Allowed::positive);
+      model.thermal = lumped;
+      return;
+    }
+    only(block, here,
+         {"law", "cooling_per_min", "rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0",
+          "minimum_V_rms", "uncertainty"});
+    ThesisThermalModel thesis;
+    thesis.cooling_per_min = number(block, here, "cooling_per_min", Allowed::positive);
+    thesis.rinv_slope_V1 = number(block, here, "rinv_slope_V1", Allowed::any);
+    thesis.rinv_slope_V0 = number(block, here, "rinv_slope_V0", Allowed::any);
+    thesis.rinv_offset_V1 = number(block, here, "rinv_offset_V1", Allowed::any);
+    thesis.rinv_offset_V0 = number(block, here, "rinv_offset_V0", Allowed::any);
+    thesis.minimum_V_rms =
+        number_or(block, here, "minimum_V_rms", Allowed::not_negative, thesis.minimum_V_rms);
+    model.thermal = thesis;
+  }
+
+  void read_axis(const Json& block, Model& model) const {
+    const std::string here = "/axis";
+    object(block, here);
+    const bool voltage_driven = law(block, here, {"rigid", "voltage"}) == "voltage";
+    std::vector<std::string> keys{"law", "inertia_kgm2", "viscous_Nms_per_rad", "torque_constant_Nm_per_A"};
+    if (voltage_driven) keys.emplace_back("resistance_ohm");
+    keys.emplace_back("uncertainty");
+    only(block, here, keys);
+    RigidAxisModel axis;
+    axis.inertia_kgm2 = number(block, here, "inertia_kgm2", Allowed::positive);
+    axis.viscous_Nms_per_rad = number(block, here, "viscous_Nms_per_rad", Allowed::not_negative);
+    axis.torque_constant_Nm_per_A = number(block, here, "torque_constant_Nm_per_A", Allowed::not_zero);
+    if (voltage_driven) axis.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
+    model.axis = axis;
+  }
+
+  void read_servo(const Json& block, Model& model) const {
+    const std::string here = "/servo";
+    object(block, here);
+    const auto common = [&](auto& servo) {
+      servo.limit_A = number(block, here, "limit_A", Allowed::positive);
+      servo.period_s = number(block, here, "period_s", Allowed::positive);
+      servo.delay_s = number_or(block, here, "delay_s", Allowed::not_negative, 0.0);
+    };
+    if (law(block, here, {"position_pid", "velocity_pi"}) == "position_pid") {
+      only(block, here,
+           {"law", "kp_A_per_deg", "kd_A_s_per_deg", "ki_A_per_deg_s", "limit_A", "period_s", "delay_s",
+            "uncertainty"});
+      PositionPidServo servo;
+      servo.kp_A_per_deg = number(block, here, "kp_A_per_deg", Allowed::not_zero);
+      servo.kd_A_s_per_deg = number_or(block, here, "kd_A_s_per_deg", Allowed::any, 0.0);
+      servo.ki_A_per_deg_s = number_or(block, here, "ki_A_per_deg_s", Allowed::any, 0.0);
+      common(servo);
+      model.servo = servo;
+      return;
+    }
+    only(block, here,
+         {"law", "kp_A_s_per_deg", "ki_A_per_deg", "limit_A", "period_s", "delay_s", "uncertainty"});
+    VelocityPiServo servo;
+    servo.kp_A_s_per_deg = number(block, here, "kp_A_s_per_deg", Allowed::not_zero);
+    servo.ki_A_per_deg = number_or(block, here, "ki_A_per_deg", Allowed::any, 0.0);
+    common(servo);
+    model.servo = servo;
+  }
+
+  /// How well the constants of a block are known, as shares of their values.
+  void read_uncertainty(const Json& block, const std::string& pointer, const std::string& name,
+                        Model& model) const {
+    if (!block.contains("uncertainty")) return;
+    const Json& list = block["uncertainty"];
+    const std::string here = below(pointer, "uncertainty");
+    object(list, here);
+    std::vector<std::string> constants;
+    for (const auto& item : block.items())
+      if (item.key() != "law" && item.key() != "uncertainty") constants.push_back(item.key());
+    only(list, here, constants);
+    for (const auto& item : list.items()) {
+      const double share = number(list, here, item.key().c_str(), Allowed::positive);
+      if (!(share <= 1.0))
+        fail(below(here, item.key()), "is " + number_text(share) + "; expected a share, above 0 to 1");
+      model.uncertainty[name + "." + item.key()] = share;
+    }
+  }
+
+  void read_effects(const Json& block, Model& model) const {
+    object(block, "/effects");
+    for (const auto& item : block.items()) {
+      const std::string here = below("/effects", item.key());
+      const auto& list = catalogue_.list();
+      const auto info =
+          std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
+      if (info == list.end())
+        fail(here, "no such effect in the catalogue; expected an id that 'thermopower-gap effects' lists");
+      object(item.value(), here);
+      std::vector<std::string> names;
+      for (const auto& parameter : info->parameters) names.push_back(parameter.name);
+      names.push_back("uncertainty");
+      only(item.value(), here, names);
+      read_uncertainty(item.value(), here, "effects." + item.key(), model);
+      EffectParameters& parameters = model.effects[item.key()];
+      for (const auto& parameter : info->parameters) {
+        const bool left_out = parameter.standard && !item.value().contains(parameter.name);
+        const double value =
+            left_out ? *parameter.standard : number(item.value(), here, parameter.name.c_str(), Allowed::any);
+        if (!(value >= parameter.lower && value <= parameter.upper)) {
+          fail(below(here, parameter.name),
+               "is " + number_text(value) + "; expected " + number_text(parameter.lower) + " to " +
+                   number_text(parameter.upper) + (parameter.unit == "1" ? "" : " " + parameter.unit));
+        }
+        parameters[parameter.name] = value;
+      }
+    }
+  }
+
+  std::string file_;
+  const Catalogue& catalogue_;
+};
+
+}  // namespace
+
+Model parse_model(const std::string& name, const std::string& text, const Catalogue& catalogue) {
+  return Reader(name, catalogue).read(text);
+}
+
+Model read_model(const std::string& path, const Catalogue& catalogue) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status))
+    throw InputError(path + ": is a directory; expected a model file (JSON)");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  std::string text(largest_file + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get())) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  if (text.size() > largest_file)
+    throw InputError(path + ": larger than 1 MiB; expected a model file (JSON)");
+  if (text.empty()) throw InputError(path + ": the file is empty; expected a model file (JSON)");
+  return parse_model(path, text, catalogue);
+}
+
+std::string to_json(const Model& model) {
+  Json root;
+  root["format"] = format_id;
+  root["name"] = model.name;
+  if (std::holds_alternative<OhmicCurrentModel>(model.current)) root["current"]["law"] = "ohmic";
+  if (std::holds_alternative<ThesisCurrentModel>(model.current)) root["current"]["law"] = "thesis";
+  if (std::holds_alternative<LumpedThermalModel>(model.thermal)) root["thermal"]["law"] = "lumped";
+  if (std::holds_alternative<ThesisThermalModel>(model.thermal)) root["thermal"]["law"] = "thesis";
+  if (model.axis) root["axis"]["law"] = model.axis->voltage_driven() ? "voltage" : "rigid";
+  if (std::holds_alternative<PositionPidServo>(model.servo)) root["servo"]["law"] = "position_pid";
+  if (std::holds_alternative<VelocityPiServo>(model.servo)) root["servo"]["law"] = "velocity_pi";
+  for (const auto& constant : model.constants()) root[constant.block][constant.name] = constant.value;
+  for (const auto& [id, parameters] : model.effects) {
+    root["effects"][id] = Json::object();
+    for (const auto& [name, value] : parameters) root["effects"][id][name] = value;
+  }
+  for (const auto& [name, share] : model.uncertainty) {
+    const std::size_t dot = name.rfind('.');
+    const std::string block = name.substr(0, dot), constant = name.substr(dot + 1);
+    if (block.rfind("effects.", 0) == 0) root["effects"][block.substr(8)]["uncertainty"][constant] = share;
+    else root[block]["uncertainty"][constant] = share;
+  }
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace thermopower::io

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/predictions_file.hpp>
+
+#include <thermopower/gap/simulate.hpp>
+#include <thermopower/io/input_error.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace thermopower::io {
+namespace {
+
+void append(std::string& out, double value) {
+  if (!std::isfinite(value)) return;
+  char text[32];
+  out.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+// RFC 4180: a field with a separator, a quote or a line break is quoted, quotes inside it are doubled.
+void append_quoted(std::string& out, const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    out += text;
+    return;
+  }
+  out += '"';
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  out += '"';
+}
+
+const Eigen::VectorXd* find(const std::vector<SimulatedSignal>& signals, const std::string& name) {
+  for (const auto& one : signals) {
+    if (to_string(one.signal) == name) return &one.values;
+  }
+  return nullptr;
+}
+
+// What a model predicts, with what its prediction starts from where nobody measured it.
+struct Start {
+  Signal signal;
+  bool predicted;
+  double value;
+};
+
+}  // namespace
+
+Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
+  const bool powered = recording.has("power_param") && (model.supply || recording.has("supply_V"));
+  const bool heated = (model.has_current() && powered) || recording.has("current_A") ||
+                      recording.has("drive_A") || recording.has("heat_W");
+  const double missing_value = std::numeric_limits<double>::quiet_NaN();
+  const bool body = model.has_thermal() && recording.has("ambient_C") && heated;
+  const bool commanded =
+      model.has_axis() && recording.has(model.axis->voltage_driven() ? "voltage_V" : "drive_A");
+  const bool joint =
+      commanded || (model.has_servo() && (recording.has("target_deg") || recording.has("target_dps")));
+  for (const Start& start : {Start{Signal::motor_C, body, missing_value},
+                             Start{Signal::current_A, model.has_current() && powered, 0.0},
+                             Start{Signal::angle_deg, joint, 0.0}, Start{Signal::rate_dps, joint, 0.0}}) {
+    const std::string name = to_string(start.signal);
+    const auto given = starts.find(name);
+    if (!start.predicted || (recording.has(name) && given == starts.end())) continue;
+    Eigen::VectorXd values = recording.has(name) ? recording.column(name)
+                                                 : Eigen::VectorXd::Constant(recording.rows(), missing_value);
+    for (const RunSpan& run : recording.spans()) {
+      // A body that nobody measured has the temperature of its air.
+      const double rest =
+          start.signal == Signal::motor_C ? recording.column("ambient_C")[run.begin] : start.value;
+      values[run.begin] = given != starts.end() ? given->second : rest;
+    }
+    recording.set(name, values);
+  }
+  return recording;
+}
+
+std::string predictions_csv(const Model& baseline, const Model& augmented,
+                            const std::vector<Recording>& recordings, double horizon_s,
+                            const Catalogue& catalogue) {
+  SimulationOptions options;
+  options.horizon_s = horizon_s;
+  std::vector<std::vector<SimulatedSignal>> before, after;
+  std::vector<std::string> signals;  // of all recordings, in order of appearance: one header fits all rows
+  std::size_t runs = 0;
+  for (const auto& recording : recordings) {
+    before.push_back(simulate(baseline, recording, options, catalogue));
+    after.push_back(simulate(augmented, recording, options, catalogue));
+    runs += recording.spans().size();
+    for (const auto* simulated : {&before.back(), &after.back()}) {
+      for (const auto& one : *simulated) {
+        const std::string name = to_string(one.signal);
+        if (std::find(signals.begin(), signals.end(), name) == signals.end()) signals.push_back(name);
+      }
+    }
+  }
+  if (signals.empty()) {
+    throw InputError(
+        (recordings.empty() ? std::string() : recordings.front().name + ": ") +
+        "nothing to predict: the columns that the model's laws need (power_param with a supply and "
+        "ambient_C, or heat_W and ambient_C, or drive_A, voltage_V or a servo's target) are not recorded");
+  }
+  std::string out = "t_s";
+  if (runs > 1) out += ",run";
+  for (const auto& signal : signals) out += "," + signal + "_baseline," + signal + "_augmented";
+  out += "\n";
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    std::vector<const Eigen::VectorXd*> columns;
+    for (const auto& signal : signals) {
+      columns.push_back(find(before[r], signal));
+      columns.push_back(find(after[r], signal));
+    }
+    const auto spans = recordings[r].spans();
+    for (std::size_t s = 0; s < spans.size(); ++s) {
+      // Labels may repeat (the same file twice) or be empty; a reader needs to see where a run begins.
+      std::string label = spans[s].label;
+      if (label.empty()) label = std::to_string(s + 1);
+      if (recordings.size() > 1) label = std::to_string(r + 1) + ":" + label;
+      for (Eigen::Index row = spans[s].begin; row < spans[s].end; ++row) {
+        append(out, recordings[r].t_s[row]);
+        if (runs > 1) {
+          out += ',';
+          append_quoted(out, label);
+        }
+        for (const auto* column : columns) {
+          out += ',';
+          if (column != nullptr) append(out, (*column)[row]);
+        }
+        out += '\n';
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace thermopower::io

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/recording_file.hpp>
+
+#include <thermopower/io/input_error.hpp>
+
+#include <utility>
+
+namespace thermopower::io {
+
+const std::vector<std::string>& known_columns() {
+  static const std::vector<std::string> names = {"t_s",        "power_param", "drive_A",      "voltage_V",
+                                                 "target_deg", "target_dps",  "torque_Nm",    "heat_W",
+                                                 "supply_V",   "ambient_C",   "airspeed_mps", "neighbour_C",
+                                                 "rate_dps",   "current_A",   "motor_C",      "angle_deg"};
+  return names;
+}
+
+RecordingFile to_recording(CsvTable table) {
+  RecordingFile file;
+  Recording& recording = file.recording;
+  recording.name = table.file;
+  const auto rows = static_cast<Eigen::Index>(table.rows);
+  for (auto& column : table.columns) {
+    const Eigen::Map<const Eigen::VectorXd> values(column.values.data(), rows);
+    if (column.name == "t_s") {
+      recording.t_s = values;
+    } else {
+      recording.columns.push_back({column.name, values});
+    }
+    column.values = {};  // a million rows need not be in memory twice
+  }
+  for (std::size_t i = 0; i < table.run_begin.size(); ++i) {
+    const std::size_t end = i + 1 < table.run_begin.size() ? table.run_begin[i + 1] : table.rows;
+    recording.runs.push_back(
+        {static_cast<Eigen::Index>(table.run_begin[i]), static_cast<Eigen::Index>(end), table.run_labels[i]});
+  }
+  for (const auto& name : table.ignored_text) {
+    file.findings.push_back({FindingKind::text_column_ignored, Severity::note, table.file, name,
+                             "holds text and is no run label; it is not used"});
+  }
+  if (!table.ends_with_line_break) {
+    file.findings.push_back(
+        {FindingKind::no_final_line_break,
+         Severity::note,
+         table.file,
+         {},
+         "the last line has no line break; all its fields are there, but if the file was cut off inside the last "
+         "number nobody can tell"});
+  }
+  return file;
+}
+
+RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices) {
+  return to_recording(read_csv(path, known_columns(), choices));
+}
+
+}  // namespace thermopower::io

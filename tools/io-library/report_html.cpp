@@ -1,0 +1,644 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/report_html.hpp>
+
+#include "chart.hpp"
+#include "held_out_runs.hpp"
+#include "html_text.hpp"
+#include "report_script.hpp"
+#include "report_style.hpp"
+#include "residual_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace thermopower::io {
+namespace {
+
+// Curves are most of a page: so many are drawn, of the runs where the gap is largest.
+constexpr std::size_t most_pictures = 6, most_runs_drawn = 4, most_runs_listed = 40, most_ranked = 12;
+
+std::vector<double> numbers(const Eigen::VectorXd& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+std::string regime_text(const Regime& regime) {
+  const VariableText variable = variable_text(regime.variable);
+  const std::string text =
+      variable.in_words ? escaped(variable.text) : "<code>" + breakable(variable.text) + "</code>";
+  return text + " " + readable(regime.from) + " to " + readable(regime.to) +
+         (variable.unit.empty() ? "" : "\u00a0" + variable.unit);
+}
+
+class Page {
+public:
+  Page(const Diagnosis& diagnosis, const std::string& model_name, const std::vector<EffectInfo>& effects,
+       const std::vector<Recording>& held_out)
+      : d_(diagnosis), model_(model_name), effects_(effects), runs_(held_out_runs(diagnosis, held_out)) {}
+
+  std::string write() {
+    head();
+    findings();
+    facts();
+    how_far();
+    next();
+    curves();
+    rests();
+    missing();
+    where();
+    which();
+    constants();
+    data();
+    foot();
+    return std::move(out_);
+  }
+
+private:
+  bool has_cause() const { return !d_.cause.empty(); }
+
+  const EffectInfo* info(const std::string& id) const {
+    for (const auto& one : effects_) {
+      if (one.id == id) return &one;
+    }
+    return nullptr;
+  }
+
+  const char* headline() const {
+    switch (d_.verdict) {
+      case Verdict::no_gap:
+        return "Simulation and recording agree";
+      case Verdict::explained:
+        return "The gap is explained";
+      case Verdict::partial:
+        return "The gap is explained in part";
+      case Verdict::ambiguous:
+        return "Several explanations fit, and this recording cannot tell them apart";
+      case Verdict::unexplained:
+        return "There is a gap that no known effect explains";
+      case Verdict::insufficient:
+        return deciding(d_.findings) != nullptr ? "The data cannot be believed as they stand"
+                                                : "Too little data for any statement";
+    }
+    return "";
+  }
+
+  void head() {
+    out_ +=
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Gap report: " +
+        escaped(model_.empty() ? "model" : model_) + "</title>\n<style>" + report_style +
+        "</style>\n</head>\n<body>\n<main>\n";
+    out_ += "<div class=\"eyebrow\">Sim-to-real gap" +
+            std::string(model_.empty() ? "" : " \u00b7 " + escaped(model_)) + "</div>\n<h1 class=\"" +
+            to_string(d_.verdict) + "\">" + headline() + "</h1>\n";
+    if (!d_.reason.empty())
+      out_ += "<p class=\"lead\">" + escaped(capital(d_.reason)) + (d_.reason.back() == '.' ? "" : ".") +
+              "</p>\n";
+  }
+
+  // The same fault in several recordings is told once.
+  void finding(const Finding& one) {
+    std::vector<std::string> recordings;
+    for (const auto& other : d_.findings) {
+      if (other.column != one.column || other.message != one.message) continue;
+      if (recordings.empty() && &other != &one) return;  // told with the first
+      if (std::find(recordings.begin(), recordings.end(), other.recording) == recordings.end())
+        recordings.push_back(other.recording);
+    }
+    out_ += std::string("<div class=\"finding ") + to_string(one.severity) + "\"><span class=\"tag\">" +
+            to_string(one.severity) + "</span>" + breakable(joined(recordings, ", "));
+    if (!one.column.empty()) out_ += ", <code>" + breakable(one.column) + "</code>";
+    out_ += ": " + escaped(one.message) + ".";
+    if (one.action != FindingAction::none) {
+      const auto rows = one.row_count();
+      out_ += std::string(" <span class=\"soft\">") +
+              (one.action == FindingAction::masked ? "Counted as missing" : "The run is cut there") +
+              (rows > 0 ? ": " + std::to_string(rows) + (rows == 1 ? " row" : " rows") : std::string()) +
+              ".</span>";
+    }
+    if (!one.mend.empty()) out_ += "<span class=\"mend\">To mend it: <b>" + escaped(one.mend) + "</b></span>";
+    out_ += "</div>\n";
+  }
+
+  void findings() {
+    for (const Severity severity : {Severity::error, Severity::warning})
+      for (const auto& one : d_.findings)
+        if (one.severity == severity) finding(one);
+  }
+
+  void fact(const std::string& name, const std::string& value, const std::string& more) {
+    out_ += "<div class=\"fact\"><span class=\"name\">" + name + "</span><b>" + value +
+            "</b><span class=\"more\">" + more + "</span></div>\n";
+  }
+
+  std::string occurrences(const std::vector<Occurrence>& list) const {
+    std::string text;
+    for (const auto& one : list) {
+      text += (text.empty() ? "" : "; ") + breakable(short_name(one.recording));
+      if (!one.run.empty()) text += ", run " + escaped(one.run);
+      if (one.held_out) text += " (held out)";
+      if (one.from_s) text += ", from " + readable(*one.from_s) + "\u00a0s on";
+    }
+    return text;
+  }
+
+  // The file's name where that is enough to tell it from the others.
+  std::string short_name(const std::string& name) const {
+    const auto file = [](const std::string& path) { return path.substr(path.find_last_of('/') + 1); };
+    for (const auto& one : runs_)
+      if (one.recording != name && file(one.recording) == file(name)) return name;
+    return file(name).empty() ? name : file(name);
+  }
+
+  std::string title_of(const HeldOutRun& run) const {
+    std::string text = short_name(run.recording);
+    if (!run.label.empty()) text += ", run " + run.label;
+    else if (run.of > 1) text += ", run " + std::to_string(run.number + 1);
+    return text;
+  }
+
+  void facts() {
+    if (d_.verdict == Verdict::insufficient && d_.where.empty() && d_.gap.empty()) return;
+    out_ += "<div class=\"facts\">\n";
+    if (!d_.where.empty()) {
+      const Location& first = d_.where.front();
+      std::string more =
+          escaped(signal_text(first.signal)) + ", " + percent_html(first.share) + " of its gap";
+      if (first.regime) more += "; most for " + regime_text(*first.regime);
+      if (!first.only_in.empty()) more += "<br>Only in " + occurrences(first.only_in);
+      fact("Where", breakable(to_string(first.submodel)), more);
+    }
+    for (const auto& cause : d_.cause) {
+      std::string more;
+      for (const auto& parameter : cause.parameters) {
+        more += (more.empty() ? "" : "<br>") + breakable(parameter.name) + " " +
+                with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
+                ", " + readable(parameter.ci95.high) + "]" + (parameter.at_bound ? ", on its bound" : "");
+      }
+      fact("Which \u00b7 probability " + percent_html(cause.probability), breakable(cause.effect), more);
+    }
+    if (!d_.alternatives.empty()) {
+      std::string text;
+      for (const auto& one : d_.alternatives) text += (text.empty() ? "" : "<br>") + breakable(joined(one));
+      fact("Or", text, "this recording cannot tell them apart");
+    }
+    const GapScore* most = nullptr;
+    for (const auto& gap : d_.gap) {
+      const bool named = !d_.where.empty() && d_.where.front().signal == gap.signal;
+      if (most == nullptr || named) most = &gap;
+    }
+    if (most != nullptr && has_cause()) {
+      fact("How far it shrinks",
+           percent_html(most->shrunk_by) + " [" + percent_html(most->ci95.low) + ", " +
+               percent_html(most->ci95.high) + "]",
+           escaped(signal_text(most->signal)) + ": " + readable(most->before) + " to " +
+               with_unit(readable(most->after), most->unit) + ", noise floor " + readable(most->noise_floor));
+    } else if (most != nullptr) {
+      fact("How large", with_unit(readable(most->before), most->unit),
+           escaped(signal_text(most->signal)) + ", RMS; noise floor " +
+               with_unit(readable(most->noise_floor), most->unit));
+    }
+    if (d_.remaining) {
+      const Remaining& rest = *d_.remaining;
+      std::string more = escaped(signal_text(rest.signal)) + " at " + readable(rest.times_floor, 3) +
+                         " times its noise floor";
+      if (rest.submodel) more += "; " + breakable(to_string(*rest.submodel));
+      if (rest.regime) more += ", most for " + regime_text(*rest.regime);
+      if (!rest.looks.empty()) more += "<br>" + escaped(capital(rest.looks)) + ".";
+      fact("What remains", percent_html(rest.share) + " of the gap", more);
+    }
+    out_ += "</div>\n";
+  }
+
+  // Dots on one scale per signal: as configured, recalibrated, with the effect; a tick for what a perfect
+  // model would score.
+  std::string gap_picture(const GapScore& gap) const {
+    double largest = std::max({gap.before, gap.recalibrated, gap.noise_floor, has_cause() ? gap.after : 0.0});
+    if (!(largest > 0.0)) largest = 1.0;
+    const auto at = [&](double value) {
+      char text[16];
+      std::snprintf(text, sizeof text, "%.1f%%", 100.0 * std::clamp(value / largest, 0.0, 1.0));
+      return std::string(text);
+    };
+    std::string html = "<div class=\"dotline\" aria-hidden=\"true\"><span class=\"rail\"></span>";
+    const double low = gap.before * (1.0 - gap.ci95.high), high = gap.before * (1.0 - gap.ci95.low);
+    if (has_cause() && high > low)
+      html += "<span class=\"ci\" style=\"left:" + at(low) + ";width:" + at(std::min(high, largest) - low) +
+              "\"></span>";
+    html += "<span class=\"tick\" style=\"left:" + at(gap.noise_floor) +
+            "\"></span><span class=\"dot before\" style=\"left:" + at(gap.before) +
+            "\"></span><span class=\"square\" style=\"left:" + at(gap.recalibrated) + "\"></span>";
+    if (has_cause()) html += "<span class=\"dot after\" style=\"left:" + at(gap.after) + "\"></span>";
+    return html + "</div>";
+  }
+
+  void how_far() {
+    if (d_.gap.empty()) return;
+    out_ +=
+        "<h2>How far</h2>\n<p class=\"soft\">RMS difference between simulation and recording, on data that was held out.</p>\n"
+        "<table class=\"scores\">\n<tr><th class=\"t\"><span class=\"dot before\"></span> as con\u00adfigured</th>"
+        "<th><span class=\"square\"></span> re\u00adcali\u00adbrated</th>";
+    if (has_cause()) out_ += "<th><span class=\"dot after\"></span> with the effect</th>";
+    out_ += "<th><span class=\"tick\"></span> noise floor</th>" +
+            std::string(has_cause() ? "<th>shrunk by</th>" : "") + "</tr>\n";
+    for (const auto& gap : d_.gap) {
+      out_ += "<tr class=\"name\"><td class=\"t\" colspan=\"" + std::string(has_cause() ? "5" : "3") + "\">" +
+              escaped(capital(signal_text(gap.signal))) + "<span class=\"soft\">" +
+              (unit_text(gap.unit).empty() ? "" : " in " + unit_text(gap.unit));
+      if (gap.horizon_s) out_ += ", windows of " + readable(*gap.horizon_s, 2) + "\u00a0s";
+      out_ += "</span>" + gap_picture(gap) + "</td></tr>\n<tr><td class=\"t\">" + readable(gap.before) +
+              "</td><td>" + readable(gap.recalibrated) + "</td>";
+      if (has_cause()) out_ += "<td>" + readable(gap.after) + "</td>";
+      out_ += "<td>" + readable(gap.noise_floor) + "</td>";
+      if (has_cause()) {
+        out_ += "<td>" + percent_html(gap.shrunk_by) + "<small>" + percent_html(gap.ci95.low) + " to " +
+                percent_html(gap.ci95.high) + "</small></td>";
+      }
+      out_ += "</tr>\n";
+    }
+    out_ += "</table>\n";
+    if (!d_.recalibration.empty()) out_ += "<p>" + escaped(capital(d_.recalibration)) + ".</p>\n";
+  }
+
+  void next() {
+    if (d_.next_experiment.empty()) return;
+    out_ += std::string("<h2>") + (d_.verdict == Verdict::insufficient ? "What to do" : "Next experiment") +
+            "</h2>\n<p class=\"next\">" + escaped(d_.next_experiment) + "</p>\n";
+  }
+
+  Series part(const HeldOutRun& run, const SignalSeries& s, const char* label, const char* role,
+              const Eigen::VectorXd& values, bool minus_measured) const {
+    Series series{label, role, Series::Style::line, {}, {}, {}, {}};
+    for (Eigen::Index i = run.begin; i < run.end && i < values.size(); ++i) {
+      series.x.push_back(s.t_s[i]);
+      series.y.push_back(minus_measured ? values[i] - s.measured[i] : values[i]);
+    }
+    return series;
+  }
+
+  Chart signal_chart(const HeldOutRun& run, const SignalSeries& s, bool minus_measured) const {
+    Chart chart;
+    const std::string unit = unit_text(s.unit).empty() ? "" : " / " + unit_text(s.unit);
+    chart.x_label = "time / s";
+    chart.y_label = (minus_measured ? "simulated \u2212 measured" : signal_text(s.signal)) + unit;
+    chart.title = (minus_measured ? "Simulated minus measured " : "Measured and simulated ") +
+                  signal_text(s.signal) + ", " + title_of(run);
+    if (!minus_measured) chart.series.push_back(part(run, s, "measured", "measured", s.measured, false));
+    chart.series.push_back(part(run, s, "as configured", "baseline", s.baseline, minus_measured));
+    if (s.recalibrated.size() == s.t_s.size())
+      chart.series.push_back(part(run, s, "recalibrated", "recalibrated", s.recalibrated, minus_measured));
+    if (has_cause() && s.augmented.size() == s.t_s.size())
+      chart.series.push_back(part(run, s, "with the effect", "augmented", s.augmented, minus_measured));
+    if (minus_measured) {
+      chart.zero_line = true;
+      chart.height = 170;
+      const GapScore* const gap = score_of(s.signal);
+      if (gap != nullptr && std::isfinite(gap->noise_floor)) chart.band = std::max(gap->noise_floor, 0.0);
+    }
+    return chart;
+  }
+
+  const GapScore* score_of(const plant::SignalName& signal) const {
+    for (const auto& gap : d_.gap)
+      if (gap.signal == signal) return &gap;
+    return nullptr;
+  }
+
+  std::optional<double> shows_from(const HeldOutRun& run) const {
+    for (const auto& where : d_.where)
+      for (const auto& one : where.only_in)
+        if (one.held_out && one.recording == run.recording && one.run == run.label && one.from_s)
+          return one.from_s;
+    return std::nullopt;
+  }
+
+  double wrongness(const HeldOutRun& run) const {
+    double worst = 0.0;
+    for (const SignalSeries* s : run.signals) {
+      const GapScore* const gap = score_of(s->signal);
+      const double floor = gap != nullptr && gap->noise_floor > 0.0 ? gap->noise_floor : 1.0;
+      worst = std::max(worst, rms_of(run, *s, s->baseline) / floor);
+    }
+    return worst;
+  }
+
+  void run_table() {
+    out_ += "<p class=\"soft\">RMS difference in each run: as configured \u2192 " +
+            std::string(has_cause() ? "with the effect" : "recalibrated") +
+            ".</p>\n<table>\n<tr><th class=\"t\">run</th><th class=\"wide\">rows</th>";
+    for (const auto& gap : d_.gap)
+      out_ += "<th>" + escaped(axis_label({signal_text(gap.signal), unit_text(gap.unit)})) + "</th>";
+    out_ += "</tr>\n";
+    std::size_t listed = 0;
+    for (const auto& run : runs_) {
+      if (listed++ == most_runs_listed) break;
+      out_ += "<tr><td class=\"t\">" + breakable(title_of(run)) + "</td><td class=\"wide\">" +
+              std::to_string(run.end - run.begin) + "</td>";
+      for (const auto& gap : d_.gap) {
+        const SignalSeries* s = run.of_signal(gap.signal);
+        out_ += s == nullptr
+                    ? "<td>\u2013</td>"
+                    : "<td>" + readable(rms_of(run, *s, s->baseline)) + " \u2192 " +
+                          readable(rms_of(run, *s, has_cause() ? s->augmented : s->recalibrated)) + "</td>";
+      }
+      out_ += "</tr>\n";
+    }
+    out_ += "</table>\n";
+    if (runs_.size() > most_runs_listed)
+      out_ += "<p class=\"soft\">" + std::to_string(runs_.size() - most_runs_listed) +
+              " more runs were judged.</p>\n";
+  }
+
+  void curves() {
+    if (runs_.empty()) return;
+    out_ += "<h2>Measured and simulated</h2>\n";
+    if (runs_.size() > 1) run_table();
+    std::vector<std::size_t> order(runs_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return wrongness(runs_[a]) > wrongness(runs_[b]); });
+    const std::size_t signals = std::max<std::size_t>(1, d_.gap.size());
+    const std::size_t drawn =
+        std::min({order.size(), most_runs_drawn, std::max<std::size_t>(1, most_pictures / signals)});
+    order.resize(drawn);
+    std::sort(order.begin(), order.end());
+    if (drawn < runs_.size())
+      out_ += drawn == 1
+                  ? std::string("<p class=\"soft\">Drawn is the run in which the gap is largest.</p>\n")
+                  : "<p class=\"soft\">Drawn are the " + std::to_string(drawn) +
+                        " runs in which the gap is largest.</p>\n";
+    for (const std::size_t index : order) run_pictures(runs_[index], "r" + std::to_string(index));
+  }
+
+  void run_pictures(const HeldOutRun& run, const std::string& name) {
+    out_ += "<h3>" + breakable(title_of(run)) + "</h3>\n<figure>\n";
+    const std::optional<double> from = shows_from(run);
+    // An axis runs in windows of half a second: over a whole run nothing could be seen. The worst few seconds
+    // tell; other signals are seen whole.
+    std::optional<std::pair<double, double>> stretch;
+    bool windows = false;
+    double worst = -1.0;
+    for (const SignalSeries* s : run.signals) {
+      const GapScore* const gap = score_of(s->signal);
+      if (gap == nullptr || !gap->horizon_s) continue;
+      windows = true;
+      const double ratio = rms_of(run, *s, s->baseline) / (gap->noise_floor > 0.0 ? gap->noise_floor : 1.0);
+      if (!(ratio > worst)) continue;
+      worst = ratio;
+      stretch = worst_stretch(run, *s, *gap->horizon_s);
+    }
+    const auto draw = [&](Chart chart, bool in_windows) {
+      chart.group = name + (in_windows ? "w" : "");
+      if (in_windows) chart.view = stretch;
+      chart.mark = from;
+      out_ += to_html(chart);
+    };
+    for (const auto& gap : d_.gap) {
+      const SignalSeries* s = run.of_signal(gap.signal);
+      if (s == nullptr) continue;
+      draw(signal_chart(run, *s, false), gap.horizon_s.has_value());
+      draw(signal_chart(run, *s, true), gap.horizon_s.has_value());
+    }
+    for (const RunInput& input : inputs_of(run)) {
+      Chart chart;
+      chart.x_label = "time / s";
+      chart.y_label = "input: " + axis_label(variable_text(input.column));
+      chart.title = variable_text(input.column).text + ", " + title_of(run);
+      chart.height = 90;
+      chart.series.push_back({"", "input", Series::Style::steps, input.t_s, input.values, {}, {}});
+      draw(std::move(chart), windows);
+    }
+    std::string caption;
+    if (stretch)
+      caption =
+          "The stretch in which the simulation as configured is worst; each window starts from the measured state.";
+    if (from)
+      caption += std::string(caption.empty() ? "" : " ") + "The red line: from " + readable(*from) +
+                 "\u00a0s on the fault shows.";
+    if (!caption.empty()) out_ += "<figcaption>" + caption + "</figcaption>\n";
+    out_ += "</figure>\n";
+  }
+
+  // What is left on held-out data, against what noise alone would leave.
+  void rests() {
+    bool first = true;
+    for (const auto& gap : d_.gap) {
+      const RunErrors of = errors_of(runs_, gap.signal, has_cause());
+      const Curve correlation = autocorrelation(of);
+      const double rms = has_cause() ? gap.after : gap.before;
+      if (correlation.x.size() < 3 || !(rms > 0.0)) continue;
+      if (first)
+        out_ +=
+            "<h2>What is left</h2>\n<p class=\"soft\">Errors " +
+            std::string(has_cause() ? "with the effect" : "as configured") +
+            ", over all held-out rows. Noise alone would follow the dashed curve on the left, and fall to zero at once on the right"
+            " (an axis\u2019s errors are alike within a window).</p>\n";
+      first = false;
+      const double width = 4.0 * std::max(rms, gap.noise_floor);
+      const std::string unit = unit_text(gap.unit).empty() ? "" : " / " + unit_text(gap.unit);
+      const char* const role = has_cause() ? "augmented" : "baseline";
+      Chart left;
+      left.title = "How often each error of the " + signal_text(gap.signal) + " occurs";
+      left.x_label = "simulated \u2212 measured" + unit;
+      left.y_label = signal_text(gap.signal) + ": share of samples";
+      left.height = 170;
+      left.zero_line = true;
+      Curve counts = histogram(of.errors, width);
+      left.series.push_back({"errors", role, Series::Style::line, counts.x, counts.y, {}, {}});
+      if (gap.noise_floor > 0.0) {
+        counts = normal_histogram(width, gap.noise_floor);
+        left.series.push_back({"noise alone", "noise", Series::Style::line, counts.x, counts.y, {}, {}});
+      }
+      Chart right;
+      right.title = "How errors of the " + signal_text(gap.signal) + " resemble later ones";
+      right.x_label = "time between the two / s";
+      right.y_label = "correlation of errors";
+      right.height = 170;
+      right.zero_line = true;
+      right.series.push_back({"errors", role, Series::Style::line, correlation.x, correlation.y, {}, {}});
+      out_ += "<div class=\"pair\">\n" + to_html(left) + to_html(right) + "</div>\n";
+    }
+  }
+
+  void missing() {
+    bool first = true;
+    for (const auto& q : d_.missing_quantities) {
+      if (q.x.size() < 2 || q.value.size() != q.x.size()) continue;
+      if (first) {
+        out_ +=
+            "<h2>The missing quantity</h2>\n<p class=\"soft\">What would have to be added to the model's equation to make it follow the "
+            "recording, inferred from measurements alone" +
+            std::string(has_cause() ? ", and what the effect found supplies.</p>\n" : ".</p>\n");
+        first = false;
+      }
+      Chart chart;
+      const VariableText variable = variable_text(q.variable, q.variable_unit);
+      chart.title = to_string(q.quantity) + " against " + variable.text;
+      chart.x_label = axis_label(variable);
+      chart.y_label = axis_label({to_string(q.quantity), unit_text(q.unit)});
+      chart.zero_line = true;
+      Series bars{"", "missing", Series::Style::interval, numbers(q.x), numbers(q.value), {}, {}};
+      for (Eigen::Index i = 0; i < q.x.size(); ++i) {
+        const double half = q.spread.size() == q.x.size() ? 1.96 * q.spread[i] : 0.0;
+        bars.low.push_back(q.value[i] - half);
+        bars.high.push_back(q.value[i] + half);
+      }
+      chart.series.push_back(std::move(bars));
+      chart.series.push_back({"from the recording, with its 95 % interval",
+                              "missing",
+                              Series::Style::points,
+                              numbers(q.x),
+                              numbers(q.value),
+                              {},
+                              {}});
+      if (q.effect.size() == q.x.size()) {
+        std::vector<std::string> ids;
+        for (const auto& cause : d_.cause) ids.push_back(cause.effect);
+        chart.series.push_back(
+            {joined(ids), "effect", Series::Style::line, numbers(q.x), numbers(q.effect), {}, {}});
+      }
+      for (const auto& where : d_.where) {
+        if (where.signal == q.signal && where.regime && where.regime->variable == q.variable)
+          chart.shade = {where.regime->from, where.regime->to};
+      }
+      out_ += "<figure>\n" + to_html(chart) +
+              (chart.shade ? "<figcaption>Shaded: where it is largest.</figcaption>\n" : "") + "</figure>\n";
+    }
+  }
+
+  void where() {
+    if (d_.where.empty()) return;
+    out_ +=
+        "<h2>Where</h2>\n<p class=\"soft\">Found from residuals alone, before any effect is considered.</p>\n";
+    for (const auto& one : d_.where) {
+      out_ += "<div class=\"where\"><b>" + breakable(to_string(one.submodel)) + "</b> in " +
+              escaped(signal_text(one.signal)) + ", " + percent_html(one.share) + " of its gap";
+      if (one.regime) out_ += "; most for " + regime_text(*one.regime);
+      out_ += ".";
+      if (!one.only_in.empty()) out_ += "<br>Only in " + occurrences(one.only_in) + ".";
+      out_ += "<br><span class=\"soft\">" + escaped(capital(one.evidence)) + "</span></div>\n";
+    }
+  }
+
+  bool is_chosen(const RankedExplanation& one) const {
+    if (one.effects.size() != d_.cause.size()) return false;
+    return std::all_of(d_.cause.begin(), d_.cause.end(), [&](const Cause& cause) {
+      return std::find(one.effects.begin(), one.effects.end(), cause.effect) != one.effects.end();
+    });
+  }
+
+  static std::string probability(double share) {
+    char width[16];
+    std::snprintf(width, sizeof width, "%.0f", std::max(1.0, 88.0 * std::min(1.0, std::max(0.0, share))));
+    return "<td class=\"t nowrap\"><span class=\"track\"><span class=\"bar\" style=\"width:" +
+           std::string(width) + "px\"></span></span>" + percent_html(share) + "</td>";
+  }
+
+  void explanation(const RankedExplanation& one) {
+    const bool chosen = is_chosen(one) && has_cause();
+    out_ += std::string("<tr") +
+            (chosen                        ? " class=\"chosen\""
+             : one.refused || one.absorbed ? " class=\"out\""
+                                           : "") +
+            "><td class=\"t\">" +
+            (one.effects.empty() ? "nothing is missing" : breakable(joined(one.effects)));
+    std::string small;
+    const auto add = [&small](const std::string& text) { small += (small.empty() ? "" : "<br>") + text; };
+    if (one.effects.size() == 1) {
+      if (const EffectInfo* const known = info(one.effects.front())) add(escaped(known->prose));
+    }
+    if (chosen) {
+      for (const auto& parameter : one.parameters)
+        add(breakable(parameter.name) + " = " + with_unit(readable(parameter.value), parameter.unit) + " [" +
+            readable(parameter.ci95.low) + ", " + readable(parameter.ci95.high) + "]");
+    }
+    if (one.absorbed) add("re-calibration imitates it: this recording cannot show it");
+    if (one.at_bound) add("a parameter ended on its bound");
+    if (one.refused) add("refused: held-out data gets worse");
+    std::string like;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, one.confusable.size()); ++i)
+      like += (like.empty() ? "" : ", ") + breakable(joined(one.confusable[i].effects)) + " (" +
+              readable(one.confusable[i].cosine, 2) + ")";
+    if (!like.empty()) add("looks like " + like);
+    out_ += (small.empty() ? "" : "<small>" + small + "</small>") + "</td>" + probability(one.probability) +
+            "<td>" +
+            (one.held_out_ratio > 0.0 ? "\u00d7\u2009" + readable(one.held_out_ratio, 2) : "\u2013") +
+            "</td></tr>\n";
+  }
+
+  void which() {
+    if (d_.ranking.empty()) return;
+    out_ +=
+        "<h2>Which</h2>\n<table>\n<tr><th class=\"t\">explanation</th><th class=\"t\">probability</th>"
+        "<th>held-out gap<small>of the one as configured</small></th></tr>\n";
+    for (std::size_t i = 0; i < std::min(most_ranked, d_.ranking.size()); ++i) explanation(d_.ranking[i]);
+    out_ += "<tr><td class=\"t\">none of these</td>" + probability(d_.none_of_these) +
+            "<td></td></tr>\n</table>\n";
+    if (d_.ranking.size() > most_ranked)
+      out_ += "<p class=\"soft\">" + std::to_string(d_.ranking.size() - most_ranked) +
+              " more were weighed; all are in the JSON report.</p>\n";
+    out_ +=
+        "<p class=\"soft\">\u201cLooks like\u201d: cosine of the two signatures in this recording, whitened and freed of what the "
+        "model\u2019s own constants can imitate. Above 0.95 the recording cannot tell them apart.</p>\n";
+  }
+
+  void constants() {
+    if (d_.constants.empty()) return;
+    out_ +=
+        "<h2>Constants</h2>\n<p class=\"soft\">Constants of the model that moved by more than two of their uncertainties.</p>\n"
+        "<table>\n<tr><th class=\"t\">constant</th><th>as con\u00adfigured</th><th>with the effect</th>"
+        "<th>moved by</th><th>known to</th></tr>\n";
+    for (const auto& constant : d_.constants) {
+      const double moved = constant.configured != 0.0 ? constant.fitted / constant.configured - 1.0 : 0.0;
+      char text[24];
+      std::snprintf(text, sizeof text, "%+.1f\u00a0%%", 100.0 * moved);
+      out_ += "<tr><td class=\"t\"><code>" + breakable(constant.name) + "</code></td><td>" +
+              readable(constant.configured, 4) + "</td><td>" + readable(constant.fitted, 4) + "</td><td>" +
+              text + "</td><td>" +
+              (constant.uncertainty > 0.0 ? "\u00b1\u2009" + percent_html(constant.uncertainty) : "\u2013") +
+              "</td></tr>\n";
+    }
+    out_ += "</table>\n";
+  }
+
+  void data() {
+    const bool notes = std::any_of(d_.findings.begin(), d_.findings.end(),
+                                   [](const Finding& one) { return one.severity == Severity::note; });
+    if (!notes && d_.not_judged.empty()) return;
+    out_ += "<h2>About the data</h2>\n";
+    if (!d_.not_judged.empty()) {
+      out_ += "<h3>Not judged</h3>\n<ul>\n";
+      for (const auto& one : d_.not_judged) out_ += "<li>" + escaped(one) + "</li>\n";
+      out_ += "</ul>\n";
+    }
+    if (!notes) return;
+    out_ += "<h3>Good to know</h3>\n";
+    for (const auto& one : d_.findings)
+      if (one.severity == Severity::note) finding(one);
+  }
+
+  void foot() {
+    out_ +=
+        "<footer>Intervals cover 95 % and respect that residuals of neighbouring samples are alike. \u201cAs configured\u201d is the model as "
+        "given; \u201crecalibrated\u201d is the same with its own constants refitted and nothing added. The noise floor is what a perfect "
+        "model would score.</footer>\n</main>\n<script>" +
+        std::string(report_script) + "</script>\n</body>\n</html>\n";
+  }
+
+  const Diagnosis& d_;
+  const std::string& model_;
+  const std::vector<EffectInfo>& effects_;
+  std::vector<HeldOutRun> runs_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string report_html(const Diagnosis& diagnosis, const std::string& model_name,
+                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out) {
+  return Page(diagnosis, model_name, effects, held_out).write();
+}
+
+}  // namespace thermopower::io

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/report_json.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thermopower::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return value == 0.0 ? 0.0 : value;  // no negative zero: equal results should be equal bytes
+}
+
+Json interval(const Interval& ci) { return Json::array({number(ci.low), number(ci.high)}); }
+
+Json parameters(const std::vector<ParameterEstimate>& list) {
+  Json object = Json::object();
+  for (const auto& one : list) {
+    object[one.name] = {{"value", number(one.value)}, {"ci95", interval(one.ci95)}, {"unit", one.unit}};
+    if (one.at_bound) object[one.name]["at_bound"] = true;
+  }
+  return object;
+}
+
+Json regime(const std::optional<Regime>& part) {
+  if (!part) return nullptr;
+  return {{"variable", part->variable}, {"from", number(part->from)}, {"to", number(part->to)}};
+}
+
+Json location(const Location& where) {
+  Json object = {{"signal", to_string(where.signal)},
+                 {"submodel", to_string(where.submodel)},
+                 {"share", number(where.share)}};
+  object["regime"] = regime(where.regime);
+  object["evidence"] = where.evidence;
+  if (!where.only_in.empty()) {
+    object["only_in"] = Json::array();
+    for (const auto& one : where.only_in) {
+      object["only_in"].push_back({{"recording", one.recording},
+                                   {"run", one.run},
+                                   {"held_out", one.held_out},
+                                   {"from_s", one.from_s ? number(*one.from_s) : Json(nullptr)}});
+    }
+  }
+  return object;
+}
+
+Json remaining(const Remaining& rest) {
+  Json object = {{"signal", to_string(rest.signal)},
+                 {"share", number(rest.share)},
+                 {"times_floor", number(rest.times_floor)},
+                 {"submodel", rest.submodel ? Json(to_string(*rest.submodel)) : Json(nullptr)},
+                 {"regime", regime(rest.regime)},
+                 {"looks", rest.looks}};
+  return object;
+}
+
+Json score(const GapScore& gap) {
+  return {{"unit", gap.unit},
+          {"horizon_s", gap.horizon_s ? number(*gap.horizon_s) : Json(nullptr)},
+          {"before", number(gap.before)},
+          {"recalibrated", number(gap.recalibrated)},
+          {"after", number(gap.after)},
+          {"noise_floor", number(gap.noise_floor)},
+          {"shrunk_by", number(gap.shrunk_by)},
+          {"ci95", interval(gap.ci95)}};
+}
+
+Json ranked(const RankedExplanation& one) {
+  Json confusable = Json::array();
+  for (const auto& other : one.confusable)
+    confusable.push_back({{"effects", other.effects}, {"cosine", number(other.cosine)}});
+  return {{"effects", one.effects},
+          {"probability", number(one.probability)},
+          {"held_out_ratio", number(one.held_out_ratio)},
+          {"absorbed", one.absorbed},
+          {"at_bound", one.at_bound},
+          {"refused", one.refused},
+          {"parameters", parameters(one.parameters)},
+          {"confusable", confusable}};
+}
+
+// Hundreds of short ranges help nobody: the first ones, and how many rows there are in all.
+Json finding_json(const Finding& finding) {
+  constexpr std::size_t shown = 50;
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < std::min(shown, finding.rows.size()); ++i)
+    rows.push_back({finding.rows[i].begin, finding.rows[i].end});
+  return {{"kind", to_string(finding.kind)},
+          {"severity", to_string(finding.severity)},
+          {"recording", finding.recording},
+          {"column", finding.column},
+          {"message", finding.message},
+          {"rows", rows},
+          {"row_count", finding.row_count()},
+          {"action", to_string(finding.action)},
+          {"mend", finding.mend}};
+}
+
+}  // namespace
+
+std::string findings_json(const std::vector<Finding>& findings) {
+  Json list = Json::array();
+  for (const auto& one : findings) list.push_back(finding_json(one));
+  return list.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string report_json(const Diagnosis& diagnosis) {
+  Json root;
+  root["format"] = "thermopower-gap-report/1";
+  root["verdict"] = to_string(diagnosis.verdict);
+  root["where"] = Json::array();
+  for (const auto& where : diagnosis.where) root["where"].push_back(location(where));
+  root["cause"] = Json::array();
+  for (const auto& cause : diagnosis.cause) {
+    root["cause"].push_back({{"effect", cause.effect},
+                             {"probability", number(cause.probability)},
+                             {"parameters", parameters(cause.parameters)}});
+  }
+  root["alternatives"] = diagnosis.alternatives;
+  root["gap"] = Json::object();
+  for (const auto& gap : diagnosis.gap) root["gap"][to_string(gap.signal)] = score(gap);
+  if (diagnosis.remaining) root["remaining"] = remaining(*diagnosis.remaining);
+  root["next_experiment"] = diagnosis.next_experiment;
+  root["reason"] = diagnosis.reason;
+  root["none_of_these"] = number(diagnosis.none_of_these);
+  root["not_judged"] = diagnosis.not_judged;
+  root["findings"] = Json::array();
+  for (const auto& finding : diagnosis.findings) {
+    root["findings"].push_back(finding_json(finding));
+  }
+  root["constants"] = Json::object();
+  for (const auto& constant : diagnosis.constants) {
+    root["constants"][constant.name] = {{"configured", number(constant.configured)},
+                                        {"fitted", number(constant.fitted)},
+                                        {"uncertainty", number(constant.uncertainty)}};
+  }
+  root["recalibration"] = diagnosis.recalibration;
+  root["ranking"] = Json::array();
+  for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace thermopower::io

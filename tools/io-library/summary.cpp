@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/summary.hpp>
+
+#include "html_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace thermopower::io {
+namespace {
+
+constexpr std::size_t text_width = 100;
+
+// Wraps words, and indents every line but the first: the first stands behind a label.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string out;
+  std::size_t column = indent, i = 0;
+  while (i < text.size()) {
+    const std::size_t end = std::min(text.find(' ', i), text.size());
+    if (column > indent && column + 1 + (end - i) > text_width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      out += ' ';
+      ++column;
+    }
+    out.append(text, i, end - i);
+    column += end - i;
+    i = end + 1;
+  }
+  return out;
+}
+
+std::string line(const std::string& label, const std::string& text) {
+  std::string head = "  " + label;
+  head.resize(14, ' ');
+  return head + wrapped(text, 14) + "\n";
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "?";
+  char text[16];
+  if (share > 0.99 && share < 1.0) return ">99 %";
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
+  return text;
+}
+
+// As the terminal writes it: `ohm`, not a sign.
+std::string plain_unit(const std::string& number, const std::string& unit) {
+  return unit == "1" || unit.empty() ? number : number + " " + unit;
+}
+
+const char* headline(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::no_gap:
+      return "NO GAP";
+    case Verdict::explained:
+      return "EXPLAINED";
+    case Verdict::partial:
+      return "PARTLY EXPLAINED";
+    case Verdict::ambiguous:
+      return "AMBIGUOUS";
+    case Verdict::unexplained:
+      return "UNEXPLAINED";
+    case Verdict::insufficient:
+      return "INSUFFICIENT DATA";
+  }
+  return "";
+}
+
+std::string occurrences_text(const std::vector<Occurrence>& list) {
+  std::string out;
+  for (const auto& one : list) {
+    out += (out.empty() ? "" : ", ") + one.recording;
+    if (!one.run.empty()) out += " run " + one.run;
+    if (one.held_out) out += " (held out)";
+    if (one.from_s) out += " from " + readable(*one.from_s) + " s on";
+  }
+  return out;
+}
+
+std::string gap_table(const Diagnosis& diagnosis) {
+  if (diagnosis.gap.empty()) return {};
+  char row[200];
+  std::snprintf(row, sizeof row, "\n  %-20s%14s%14s%14s%14s   %s\n", "RMSE, held out", "as configured",
+                "recalibrated", "with effect", "noise floor", "shrunk by [95 %]");
+  std::string out = row;
+  for (const auto& gap : diagnosis.gap) {
+    std::string shrunk = diagnosis.cause.empty()
+                             ? "-"
+                             : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " +
+                                   readable(100.0 * gap.ci95.high, 3) + "]";
+    std::snprintf(
+        row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (to_string(gap.signal) + " / " + gap.unit).c_str(),
+        readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
+        diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(), readable(gap.noise_floor).c_str());
+    out += row + shrunk + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string summary(const Diagnosis& diagnosis) {
+  std::string out = std::string(headline(diagnosis.verdict)) + "\n";
+  if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
+  out += findings_text(diagnosis.findings, Severity::warning);
+  bool first = true;
+  for (const auto& where : diagnosis.where) {
+    std::string text = to_string(where.signal) + ", " + to_string(where.submodel) + " (" +
+                       percent(where.share) + " of the gap)";
+    if (where.regime) {
+      text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +
+              readable(where.regime->to);
+    }
+    if (!where.only_in.empty()) text += "; only in " + occurrences_text(where.only_in);
+    out += line(first ? "where" : "", text);
+    first = false;
+  }
+  first = true;
+  for (const auto& cause : diagnosis.cause) {
+    std::string text = cause.effect + " (" + percent(cause.probability) + ")";
+    for (const auto& parameter : cause.parameters) {
+      text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
+              plain_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
+              ", " + readable(parameter.ci95.high) + "]";
+    }
+    out += line(first ? "which" : "", text);
+    first = false;
+  }
+  for (const auto& constant : diagnosis.constants) {
+    const std::string as = "calibration." + constant.name;
+    const bool is_cause = std::any_of(diagnosis.cause.begin(), diagnosis.cause.end(),
+                                      [&](const Cause& cause) { return cause.effect == as; });
+    if (!is_cause)
+      out +=
+          line("with", constant.name + " " + readable(constant.configured) + " -> " +
+                           readable(constant.fitted) + " (known to " + percent(constant.uncertainty) + ")");
+  }
+  if (diagnosis.remaining) {
+    const Remaining& rest = *diagnosis.remaining;
+    std::string text = std::string(to_string(rest.signal)) + " stays at " + readable(rest.times_floor, 3) +
+                       " times its noise floor, " + percent(rest.share) + " of the gap";
+    if (rest.submodel) text += std::string("; ") + to_string(*rest.submodel);
+    if (rest.regime)
+      text += ", most for " + rest.regime->variable + " " + readable(rest.regime->from) + " to " +
+              readable(rest.regime->to);
+    if (!rest.looks.empty()) text += "; " + rest.looks;
+    out += line("remaining", text);
+  }
+  std::string others;
+  for (const auto& one : diagnosis.alternatives) others += (others.empty() ? "" : "; ") + joined(one);
+  if (!others.empty()) out += line("or", others + " (this recording cannot tell them apart)");
+  out += gap_table(diagnosis);
+  if (!diagnosis.next_experiment.empty() || !diagnosis.not_judged.empty()) out += "\n";
+  if (!diagnosis.recalibration.empty()) out += line("constants", diagnosis.recalibration);
+  if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
+  for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
+  return out;
+}
+
+std::string summary_line(const std::string& label, const std::string& text) { return line(label, text); }
+
+std::string findings_text(const std::vector<Finding>& findings, Severity least) {
+  std::string out;
+  std::vector<std::string> told;  // the same fault in several recordings is told once
+  for (const auto& finding : findings) {
+    if (finding.severity < least) continue;
+    if (std::find(told.begin(), told.end(), finding.column + finding.message) != told.end()) continue;
+    told.push_back(finding.column + finding.message);
+    std::string text = finding.recording + (finding.column.empty() ? "" : ", column " + finding.column) +
+                       ": " + finding.message;
+    if (finding.action != FindingAction::none) text += std::string(" [") + to_string(finding.action) + "]";
+    if (!finding.mend.empty()) text += ". To mend it: " + finding.mend;
+    out += line(finding.severity == Severity::note ? "note" : "data", text);
+  }
+  return out;
+}
+
+std::string one_sentence(const Diagnosis& diagnosis) {
+  std::string out = std::string("verdict ") + to_string(diagnosis.verdict);
+  for (const auto& cause : diagnosis.cause)
+    out += (&cause == &diagnosis.cause.front() ? ", " : " + ") + cause.effect;
+  return out;
+}
+
+std::string catalogue_text(const std::vector<EffectInfo>& effects) {
+  std::string out;
+  for (const auto& effect : effects) {
+    out += effect.id + "  (" + to_string(effect.submodel) + ")\n";
+    out += "    " + wrapped(effect.prose, 4) + "\n";
+    if (!effect.equation.empty()) out += "    equation    " + wrapped(effect.equation, 16) + "\n";
+    bool first = true;
+    for (const auto& parameter : effect.parameters) {
+      out += std::string(first ? "    parameters  " : "                ") + parameter.name + " in " +
+             (parameter.unit == "1" ? "1" : parameter.unit) + ", " + readable(parameter.lower) + " to " +
+             readable(parameter.upper) +
+             (parameter.standard ? ", " + readable(*parameter.standard) + " where left out" : std::string()) +
+             "\n";
+      first = false;
+    }
+    std::string needs;
+    for (const Need need : effect.needs) needs += std::string(needs.empty() ? "" : ", ") + to_string(need);
+    if (!needs.empty()) out += "    needs       " + wrapped(needs, 16) + "\n";
+    out += "\n";
+  }
+  out +=
+      "calibration.<constant>\n    a constant of the model itself is off by more than two of its uncertainties: resistance, tempco,\n"
+      "    base, slope, heat_capacity, conductance, rinv, cooling, inertia, viscous, torque_constant, or\n"
+      "    <effect>.<parameter> of an effect in the model; as a factor on the configured value.\n";
+  return out;
+}
+
+}  // namespace thermopower::io

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+//
+// The part of the Python module that is C++: what crosses is text (JSON) and arrays. The package around it,
+// thermopower/__init__.py, is what users see.
+
+#include <thermopower/gap.hpp>
+#include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/io.hpp>
+
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+namespace gap = thermopower::gap;
+namespace io = thermopower::io;
+
+namespace {
+
+using Columns = std::vector<std::pair<std::string, Eigen::VectorXd>>;
+using Run = std::pair<Eigen::Index, std::string>;  // first row, label
+
+gap::Recording recording_of(const std::string& name, const Eigen::VectorXd& t_s, const std::vector<Run>& runs,
+                            const Columns& columns) {
+  gap::Recording recording;
+  recording.name = name;
+  recording.t_s = t_s;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Eigen::Index end = i + 1 < runs.size() ? runs[i + 1].first : t_s.size();
+    recording.runs.push_back({runs[i].first, end, runs[i].second});
+  }
+  for (const auto& [column, values] : columns) recording.set(column, values);
+  if (const auto problem = recording.validate())
+    throw io::InputError("recording '" + name + "': " + *problem);
+  return recording;
+}
+
+gap::Recording recording_in(const std::string& path, const std::vector<std::string>& choices) {
+  std::vector<io::ColumnChoice> parsed;
+  for (const std::string& text : choices) parsed.push_back(io::parse_column_choice(text));
+  return io::read_recording(path, parsed).recording;
+}
+
+gap::Model model_of(const std::string& json) {
+  return io::parse_model("model", json, gap::standard_catalogue());
+}
+
+/// A diagnosis with what its files are written from.
+struct Result {
+  gap::Diagnosis diagnosis;
+  std::string model_name;
+  std::vector<gap::Recording> held_out;
+
+  std::string report() const { return io::report_json(diagnosis); }
+  std::string html() const {
+    return io::report_html(diagnosis, model_name, gap::standard_catalogue().list(), held_out);
+  }
+  std::string augmented() const { return io::to_json(diagnosis.augmented); }
+  std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }
+  std::string summary() const { return io::summary(diagnosis); }
+  std::pair<std::string, std::vector<std::string>> header() const {
+    io::MotorModelHeader made = io::motor_model_header(diagnosis.augmented, io::one_sentence(diagnosis));
+    return {made.text, made.left_out};
+  }
+  py::list series() const {
+    py::list list;
+    for (const gap::SignalSeries& one : diagnosis.series) {
+      py::dict entry;
+      entry["signal"] = to_string(one.signal);
+      entry["unit"] = one.unit;
+      entry["recording"] = one.recording;
+      entry["t_s"] = one.t_s;
+      entry["measured"] = one.measured;
+      entry["baseline"] = one.baseline;
+      entry["recalibrated"] = one.recalibrated;
+      entry["augmented"] = one.augmented;
+      list.append(entry);
+    }
+    return list;
+  }
+};
+
+Result diagnose(const std::string& model, std::vector<gap::Recording> train,
+                std::vector<gap::Recording> held_out, const gap::Options& options) {
+  options.validate();
+  Result result;
+  const gap::Model parsed = model_of(model);
+  if (held_out.empty()) {
+    for (gap::Recording& recording : train) {
+      auto [first, last] = gap::split(recording, options.held_out_fraction);
+      recording = std::move(first);
+      held_out.push_back(std::move(last));
+    }
+  }
+  result.diagnosis = gap::diagnose(parsed, train, held_out, options);
+  result.model_name = parsed.name;
+  result.held_out = std::move(held_out);
+  return result;
+}
+
+std::string check(const std::string& model, const std::vector<gap::Recording>& train,
+                  const std::vector<gap::Recording>& held_out, const gap::Options& options) {
+  options.validate();
+  return io::check_json(gap::check_data(model_of(model), train, held_out, options));
+}
+
+using Signals = std::vector<std::pair<std::string, Eigen::VectorXd>>;
+
+// Each model on each recording's own thread of a few; an exception in one is the batch's.
+std::vector<Signals> simulate(const std::vector<std::string>& models,
+                              const std::vector<gap::Recording>& recordings,
+                              const std::map<std::string, double>& starts, double horizon_s, bool from_inputs,
+                              unsigned threads) {
+  std::vector<gap::Model> parsed;
+  for (const std::string& one : models) parsed.push_back(model_of(one));
+  gap::SimulationOptions options;
+  options.horizon_s = horizon_s;
+  const std::size_t count = models.size() * recordings.size();
+  std::vector<Signals> all(count);
+  std::vector<std::exception_ptr> errors(count);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        const gap::Model& model = parsed[i / recordings.size()];
+        gap::Recording recording = recordings[i % recordings.size()];
+        if (from_inputs) recording = io::with_starts(std::move(recording), model, starts);
+        for (auto& one : gap::simulate(model, recording, options))
+          all[i].emplace_back(to_string(one.signal), std::move(one.values));
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned i = 1; i < std::min<std::size_t>(std::max(threads, 1u), count); ++i)
+    workers.emplace_back(work);
+  work();
+  for (std::thread& one : workers) one.join();
+  for (const std::exception_ptr& one : errors)
+    if (one) std::rethrow_exception(one);
+  return all;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_thermopower, module) {
+  using released = py::call_guard<py::gil_scoped_release>;
+  // Where a module of one's own turned a bad value down, and where a file or an argument cannot be read.
+  py::register_exception<gap::InvalidInput>(module, "InvalidInput", PyExc_ValueError);
+  py::register_exception<io::InputError>(module, "InputError", PyExc_ValueError);
+  py::class_<gap::Recording>(module, "Recording")
+      .def(py::init(&recording_of))
+      .def_readonly("name", &gap::Recording::name)
+      .def_property_readonly("rows", &gap::Recording::rows);
+  module.def("read_recording", &recording_in, released());
+  py::class_<gap::Options>(module, "Options")
+      .def(py::init())
+      .def_readwrite("horizon_s", &gap::Options::horizon_s)
+      .def_readwrite("tolerance", &gap::Options::tolerance)
+      .def_readwrite("held_out_fraction", &gap::Options::held_out_fraction)
+      .def_readwrite("effects_at_once", &gap::Options::effects_at_once)
+      .def_readwrite("without", &gap::Options::without)
+      .def_readwrite("as_recorded", &gap::Options::as_recorded)
+      .def_readwrite("threads", &gap::Options::threads)
+      .def_readwrite("seed", &gap::Options::seed);
+  py::class_<Result>(module, "Result")
+      .def("report", &Result::report)
+      .def("html", &Result::html)
+      .def("augmented", &Result::augmented)
+      .def("recalibrated", &Result::recalibrated)
+      .def("summary", &Result::summary)
+      .def("header", &Result::header)
+      .def("series", &Result::series);
+  module.def("diagnose", &diagnose, released());
+  module.def("check", &check, released());
+  module.def("simulate", &simulate, released());
+  module.def("effects", [] { return io::catalogue_text(gap::standard_catalogue().list()); });
+  module.def("normalised", [](const std::string& model) { return io::to_json(model_of(model)); });
+  module.attr("known_columns") = io::known_columns();
+}
