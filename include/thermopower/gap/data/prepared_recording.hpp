@@ -263,15 +263,16 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
   {
     SampleMasks still(values, runs, traits);
+    // First: all but the first sample of a clipped stretch look frozen.
+    const RowMask clipped = still.clipped();
+    take(clipped);
+    list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
+                  "stand at the end of the sensor's range", "use a sensor with a wider range");
     const RowMask frozen = still.frozen();
     take(frozen);
     list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
                   "repeat the value before them where noise or motion would show",
                   "look at what reads the sensor");
-    const RowMask clipped = still.clipped();
-    take(clipped);
-    list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
-                  "stand at the end of the sensor's range", "use a sensor with a wider range");
     if (still.equal_share() > 0.999999 && recorded.rows() > 20)
       list.add(FindingKind::constant_column, Severity::note, name, "never changes");
   }

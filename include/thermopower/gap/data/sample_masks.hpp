@@ -160,9 +160,13 @@ public:
       if (at_extreme < limit_.least_clipped || extreme == 0.0 ||
           static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
         continue;
+      // One sample tells little: just at the end of its range a sensor is still right.
+      std::ptrdiff_t wrong = 0;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
-        if (values_[i] == extreme && !resting(i) && !moves_on(i, extreme))
-          mask[static_cast<std::size_t>(i)] = 1;
+        wrong += values_[i] == extreme && !resting(i) && !moves_on(i, extreme) ? 1 : 0;
+      if (2 * wrong < at_extreme) continue;
+      for (Eigen::Index i = 0; i < values_.size(); ++i)
+        if (values_[i] == extreme) mask[static_cast<std::size_t>(i)] = 1;
     }
     take(mask);
     return mask;
