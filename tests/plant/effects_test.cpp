@@ -101,7 +101,8 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
     const Attribution attribution(problem, 1);
     INFO(trial.id);
     const Candidate empty = attribution.fit({}, {});
-    const Candidate fitted = attribution.fit({{standard_catalogue().find(trial.id)}, {}}, {});
+    Candidate fitted = attribution.fit({{standard_catalogue().find(trial.id)}, {}}, {});
+    attribution.survey(fitted);
     CHECK(empty.fit.chi2 > 2.0 * fitted.fit.chi2);
     CHECK(fitted.fit.chi2 / static_cast<double>(fitted.fit.samples) < 1.15);
     const Eigen::VectorXd truth = coordinates_of(trial, fitted.list);

@@ -103,7 +103,7 @@ public:
           friction_Nm = forward * now.forward_Nm - (1.0 - forward) * now.backward_Nm;
         } else {
           friction_Nm = (rate[i] >= 0.0 ? now.forward_Nm : now.backward_Nm) *
-                        std::tanh(rate[i] / std::max(now.transition_rad_per_s, 1e-12));
+                        film_share(rate[i] / std::max(now.transition_rad_per_s, 1e-12), now.tail);
         }
         v.drive_Nm[i] = drive_Nm;
         v.motion_Nm[i] = now.torque_Nm - drive_Nm - drive.external_Nm - friction_Nm;

@@ -6,6 +6,7 @@
 #include <thermopower/plant/rows.hpp>
 
 #include <cmath>
+#include <type_traits>
 
 namespace thermopower::plant {
 
@@ -116,6 +117,7 @@ public:
     Scalar forward_Nm;            ///< dry friction while the rate is positive, >= 0
     Scalar backward_Nm;           ///< dry friction while the rate is negative, >= 0
     Scalar transition_rad_per_s;  ///< of dry friction; 0: it sticks
+    Scalar tail;                  ///< of its transition, by `film_share`
     bool dry;                     ///< there is dry friction
   };
 
@@ -146,7 +148,7 @@ public:
     const Scalar viscous_Nm = instance_.viscous_Nms_per_rad * state.rate_rad_per_s;
     if (instance_.friction.empty()) {
       torque_Nm -= viscous_Nm;
-      return {torque_Nm, zero, zero, zero, false};
+      return {torque_Nm, zero, zero, zero, zero, false};
     }
     FrictionTerms<Scalar> dry{t_s,
                               drive.motor_C,
@@ -164,8 +166,12 @@ public:
       effect(dry);
     }
     torque_Nm -= (viscous_Nm + dry.torque_Nm) * dry.factor;
-    return {torque_Nm, Scalar(dry.forward_Nm * dry.factor), Scalar(dry.backward_Nm * dry.factor),
-            dry.transition_rad_per_s, dry.dry};
+    return {torque_Nm,
+            Scalar(dry.forward_Nm * dry.factor),
+            Scalar(dry.backward_Nm * dry.factor),
+            dry.transition_rad_per_s,
+            dry.tail,
+            dry.dry};
   }
 
 private:
@@ -180,13 +186,24 @@ private:
     const bool forward = value_of(rate_rad_per_s) >= 0.0;
     const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
     constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
-    if (std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
+    // Where there is none, its derivative may still be asked for.
+    const bool has_tail = !std::is_same<Scalar, double>::value || value_of(now.tail) > 0.0;
+    if (!has_tail && std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
       if (stiffness != nullptr) *stiffness = constant<Scalar>(0.0);
       return forward ? size_Nm : Scalar(-size_Nm);
     }
-    const Scalar share = tanh(Scalar(rate_rad_per_s / now.transition_rad_per_s));
-    if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
-    return size_Nm * share;
+    const Scalar x = rate_rad_per_s / now.transition_rad_per_s;
+    if (!has_tail) {
+      const Scalar share = tanh(x);
+      if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
+      return size_Nm * share;
+    }
+    const Scalar steep = tanh(x), within = 1.0 / (magnitude(x) + 1.0), gentle = x * within;
+    if (stiffness != nullptr) {
+      const Scalar slope = 1.0 - steep * steep;
+      *stiffness = size_Nm * (slope + now.tail * (within * within - slope)) / now.transition_rad_per_s;
+    }
+    return size_Nm * (steep + now.tail * (gentle - steep));
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {

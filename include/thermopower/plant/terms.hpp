@@ -5,6 +5,8 @@
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/given.hpp>
 
+#include <cmath>
+
 namespace thermopower::plant {
 
 /// @file terms.hpp
@@ -111,6 +113,18 @@ struct AxisTerms {
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
 };
 
+/// The share of dry friction that acts at a rate, with its sign: tanh(x) where `tail` is 0, x / (1 + |x|) where it is
+/// 1, and what lies between in proportion. A film that is sheared carries a torque that turns over with the rate; how
+/// slowly it becomes the full one differs from joint to joint, and a creeping motion shows it.
+/// @param x     rate over the transition
+/// @param tail  0..1
+template <class Scalar>
+Scalar film_share(const Scalar& x, const Scalar& tail) {
+  using std::tanh;
+  const Scalar steep = tanh(x);
+  return steep + tail * (x / (magnitude(x) + 1.0) - steep);
+}
+
 /// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
 /// friction sees every load whatever the order of the effects.
 template <class Scalar>
@@ -124,21 +138,26 @@ struct FrictionTerms {
   // to change
   Scalar forward_Nm;                ///< magnitude while the rate is positive, >= 0
   Scalar backward_Nm;               ///< magnitude while the rate is negative, >= 0
-  Scalar transition_rad_per_s;      ///< it turns with the rate as tanh(rate / this); 0: sticks at rest
+  Scalar transition_rad_per_s;      ///< rate within which it turns over, by `film_share`; 0: sticks at rest
   Scalar factor;                    ///< multiplies all friction, the viscous one too, >= 0
   Scalar torque_Nm;                 ///< friction of other kinds than the dry one, taken off the other torques
   bool dry = false;                 ///< some effect has dry friction
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
+  Scalar tail = 0.0;  ///< how slowly it becomes full beyond the transition, 0..1, by `film_share`
 
   /// Torque that the gears transmit, N m: |drive - load|. A drive that holds a load against it passes both.
   Scalar transmitted_Nm() const { return magnitude(Scalar(drive_Nm - load_Nm)); }
 
-  /// Adds dry friction of a magnitude for each direction. The widest transition among all frictions holds.
-  void add_friction(const Scalar& forward, const Scalar& backward, const Scalar& transition) {
+  /// Adds dry friction of a magnitude for each direction. The widest transition among all frictions holds, and the
+  /// longest tail.
+  void add_friction(const Scalar& forward, const Scalar& backward, const Scalar& transition,
+                    const Scalar& longest_tail = 0.0) {
     dry = true;
     forward_Nm += forward;
     backward_Nm += backward;
     transition_rad_per_s = larger(transition_rad_per_s, transition);
+    if (!(value_of(longest_tail) < value_of(tail)))
+      tail = longest_tail;  // equal: it is the one that may vary
   }
 };
 

@@ -56,14 +56,18 @@ public:
     finish.iterations = 12;
     finish.relative_decrease = 1e-5;
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
-    for (std::size_t place = 0; place < std::min<std::size_t>(2, order.size()); ++place) {
+    constexpr std::size_t looked_at = 6, related_to = 2;
+    for (std::size_t place = 0; place < std::min(looked_at, order.size()); ++place) {
       const Candidate leader = candidates[order[place]];
       std::vector<std::size_t> rivals;
       std::size_t related = 0;
       for (std::size_t index : order) {
         if (index == order[place] || index == 0) continue;
         if (leader.explanation.includes(candidates[index].explanation) ||
-            (is_related(candidates[index].explanation, leader.explanation) && related++ < 3))
+            (place < related_to &&
+             is_simpler_counterpart(candidates[index].explanation, leader.explanation)) ||
+            (place < related_to && is_related(candidates[index].explanation, leader.explanation) &&
+             related++ < 3))
           rivals.push_back(index);
       }
       in_parallel(rivals.size(), threads_,
@@ -108,6 +112,13 @@ private:
       if (!related) return false;
     }
     return true;
+  }
+
+  /// Whether a set has as many effects of the same submodels as another one, with fewer parameters.
+  static bool is_simpler_counterpart(const Explanation& simple, const Explanation& rich) {
+    return simple.effects.size() == rich.effects.size() &&
+           simple.parameter_count() < rich.parameter_count() && is_related(simple, rich) &&
+           is_related(rich, simple);
   }
 
   /// A set worth fitting.

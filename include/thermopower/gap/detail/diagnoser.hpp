@@ -49,7 +49,9 @@ public:
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
     Attempt attempt = thorough_search(fit_horizon_s());
-    if (train_inputs_.front().axis() && options_.horizon_s < fit_horizon_s() && best_level(attempt) > 1.5) {
+    constexpr double far_above = 3.0;  // times the noise: nearer to it long windows do no harm
+    if (train_inputs_.front().axis() && options_.horizon_s < fit_horizon_s() &&
+        best_level(attempt) > far_above) {
       // Over long windows small errors can send the axis into the next dip of a load: short ones forgive
       // that.
       Attempt shorter = search(options_.horizon_s);
@@ -66,7 +68,7 @@ public:
       weigh(all, attempt.weight, model_);
       conclusion = conclude(all, attempt.reference, attempt.weight, options_);
     }
-    if (conclusion.verdict != Verdict::no_gap && holds(attempt)) conclusion = nothing_missing();
+    if (conclusion.verdict != Verdict::no_gap && holds(attempt, conclusion)) conclusion = nothing_missing();
     report(attempt, conclusion);
     stage("how far");
     return std::move(result_);
@@ -86,10 +88,13 @@ private:
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
   /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
   /// training data over a narrow range leave constants open that the held-out data ask for: what fits both
-  /// will do.
-  bool holds(const Attempt& attempt) {
+  /// will do. Where constants are the answer, the model must hold as it is configured.
+  bool holds(const Attempt& attempt, const Conclusion& conclusion) {
     const Candidate& empty = attempt.candidates.front();
     if (worst_level(empty) > 8.0) return false;
+    if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
+      return holds(model_, held_out_inputs_, attempt.problem) &&
+             holds(model_, train_inputs_, attempt.problem);
     if (holds(augmented(model_, empty.explanation, empty.list, empty.fit.at), held_out_inputs_,
               attempt.problem))
       return true;
@@ -226,6 +231,17 @@ private:
     return list;
   }
 
+  /// The same, and every two constants: two that are off need not be reached from one that is.
+  static std::vector<Explanation> with_pairs_of_constants(std::vector<Explanation> list) {
+    std::vector<int> constants;
+    for (const Explanation& one : list)
+      if (one.effects.empty()) constants.push_back(one.released.front());
+    for (std::size_t i = 0; i < constants.size(); ++i)
+      for (std::size_t k = i + 1; k < constants.size(); ++k)
+        list.push_back({{}, {constants[i], constants[k]}});
+    return list;
+  }
+
   /// Whether the constant's block is judged.
   bool acts(const CalibratedConstant& constant) const {
     if (!constant.effect().empty() || model_.own) return true;
@@ -252,17 +268,27 @@ private:
 
   /// A search, and another one with what the first overlooked.
   Attempt thorough_search(double horizon_s) {
-    Attempt attempt = search(horizon_s);
+    std::vector<std::size_t> worst;
+    Attempt attempt = search(horizon_s, {}, &worst);
+    if (worst.empty()) worst = overlooked_by(attempt);
+    return worst.empty() ? attempt : search(horizon_s, worst);
+  }
+
+  /// The windows that the best explanation of an attempt fits worst, of those that were not fitted.
+  std::vector<std::size_t> overlooked_by(const Attempt& attempt) const {
     const Candidate& best = Search::best(attempt.candidates);
     // Where even the windows that were fitted are far above the noise, others tell no more.
     constexpr double fitted = 3.0;  // times the noise
     for (std::size_t i = 0; i < signal_count; ++i)
-      if (best.train.mean(i) > fitted * fitted) return attempt;
-    const std::vector<std::size_t> worst = overlooked(attempt.problem, attempt.all, best, options_.horizon_s);
-    return worst.empty() ? attempt : search(horizon_s, worst);
+      if (best.train.mean(i) > fitted * fitted) return {};
+    return overlooked(attempt.problem, attempt.all, best, options_.horizon_s);
   }
 
-  Attempt search(double horizon_s, const std::vector<std::size_t>& also = {}) {
+  /// @param also   windows to fit, too
+  /// @param worst  where given, receives the windows that the single causes overlook; where there are such, the
+  ///               attempt ends there
+  Attempt search(double horizon_s, const std::vector<std::size_t>& also = {},
+                 std::vector<std::size_t>* worst = nullptr) {
     Attempt attempt;
     FitProblem& problem = attempt.problem =
         problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
@@ -276,7 +302,7 @@ private:
     problem.sigma = coarse_problem.sigma;
     const Search searching(coarse, fine, options_.threads);
     const std::vector<Explanation> causes = singles();
-    candidates = searching.run_singles(causes);
+    candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
       coarse_problem.sigma = problem.sigma;
@@ -284,6 +310,7 @@ private:
       searching.renew(candidates);
     };
     renew();
+    if (worst != nullptr && !(*worst = overlooked_by(attempt)).empty()) return attempt;
     if (options_.effects_at_once > 1) {
       // Constants move in every explanation: only effects are joined.
       std::vector<Explanation> effects;
@@ -297,7 +324,7 @@ private:
     attempt.weight = correlation_of(Search::best(candidates), problem);
     attempt.weight.travel_rad = travel_rad();
     attempt.recalibrated = recalibrate(candidates, fine);
-    judge(attempt);
+    judge(attempt, fine);
     weigh(candidates, attempt.weight, model_);
     return attempt;
   }
@@ -347,7 +374,7 @@ private:
 
   /// Scores the empty explanation, those by constants alone, and the best ones on held-out data, as a gap is
   /// judged. The others are out of the running.
-  void judge(Attempt& attempt) const {
+  void judge(Attempt& attempt, const Attribution& fine) const {
     std::vector<Candidate>& candidates = attempt.candidates;
     const std::vector<Segment> segments = judged_segments(held_out_inputs_);
     const auto model_of = [&](const Candidate& one) {
@@ -381,6 +408,7 @@ private:
       Candidate& one = candidates[looked_at[i]];
       const Model model = model_of(one);
       one.held_out = scored(model);
+      fine.survey(one);
       const auto rollout = plant_of(model).rollout(model, catalogue_, {}, {}, SimulationMode::free_running);
       for (const Segment& segment : segments)
         one.hidden_starts += static_cast<int>(rollout->hidden_starts(segment).size());

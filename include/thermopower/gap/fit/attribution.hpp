@@ -27,6 +27,7 @@ struct Candidate {
   double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
+  bool idle = false;         ///< constants moved beside it that alone explain everything
 };
 
 /// Fits explanations to training data.
@@ -45,14 +46,14 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
     if (starts.size() > 1) {
-      // The linear guess of every start, then a few steps from the best three, then the best of them.
+      // The linear guess of every start, then a few steps from the best five, then the best of them.
       std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({fitter.scan(starts[i]), i});
       std::sort(order.begin(), order.end());
       FitOptions few = options;
       few.iterations = std::min(4, options.iterations);
       FitResult best;
-      for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
+      for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i) {
         FitResult trial = fitter.minimise(starts[order[i].second], few);
         if (trial.cost < best.cost) best = std::move(trial);
       }
@@ -72,6 +73,17 @@ public:
     candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
     if (options.iterations > 2) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
+  }
+
+  /// Looks at the curvature where a fit ended: what the intervals of its parameters are made of.
+  void survey(Candidate& candidate) const {
+    if (candidate.fit.information.size() > 0) return;
+    FitOptions look;
+    look.iterations = 0;
+    look.curvature = true;
+    const bool same = candidate.fit.starts.size() == problem_.segments.size();
+    candidate.fit = Fitter(problem_, candidate.explanation, candidate.list)
+                        .minimise(candidate.fit.at, look, same ? &candidate.fit.starts : nullptr);
   }
 
   /// What is fitted to.
@@ -162,18 +174,23 @@ private:
 
   /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
   /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
-  /// that ended shortly before it begins once more there.
+  /// that ended shortly before it begins once more there. A shape that ended at its far bound may have run there from
+  /// a start on the wrong side: then all that have a standard begin once more from it.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
     Eigen::VectorXd again = candidate.fit.at;
-    bool trapped = false;
+    bool trapped = false, far = false;
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {
       const Coordinate& one = candidate.list[i];
       const auto at = static_cast<Eigen::Index>(i);
-      if (!one.standard || again[at] > *one.standard) continue;
+      if (!one.standard) continue;
+      if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
+      if (!(*one.standard > one.lower) || again[at] > *one.standard) continue;
       again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
       trapped = true;
     }
     if (!trapped) return;
+    for (std::size_t i = 0; far && i < candidate.list.size(); ++i)
+      if (candidate.list[i].standard) again[static_cast<Eigen::Index>(i)] = *candidate.list[i].standard;
     FitResult freed = fitter.minimise(again, options, &candidate.fit.starts);
     if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
   }

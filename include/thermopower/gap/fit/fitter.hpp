@@ -14,20 +14,22 @@ namespace thermopower::gap {
 struct FitOptions {
   int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
+  bool curvature = false;           ///< whether the result holds `information` and `scatter`: one more pass
 };
 
 /// Where a fit ended.
 struct FitResult {
-  Eigen::VectorXd at;           ///< coordinates
-  std::vector<Start> starts;    ///< of every segment
-  double chi2 = 1e300;          ///< data only
-  double cost = 1e300;          ///< data and priors
-  Eigen::MatrixXd information;  ///< half the cost's curvature in the coordinates, starts projected out
-  Eigen::MatrixXd scatter;      ///< of the gradients of contiguous blocks of the data, summed over the blocks
-  int blocks = 0;               ///< how many blocks that were
-  Eigen::Index samples = 0;     ///< residuals that counted
-  int iterations = 0;           ///< steps taken; fewer than allowed: converged
-  std::vector<bool> at_bound;   ///< by coordinate
+  Eigen::VectorXd at;         ///< coordinates
+  std::vector<Start> starts;  ///< of every segment
+  double chi2 = 1e300;        ///< data only
+  double cost = 1e300;        ///< data and priors
+  Eigen::MatrixXd
+      information;           ///< half the cost's curvature in the coordinates, starts projected out; or empty
+  Eigen::MatrixXd scatter;   ///< of the gradients of contiguous blocks of the data, summed over the blocks
+  int blocks = 0;            ///< how many blocks that were
+  Eigen::Index samples = 0;  ///< residuals that counted
+  int iterations = 0;        ///< steps taken; fewer than allowed: converged
+  std::vector<bool> at_bound;  ///< by coordinate
 };
 
 /// Gauss-Newton with Levenberg damping inside bounds.
@@ -81,14 +83,16 @@ public:
       }
       if (!accepted || small_steps >= 1) break;
     }
-    const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
-    scatter_.setZero(count, count);
-    blocks_ = 0;
-    linearise(best);
-    best.information = information_;
-    best.scatter = std::move(scatter_);
-    best.blocks = blocks_;
-    scatter_.resize(0, 0);
+    if (options.curvature) {
+      const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
+      scatter_.setZero(count, count);
+      blocks_ = 0;
+      linearise(best);
+      best.information = information_;
+      best.scatter = std::move(scatter_);
+      best.blocks = blocks_;
+      scatter_.resize(0, 0);
+    }
     for (Eigen::Index i = 0; i < best.at.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
       const double margin = 1e-3 * (one.upper - one.lower);

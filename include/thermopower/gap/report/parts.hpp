@@ -24,10 +24,11 @@ struct Covariance {
 /// The covariance that the data's blocks show (the sandwich of White 1982, clustered): how much the pull on the
 /// parameters differs between contiguous blocks, whatever the reason, noise, its correlation, or a model that is a
 /// little wrong. At least that of the noise alone. With few blocks the noise's, widened with the residuals' level
-/// and correlation.
+/// and correlation. Of a fit whose curvature nobody looked at nothing is known: `of` is 0 by 0.
 inline Covariance covariance_of(const Candidate& candidate, const Weight& weight) {
   constexpr int fewest_blocks = 12;      // below, the blocks themselves say little
   constexpr double block_samples = 120;  // of a long run, as the fitter cuts it
+  if (candidate.fit.information.size() == 0) return {};
   const Eigen::MatrixXd inverse = candidate.fit.information.completeOrthogonalDecomposition().pseudoInverse();
   double inflation = 1.0, longest = 1.0;
   for (std::size_t i = 0; i < signal_count; ++i)
@@ -66,7 +67,9 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
     if (i < constants && !released) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double value = candidate.fit.at[at],
-                 reach = covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+                 reach = covariance.of.size() == 0
+                             ? one.upper - one.lower
+                             : covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
     const auto shown = [&](double x) { return one.logarithmic ? std::exp(x) : x; };
     ParameterEstimate estimate;
     estimate.name = i < constants ? one.name + ".scale" : one.name;

@@ -12,17 +12,17 @@ namespace thermopower::plant {
 /// Dry friction with a magnitude for each direction.
 struct AsymmetricFriction {
   /// Its parameters, in this order.
-  enum Parameters { forward_Nm, backward_Nm, transition };
+  enum Parameters { forward_Nm, backward_Nm, transition, tail };
 
   /// What it is.
   static EffectInfo info() {
     return {"asymmetric_friction",
             Submodel::mechanical_friction,
-            "torque -= (forward where w > 0, else backward) tanh(w / transition)",
+            "torque -= (forward where w > 0, else backward) film(w / transition, tail)",
             "Dry friction that differs between the two directions.",
             {parameter(forward_Nm, "forward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
              parameter(backward_Nm, "backward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             friction_transition(transition)},
+             friction_transition(transition), friction_tail(tail)},
             {Need::axis_model},
             "slow motion at constant rate in both directions, and standstill"};
   }
@@ -30,7 +30,7 @@ struct AsymmetricFriction {
   /// Adds dry friction by direction.
   template <class Scalar>
   static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
-    terms.add_friction(p[forward_Nm], p[backward_Nm], p[transition]);
+    terms.add_friction(p[forward_Nm], p[backward_Nm], p[transition], p[tail]);
   }
 };
 

@@ -12,16 +12,16 @@ namespace thermopower::plant {
 /// Dry friction of constant magnitude.
 struct CoulombFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, transition };
+  enum Parameters { size_Nm, transition, tail };
 
   /// What it is.
   static EffectInfo info() {
     return {"coulomb_friction",
             Submodel::mechanical_friction,
-            "torque -= Nm tanh(w / transition)",
+            "torque -= Nm film(w / transition, tail)",
             "Dry friction: a constant torque against the motion, and sticking at rest.",
             {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             friction_transition(transition)},
+             friction_transition(transition), friction_tail(tail)},
             {Need::axis_model},
             "slow reversals at small torque"};
   }
@@ -29,7 +29,7 @@ struct CoulombFriction {
   /// Adds dry friction.
   template <class Scalar>
   static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
-    terms.add_friction(p[size_Nm], p[size_Nm], p[transition]);
+    terms.add_friction(p[size_Nm], p[size_Nm], p[transition], p[tail]);
   }
 };
 

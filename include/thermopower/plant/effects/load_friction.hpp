@@ -12,16 +12,16 @@ namespace thermopower::plant {
 /// Dry friction in proportion to the transmitted torque.
 struct LoadFriction {
   /// Its parameters, in this order.
-  enum Parameters { share, transition };
+  enum Parameters { share, transition, tail };
 
   /// What it is.
   static EffectInfo info() {
     return {"load_friction",
             Submodel::mechanical_friction,
-            "torque -= share |drive - load| tanh(w / transition)",
+            "torque -= share |drive - load| film(w / transition, tail)",
             "Friction that grows with the torque transmitted (gears, screws).",
             {parameter(share, "share").unit("1").within(0.0, 0.95).starts({0.0}),
-             friction_transition(transition)},
+             friction_transition(transition), friction_tail(tail)},
             {Need::axis_model},
             "fast and slow motion at large and at small torque"};
   }
@@ -30,7 +30,7 @@ struct LoadFriction {
   template <class Scalar>
   static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
     const Scalar friction_Nm = p[share] * terms.transmitted_Nm();
-    terms.add_friction(friction_Nm, friction_Nm, p[transition]);
+    terms.add_friction(friction_Nm, friction_Nm, p[transition], p[tail]);
   }
 };
 

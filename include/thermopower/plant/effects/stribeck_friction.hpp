@@ -12,13 +12,13 @@ namespace thermopower::plant {
 /// Dry friction with a Stribeck rise near standstill.
 struct StribeckFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition };
+  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition, tail };
 
   /// What it is.
   static EffectInfo info() {
     return {"stribeck_friction",
             Submodel::mechanical_friction,
-            "torque -= (Nm + rise exp(-(w / knee)^2)) tanh(w / transition)",
+            "torque -= (Nm + rise exp(-(w / knee)^2)) film(w / transition, tail)",
             "Dry friction that is larger near standstill than in motion.",
             {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
              parameter(rise_Nm, "rise_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
@@ -28,7 +28,7 @@ struct StribeckFriction {
                  .logarithmic()
                  .exceeds("transition_rad_per_s")
                  .starts({0.1, 0.5, 2.0}),
-             friction_transition(transition)},
+             friction_transition(transition), friction_tail(tail)},
             {Need::axis_model},
             "very slow motion through standstill in both directions"};
   }
@@ -39,7 +39,7 @@ struct StribeckFriction {
     using std::exp;
     const Scalar ratio = terms.rate_rad_per_s / p[knee_rad_per_s];
     const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * exp(-ratio * ratio);
-    terms.add_friction(friction_Nm, friction_Nm, p[transition]);
+    terms.add_friction(friction_Nm, friction_Nm, p[transition], p[tail]);
   }
 };
 
