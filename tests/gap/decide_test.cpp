@@ -39,6 +39,9 @@ TEST_CASE("the price of a constant grows like a square near what is known and li
     CHECK(prior.weight(at) * at == Approx(0.5 * slope).epsilon(1e-6));
   }
   CHECK(Prior{}.cost(3.0) == 0.0);
+  // What decides between explanations prefers one constant that is far off to two that are half as far off.
+  CHECK(prior.price(std::log(1.2)) < 2.0 * prior.price(0.5 * std::log(1.2)));
+  CHECK(prior.price(std::log(1.1)) > 2.0 * prior.price(0.5 * std::log(1.1)));
 }
 
 TEST_CASE("the jackknife of a mean over blocks is its standard error") {

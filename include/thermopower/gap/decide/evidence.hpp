@@ -54,7 +54,7 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
 /// transition through standstill, a period longer than the travel holds.
-/// @param travel_rad  range of the angle in the training data
+/// @param travel_rad  range of the angle in the training data; 1e300: whatever it is
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
   if (at_bound.size() < candidate.list.size()) return false;
@@ -104,7 +104,7 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   double price = 0.0;
   Eigen::Index at = 0;
   for (const CalibratedConstant& constant : model.calibrated())
-    price += Prior{model.uncertainty_of(constant)}.cost(candidate.fit.at[at++]);
+    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.at[at++]);
   return price;
 }
 
@@ -114,9 +114,39 @@ inline double log_odds_of(double standard_errors) {
   return 1.5976 * z + 0.07056 * z * z * z;
 }
 
+/// Whether an effect joined constants that explain everything without it: all of them moved with it, too.
+inline bool does_nothing_more(const Candidate& candidate, const Candidate& constants) {
+  if (candidate.explanation.effects.empty()) return false;
+  for (int index : constants.explanation.released) {
+    const double own = candidate.fit.at[index], theirs = constants.fit.at[index];
+    if (own * theirs <= 0.0 || std::abs(own) < 0.5 * std::abs(theirs)) return false;
+  }
+  return true;
+}
+
+/// Whether a candidate scores what the noise allows.
+inline bool is_at_the_noise(const Candidate& candidate) {
+  if (!candidate.held_out.any()) return false;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (level(candidate, i) > decision.no_gap ||
+        candidate.held_out.mean(i) > decision.no_gap * decision.no_gap)
+      return false;
+  return true;
+}
+
+/// Marks effects beside which constants move that alone bring everything to the noise: the constants are the answer,
+/// and such an effect mends what is left of the noise.
+inline void mark_idle(std::vector<Candidate>& candidates) {
+  for (Candidate& one : candidates) one.idle = false;
+  for (const Candidate& constants : candidates)
+    if (constants.explanation.effects.empty() && !constants.explanation.released.empty() &&
+        is_at_the_noise(constants))
+      for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
+}
+
 /// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
 inline bool in_the_running(const Candidate& candidate) {
-  return !candidate.on_bounds && candidate.held_out.any();
+  return !candidate.on_bounds && !candidate.idle && candidate.held_out.any();
 }
 
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
@@ -131,7 +161,8 @@ inline bool in_the_running(const Candidate& candidate) {
 /// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are
 /// at most those of a difference as many standard errors large (Vuong 1989), the standard error from leaving out
 /// blocks of the training and the held-out data: where a candidate is better in some parts of the recording and
-/// worse in others, no number of rows makes it certain.
+/// worse in others, no number of rows makes it certain. That holds for what the data say; what the parameters of a
+/// richer explanation cost stays: where the data are of two minds, the simpler one is named.
 inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, const Model& model) {
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
@@ -151,10 +182,12 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
         deviance += sums.samples[i] / correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
     return deviance;
   };
+  mark_idle(candidates);
   const Candidate* best = nullptr;
   for (Candidate& one : candidates) {
     one.deviance = penalty(one) + part(one.train, weight.correlation) + part(one.held_out, weight.held_out);
-    one.on_bounds = ends_on_bounds(one, model, weight.travel_rad);
+    // What brings everything to the noise was shown, however little of a period the travel holds.
+    one.on_bounds = ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad);
     if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   }
   const auto standard_error = [&](const SignalSums& a, const SignalSums& b,
@@ -167,20 +200,49 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     };
     return block_jackknife(a, b, merge, difference).standard_error;
   };
+  const auto uncertainty = [&](const Candidate& a, const Candidate& b) {
+    return std::hypot(standard_error(a.train, b.train, weight.correlation),
+                      standard_error(a.held_out, b.held_out, weight.held_out));
+  };
   const double fit_of_best = best->deviance - penalty(*best);
-  double least = best->deviance;
+  const Candidate* least = best;
   for (Candidate& one : candidates) {
     if (&one != best && scores_alike(one, *best)) one.deviance = fit_of_best + penalty(one);
-    if (in_the_running(one)) least = std::min(least, one.deviance);
+    if (in_the_running(one) && one.deviance < least->deviance) least = &one;
   }
-  double total = 0.0;
   for (Candidate& one : candidates) {
     one.probability = 0.0;
     if (!in_the_running(one)) continue;
-    one.against = 0.5 * (one.deviance - least);
-    const double uncertain = std::hypot(standard_error(one.train, best->train, weight.correlation),
-                                        standard_error(one.held_out, best->held_out, weight.held_out));
-    if (uncertain > 0.0) one.against = std::min(one.against, log_odds_of((one.deviance - least) / uncertain));
+    one.against = 0.5 * (one.deviance - least->deviance);
+    const double uncertain = uncertainty(one, *least);
+    if (uncertain > 0.0)
+      one.against = std::min(one.against, log_odds_of((one.deviance - least->deviance) / uncertain));
+  }
+  // The cost of its parameters is no part of that: what is richer than another and fits no better beyond doubt stays
+  // behind it by that cost.
+  std::vector<Candidate*> simplest_first;
+  for (Candidate& one : candidates)
+    if (in_the_running(one)) simplest_first.push_back(&one);
+  std::stable_sort(simplest_first.begin(), simplest_first.end(),
+                   [&](const Candidate* a, const Candidate* b) { return penalty(*a) < penalty(*b); });
+  for (std::size_t i = 0; i < simplest_first.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      Candidate& richer = *simplest_first[i];
+      const Candidate& simpler = *simplest_first[k];
+      const double extra = penalty(richer) - penalty(simpler);
+      const double better = simpler.deviance - penalty(simpler) - (richer.deviance - penalty(richer));
+      const double uncertain = uncertainty(richer, simpler);
+      if (better > decision.beyond_doubt * uncertain) continue;
+      const double proven =
+          std::min(better, 2.0 * log_odds_of(std::max(better, 0.0) / std::max(uncertain, 1e-12)));
+      richer.against = std::max(richer.against, simpler.against + 0.5 * (extra - std::max(proven, 0.0)));
+    }
+  double total = 0.0, first = 1e300;
+  for (const Candidate& one : candidates)
+    if (in_the_running(one)) first = std::min(first, one.against);
+  for (Candidate& one : candidates) {
+    if (!in_the_running(one)) continue;
+    one.against -= first;
     total += one.probability = std::exp(-one.against);
   }
   for (Candidate& one : candidates) one.probability /= total;

@@ -164,16 +164,6 @@ inline double likeliest_of(const std::vector<Candidate>& candidates, const Candi
   return largest;
 }
 
-/// Whether an effect joined constants that explain everything without it: all of them moved with it, too.
-inline bool does_nothing_more(const Candidate& candidate, const Candidate& constants) {
-  if (candidate.explanation.effects.empty()) return false;
-  for (int index : constants.explanation.released) {
-    const double own = candidate.fit.at[index], theirs = constants.fit.at[index];
-    if (own * theirs <= 0.0 || std::abs(own) < 0.5 * std::abs(theirs)) return false;
-  }
-  return true;
-}
-
 /// The conclusion that the simulation holds.
 inline Conclusion nothing_missing() {
   Conclusion result;
@@ -201,7 +191,11 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
   if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen);
   const Candidate& best = candidates[result.chosen];
-  if (result.chosen == 0 || !matters(best, empty, options.tolerance)) {
+  const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
+  // Several constants, each within what is known of it, can stand for one that is further off: where that one is the
+  // likelier answer, and the simulation as configured does not hold, it is the answer.
+  const bool one_is_off = only_constants && worst_level(reference.as_configured) > decision.no_gap;
+  if (!one_is_off && (result.chosen == 0 || !matters(best, empty, options.tolerance))) {
     // Nothing helps: either nothing is missing, or nothing known.
     if (worst_level(empty) < decision.no_gap) return nothing_missing();
     return nothing_known("there is a gap, and no effect of the catalogue lowers it on held-out data");
@@ -209,7 +203,6 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   const double level_left = worst_level(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = level_left <= decision.near_floor;
-  const bool only_constants = best.explanation.effects.empty();
   const bool proven = is_proven(best, reference.as_configured, weight) &&
                       (only_constants || is_proven(best, reference.recalibrated, weight));
   if (near) {
@@ -229,8 +222,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (i != result.chosen &&
         candidates[i].probability > decision.alternative * likeliest_of(candidates, best) &&
-        candidates[i].explanation.size() <= best.explanation.size() &&
-        !(only_constants && does_nothing_more(candidates[i], best))) {
+        candidates[i].explanation.size() <= best.explanation.size()) {
       order.push_back(i);
       together += candidates[i].probability;
     }
