@@ -197,6 +197,7 @@ TEST_CASE("a cause that leaves a rest is named with what remains, and not called
   INFO(diagnosis.reason);
   // Forward and backward friction may differ or not: what remains hides it.
   CHECK((diagnosis.verdict == Verdict::partial || diagnosis.verdict == Verdict::ambiguous));
+  CHECK(diagnosis.next_experiment.find("None needed") == std::string::npos);
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause[0].effect == "coulomb_friction");
   REQUIRE(diagnosis.remaining);

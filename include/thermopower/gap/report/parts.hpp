@@ -347,6 +347,14 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
   if (result.verdict == Verdict::unexplained)
     return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "
            "disturbance.";
+  if (result.verdict == Verdict::partial && !result.cause.empty()) {
+    const std::optional<plant::SubmodelName> rest =
+        result.remaining ? result.remaining->submodel : std::nullopt;
+    return "To confirm, record: " + advice(result.cause.front().effect) +
+           ". For what remains, log more around " +
+           (rest ? to_string(*rest) : std::string("what is switched, touched or moved")) +
+           ", and repeat the same excitation twice.";
+  }
   if (result.verdict == Verdict::explained && !result.cause.empty())
     return "To confirm, record: " + advice(result.cause.front().effect) + ".";
   return "None needed: the simulation holds over the range that was recorded.";
