@@ -52,6 +52,8 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
 /// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
 /// friction does not count: at its bound friction sticks.)
 ///
+/// Nor is one beside which a constant went as far as it may: then the equation is another one.
+///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
 /// transition through standstill, a period longer than the travel holds.
 /// @param travel_rad  range of the angle in the training data; 1e300: whatever it is
@@ -61,6 +63,11 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
   for (int index : candidate.explanation.released)
     if (at_bound[static_cast<std::size_t>(index)]) return true;
   std::size_t at = model.calibrated().size();
+  constexpr double nearly = 0.999;
+  for (std::size_t i = 0; i < at; ++i)
+    if (std::abs(candidate.fit.at[static_cast<Eigen::Index>(i)]) >
+        nearly * std::log(known_constants.farthest_factor))
+      return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;
     for (const Parameter& parameter : entry->info.parameters) {

@@ -29,6 +29,9 @@ struct DecisionThresholds {
   // Verdict
   /// Multiple of the noise floor up to which a held-out signal counts as near it, as printed in the table.
   double near_floor = 1.5;
+  /// Readings of the training data for every parameter of a cause and every constant that moved beside it. The rule of
+  /// thumb of regression is 10 to 20; with fewer an explanation can be bent to anything, and the next recording differs.
+  double readings_per_parameter = 15.0;
   /// Multiple of the noise floor below which nothing is missing.
   double no_gap = 1.25;
   /// Share of the score by which a cause must shrink the held-out gap, beyond what re-calibration does, to be

@@ -182,9 +182,22 @@ inline Conclusion nothing_known(const char* reason) {
   return result;
 }
 
+/// Whether the training data have readings enough for what an explanation leaves free: the parameters of its effects,
+/// and the constants that moved by more than is known of them.
+inline bool has_readings_enough(const Candidate& candidate, const Model& model) {
+  double free = candidate.explanation.parameter_count(), readings = 0.0;
+  free -= static_cast<double>(candidate.explanation.released.size());
+  Eigen::Index at = 0;
+  for (const CalibratedConstant& constant : model.calibrated())
+    if (std::abs(candidate.fit.at[at++]) > known_constants.within * model.uncertainty_of(constant))
+      free += 1.0;
+  for (double samples : candidate.train.samples) readings += samples;
+  return readings >= decision.readings_per_parameter * free;
+}
+
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Reference& reference,
-                           const Weight& weight, const Options& options) {
+                           const Weight& weight, const Options& options, const Model& model) {
   Conclusion result;
   const Candidate& empty = candidates.front();
   for (std::size_t i = 1; i < candidates.size(); ++i)
@@ -200,6 +213,10 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     if (worst_level(empty) < decision.no_gap) return nothing_missing();
     return nothing_known("there is a gap, and no effect of the catalogue lowers it on held-out data");
   }
+  if (!best.explanation.effects.empty() && !has_readings_enough(best, model))
+    return nothing_known(
+        "there is a gap, and the explanation that lowers it most has more free parameters and moved constants than so "
+        "few readings can decide");
   const double level_left = worst_level(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = level_left <= decision.near_floor;

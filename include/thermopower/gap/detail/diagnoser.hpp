@@ -58,7 +58,7 @@ public:
       if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
     }
     stage("which");
-    Conclusion conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_);
+    Conclusion conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_);
     if (conclusion.second_is_open) {
       // What is left looks a little like several effects: it is named as a rest.
       std::vector<Candidate>& all = attempt.candidates;
@@ -66,7 +66,7 @@ public:
                                [](const Candidate& one) { return one.explanation.effects.size() > 1; }),
                 all.end());
       weigh(all, attempt.weight, model_);
-      conclusion = conclude(all, attempt.reference, attempt.weight, options_);
+      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_);
     }
     if (conclusion.verdict != Verdict::no_gap && holds(attempt, conclusion)) conclusion = nothing_missing();
     report(attempt, conclusion);
