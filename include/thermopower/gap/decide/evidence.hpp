@@ -64,7 +64,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
     if (at_bound[static_cast<std::size_t>(index)]) return true;
   std::size_t at = model.calibrated().size();
   constexpr double nearly = 0.999;
-  for (std::size_t i = 0; i < at; ++i)
+  for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
     if (std::abs(candidate.fit.at[static_cast<Eigen::Index>(i)]) >
         nearly * std::log(known_constants.farthest_factor))
       return true;
@@ -211,6 +211,10 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     return std::hypot(standard_error(a.train, b.train, weight.correlation),
                       standard_error(a.held_out, b.held_out, weight.held_out));
   };
+  if (best == nullptr) {
+    for (Candidate& one : candidates) one.probability = 0.0;
+    return;
+  }
   const double fit_of_best = best->deviance - penalty(*best);
   const Candidate* least = best;
   for (Candidate& one : candidates) {
