@@ -178,7 +178,6 @@ private:
   CertifiedRelief relief_;
   detail::UpperBound node_;
   detail::KelvinUnits base_ = 0;
-  ConfigError feasible_;
 };
 
 }  // namespace thermopower
