@@ -247,6 +247,10 @@ public:
   void raise(KelvinUnits floor) noexcept {
     if (high_ < floor) set(floor);
   }
+  /// Raises the bound to another, kept as finely; never lowers it.
+  void raise(const UpperBound& other) noexcept {
+    if (high_ < other.high_ || (high_ == other.high_ && low_ < other.low_)) *this = other;
+  }
   /// Adds way * fraction, exactly.
   void go(KelvinUnits way, FineFraction fraction) noexcept {
     // Four products of 16 bits without a sign, which an 8-bit chip has in hardware; what a negative way adds

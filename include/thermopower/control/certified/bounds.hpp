@@ -140,6 +140,13 @@ struct CertifiedTravel {
     const CertifiedTravel travel = {detail::fine_up(above(fastest_per_s * dt_s)), detail::fine_down(below)};
     return travel;
   }
+  /// Goes no farther than a hold does, for a step that is no longer: what was planned with the coarse fraction of
+  /// a hold then covers the step to the last unit. A hold of many time constants ends at 1 - 2^-16 instead of one;
+  /// `whole_margin()` in the heat makes up for it, and the rest of a way is downwards.
+  void end_at(detail::UnitFraction hold) noexcept {
+    const detail::FineFraction whole_hold = static_cast<detail::FineFraction>(hold) << 16;
+    if (heating > whole_hold) heating = whole_hold;
+  }
   /// Not below 1 - exp(-x). Taylor's series ends above it after an odd term, and below it after an even one,
   /// for every x >= 0.
   static float above(float x) noexcept {

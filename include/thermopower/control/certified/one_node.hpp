@@ -89,7 +89,8 @@ public:
   }
   /// Prepares a step length.
   Travel travel(float dt_s) const noexcept {
-    const Travel travel = {CertifiedTravel::over(fastest_per_s_, slowest_per_s_, dt_s), dt_s > hold_s_};
+    Travel travel = {CertifiedTravel::over(fastest_per_s_, slowest_per_s_, dt_s), dt_s > hold_s_};
+    if (!travel.is_late) travel.body.end_at(hold_);
     return travel;
   }
   /// Carries the bound over a step during which at most `count` acted.

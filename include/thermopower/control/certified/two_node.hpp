@@ -98,9 +98,8 @@ public:
     to_air_ = derived.to_air;
     gap_ = derived.gap;
     base_over_air_ = derived.base_over_air;
-    weight_ = detail::fraction_up(derived.weight);
-    least_mean_ = detail::kelvin_up(
-        detail::at_most(detail::celsius_from(gap_) * derived.weight / (1.0f - derived.weight), 1000.0f));
+    weight_ = derived.weight;
+    least_mean_ = derived.least_mean;
 
     hold_s_ = use.hold_s;
     hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
@@ -145,9 +144,12 @@ public:
 
   /// Prepares a step length; only a length that changed costs anything.
   Travel travel(float dt_s) const noexcept {
-    const Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
-                           CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s),
-                           dt_s > hold_s_};
+    Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
+                     CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s), dt_s > hold_s_};
+    if (!travel.is_late) {
+      travel.winding.end_at(hold_winding_);
+      travel.body.end_at(hold_body_);
+    }
     return travel;
   }
 
@@ -177,8 +179,8 @@ public:
   void advance_unknown(uint8_t count) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
     carry(count, travel(hold_s_));
-    winding_.raise(winding.above());
-    mean_.raise(mean.above());
+    winding_.raise(winding);
+    mean_.raise(mean);
   }
 
   /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
@@ -218,7 +220,7 @@ public:
     const detail::KelvinUnits lost =
         detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
     largest.fit(room.mean_left + lost, sizes_.slow, CertifiedNode::body);
-    largest.fit(room.winding_left + detail::part_down(room.apart, horizon_winding_) + lost,
+    largest.fit(room.winding_left + detail::part_down(room.apart + lost, horizon_winding_),
                 sizes_.slow_winding, CertifiedNode::winding);
     // One hold: what the proof rests on.
     largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding,
@@ -284,7 +286,7 @@ private:
       const Bounds& body = config.body_heat_capacity_J_per_K;
       const float winding_share = body.highest / (winding.lowest + body.highest);  // 1 - mu, largest
       const float body_share = body.lowest / (winding.highest + body.lowest);      // 1 - mu, smallest
-      weight = 1.0f - body_share;
+      weight = detail::fraction_up(1.0f - body_share);
       winding_rate = config.least_coupling_W_per_K / winding_share;
       body_rate = config.least_conductance_W_per_K / body_share;
       const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
@@ -292,31 +294,40 @@ private:
       soak = detail::kelvin_per_count_up(count_W * use.hold_s / (winding.lowest + body.lowest));
       to_air = detail::kelvin_per_count_up(count_W / body_rate);
       gap = across + soak;
+      const float share = static_cast<float>(weight) * (1.0f / 65536.0f);
+      least_mean = detail::kelvin_up(
+          detail::at_most(detail::celsius_from(gap) * share / (1.0f - share) + 0.00002f, 1000.0f));
       base_over_air = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
       const float rise_K = 255.0f * count_W *
                            (1.0f / config.least_conductance_W_per_K + 1.0f / config.least_coupling_W_per_K +
                             use.hold_s / body.lowest);
-      feasible = rise_K < detail::highest_rise_K() ? ConfigError::none : ConfigError::heat_when_cold_W;
-      set_limits(config, use.highest_air_C + detail::celsius_from(base_over_air + 2),
-                 detail::celsius_from(gap + 2));
+      set_limits(config, detail::celsius_units(use.highest_air_C) + 2 + base_over_air);
+      feasible = rise_K < detail::highest_rise_K() ? feasible : ConfigError::heat_when_cold_W;
     }
-    void set_limits(const Config& config, float base_C, float gap_K) noexcept {
-      const float mean_C = detail::at_most(config.maximum_body_C, config.maximum_winding_C - gap_K);
-      // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
-      const float winding_C =
-          detail::at_most(config.maximum_winding_C, base_C + (mean_C - base_C) / weight * 0.9999f);
+    // In the whole numbers of the step, so that its roundings cannot leave the set either: what the raises by (13)
+    // make of a bound inside stays inside, with `spare` for roundings. tests/proofs starts from these conditions.
+    void set_limits(const Config& config, detail::KelvinUnits base) noexcept {
       const float rounding_K = 0.0005f;
-      mean_limit = detail::celsius_units(mean_C - rounding_K);
-      winding_limit = detail::celsius_units(winding_C - rounding_K);
-      if (is_error(feasible)) return;
-      if (!(mean_C > base_C + weight * gap_K / (1.0f - weight) + 0.01f) ||
-          !(winding_C > mean_C + gap_K - 0.001f))
-        feasible = ConfigError::highest_air_C;
+      const detail::KelvinUnits spare = 2 * rounding_units();
+      const detail::KelvinUnits hottest = detail::celsius_units(config.maximum_winding_C - rounding_K);
+      mean_limit = detail::celsius_units(config.maximum_body_C - rounding_K);
+      if (mean_limit > hottest - gap - 2) mean_limit = hottest - gap - 2;
+      winding_limit = hottest;
+      // (14): hotter, and the heat stored in the winding alone could carry the body over its limit.
+      const float above_K = detail::celsius_from(mean_limit - base - spare);
+      const float carried_K = above_K * (0.999999f * 65536.0f) / static_cast<float>(weight);
+      if (carried_K < detail::celsius_from(hottest - base))
+        winding_limit = base + static_cast<detail::KelvinUnits>(carried_K * detail::units_per_K());
+      const bool is_kept = detail::part_up(least_mean + gap, weight) <= least_mean &&
+                           base + least_mean + spare <= mean_limit && mean_limit + gap + 2 <= winding_limit &&
+                           detail::part_up(winding_limit - base, weight) <= mean_limit - base - spare;
+      feasible = is_kept ? ConfigError::none : ConfigError::highest_air_C;
     }
     float winding_rate, body_rate;             // W/K between winding and mean, and between mean and air
-    float weight;                              // mu, largest
+    detail::UnitFraction weight;               // mu, largest
     detail::KelvinUnits across, soak, to_air;  // kelvin per count
     detail::KelvinUnits gap;                   // (12): what the least power keeps between the two
+    detail::KelvinUnits least_mean;            // the lowest mean that (13) leaves, above the base
     detail::KelvinUnits base_over_air, mean_limit, winding_limit;
     ConfigError feasible;
   };
@@ -412,7 +423,7 @@ private:
     const detail::KelvinUnits rise = across_now_ + soak_now_;
     sizes_.settled = to_air_now_ + detail::part_up(rise, weight_);
     sizes_.slow = detail::part_up(sizes_.settled, horizon_body_);
-    sizes_.slow_winding = sizes_.slow + detail::part_up(rise, horizon_winding_);
+    sizes_.slow_winding = detail::part_up(sizes_.slow + rise, horizon_winding_);
     sizes_.held_winding = detail::part_up(rise, hold_winding_);
     sizes_.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
     const detail::KelvinUnits fed = detail::part_up(sizes_.jump, weight_);

@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+"""The certified limiter's step and its decision, in the whole numbers in which they are computed.
+
+A temperature is in units of 2^-18 K. Heat per count is proved for a whole count at once: every quantity "per count"
+stands for itself times the count, and so does the rounding of what is made of it.
+"""
+import z3
+
+from header_formulas import function
+from linear import Facts, Linear
+
+# What a bound may lie above its limit by rounding: less than half of the 131 units that every limit is kept low.
+INSIDE = 62
+# What validate() asks of the limits beyond the raises: twice rounding_units().
+SPARE = 128
+
+
+class Node:
+    none, winding, body = 0, 1, 2
+
+
+class Record:
+    pass
+
+
+class Part:
+    """A part of a way, as `? :` chooses it."""
+
+    def __init__(self, fraction):
+        self.fraction = fraction
+
+
+class Bound:
+    """UpperBound: a value, and its whole part below it."""
+
+    def __init__(self, facts, name):
+        self.facts = facts
+        self.value, self.whole = facts.variable(name), facts.variable(name + " whole")
+        facts.add(self.whole <= self.value, self.value <= self.whole + 1)
+
+    def kept(self):
+        copy = object.__new__(Bound)
+        copy.__dict__.update(self.__dict__)
+        return copy
+
+    def below(self):
+        return self.whole
+
+    def above(self):
+        return self.whole + 1
+
+    def raise_(self, floor):
+        is_low = self.whole < floor
+        self.value, self.whole = (self.facts.choice(is_low, floor, self.value),
+                                  self.facts.choice(is_low, floor, self.whole))
+
+    def go(self, way, chosen):
+        condition, heating, cooling = chosen
+        value, whole = self.facts.fresh("value"), self.facts.fresh("whole")
+        self.facts.add(
+            z3.Implies(condition, value.same(self.value + self.facts.product(way, heating))),
+            z3.Implies(z3.Not(condition), value.same(self.value + self.facts.product(way, cooling))),
+            whole <= value, value <= whole + 1)
+        self.value, self.whole = value, whole
+
+
+class Decision:
+    """CertifiedCount: what each condition asks of the count."""
+
+    def __init__(self, *_):
+        self.conditions = []
+
+    def fit(self, room, size, _node):
+        self.conditions.append((Linear.of(room), Linear.of(size)))
+
+
+class Header:
+    """The functions of a network's header over one set of facts."""
+
+    def __init__(self, text, signatures):
+        self.facts = Facts()
+        self.unit = 1
+        self.per_count = {}  # variable per count -> by how much rounding its part may raise it
+        self.rounded = {}  # (direction, fraction) -> [(argument, result)]
+        names = {
+            "ite": self.ite, "part_up": self.part_up, "part_down": self.part_down, "times": self.times,
+            "blank": Record, "record": self.record, "CertifiedNode": Node, "soaked_late": lambda _count: None}
+        self.functions = {name: function(text, signature, name, arguments, names)
+                          for name, signature, arguments in signatures}
+        self.rooms = []
+
+    def __getattr__(self, name):
+        if name == "functions" or name not in self.functions:
+            raise AttributeError(name)
+
+        def call(*arguments):
+            result = self.functions[name](self, *arguments)
+            if name == "room":
+                self.rooms.append(result)
+            return result
+        return call
+
+    def record(self, *values):
+        return Decision() if values and isinstance(values[0], int) and values[0] == 254 else values
+
+    def ite(self, condition, yes, no):
+        if condition is True or condition is False:
+            return yes if condition else no
+        if isinstance(yes, Part):
+            return condition, yes.fraction, no.fraction
+        return self.facts.choice(condition, yes, no)
+
+    def rounded_product(self, direction, argument, fraction):
+        result, argument = self.facts.fresh(direction), Linear.of(argument)
+        product = self.facts.product(argument, fraction)
+        unit = self.per_count.get("".join(argument.terms), self.unit)
+        if direction == "up":
+            self.facts.add(result >= product, result <= product + unit)
+        else:
+            self.facts.add(result <= product, result >= product - unit)
+        # A rounded product of whole numbers does not fall, and moves no farther than its argument.
+        if isinstance(unit, int):
+            before = self.rounded.setdefault((direction, fraction.single()), [])
+            for other, other_result in before:
+                apart, moved = argument - other, result - other_result
+                self.facts.add(z3.Implies(apart >= 0, z3.And(moved >= 0, moved <= apart)),
+                               z3.Implies(apart <= 0, z3.And(moved <= 0, moved >= apart)))
+            before.append((argument, result))
+        return result
+
+    def part_up(self, argument, fraction):
+        return self.rounded_product("up", argument, fraction)
+
+    def part_down(self, argument, fraction):
+        return self.rounded_product("down", argument, fraction)
+
+    @staticmethod
+    def times(per_count, acting):
+        return acting[per_count.single()] if acting else Linear()
+
+
+class Step:
+    def __init__(self, facts, holds):
+        self.is_late = False
+        for name, hold in holds.items():
+            part = Record()
+            part.heating = Part(facts.fraction(name + " heating", at_most=hold))
+            part.cooling = Part(facts.fraction(name + " cooling"))
+            setattr(self, name, part)
+
+
+def acting_at_most(facts, granted):
+    """Any count from none to the granted one."""
+    acting = {}
+    for name in granted:
+        acting[name] = facts.variable("acting " + name)
+        facts.add(acting[name] >= 0, acting[name] <= facts.variable(name))
+    return acting
+
+
+TWO_NODE = [("carry", r"Hull carry\(", ["self", "count", "step"]), ("room", r"Room room\(", ["self"]),
+            ("largest", r"CertifiedCount largest\(", ["self"]), ("take", r"void take\(", ["self", "winding", "body"])]
+ONE_NODE = [("carry", r"KelvinUnits carry\(", ["self", "count", "step"]),
+            ("room", r"KelvinUnits room\(", ["self"]), ("largest", r"CertifiedCount largest\(", ["self"])]
+
+
+def two_node(text):
+    """The network at any state that validate() and the safe set admit."""
+    net = Header(text, TWO_NODE)
+    facts = net.facts
+    for name in ["base_", "gap_", "least_mean_", "winding_limit_", "mean_limit_", "across_", "soak_", "to_air_"]:
+        setattr(net, name, facts.variable(name))
+    for name in ["gap_", "least_mean_", "across_", "soak_", "to_air_"]:
+        facts.add(getattr(net, name) >= 0)
+    for name in ["weight_", "hold_winding_", "hold_body_", "horizon_winding_", "horizon_body_"]:
+        setattr(net, name, facts.fraction(name))
+    net.sizes_ = Record()
+    hottest = facts.variable("base in the hottest air")
+    facts.add(net.base_ <= hottest)
+    # What set_limits() compares before it accepts a declaration; certified_limits() pins its text.
+    facts.add(facts.product(net.least_mean_ + net.gap_, net.weight_) <= net.least_mean_,
+              hottest + net.least_mean_ + SPARE <= net.mean_limit_,
+              net.mean_limit_ + net.gap_ + 2 <= net.winding_limit_,
+              facts.product(net.winding_limit_ - hottest, net.weight_) <= net.mean_limit_ - hottest - SPARE)
+    net.winding_, net.mean_ = Bound(facts, "winding"), Bound(facts, "mean")
+    facts.add(net.winding_.value <= net.winding_limit_ + INSIDE, net.mean_.value <= net.mean_limit_ + INSIDE)
+    return net
+
+
+def stays_inside(net, passed=None):
+    inside = [net.winding_.value <= net.winding_limit_ + INSIDE, net.mean_.value <= net.mean_limit_ + INSIDE]
+    if passed:
+        inside += [passed[0] <= net.winding_limit_ + INSIDE + 1, passed[1] <= net.mean_limit_ + INSIDE + 1]
+    return z3.And(*inside)
+
+
+def two_node_raises(text):
+    net = two_node(text)
+    room = net.room()
+    # is_certified() allows 64 units.
+    return net.facts.counterexample(z3.And(room.winding_left >= -64, room.mean_left >= -64))
+
+
+def two_node_least_power(text):
+    net = two_node(text)
+    for name in ["across_now_", "soak_now_", "to_air_now_"]:
+        setattr(net, name, net.facts.variable(name))
+    step = Step(net.facts, {"winding": net.hold_winding_, "body": net.hold_body_})
+    return net.facts.counterexample(stays_inside(net, net.carry(None, step)))
+
+
+def granted(net):
+    """The decision for a count of at least one, whose sizes are those of the whole count."""
+    facts = net.facts
+    count = facts.variable("count")
+    facts.add(count >= 1, count <= 254)
+    net.unit = count
+    net.take(facts.fraction("winding relief"), facts.fraction("mean relief"))
+    fed_and_heated = net.sizes_.fed - facts.variable("up_%d" % facts.made)
+    net.unit = 1
+    decision = net.largest()
+    facts.add(*[size <= room for room, size in decision.conditions])
+    return fed_and_heated
+
+
+def two_node_granted_power(text):
+    net = two_node(text)
+    facts = net.facts
+    step = Step(facts, {"winding": net.hold_winding_, "body": net.hold_body_})
+    start = net.winding_.kept(), net.mean_.kept()
+    fed = granted(net)
+    net.winding_, net.mean_ = start
+    room = net.rooms[0]
+    rise, jump = net.across_now_ + net.soak_now_, net.sizes_.jump
+    acting = acting_at_most(facts, [x.single() for x in (net.across_now_, net.soak_now_, net.to_air_now_)])
+    # Products that the solver compares others with.
+    for argument, fraction in [
+            (rise - room.apart, net.hold_winding_), (net.across_now_, net.hold_winding_),
+            (net.to_air_now_, net.hold_body_), (room.winding + jump, net.weight_), (jump, net.weight_),
+            (fed + net.to_air_now_ - (room.mean - room.weighted), net.hold_body_),
+            (acting[net.across_now_.single()], step.winding.heating.fraction),
+            (acting[net.to_air_now_.single()], step.body.heating.fraction)]:
+        facts.product(argument, fraction)
+    return facts.counterexample(stays_inside(net, net.carry(acting, step)))
+
+
+def hotter(facts, before):
+    after = Bound(facts, before.value.single() + " hotter")
+    facts.add(after.value >= before.value, after.whole >= before.whole)
+    return after
+
+
+def no_room_grows(net, bounds):
+    """No condition leaves more room when any of the bounds is hotter, at the same heat per count."""
+    cold = net.largest()
+    for name in bounds:
+        setattr(net, name, hotter(net.facts, getattr(net, name)))
+    hot = net.largest()
+    assert cold.conditions and len(cold.conditions) == len(hot.conditions)
+    return net.facts.counterexample(
+        z3.And(*[h[0] <= c[0] for h, c in zip(hot.conditions, cold.conditions)]))
+
+
+def two_node_hotter(text):
+    net = Header(text, TWO_NODE)
+    for name in ["base_", "gap_", "least_mean_", "winding_limit_", "mean_limit_"]:
+        setattr(net, name, net.facts.variable(name))
+    for name in ["weight_", "hold_winding_", "hold_body_", "horizon_winding_", "horizon_body_"]:
+        setattr(net, name, net.facts.fraction(name))
+    net.sizes_ = Record()
+    for name in ["slow", "slow_winding", "held_winding", "jump", "held_body", "fed"]:
+        setattr(net.sizes_, name, Linear())
+    net.winding_, net.mean_ = Bound(net.facts, "winding"), Bound(net.facts, "mean")
+    return no_room_grows(net, ["winding_", "mean_"])
+
+
+def one_node(text):
+    net = Header(text, ONE_NODE)
+    facts = net.facts
+    for name in ["base_", "limit_", "to_air_now_"]:
+        setattr(net, name, facts.variable(name))
+    for name in ["hold_", "horizon_"]:
+        setattr(net, name, facts.fraction(name))
+    facts.add(net.to_air_now_ >= 0, net.base_ <= net.limit_)
+    net.node_ = Bound(facts, "node")
+    facts.add(net.node_.value <= net.limit_ + INSIDE)
+    return net
+
+
+def one_node_least_power(text):
+    net = one_node(text)
+    passed = net.carry(None, Step(net.facts, {"body": net.hold_}))
+    return net.facts.counterexample(
+        z3.And(net.node_.value <= net.limit_ + INSIDE, passed <= net.limit_ + INSIDE + 1))
+
+
+def one_node_granted_power(text):
+    net = one_node(text)
+    facts = net.facts
+    step = Step(facts, {"body": net.hold_})
+    start = net.node_.kept()
+    count = facts.variable("count")
+    facts.add(count >= 1, count <= 254)
+    net.per_count[net.to_air_now_.single()] = count
+    decision = net.largest()
+    facts.add(*[size <= room for room, size in decision.conditions])
+    net.node_ = start
+    acting = acting_at_most(facts, [net.to_air_now_.single()])
+    facts.product(net.to_air_now_ - net.rooms[0], net.hold_)
+    passed = net.carry(acting, step)
+    return facts.counterexample(
+        z3.And(net.node_.value <= net.limit_ + INSIDE, passed <= net.limit_ + INSIDE + 1))
+
+
+def one_node_hotter(text):
+    return no_room_grows(one_node(text), ["node_"])
