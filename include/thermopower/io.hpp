@@ -13,6 +13,7 @@
 #include <thermopower/io/column_list.hpp>
 #include <thermopower/io/header_export.hpp>
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/io/mcap_file.hpp>
 #include <thermopower/io/model_file.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/io/predictions_file.hpp>

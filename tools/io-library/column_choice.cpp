@@ -5,6 +5,10 @@
 
 #include <thermopower/io/input_error.hpp>
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace thermopower::io {
@@ -78,10 +82,10 @@ std::vector<std::string> units_of(const std::string& name) {
   return list;
 }
 
-ColumnChoice parse_column_choice(const std::string& text) {
-  const auto fail = [&](const std::string& what) {
-    throw InputError("--column " + excerpt(text) + ": " + what);
-  };
+namespace {
+
+ColumnChoice parse_choice(const std::string& where, const std::string& text) {
+  const auto fail = [&](const std::string& what) { throw InputError(where + excerpt(text) + ": " + what); };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     fail("expected NAME=HEADER or NAME=HEADER:UNIT, such as motor_C=temp:degF");
@@ -108,6 +112,57 @@ ColumnChoice parse_column_choice(const std::string& text) {
   fail(excerpt(unit) + " is no unit of " + choice.name +
        (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
   return choice;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? std::string() : text.substr(begin, end + 1 - begin);
+}
+
+}  // namespace
+
+ColumnChoice parse_column_choice(const std::string& text) { return parse_choice("--column ", text); }
+
+std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::string& text) {
+  std::vector<ColumnChoice> choices;
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = name + ":" + std::to_string(++number) + ": ";
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#') continue;
+    const std::size_t equals = line.find('=');
+    if (equals != std::string::npos) {
+      const std::size_t colon = line.rfind(':');
+      const bool with_unit = colon != std::string::npos && colon > equals;
+      const std::string header =
+          trimmed(line.substr(equals + 1, with_unit ? colon - equals - 1 : std::string::npos));
+      line = trimmed(line.substr(0, equals)) + "=" + header +
+             (with_unit ? ":" + trimmed(line.substr(colon + 1)) : std::string());
+    }
+    const ColumnChoice choice = parse_choice(where, line);
+    for (const ColumnChoice& other : choices) {
+      if (other.name == choice.name) throw InputError(where + excerpt(choice.name) + " is there twice");
+      if (other.header == choice.header)
+        throw InputError(where + excerpt(choice.header) +
+                         " is there twice; expected one name for each column");
+    }
+    choices.push_back(choice);
+  }
+  if (choices.empty())
+    throw InputError(name + ": no line says what a column is; expected NAME=HEADER[:UNIT]");
+  return choices;
+}
+
+std::vector<ColumnChoice> read_column_map(const std::string& path) {
+  std::error_code status;
+  if (std::filesystem::is_directory(path, status))
+    throw InputError(path + ": is a directory; expected a mapping file");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw InputError(path + ": cannot be read; expected a mapping file");
+  return parse_column_map(path, text.str());
 }
 
 }  // namespace thermopower::io

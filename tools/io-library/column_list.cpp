@@ -6,6 +6,7 @@
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/csv_table.hpp>
 
+#include "column_proposal.hpp"
 #include "html_text.hpp"
 
 #include <algorithm>
@@ -91,6 +92,8 @@ std::string unit_in(const std::string& header, const std::string& name) {
   return found;
 }
 
+}  // namespace
+
 void propose(ListedColumn& column) {
   const Words words = words_of(column.header);
   if (column.text || units_of(column.header).size() != 0) {
@@ -120,6 +123,19 @@ void propose(ListedColumn& column) {
   }
 }
 
+void settle_rivals(std::vector<ListedColumn>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (std::size_t k = 0; k < list.size(); ++k)
+      if (i != k && !list[i].proposed.empty() && list[i].proposed == list[k].proposed &&
+          list[k].header != list[k].proposed && (list[i].header == list[i].proposed || i < k)) {
+        list[k].why = "may be " + list[k].proposed + ", as '" + list[i].header + "' is";
+        list[k].proposed.clear();
+        list[k].unit.clear();
+      }
+}
+
+namespace {
+
 std::vector<ListedColumn> listed(CsvTable table) {
   std::vector<ListedColumn> list;
   for (const auto& column : table.columns) {
@@ -143,15 +159,7 @@ std::vector<ListedColumn> listed(CsvTable table) {
     one.text = true;
     list.push_back(std::move(one));
   }
-  // Two columns that seem to be the same: the one with the format's name is, else the first.
-  for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t k = 0; k < list.size(); ++k)
-      if (i != k && !list[i].proposed.empty() && list[i].proposed == list[k].proposed &&
-          list[k].header != list[k].proposed && (list[i].header == list[i].proposed || i < k)) {
-        list[k].why = "may be " + list[k].proposed + ", as '" + list[i].header + "' is";
-        list[k].proposed.clear();
-        list[k].unit.clear();
-      }
+  settle_rivals(list);
   return list;
 }
 
@@ -174,15 +182,25 @@ std::vector<ListedColumn> list_columns(const std::string& name, const char* byte
   return listed(parse_any_csv(name, bytes, size));
 }
 
-std::string columns_text(const std::vector<ListedColumn>& columns) {
-  char row[200];
-  std::snprintf(row, sizeof row, "  %-28s%9s%9s%12s%12s  %s\n", "column", "samples", "missing", "least",
+std::string choice_text(const ListedColumn& column) {
+  if (column.proposed.empty() || (column.proposed == column.header && column.unit.empty())) return {};
+  // A header with a colon in it needs a unit after it, or the colon would begin one.
+  std::string as = column.unit;
+  if (as.empty() && column.header.find(':') != std::string::npos) as = units_of(column.proposed).front();
+  return column.proposed + "=" + column.header + (as.empty() ? "" : ":" + as);
+}
+
+std::string list_text(const std::vector<ListedColumn>& columns) {
+  std::size_t width = 28;
+  for (const auto& one : columns) width = std::max(width, std::min<std::size_t>(one.header.size() + 1, 60));
+  const int wide = static_cast<int>(width);
+  char row[240];
+  std::snprintf(row, sizeof row, "  %-*s%9s%9s%12s%12s  %s\n", wide, "column", "samples", "missing", "least",
                 "greatest", "may be");
   std::string out = row, options;
-  bool time = false;
   for (const auto& one : columns) {
     if (one.text) {
-      std::snprintf(row, sizeof row, "  %-28.60s  text, left out unless it is called 'run'\n",
+      std::snprintf(row, sizeof row, "  %-*.60s  text, left out unless it is called 'run'\n", wide,
                     one.header.c_str());
       out += row;
       continue;
@@ -190,20 +208,33 @@ std::string columns_text(const std::vector<ListedColumn>& columns) {
     const std::string unit = one.unit.empty() ? "" : " in " + one.unit;
     const std::string guess = one.proposed.empty() ? (one.why.empty() ? "a covariate" : one.why)
                                                    : one.proposed + unit + " (" + one.why + ")";
-    std::snprintf(row, sizeof row, "  %-28.60s%9zu%9zu%12s%12s  ", one.header.c_str(), one.samples,
+    std::snprintf(row, sizeof row, "  %-*.60s%9zu%9zu%12s%12s  ", wide, one.header.c_str(), one.samples,
                   one.missing, one.samples > 0 ? readable(one.least).c_str() : "-",
                   one.samples > 0 ? readable(one.greatest).c_str() : "-");
     out += row + guess + "\n";
-    time = time || one.proposed == "t_s";
-    if (one.proposed.empty() || (one.proposed == one.header && one.unit.empty())) continue;
-    // A header with a colon in it needs a unit after it, or the colon would begin one.
-    std::string as = one.unit;
-    if (as.empty() && one.header.find(':') != std::string::npos) as = units_of(one.proposed).front();
-    options +=
-        " --column " + quoted_for_shell(one.proposed + "=" + one.header + (as.empty() ? "" : ":" + as));
+    if (const std::string choice = choice_text(one); !choice.empty())
+      options += " --column " + quoted_for_shell(choice);
   }
   if (!options.empty()) out += "\nIf that is so:" + options + "\n";
+  return out;
+}
+
+std::string columns_text(const std::vector<ListedColumn>& columns) {
+  std::string out = list_text(columns);
+  const bool time = std::any_of(columns.begin(), columns.end(),
+                                [](const ListedColumn& one) { return one.proposed == "t_s"; });
   if (!time) out += "\nNo column looks like time: --column t_s=HEADER:UNIT says which one it is.\n";
+  return out;
+}
+
+std::string column_map_text(const std::vector<ListedColumn>& columns) {
+  std::string out =
+      "# NAME=HEADER[:UNIT], as --column takes it; what stands behind a '#' is a proposal not taken\n";
+  for (const auto& one : columns) {
+    const std::string choice = choice_text(one);
+    if (!choice.empty()) out += choice + "\n";
+    else if (one.proposed.empty() && !one.text) out += "# NAME=" + one.header + "\n";
+  }
   return out;
 }
 

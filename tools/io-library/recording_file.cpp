@@ -4,6 +4,7 @@
 #include <thermopower/io/recording_file.hpp>
 
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/io/mcap_file.hpp>
 
 #include <utility>
 
@@ -53,6 +54,7 @@ RecordingFile to_recording(CsvTable table) {
 }
 
 RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices) {
+  if (is_mcap(path)) return read_mcap(path, choices);
   return to_recording(read_csv(path, known_columns(), choices));
 }
 

@@ -48,7 +48,7 @@ struct Arguments {
   std::vector<const std::string*> outputs() const {
     return {&report, &html, &predictions, &augmented, &header, &mjcf, &urdf};
   }
-  std::vector<std::string> recordings, held_out, without, columns, starts;
+  std::vector<std::string> recordings, held_out, without, columns, maps, starts;
   bool as_recorded = false;
   double horizon_s = 0.5;
   double tolerance = 0.05;
@@ -97,10 +97,29 @@ private:
   std::thread thread_;
 };
 
+// What stands on the command line goes before what a mapping file says of the same name.
 std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
   std::vector<io::ColumnChoice> choices;
+  const auto find = [&](const std::string& name) {
+    return std::find_if(choices.begin(), choices.end(),
+                        [&](const io::ColumnChoice& one) { return one.name == name; });
+  };
+  for (const auto& path : arguments.maps)
+    for (const auto& choice : io::read_column_map(path)) {
+      if (find(choice.name) != choices.end())
+        throw io::InputError(path + ": '" + choice.name + "' is in another mapping file, too");
+      choices.push_back(choice);
+    }
+  std::vector<std::string> given;
   try {
-    for (const auto& text : arguments.columns) choices.push_back(io::parse_column_choice(text));
+    for (const auto& text : arguments.columns) {
+      const io::ColumnChoice choice = io::parse_column_choice(text);
+      if (std::find(given.begin(), given.end(), choice.name) != given.end())
+        throw UsageError("--column " + choice.name + " is given twice");
+      given.push_back(choice.name);
+      if (const auto known = find(choice.name); known != choices.end()) *known = choice;
+      else choices.push_back(choice);
+    }
   } catch (const io::InputError& error) {
     throw UsageError(error.what());
   }
@@ -316,6 +335,29 @@ int predict(const Arguments& arguments) {
   return made;
 }
 
+int list_columns(const std::string& path, const std::string& proposal) {
+  io::OutputFiles outputs;
+  if (!proposal.empty()) {
+    if (plain_path(proposal) == plain_path(path))
+      throw UsageError("'" + path + "' is named twice; an output must not be an input");
+    outputs.expect(proposal);
+  }
+  std::string text;
+  std::vector<io::ListedColumn> columns;
+  if (io::is_mcap(path)) {
+    const io::McapContents contents = io::list_mcap(path);
+    text = io::columns_text(contents);
+    columns = contents.columns;
+  } else {
+    columns = io::list_columns(path);
+    text = io::columns_text(columns);
+  }
+  if (!proposal.empty()) outputs.put(proposal, io::column_map_text(columns));
+  outputs.commit();
+  std::fputs(text.c_str(), stdout);
+  return made;
+}
+
 // CLI11's own would tell the largest double in 309 digits.
 const CLI::Validator positive(
     [](std::string& text) {
@@ -356,7 +398,7 @@ int run(int count, char** values) {
   diagnosing->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
   diagnosing
       ->add_option("--recording", arguments.recordings,
-                   "a recording to find and fit on (CSV); may be repeated")
+                   "a recording to find and fit on (CSV, MCAP); may be repeated")
       ->required();
   diagnosing->add_option("--heldout", arguments.held_out,
                          "a recording to judge on; without it the last 30 % of each recording");
@@ -384,7 +426,7 @@ int run(int count, char** values) {
 
   CLI::App* const predicting = app.add_subcommand("predict", "simulate a recording with a model");
   predicting->add_option("--model", arguments.model, "a model, with effects or without (JSON)")->required();
-  predicting->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")
+  predicting->add_option("--recording", arguments.recordings, "a recording (CSV, MCAP); may be repeated")
       ->required();
   predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")
       ->required();
@@ -398,7 +440,8 @@ int run(int count, char** values) {
   CLI::App* const checking = app.add_subcommand(
       "check", "say what is wrong with recordings, and what they can show; nothing is fitted");
   checking->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
-  checking->add_option("--recording", arguments.recordings, "a recording (CSV); may be repeated")->required();
+  checking->add_option("--recording", arguments.recordings, "a recording (CSV, MCAP); may be repeated")
+      ->required();
   checking->add_option("--heldout", arguments.held_out, "a recording to judge on; may be repeated");
   checking->add_option("--report", arguments.report, "write the same for machines (JSON)");
   checking->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
@@ -411,6 +454,8 @@ int run(int count, char** values) {
     one->add_option("--column", arguments.columns,
                     "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
                     "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
+  for (CLI::App* const one : {diagnosing, predicting, checking})
+    one->add_option("--map", arguments.maps, "a file of such lines, as 'columns FILE --proposal' writes it");
 
   CLI::App* const exporting =
       app.add_subcommand("export", "write a model in the words of other simulators, or as a header");
@@ -421,10 +466,11 @@ int run(int count, char** values) {
   }
   exporting->add_option("--header", arguments.header, "write a C++11 header for firmware");
 
-  std::string listed;
+  std::string listed, proposal;
   CLI::App* const columns =
       app.add_subcommand("columns", "list what is in a file, and propose what its columns are");
-  columns->add_option("file", listed, "a table of numbers (CSV), - for standard input")->required();
+  columns->add_option("file", listed, "a recording (CSV, MCAP), - for standard input")->required();
+  columns->add_option("--proposal", proposal, "write the proposals as a mapping file for --map");
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
 
@@ -442,10 +488,7 @@ int run(int count, char** values) {
     return made;
   }
   if (*checking) return check(arguments);
-  if (*columns) {
-    std::fputs(io::columns_text(io::list_columns(listed)).c_str(), stdout);
-    return made;
-  }
+  if (*columns) return list_columns(listed, proposal);
   if (*exporting) return export_model(arguments);
   return *predicting ? predict(arguments) : diagnose(arguments);
 }

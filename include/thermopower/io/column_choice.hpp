@@ -22,6 +22,14 @@ struct ColumnChoice {
 /// @throws InputError that says what is wrong and which units the name knows
 ColumnChoice parse_column_choice(const std::string& text);
 
+/// @brief Reads a mapping file: a line `NAME=HEADER[:UNIT]` for each column, blanks around `=` allowed; blank lines and lines
+/// that begin with `#` are skipped.
+/// @throws InputError with file, line and what was expected; a name or a header that is there twice is an error, too
+std::vector<ColumnChoice> read_column_map(const std::string& path);
+
+/// @brief The same on a text in memory; `name` stands in messages where a path would.
+std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::string& text);
+
 /// @brief The units that a name knows, its own first; empty for a name without a unit.
 std::vector<std::string> units_of(const std::string& name);
 

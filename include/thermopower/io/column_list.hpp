@@ -32,4 +32,7 @@ std::vector<ListedColumn> list_columns(const std::string& name, const char* byte
 /// @brief The list as text for a person, with the options `--column` that take the proposals.
 std::string columns_text(const std::vector<ListedColumn>& columns);
 
+/// @brief The proposals as a mapping file, see read_column_map(), for a person to go through.
+std::string column_map_text(const std::vector<ListedColumn>& columns);
+
 }  // namespace thermopower::io

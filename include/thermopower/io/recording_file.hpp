@@ -23,7 +23,8 @@ struct RecordingFile {
   std::vector<Finding> findings;  ///< notes of the reader; the check of the data makes others
 };
 
-/// @brief Reads a recording from a CSV file. @throws InputError, see read_csv()
+/// @brief Reads a recording from a CSV or MCAP file, whichever it begins like. @throws InputError, see read_csv() and
+/// read_mcap()
 /// @param choices columns that go by another name or unit in the file
 RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices = {});
 
