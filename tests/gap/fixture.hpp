@@ -145,6 +145,8 @@ struct Trial {
 inline std::vector<Trial> trials() {
   return {
       {"second_thermal_mass", {{"winding_share", 0.25}, {"coupling", 0.6}}, false},
+      {"third_thermal_mass", {{"share", 0.4}, {"coupling", 0.1}}, false},
+      {"enclosure", {{"share", 0.8}, {"W_per_K", 0.25}}, false},
       {"radiation", {{"emissive_area_m2", 0.02}}, false},
       {"natural_convection", {{"exponent", 0.3}, {"reference_K", 20.0}}, false},
       {"forced_airflow", {{"gain", 0.2}, {"exponent", 0.7}}, false},
@@ -170,7 +172,8 @@ inline std::vector<Trial> trials() {
         {"rise_Nm", 0.006},
         {"knee_rad_per_s", 0.6},
         {"transition_rad_per_s", 0.01},
-        {"tail", 0.2}},
+        {"tail", 0.2},
+        {"exponent", 1.6}},
        true},
       {"load_friction", {{"share", 0.3}, {"transition_rad_per_s", 0.02}, {"tail", 0.7}}, true},
       {"drive_deadband", {{"A", 0.05}}, true},
@@ -178,6 +181,7 @@ inline std::vector<Trial> trials() {
       {"cogging", {{"sin_Nm", 0.003}, {"cos_Nm", -0.002}, {"cycles_per_turn", 7.0}}, true},
       {"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.4}}, true},
       {"compliance", {{"far_share", 0.4}, {"frequency_Hz", 8.0}, {"damping", 0.05}}, true},
+      {"presliding_friction", {{"Nm", 0.01}, {"bend_rad", 0.03}, {"damping_s", 0.002}}, true},
       {"actuation_delay", {{"s", 0.0173}}, true},
       {"servo_delay", {{"s", 0.0173}}, true},
       {"torque_saturation", {{"A", 0.2}}, true},
@@ -197,6 +201,8 @@ inline std::vector<Trial> trials() {
 inline Model baseline_of(const Trial& trial) {
   Model model = trial.axis ? axis_model() : bench_model();
   if (trial.id == "winding_tempco") model.set("tempco_per_K", 0.0);
+  if (trial.id == "third_thermal_mass")
+    model.effects["second_thermal_mass"] = {{"winding_share", 0.25}, {"coupling", 0.6}};
   if (trial.id == "servo_delay") model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};
   return model;
 }

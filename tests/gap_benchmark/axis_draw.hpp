@@ -86,10 +86,6 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
       s.plant[notch_deg] = random.uniform(-8.0, 8.0);
       s.plant[notch_width_deg] = random.uniform(1.5, 5.0);
       break;
-    case AxisUnknown::magnetic_memory:
-      s.plant[magnetic_Nm] = c.torque_Nm * random.uniform(0.3, 0.9);
-      s.plant[magnetic_deg] = random.uniform(8.0, 30.0);
-      break;
     case AxisUnknown::warming_grease:
       s.plant[viscous] *= 1.02;
       s.plant[warming_share] = random.uniform(0.5, 0.85);
@@ -124,11 +120,6 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
 /// Gives a drawn effect another form than the catalogue's.
 inline void draw_form(AxisSetup& s, OtherForm form, Random& random) {
   if (form == OtherForm::stribeck_exponent) s.plant[stribeck_exponent] = random.pick({1.0, 4.0});
-  if (form == OtherForm::bristles) {
-    s.plant[magnetic_Nm] = s.plant[coulomb_Nm];
-    s.plant[magnetic_deg] = random.log_uniform(0.2, 2.0);
-    s.plant[coulomb_Nm] = 0.0;
-  }
 }
 
 /// Noise-free residuals in windows of `window_s`, over at most `limit_s` of the recording.

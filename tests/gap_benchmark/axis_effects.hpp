@@ -162,6 +162,19 @@ inline const std::vector<AxisEffect>& axis_effects() {
                      {spring_damping, 0.005, 0.4, {0.06}}};
        },
        {}},
+      {"presliding_friction",
+       "mechanical.friction",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         p[magnetic_Nm] = c.torque_Nm * r.log_uniform(0.1, 0.6);
+         p[magnetic_deg] = r.log_uniform(0.8, 20.0);
+       },
+       [](const Context& c) {
+         return List{{magnetic_Nm, 0.0, 2.0 * c.torque_Nm, {0.2 * c.torque_Nm}},
+                     {magnetic_deg, 0.2, 40.0, {2.0, 10.0}}};
+       },
+       {"coulomb_friction"}},
       {"actuation_delay",
        "mechanical.drive",
        motion,
@@ -244,7 +257,6 @@ enum class AxisUnknown {
   none,
   backlash,
   notch,
-  magnetic_memory,
   warming_grease,
   gusts,
   wear,
@@ -258,7 +270,6 @@ inline const std::vector<std::pair<AxisUnknown, std::string>>& axis_unknowns() {
   static const std::vector<std::pair<AxisUnknown, std::string>> list = {
       {AxisUnknown::backlash, "backlash between motor and load"},
       {AxisUnknown::notch, "a notch: it sticks at one position"},
-      {AxisUnknown::magnetic_memory, "magnetic hysteresis: torque that remembers where it turned"},
       {AxisUnknown::warming_grease, "grease that thins while it is worked"},
       {AxisUnknown::gusts, "gusts of wind on the load"},
       {AxisUnknown::wear, "a bearing that breaks in mid recording"},

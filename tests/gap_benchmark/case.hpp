@@ -31,21 +31,19 @@ inline const char* name(Half half) {
 enum class OtherForm {
   none,
   stribeck_exponent,  ///< friction falls with exp(-|w / knee|^n), n of 1 or 4 instead of 2
-  bristles,           ///< friction builds up over an angle after each reversal
   third_node,         ///< a body behind the winding soaks up heat beside the housing
   curved_sensor       ///< the current sensor's gain changes with the current
 };
 
 inline const char* name(OtherForm form) {
-  static const char* const names[] = {"none", "Stribeck friction of another exponent", "friction on bristles",
-                                      "a third node", "a current sensor that is not straight"};
+  static const char* const names[] = {"none", "Stribeck friction of another exponent", "a third node",
+                                      "a current sensor that is not straight"};
   return names[static_cast<int>(form)];
 }
 
 /// The effect of the catalogue that comes nearest to a form, though it is not the same.
 inline const char* nearest(OtherForm form) {
-  static const char* const ids[] = {"", "stribeck_friction", "coulomb_friction", "second_thermal_mass",
-                                    "current_sensor_gain"};
+  static const char* const ids[] = {"", "stribeck_friction", "second_thermal_mass", "current_sensor_gain"};
   return ids[static_cast<int>(form)];
 }
 

@@ -220,7 +220,7 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
           orders.push_back(order);
         }
       for (const OtherForm form :
-           axis ? std::vector<OtherForm>{OtherForm::stribeck_exponent, OtherForm::bristles}
+           axis ? std::vector<OtherForm>{OtherForm::stribeck_exponent}
                 : std::vector<OtherForm>{OtherForm::third_node, OtherForm::curved_sensor})
         for (int i = 0; i < count; ++i) {
           CaseOrder order;

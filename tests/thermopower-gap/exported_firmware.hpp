@@ -31,6 +31,10 @@ struct Has {
   template <class T>
   static long lagged(...);
   template <class T>
+  static char gap(decltype(&T::gap_rad));
+  template <class T>
+  static long gap(...);
+  template <class T>
   static char bend(decltype(&T::bent_rad_per_s));
   template <class T>
   static long bend(...);
@@ -240,6 +244,25 @@ struct Axis<M, true, true> {
   }
 };
 
+template <class M>
+double gap_of(If<true>) {
+  return M::gap_rad();
+}
+template <class M>
+double gap_of(If<false>) {
+  return 0.0;
+}
+
+// Stretch of a spring with free play, and the share of the damper that acts; gap ends are rounded over a hundredth.
+inline double stretch_of(double twist, double gap, double& engaged) {
+  engaged = 1.0;
+  if (!(gap > 0.0)) return twist;
+  const double width = 0.005 * gap, past = (fabs(twist) - 0.5 * gap) / width;
+  const double stretch = past > 30.0 ? width * past : width * log(1.0 + exp(past));
+  engaged = past > 30.0 ? 1.0 : exp(past) / (1.0 + exp(past));
+  return twist < 0.0 ? -stretch : stretch;
+}
+
 // A motor at a voltage has a torque that depends on its rate.
 inline float drive_at(float (*torque_Nm)(float, float), float command, float motor_C, double) {
   return torque_Nm(command, motor_C);
@@ -256,6 +279,7 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
   const double far = far_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
   const double frequency = frequency_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
   const double damping = damping_of<M>(If<sizeof(Has<M>::template spring<M>(0)) == 1>());
+  const double gap = gap_of<M>(If<sizeof(Has<M>::template gap<M>(0)) == 1>());
   const double inertia = M::inertia_kgm2(), near = inertia * (1.0 - far);
   const double spring = near * far * frequency * frequency, damper = 2.0 * near * far * frequency * damping;
   const double rad = 0.017453292519943295;
@@ -281,7 +305,9 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
       const auto slope = [&](double a, double w, double s, double u, double& dw, double& du) {
         const float fa = static_cast<float>(a), fw = static_cast<float>(w);
         const float now = drive_at(&M::drive_Nm, command, motor, w);
-        const double pull = springy ? spring * s + damper * u : 0.0;
+        double engaged = 0.0;
+        const double stretch = stretch_of(s, gap, engaged);
+        const double pull = springy ? spring * stretch + damper * engaged * u : 0.0;
         const double torque = static_cast<double>(now) + Joint::load(fa, fw, now, own) -
                               static_cast<double>(M::viscous_Nms_per_rad()) * w -
                               Joint::dry(fa, fw, now, motor, own) + pull;

@@ -450,8 +450,15 @@ private:
     const auto* lumped = std::get_if<LumpedThermalModel>(&m_.thermal);
     const auto* thesis = std::get_if<ThesisThermalModel>(&m_.thermal);
     if (lumped == nullptr && thesis == nullptr) return;
-    plant::ThermalStructure<double> shape{1.0, 0.0, 0.0, false, false};
+    plant::ThermalStructure<double> shape{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, false, false, false, false};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
+    // What stands behind the surface or around the body is no part of firmware's types.
+    for (const Written& one : written_) {
+      plant::ThermalStructure<double> alone{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, false, false, false, false};
+      one.entry->of<double>().call(one.values.data(), alone);
+      if (alone.has_further_nodes())
+        leave(one.entry->info.id, "`Thermal` has no nodes but winding and surface");
+    }
     two_nodes_ = shape.two_nodes;
     if (shape.two_nodes && lumped == nullptr) {
       for (const Written& one : written_)
@@ -633,7 +640,7 @@ private:
     for (const NamedConstant& one : m_.constants())
       if (one.block == "servo")
         constant("Of the servo, in the unit its name ends in.", "servo_" + one.name, one.value);
-    plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, false, false};
+    plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, 0.0, false, false, false};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
     if (shape.delayed) constant("From command to torque, s.", "delay_s", shape.delay_s);
     if (shape.compliant) {
@@ -641,6 +648,7 @@ private:
       constant("Natural frequency of the two inertias against each other, rad/s.", "spring_rad_per_s",
                shape.spring_rad_per_s);
       constant("Damping ratio of that motion.", "spring_damping", shape.spring_damping);
+      if (shape.gapped) constant("Free play of the spring, from end to end, rad.", "gap_rad", shape.gap_rad);
     }
     Trace trace;
     const Expression drive_Nm =

@@ -134,7 +134,7 @@ public:
   std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
     const auto& shape = instance_.thermal_structure;
     if (segment.axis || !segment.inputs->judged(Signal::motor_C)) return {};
-    if (!shape.lagged && !shape.two_nodes) return {};
+    if (!shape.lagged && !shape.two_nodes && !shape.has_further_nodes()) return {};
     HiddenStart hidden;
     hidden.coordinate = 1;
     hidden.shows_in = Signal::motor_C;  // spreads by 5 K, at a noise of 0.1 K
@@ -183,6 +183,9 @@ private:
     state.winding_C += start[0];
     state.surface_C = state.winding_C + start[1];
     state.thermometer_C = state.winding_C;
+    if (state.further.any) state.further.soaking_C = state.winding_C + start[1];
+    if (state.further.any && !instance_.thermal_structure.soaks && !instance_.thermal_structure.two_nodes)
+      state.further.enclosed_C -= start[1];  // air that is warm as far as the body is cooler than it
     // With a lagging thermometer the measured start is its own, and the winding's is the hidden one.
     if (instance_.thermal_structure.lagged) {
       state.winding_C += start[1];

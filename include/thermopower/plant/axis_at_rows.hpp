@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/free_play.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -24,29 +25,45 @@ namespace thermopower::plant {
 /// Twist of a spring between two inertias, and its rate, while the near one moves as measured:
 /// q'' = -rate' - w^2 q - 2 z w q', with q of the far side relative to the near one.
 struct SpringTwist {
-  Eigen::VectorXd angle_rad;       ///< q
-  Eigen::VectorXd rate_rad_per_s;  ///< q'
+  Eigen::VectorXd angle_rad;         ///< q
+  Eigen::VectorXd rate_rad_per_s;    ///< q'
+  Eigen::VectorXd stretch_rad;       ///< what of q stretches the spring: all of it, without free play
+  Eigen::VectorXd damped_rad_per_s;  ///< what of q' the damper sees
 
   /// @param rate        of the near side, rad/s, without holes
   /// @param w_rad_per_s natural frequency of the far side on the spring, > 0
   /// @param damping     its damping ratio, >= 0
-  SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping)
-      : angle_rad(rate.size()), rate_rad_per_s(rate.size()) {
+  /// @param gap_rad     free play of the spring; 0: none
+  SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping,
+              double gap_rad = 0.0)
+      : angle_rad(rate.size()),
+        rate_rad_per_s(rate.size()),
+        stretch_rad(rate.size()),
+        damped_rad_per_s(rate.size()) {
     constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
     const double w = w_rad_per_s;
+    const auto play = [&](double q) {
+      return gap_rad > 0.0 ? free_play(q, gap_rad) : FreePlay<double>{q, 1.0};
+    };
+    const auto pulled = [&](double q, double v) {
+      const FreePlay<double> at = play(q);
+      return w * w * at.stretch_rad + 2.0 * damping * w * at.engaged * v;
+    };
     for (const RunSpan& run : rows.runs) {
       double q = 0.0, v = 0.0;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         angle_rad[i] = q;
         rate_rad_per_s[i] = v;
+        stretch_rad[i] = play(q).stretch_rad;
+        damped_rad_per_s[i] = play(q).engaged * v;
         if (i + 1 == run.end) break;
         const double step = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step;
         const int parts = std::max(1, static_cast<int>(std::ceil(w * step / longest_rad)));
         for (int p = 0; p < parts; ++p) {
-          const double h = step / parts, k1 = pull - w * w * q - 2.0 * damping * w * v;
+          const double h = step / parts, k1 = pull - pulled(q, v);
           const double q2 = q + 0.5 * h * v, v2 = v + 0.5 * h * k1;
           q += h * v2;
-          v += h * (pull - w * w * q2 - 2.0 * damping * w * v2);
+          v += h * (pull - pulled(q2, v2));
         }
       }
     }
@@ -112,10 +129,11 @@ public:
     if (shape.compliant) {
       const double w = shape.spring_rad_per_s * std::sqrt(1.0 - shape.far_share);
       const double reduced = v.inertia_kgm2 * shape.far_share;
-      const SpringTwist twist(rate, *rows_, w, shape.spring_damping * std::sqrt(1.0 - shape.far_share));
+      const SpringTwist twist(rate, *rows_, w, shape.spring_damping * std::sqrt(1.0 - shape.far_share),
+                              shape.gapped ? shape.gap_rad : 0.0);
       v.motion_Nm +=
           reduced * shape.spring_rad_per_s *
-          (shape.spring_rad_per_s * twist.angle_rad + 2.0 * shape.spring_damping * twist.rate_rad_per_s);
+          (shape.spring_rad_per_s * twist.stretch_rad + 2.0 * shape.spring_damping * twist.damped_rad_per_s);
     }
     return v;
   }

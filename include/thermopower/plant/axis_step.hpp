@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/free_play.hpp>
 #include <thermopower/plant/instance.hpp>
 #include <thermopower/plant/rows.hpp>
 
@@ -87,15 +88,18 @@ public:
     dry_ = at_rest.dry && !soft_;
   }
 
-  /// Lets the effects' own states start: settled where they settle, else at 0.
+  /// Lets the effects' own states start as they are after they have moved for a while as they do now, from 0: settled
+  /// where they settle fast. At rest a bristle is not bent, whatever the sign of the rate's noise.
   void settle(AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
     state.own.count = instance_.own_states;
     for (int i = 0; i < state.own.count; ++i) state.own.at[i] = constant<Scalar>(0.0);
     if (state.own.count == 0) return;
     OwnState<Scalar> own[most_own_states];
     torques(state, t_s, drive, own);
+    using std::exp;
     for (int i = 0; i < state.own.count; ++i)
-      if (value_of(own[i].per_s) > 0.0) state.own.at[i] = own[i].slope / own[i].per_s;
+      if (value_of(own[i].per_s) > 0.0)
+        state.own.at[i] = own[i].slope / own[i].per_s * (1.0 - exp(Scalar(-own[i].per_s * settled_for_s)));
   }
 
   /// Moves the state by `h_s` under a drive that stays the same.
@@ -175,6 +179,8 @@ public:
   }
 
 private:
+  static constexpr double settled_for_s = 1.0;  ///< longer than what a joint remembers, shorter than a drift
+
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
     OwnState<Scalar> own[most_own_states];  ///< how the effects' own states move
@@ -207,6 +213,11 @@ private:
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {
+    if (instance_.axis_structure.gapped) {
+      const auto play = free_play(state.twist_rad, instance_.axis_structure.gap_rad);
+      return spring_Nm_per_rad_ * play.stretch_rad +
+             damper_Nms_per_rad_ * (play.engaged * state.twist_rate_rad_per_s);
+    }
     return spring_Nm_per_rad_ * state.twist_rad + damper_Nms_per_rad_ * state.twist_rate_rad_per_s;
   }
 
@@ -285,7 +296,8 @@ private:
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
     // A transition of friction between the second and the third slope shows in their difference only, and so
     // does a state of an effect's own that moves fast.
-    if (soft_ || from.own.count > 0) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
+    if (soft_ || from.own.count > 0 || instance_.axis_structure.gapped)
+      bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
     const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, Scalar& d) {
       d += a;
       d += 2.0 * (b + c);

@@ -68,7 +68,8 @@ public:
                                  &v.relaxation_per_s, &v.winding_C})
       *one = Eigen::VectorXd::Zero(n);
     for (const RunSpan& run : inputs_.runs) {
-      double charge_Ah = 0.0, surface_C = missing;
+      double charge_Ah = 0.0;
+      HiddenNodes hidden;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];
         const double step_s = i + 1 < run.end ? inputs_.t_s[i + 1] - inputs_.t_s[i] : 0.0;
@@ -98,7 +99,7 @@ public:
           electrical = rollout.driven_by(i, t_s, true_A, winding_C, charge_Ah);
         if (heat == HeatTold::by_record) electrical.winding_W = inputs_.heat_W[i];
         if (heat == HeatTold::by_electrical_power) electrical.winding_W = law.v_rms_V * true_A;
-        body(instance, rollout, electrical, i, t_s, step_s, winding_C, surface_C, v);
+        body(instance, rollout, electrical, i, t_s, step_s, winding_C, hidden, v);
       }
     }
     if (instance.thermal_structure.lagged) {
@@ -139,34 +140,61 @@ public:
   const Model& model() const { return model_; }
 
 private:
+  /// Nodes that nobody measures, carried on from row to row; they start as the first measured one.
+  struct HiddenNodes {
+    double surface_C = missing, soaking_C = missing, enclosed_C = missing;
+  };
+
   static void body(const Instance<double>& instance, const BenchRollout<double>& rollout,
                    const BenchRollout<double>::Circuit& electrical, Eigen::Index i, double t_s, double step_s,
-                   double winding_C, double& surface_C, Values& v) {
+                   double winding_C, HiddenNodes& hidden, Values& v) {
     constexpr double step_K = 0.01;  // for a slope by differences: losses are smooth over kelvins
-    const bool two = instance.thermal_structure.two_nodes;
-    if (!std::isfinite(surface_C)) surface_C = winding_C;
-    const double node_C = two ? surface_C : winding_C;
-    const auto flows = rollout.heat_flows(i, t_s, electrical, winding_C, node_C);
-    const double total = flows.rise_K_per_J > 0.0 ? 1.0 / flows.rise_K_per_J : 6e4;
-    v.heat_W[i] = flows.heat_W;
-    if (two) {
-      const double share = instance.thermal_structure.winding_share,
-                   coupling = instance.thermal_structure.coupling_W_per_K;
-      v.capacity[i] = share * total;
-      v.loss_W[i] = coupling * (winding_C - surface_C);
-      v.relaxation_per_s[i] = coupling / v.capacity[i];
-      const auto above = rollout.heat_flows(i, t_s, electrical, winding_C, surface_C + step_K);
-      const double rest = (1.0 - share) * total,
-                   decay = (coupling + (above.loss_W - flows.loss_W) / step_K) / rest;
-      const double gain = (coupling * (winding_C - surface_C) - flows.loss_W) / rest;
-      surface_C += gain * (decay > 0.0 ? -std::expm1(-decay * step_s) / decay : step_s);
-      return;
+    const auto& shape = instance.thermal_structure;
+    const bool two = shape.two_nodes;
+    if (!std::isfinite(hidden.surface_C)) {
+      hidden.surface_C = hidden.soaking_C = winding_C;
+      hidden.enclosed_C = rollout.heat_flows(i, t_s, electrical, winding_C, winding_C).outside_C;
     }
-    const auto above = rollout.heat_flows(i, t_s, electrical, winding_C + step_K, winding_C + step_K);
-    v.capacity[i] = total;
-    v.loss_W[i] = flows.loss_W;
-    v.relaxation_per_s[i] =
-        std::max(0.0, (above.loss_W - flows.loss_W - above.heat_W + flows.heat_W) / step_K) / total;
+    const double* const enclosed_C = shape.enclosed ? &hidden.enclosed_C : nullptr;
+    const double node_C = two ? hidden.surface_C : winding_C;
+    const auto flows = rollout.heat_flows(i, t_s, electrical, winding_C, node_C, enclosed_C);
+    const double total = flows.rise_K_per_J > 0.0 ? 1.0 / flows.rise_K_per_J : 6e4;
+    const double rest = 1.0 - (shape.soaks ? shape.soaking_share : 0.0);
+    const double soaked_W = shape.soaks ? shape.soaking_W_per_K * (node_C - hidden.soaking_C) : 0.0;
+    const auto approach = [&](double gain_K_per_s, double decay_per_s) {
+      return gain_K_per_s * (decay_per_s > 0.0 ? -std::expm1(-decay_per_s * step_s) / decay_per_s : step_s);
+    };
+    v.heat_W[i] = flows.heat_W;
+    const auto above = rollout.heat_flows(i, t_s, electrical, two ? winding_C : winding_C + step_K,
+                                          node_C + step_K, enclosed_C);
+    if (two) {
+      const double share = shape.winding_share, coupling = shape.coupling_W_per_K;
+      v.capacity[i] = rest * share * total;
+      v.loss_W[i] = coupling * (winding_C - hidden.surface_C);
+      v.relaxation_per_s[i] = coupling / v.capacity[i];
+      const double outer = rest * (1.0 - share) * total;
+      const double decay =
+          (coupling + (above.loss_W - flows.loss_W) / step_K + (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
+          outer;
+      hidden.surface_C +=
+          approach((coupling * (winding_C - hidden.surface_C) - flows.loss_W - soaked_W) / outer, decay);
+    } else {
+      v.capacity[i] = rest * total;
+      v.loss_W[i] = flows.loss_W + soaked_W;
+      v.relaxation_per_s[i] =
+          std::max(0.0, (above.loss_W - flows.loss_W - above.heat_W + flows.heat_W) / step_K +
+                            (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
+          (rest * total);
+    }
+    if (shape.soaks)
+      hidden.soaking_C += approach(soaked_W / (shape.soaking_share * total),
+                                   shape.soaking_W_per_K / (shape.soaking_share * total));
+    if (shape.enclosed) {
+      const double capacity = shape.enclosed_share * total;
+      hidden.enclosed_C +=
+          approach((flows.loss_W - shape.enclosed_W_per_K * (hidden.enclosed_C - flows.outside_C)) / capacity,
+                   shape.enclosed_W_per_K / capacity);
+    }
   }
 
   double shown_A(const Instance<double>& instance, double t_s, double current_A) const {

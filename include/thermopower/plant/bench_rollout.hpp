@@ -12,6 +12,24 @@
 
 namespace thermopower::plant {
 
+/// Nodes of the bench besides winding and surface. Copies nothing where there are none.
+template <class Scalar>
+struct FurtherNodes {
+  bool any = false;   ///< they are in use, and set
+  Scalar soaking_C;   ///< node behind the surface
+  Scalar enclosed_C;  ///< air around the body
+
+  FurtherNodes() {}  // NOLINT: what is not in use stays unset
+  /// Copies what is set.
+  FurtherNodes(const FurtherNodes& other) { *this = other; }
+  /// Copies what is set.
+  FurtherNodes& operator=(const FurtherNodes& other) {
+    any = other.any;
+    if (any) soaking_C = other.soaking_C, enclosed_C = other.enclosed_C;
+    return *this;
+  }
+};
+
 /// Everything that the motor on the bench remembers.
 template <class Scalar>
 struct BenchState {
@@ -19,6 +37,7 @@ struct BenchState {
   Scalar surface_C;      ///< node that the air cools; follows the winding where there is one node
   Scalar thermometer_C;  ///< what a lagging thermometer has come to; follows the winding without lag
   Scalar charge_Ah;      ///< drawn since the start of the run, discharges the battery
+  FurtherNodes<Scalar> further = {};  ///< where the body's structure has more of them
 };
 
 /// Simulates current and temperature of one motor, run by run.
@@ -71,7 +90,14 @@ public:
     // Readings are affine in the temperature: two evaluations invert them.
     const Scalar at_0 = reading(row, 0.0), at_1 = reading(row, 1.0);
     const Scalar true_C = (motor_C - at_0) / (at_1 - at_0);
-    return {true_C, true_C, true_C, constant<Scalar>(0.0)};
+    BenchState<Scalar> state{true_C, true_C, true_C, constant<Scalar>(0.0)};
+    if (instance_.thermal_structure.has_further_nodes()) {
+      const double air_C = at(inputs_.ambient_C, row);
+      state.further.any = true;
+      state.further.soaking_C = true_C;
+      state.further.enclosed_C = std::isfinite(air_C) ? constant<Scalar>(air_C) : true_C;
+    }
+    return state;
   }
 
   /// What flows in the circuit at an instant.
@@ -149,11 +175,13 @@ public:
     Scalar heat_W;        ///< into the winding node
     Scalar loss_W;        ///< out of the surface node
     Scalar rise_K_per_J;  ///< of all nodes together; 0 where the law has no capacity
+    Scalar outside_C;     ///< the air that the surroundings have, after the effects on it
   };
 
   /// The heat balance at a row with these nodes (`surface_C` counts where there are two).
+  /// @param enclosed_C  air around the body, where that warms up; null: it does not
   HeatFlows heat_flows(Eigen::Index row, double t_s, const Circuit& electrical, const Scalar& winding_C,
-                       const Scalar& surface_C) const {
+                       const Scalar& surface_C, const Scalar* enclosed_C = nullptr) const {
     ThermalTerms<Scalar> terms;
     terms.t_s = t_s;
     terms.airspeed_mps = at(inputs_.airspeed_mps, row);
@@ -170,7 +198,8 @@ public:
     air.measured_ambient_C = terms.measured_ambient_C;
     air.ambient_C = constant<Scalar>(terms.measured_ambient_C);
     for (const auto& effect : instance_.air) effect(air);
-    terms.ambient_C = air.ambient_C;
+    terms.ambient_C = enclosed_C != nullptr ? *enclosed_C : air.ambient_C;
+    const Scalar outside_C = air.ambient_C;
     terms.heat_W = electrical.winding_W;
     terms.conductance_factor = constant<Scalar>(1.0);
     terms.extra_loss_W = constant<Scalar>(0.0);
@@ -192,7 +221,7 @@ public:
       loss_W = (value_of(rise_K_per_J) > 0.0 ? Scalar(natural_rate / rise_K_per_J) : constant<Scalar>(0.0)) +
                terms.extra_loss_W;
     }
-    return {terms.heat_W, loss_W, rise_K_per_J};
+    return {terms.heat_W, loss_W, rise_K_per_J, outside_C};
   }
 
   /// Share of the motor's current that the supply carries: sqrt(duty).
@@ -204,6 +233,7 @@ public:
 private:
   struct Slope {
     Scalar winding, surface, charge;
+    FurtherNodes<Scalar> further = {};  ///< K/s
   };
 
   static double at(const Eigen::VectorXd& values, Eigen::Index row) {
@@ -238,11 +268,17 @@ private:
     const Circuit electrical = powered(row, t_s, state);
     if (!instance_.lumped && !instance_.thesis_thermal) {
       const Scalar still = constant<Scalar>(0.0);
-      return {still, still, electrical.current_A * charge_share(row) * (1.0 / 3600.0)};
+      return {still, still, electrical.current_A * charge_share(row) * (1.0 / 3600.0), {}};
     }
     const auto& shape = instance_.thermal_structure;
-    const HeatFlows flows = heat_flows(row, t_s, electrical, state.winding_C, state.surface_C);
+    const HeatFlows flows = heat_flows(row, t_s, electrical, state.winding_C, state.surface_C,
+                                       shape.enclosed ? &state.further.enclosed_C : nullptr);
     Slope rate;
+    if (shape.has_further_nodes()) {
+      further_slope(state, flows, rate);
+      rate.charge = electrical.current_A * charge_share(row) * (1.0 / 3600.0);
+      return rate;
+    }
     if (shape.two_nodes) {
       const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
       rate.winding = (flows.heat_W - flow_W) * flows.rise_K_per_J / shape.winding_share;
@@ -253,6 +289,32 @@ private:
     }
     rate.charge = electrical.current_A * charge_share(row) * (1.0 / 3600.0);
     return rate;
+  }
+
+  /// Every node, with a node behind the surface, or air around it that warms up.
+  void further_slope(const BenchState<Scalar>& state, const HeatFlows& flows, Slope& rate) const {
+    const auto& shape = instance_.thermal_structure;
+    const Scalar& rise_K_per_J = flows.rise_K_per_J;
+    const Scalar zero = constant<Scalar>(0.0);
+    const Scalar& surface_C = shape.two_nodes ? state.surface_C : state.winding_C;
+    const Scalar soaked_W =
+        shape.soaks ? Scalar(shape.soaking_W_per_K * (surface_C - state.further.soaking_C)) : zero;
+    const Scalar rest = 1.0 - shape.soaking_share;  // of the heat capacity, in winding and surface
+    if (shape.two_nodes) {
+      const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
+      rate.winding = (flows.heat_W - flow_W) * rise_K_per_J / (rest * shape.winding_share);
+      rate.surface = (flow_W - flows.loss_W - soaked_W) * rise_K_per_J / (rest * (1.0 - shape.winding_share));
+    } else {
+      rate.winding = (flows.heat_W - flows.loss_W - soaked_W) * rise_K_per_J / rest;
+      rate.surface = rate.winding;
+    }
+    rate.further.any = true;
+    rate.further.soaking_C = shape.soaks ? Scalar(soaked_W * rise_K_per_J / shape.soaking_share) : zero;
+    rate.further.enclosed_C =
+        shape.enclosed
+            ? Scalar((flows.loss_W - shape.enclosed_W_per_K * (state.further.enclosed_C - flows.outside_C)) *
+                     rise_K_per_J / shape.enclosed_share)
+            : zero;
   }
 
   /// What a joule warms the whole motor by; of the polynomial law just above its least voltage.
@@ -274,18 +336,37 @@ private:
       const double flow = value_of(shape.coupling_W_per_K) * rise_K_per_J;
       fastest = std::max(fastest, flow / share + (flow + 2.0 * base) / (1.0 - share));
     }
+    if (shape.soaks) {
+      const double share = value_of(shape.soaking_share), rest = 1.0 - share;
+      const double flow = value_of(shape.soaking_W_per_K) * rise_K_per_J;
+      const double surface = rest * (shape.two_nodes ? 1.0 - value_of(shape.winding_share) : 1.0);
+      fastest = fastest / rest + flow / share + flow / surface;
+    }
+    if (shape.enclosed)
+      fastest +=
+          (2.0 * base + value_of(shape.enclosed_W_per_K) * rise_K_per_J) / value_of(shape.enclosed_share);
     return fastest;
   }
 
   static BenchState<Scalar> moved(const BenchState<Scalar>& from, const Slope& rate, double h_s) {
-    return {from.winding_C + rate.winding * h_s, from.surface_C + rate.surface * h_s, from.thermometer_C,
-            from.charge_Ah + rate.charge * h_s};
+    BenchState<Scalar> to{from.winding_C + rate.winding * h_s, from.surface_C + rate.surface * h_s,
+                          from.thermometer_C, from.charge_Ah + rate.charge * h_s};
+    if (rate.further.any) {
+      to.further.any = true;
+      to.further.soaking_C = from.further.soaking_C + rate.further.soaking_C * h_s;
+      to.further.enclosed_C = from.further.enclosed_C + rate.further.enclosed_C * h_s;
+    }
+    return to;
   }
 
   void step(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
     const auto& shape = instance_.thermal_structure;
     coupling_W_per_K_ = shape.coupling_W_per_K;
     double stiffness = dt_s * fastest_per_s(state);
+    if (shape.has_further_nodes()) {
+      further_steps(row, t_s, dt_s, stiffness, state);
+      return;
+    }
     if (shape.two_nodes && !shape.lagged && stiffness > 0.6) {
       exchange(row, t_s, dt_s, state);
       return;
@@ -312,8 +393,37 @@ private:
       const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
       const Slope mean{(k1.winding + 2.0 * (k2.winding + k3.winding) + k4.winding) * (1.0 / 6.0),
                        (k1.surface + 2.0 * (k2.surface + k3.surface) + k4.surface) * (1.0 / 6.0),
-                       (k1.charge + 2.0 * (k2.charge + k3.charge) + k4.charge) * (1.0 / 6.0)};
+                       (k1.charge + 2.0 * (k2.charge + k3.charge) + k4.charge) * (1.0 / 6.0),
+                       {}};
       settle(state, moved(state, mean, h_s), h_s);
+    }
+  }
+
+  /// An interval of more nodes than two, in steps of the classical Runge-Kutta rule that the fastest exchange allows.
+  void further_steps(Eigen::Index row, double t_s, double dt_s, double stiffness,
+                     BenchState<Scalar>& state) const {
+    constexpr double most_steps = 200.0;  // an exchange that is faster still looks like none
+    const int steps = static_cast<int>(std::ceil(std::clamp(stiffness / 1.2, 1.0, most_steps)));
+    const double h_s = dt_s / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double now_s = t_s + i * h_s;
+      const Slope k1 = slope(row, now_s, state);
+      const Slope k2 = slope(row, now_s + 0.5 * h_s, moved(state, k1, 0.5 * h_s));
+      const Slope k3 = slope(row, now_s + 0.5 * h_s, moved(state, k2, 0.5 * h_s));
+      const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
+      const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
+        return Scalar((a + 2.0 * (b + c) + d) * (1.0 / 6.0));
+      };
+      Slope all{mean(k1.winding, k2.winding, k3.winding, k4.winding),
+                mean(k1.surface, k2.surface, k3.surface, k4.surface),
+                mean(k1.charge, k2.charge, k3.charge, k4.charge),
+                {}};
+      all.further.any = true;
+      all.further.soaking_C =
+          mean(k1.further.soaking_C, k2.further.soaking_C, k3.further.soaking_C, k4.further.soaking_C);
+      all.further.enclosed_C =
+          mean(k1.further.enclosed_C, k2.further.enclosed_C, k3.further.enclosed_C, k4.further.enclosed_C);
+      settle(state, moved(state, all, h_s), h_s);
     }
   }
 

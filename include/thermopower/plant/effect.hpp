@@ -25,9 +25,10 @@ enum class Need {
   power_param,           ///< recorded
   airspeed_mps,          ///< recorded
   neighbour_C,           ///< recorded
-  supply_not_logged,     ///< there is no column `supply_V`
-  open_loop,             ///< the command is recorded
-  closed_loop            ///< the model has a servo, its target is recorded and the command is not
+  two_nodes,  ///< the model's body has winding and surface: `second_thermal_mass` is among its effects
+  supply_not_logged,  ///< there is no column `supply_V`
+  open_loop,          ///< the command is recorded
+  closed_loop         ///< the model has a servo, its target is recorded and the command is not
 };
 
 /// As lists of effects print it.
@@ -57,6 +58,8 @@ inline const char* to_string(Need need) {
       return "neighbour_C";
     case Need::supply_not_logged:
       return "no supply_V";
+    case Need::two_nodes:
+      return "a model with second_thermal_mass";
     case Need::open_loop:
       return "command recorded";
     case Need::closed_loop:

@@ -76,13 +76,10 @@ struct Instance {
   Instance(const Model& model, const std::vector<Scalar>& factors,
            const std::vector<AddedEffect<Scalar>>& added, const Catalogue& catalogue) {
     set_constants(model, factors);
-    thermal_structure = {constant<Scalar>(1.0), constant<Scalar>(0.0), constant<Scalar>(0.0), false, false};
-    axis_structure = {constant<Scalar>(0.0),
-                      constant<Scalar>(0.0),
-                      constant<Scalar>(0.0),
-                      constant<Scalar>(0.0),
-                      false,
-                      false};
+    const Scalar none = constant<Scalar>(0.0);
+    thermal_structure = {
+        constant<Scalar>(1.0), none, none, none, none, none, none, false, false, false, false};
+    axis_structure = {none, none, none, none, none, false, false, false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {
       const AddedEffect<Scalar>* own = nullptr;

@@ -69,8 +69,17 @@ struct ThermalStructure {
   Scalar winding_share;      ///< of the heat capacity; 1: a single node
   Scalar coupling_W_per_K;   ///< between winding and surface node
   Scalar thermometer_lag_s;  ///< time constant of the thermometer; 0: none
+  Scalar soaking_share;      ///< of the heat capacity, in a node behind the surface that loses nothing itself
+  Scalar soaking_W_per_K;    ///< between that node and the surface
+  Scalar enclosed_share;     ///< heat capacity of the air around the body, relative to the body's
+  Scalar enclosed_W_per_K;   ///< from that air to the measured one
   bool two_nodes = false;    ///< to be set with the share: winding and surface are nodes of their own
   bool lagged = false;       ///< to be set with the lag: the thermometer follows the winding late
+  bool soaks = false;        ///< to be set with its share: there is a node behind the surface
+  bool enclosed = false;     ///< to be set with its share: the air around the body warms up
+
+  /// Whether there are nodes besides winding and surface.
+  bool has_further_nodes() const { return soaks || enclosed; }
 };
 
 /// Drive path, evaluated once per interval.
@@ -88,7 +97,7 @@ struct DriveTerms {
 inline constexpr double friction_sticks_below_rad_per_s = 5e-4;
 
 /// A state that an effect brings to the joint, by the equation dz/dt = slope - per_s z: a hook reads the value
-/// and sets the two. Where nothing is known of it, it starts settled: at slope / per_s, or at 0 where per_s is 0.
+/// and sets the two. Where nothing is known of it, it starts as a second of these leaves it: at slope / per_s where that is fast.
 template <class Scalar>
 struct OwnState {
   Scalar value;  ///< z, in the unit that the effect's info says
@@ -168,8 +177,10 @@ struct AxisStructure {
   Scalar far_share;         ///< of the inertia, behind a spring; 0: rigid
   Scalar spring_rad_per_s;  ///< natural frequency of the two inertias against each other
   Scalar spring_damping;    ///< damping ratio of that motion
+  Scalar gap_rad;           ///< free play of the spring, from end to end
   bool delayed = false;     ///< to be set with the delay
   bool compliant = false;   ///< to be set with the share: there is a far side
+  bool gapped = false;      ///< to be set with the gap: the spring has free play
 };
 
 /// What the instruments say of the bench.

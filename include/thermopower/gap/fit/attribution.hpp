@@ -309,6 +309,9 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
         case Need::axis_model:
           here = model.has_axis() && axis;
           break;
+        case Need::two_nodes:
+          here = model.effects.count("second_thermal_mass") > 0;
+          break;
         case Need::open_loop:
           here = inputs.axis() && !inputs.closed_loop;
           break;

@@ -127,7 +127,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
                       {},
                       parameter.logarithmic,
                       {}});
-      if (parameter.standard) list.back().standard = to(*parameter.standard);
+      if (parameter.standard && parameter.logarithmic) list.back().standard = to(*parameter.standard);
     }
   return list;
 }

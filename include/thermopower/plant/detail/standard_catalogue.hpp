@@ -19,12 +19,14 @@
 #include <thermopower/plant/effects/dead_time.hpp>
 #include <thermopower/plant/effects/drive_deadband.hpp>
 #include <thermopower/plant/effects/drive_lag.hpp>
+#include <thermopower/plant/effects/enclosure.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
 #include <thermopower/plant/effects/motion_heating.hpp>
 #include <thermopower/plant/effects/natural_convection.hpp>
 #include <thermopower/plant/effects/neighbour_heating.hpp>
+#include <thermopower/plant/effects/presliding_friction.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
@@ -35,6 +37,7 @@
 #include <thermopower/plant/effects/supply_sag.hpp>
 #include <thermopower/plant/effects/thermometer_gain.hpp>
 #include <thermopower/plant/effects/thermometer_lag.hpp>
+#include <thermopower/plant/effects/third_thermal_mass.hpp>
 #include <thermopower/plant/effects/torque_fade.hpp>
 #include <thermopower/plant/effects/torque_ripple.hpp>
 #include <thermopower/plant/effects/torque_saturation.hpp>
@@ -48,6 +51,8 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
   static const Catalogue catalogue = [] {
     Catalogue all;
     all.add<SecondThermalMass>();
+    all.add<ThirdThermalMass>();
+    all.add<Enclosure>();
     all.add<Radiation>();
     all.add<NaturalConvectionEffect>();
     all.add<ForcedAirflowEffect>();
@@ -68,6 +73,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<AsymmetricFriction>();
     all.add<StribeckFriction>();
     all.add<LoadFriction>();
+    all.add<PreslidingFriction>();
     all.add<DriveDeadband>();
     all.add<Imbalance>();
     all.add<CableSpring>();

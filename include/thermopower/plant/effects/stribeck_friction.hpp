@@ -12,13 +12,13 @@ namespace thermopower::plant {
 /// Dry friction with a Stribeck rise near standstill.
 struct StribeckFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition, tail };
+  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition, tail, exponent };
 
   /// What it is.
   static EffectInfo info() {
     return {"stribeck_friction",
             Submodel::mechanical_friction,
-            "torque -= (Nm + rise exp(-(w / knee)^2)) film(w / transition, tail)",
+            "torque -= (Nm + rise exp(-|w / knee|^n)) film(w / transition, tail)",
             "Dry friction that is larger near standstill than in motion.",
             {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
              parameter(rise_Nm, "rise_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
@@ -28,7 +28,8 @@ struct StribeckFriction {
                  .logarithmic()
                  .exceeds("transition_rad_per_s")
                  .starts({0.1, 0.5, 2.0}),
-             friction_transition(transition), friction_tail(tail)},
+             friction_transition(transition), friction_tail(tail),
+             parameter(exponent, "exponent").unit("1").within(0.5, 6.0).standard(2.0).starts({2.0})},
             {Need::axis_model},
             "very slow motion through standstill in both directions"};
   }
@@ -37,8 +38,10 @@ struct StribeckFriction {
   template <class Scalar>
   static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
     using std::exp;
-    const Scalar ratio = terms.rate_rad_per_s / p[knee_rad_per_s];
-    const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * exp(-ratio * ratio);
+    using std::log;
+    constexpr double still = 1e-9;  // of the knee: a power of 0 has no derivative
+    const Scalar ratio = at_least(magnitude(Scalar(terms.rate_rad_per_s / p[knee_rad_per_s])), still);
+    const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * exp(-exp(p[exponent] * log(ratio)));
     terms.add_friction(friction_Nm, friction_Nm, p[transition], p[tail]);
   }
 };

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/terms.hpp>
+
+namespace thermopower::plant {
+
+/// Part of the inertia is coupled with free play: inside the gap nothing is transmitted, at its ends two sides meet on
+/// a spring and a damper. The near side is driven and measured.
+/// Not in the standard catalogue: it simulates and exports, but fits do not find it reliably. Add it to a catalogue of
+/// your own where you know the play.
+struct Backlash {
+  /// Its parameters, in this order.
+  enum Parameters { gap_rad, far_share, contact_Hz, damping };
+
+  /// What it is.
+  static EffectInfo info() {
+    return {"backlash",
+            Submodel::mechanical_structure,
+            "J1 dw/dt = drive - contact(q), J2 dw2/dt = contact(q), contact = 0 for |q| < gap / 2",
+            "Teeth have play: the far side is free for an angle after each reversal, and then it is hit.",
+            {parameter(gap_rad, "gap_rad").unit("rad").within(5e-3, 1.0).logarithmic().starts({0.05}),
+             parameter(far_share, "far_share").unit("1").within(0.02, 0.97).starts({0.5}),
+             parameter(contact_Hz, "contact_Hz").unit("Hz").within(5.0, 50.0).logarithmic().starts({20.0}),
+             parameter(damping, "damping").unit("1").within(1e-3, 2.0).logarithmic().starts({0.15})},
+            {Need::axis_model},
+            "slow reversals at small torque, and fast ones"};
+  }
+
+  /// Puts part of the inertia behind a gap.
+  template <class Scalar>
+  static void act(const Scalar* p, AxisStructure<Scalar>& shape) {
+    shape.compliant = true;
+    shape.gapped = true;
+    shape.far_share = p[far_share];
+    shape.spring_rad_per_s = p[contact_Hz] * 6.283185307179586;
+    shape.spring_damping = p[damping];
+    shape.gap_rad = p[gap_rad];
+  }
+};
+
+}  // namespace thermopower::plant

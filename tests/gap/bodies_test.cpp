@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#include "../catch.hpp"
+#include "plants.hpp"
+
+#include <thermopower/gap/diagnose.hpp>
+
+#include <algorithm>
+#include <limits>
+
+// Bodies of more nodes than their simulation knows, stepped here apart from the library's equations.
+
+using namespace thermopower::gap;
+
+namespace {
+
+/// Heat capacities in J/K and conductances in W/K; 0: there is no such part.
+struct Body {
+  double winding = 0.0, coupling = 1.0;  ///< heated part of its own, coupled to the surface
+  double surface = 60.0, to_air = 0.15;  ///< loses the heat
+  double mount = 0.0, to_mount = 0.0;    ///< behind the surface
+  double box = 0.0, box_to_room = 0.0;   ///< air around it
+};
+
+Recording record(const Body& body, int rows, std::uint64_t seed) {
+  test::Noise noise(seed);
+  Recording r;
+  r.name = "body";
+  r.t_s.resize(rows);
+  Eigen::VectorXd power(rows), current(rows), motor(rows), ambient(rows), supply(rows);
+  double winding = 23.0, surface = 23.0, mount = 23.0, box = 23.0, level = 200.0;
+  for (int i = 0; i < rows; ++i) {
+    if (i % 150 == 0) level = 25.0 * std::floor(5.2 + 5.0 * std::sin(1.7 * i + static_cast<double>(seed)));
+    if ((i / 150) % 4 == 3) level = 0.0;
+    r.t_s[i] = 2.0 * i;
+    power[i] = level;
+    supply[i] = 12.0;
+    ambient[i] = 23.0;
+    double& hot = body.winding > 0.0 ? winding : surface;
+    const double v = 12.0 * std::sqrt(level / 255.0);
+    const auto ohm = [&] { return 8.0 * (1.0 + 0.00393 * (hot - 25.0)); };
+    current[i] = v / ohm() + 0.003 * noise();
+    motor[i] = hot + 0.05 * noise();
+    constexpr int steps = 100;
+    for (int k = 0; k < steps; ++k) {
+      const double h = 2.0 / steps, heat = v * v / ohm();
+      const double air = body.box > 0.0 ? box : 23.0;
+      const double lost = body.to_air * (surface - air), soaked = body.to_mount * (surface - mount);
+      double into_surface = heat;
+      if (body.winding > 0.0) {
+        into_surface = body.coupling * (winding - surface);
+        winding += h * (heat - into_surface) / body.winding;
+      }
+      surface += h * (into_surface - lost - soaked) / body.surface;
+      if (body.mount > 0.0) mount += h * soaked / body.mount;
+      if (body.box > 0.0) box += h * (lost - body.box_to_room * (box - 23.0)) / body.box;
+    }
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  r.set("motor_C", motor);
+  r.set("ambient_C", ambient);
+  r.set("supply_V", supply);
+  return r;
+}
+
+Diagnosis diagnosed(const Model& model, const Body& body, int effects_at_once = 1) {
+  Options options;
+  options.effects_at_once = effects_at_once;
+  return diagnose(model, {record(body, 2400, 3)}, {record(body, 1500, 8)}, options);
+}
+
+double parameter_of(const Diagnosis& diagnosis, const std::string& name) {
+  for (const Cause& cause : diagnosis.cause)
+    for (const ParameterEstimate& one : cause.parameters)
+      if (one.name == name) return one.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+TEST_CASE("behind a winding and a surface that the simulation knows, the third mass is found too") {
+  Body body;
+  body.winding = 15.0;
+  body.coupling = 0.8;
+  body.surface = 45.0;
+  body.mount = 60.0;
+  body.to_mount = 0.08;
+  Model model = test::bench_model();
+  model.set("heat_capacity_J_per_K", 120.0);
+  model.effects["second_thermal_mass"] = {{"winding_share", 0.25}, {"coupling", 0.8}};
+  const Diagnosis diagnosis = diagnosed(model, body);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "third_thermal_mass");
+  CHECK(parameter_of(diagnosis, "coupling") == Approx(0.08).epsilon(0.1));
+}
+
+TEST_CASE("air that warms up around the body is found") {
+  Body body;
+  body.box = 50.0;
+  body.box_to_room = 0.2;
+  const Diagnosis diagnosis = diagnosed(test::bench_model(), body);
+  INFO(diagnosis.reason);
+  // A box and a mount differ in where the heat goes in the end; here both are told apart by their times.
+  REQUIRE_FALSE(diagnosis.cause.empty());
+  CHECK(diagnosis.cause.front().effect == "enclosure");
+  CHECK(parameter_of(diagnosis, "W_per_K") == Approx(0.2).epsilon(0.1));
+}
+
+TEST_CASE("two nodes are not taken for three") {
+  Body body;
+  body.winding = 15.0;
+  body.coupling = 0.8;
+  body.surface = 45.0;
+  const Diagnosis diagnosis = diagnosed(test::bench_model(), body);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "second_thermal_mass");
+}

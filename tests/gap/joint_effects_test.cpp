@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#include "../catch.hpp"
+#include "plants.hpp"
+
+#include <thermopower/gap/diagnose.hpp>
+
+#include <algorithm>
+#include <limits>
+
+// Bristles and the rise of friction near standstill, stepped here apart from the library's equations: each is found, and
+// none is taken for its neighbour.
+
+using namespace thermopower::gap;
+
+namespace {
+
+/// What is wrong with the joint; everything off by default.
+struct Joint {
+  double bristle_Nm = 0.0, bend_rad = 0.0;
+  double coulomb_Nm = 0.0, rise_Nm = 0.0, knee_rad_per_s = 1.0, exponent = 2.0;
+};
+
+constexpr double inertia = 1e-3, viscous = 1e-3, torque_constant = 0.2;
+
+Recording record(const Joint& joint, int rows, std::uint64_t seed) {
+  test::Noise noise(seed);
+  Recording r;
+  r.name = "joint";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  double theta = 0.0, omega = 0.0, bent = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    const double t = 0.01 * i, phase = static_cast<double>(seed);
+    r.t_s[i] = t;
+    drive[i] = 0.10 * std::sin(2.1 * t + phase) + 0.08 * std::sin(5.3 * t + 1.0 + phase) +
+               0.05 * std::sin(11.0 * t) + 0.03 * std::sin(0.7 * t + 2.0 * phase);
+    angle[i] = theta * 57.29577951308232 + 0.02 * noise();
+    rate[i] = omega * 57.29577951308232 + 0.15 * noise();
+    constexpr int steps = 500;
+    for (int k = 0; k < steps; ++k) {
+      const double h = 0.01 / steps;
+      double push = torque_constant * drive[i] - viscous * omega;
+      if (joint.bristle_Nm > 0.0) {
+        bent += h * (omega - std::fabs(omega) * bent / joint.bend_rad);
+        push -= joint.bristle_Nm * bent / joint.bend_rad;
+      }
+      const double rise =
+          joint.rise_Nm * std::exp(-std::pow(std::fabs(omega) / joint.knee_rad_per_s, joint.exponent));
+      const double next = omega + h * push / inertia, brake = h * (joint.coulomb_Nm + rise) / inertia;
+      omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
+      theta += h * omega;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
+}
+
+Diagnosis diagnosed(const Joint& joint) {
+  Model model;
+  model.name = "joint";
+  model.axis = RigidAxisModel{inertia, viscous, torque_constant};
+  Options options;
+  options.effects_at_once = 1;
+  return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
+}
+
+double parameter_of(const Diagnosis& diagnosis, const std::string& name) {
+  for (const Cause& cause : diagnosis.cause)
+    for (const ParameterEstimate& one : cause.parameters)
+      if (one.name == name) return one.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+TEST_CASE("friction that bends before it slides is told from friction that does not") {
+  Joint bristles;
+  bristles.bristle_Nm = 0.006;
+  bristles.bend_rad = 0.05;
+  const Diagnosis bent = diagnosed(bristles);
+  INFO(bent.reason);
+  REQUIRE(bent.cause.size() == 1);
+  CHECK(bent.cause.front().effect == "presliding_friction");
+  CHECK(parameter_of(bent, "Nm") == Approx(0.006).epsilon(0.03));
+  CHECK(parameter_of(bent, "bend_rad") == Approx(0.05).epsilon(0.05));
+
+  Joint dry;
+  dry.coulomb_Nm = 0.006;
+  const Diagnosis rubbed = diagnosed(dry);
+  INFO(rubbed.reason);
+  REQUIRE(rubbed.cause.size() == 1);
+  CHECK(rubbed.cause.front().effect == "coulomb_friction");
+}
+
+TEST_CASE("the rise of friction near standstill is found with its exponent") {
+  for (const double exponent : {1.0, 2.0}) {
+    Joint joint;
+    joint.coulomb_Nm = 0.003;
+    joint.rise_Nm = 0.005;
+    joint.knee_rad_per_s = 1.0;
+    joint.exponent = exponent;
+    const Diagnosis diagnosis = diagnosed(joint);
+    INFO(exponent << ": " << diagnosis.reason);
+    REQUIRE(diagnosis.cause.size() == 1);
+    CHECK(diagnosis.cause.front().effect == "stribeck_friction");
+    CHECK(parameter_of(diagnosis, "exponent") == Approx(exponent).epsilon(0.15));
+  }
+}
