@@ -147,6 +147,7 @@ inline std::vector<Trial> trials() {
       {"second_thermal_mass", {{"winding_share", 0.25}, {"coupling", 0.6}}, false},
       {"third_thermal_mass", {{"share", 0.4}, {"coupling", 0.1}}, false},
       {"enclosure", {{"share", 0.8}, {"W_per_K", 0.25}}, false},
+      {"law.exchanged_heating", {}, false},
       {"radiation", {{"emissive_area_m2", 0.02}}, false},
       {"natural_convection", {{"exponent", 0.3}, {"reference_K", 20.0}}, false},
       {"forced_airflow", {{"gain", 0.2}, {"exponent", 0.7}}, false},
@@ -181,7 +182,8 @@ inline std::vector<Trial> trials() {
       {"cogging", {{"sin_Nm", 0.003}, {"cos_Nm", -0.002}, {"cycles_per_turn", 7.0}}, true},
       {"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.4}}, true},
       {"compliance", {{"far_share", 0.4}, {"frequency_Hz", 8.0}, {"damping", 0.05}}, true},
-      {"presliding_friction", {{"Nm", 0.01}, {"bend_rad", 0.03}, {"damping_s", 0.002}}, true},
+      {"backlash", {{"gap_rad", 0.05}, {"far_share", 0.4}, {"contact_Hz", 18.0}, {"damping", 0.2}}, true},
+      {"presliding_friction", {{"Nm", 0.003}, {"bend_rad", 0.03}, {"damping_s", 0.002}}, true},
       {"actuation_delay", {{"s", 0.0173}}, true},
       {"servo_delay", {{"s", 0.0173}}, true},
       {"torque_saturation", {{"A", 0.2}}, true},
@@ -193,6 +195,7 @@ inline std::vector<Trial> trials() {
       {"drive_lag", {{"lag_s", 0.03}}, true},
       {"angle_scale", {{"gain", 57.29578}}, true},
       {"angle_bias_drift", {{"deg_per_s", 0.4}}, true},
+      {"encoder_eccentricity", {{"sin_deg", 0.8}, {"cos_deg", -0.5}, {"cycles_per_turn", 3.0}}, true},
       {"rate_bias", {{"dps", 1.5}}, true},
   };
 }
@@ -201,6 +204,10 @@ inline std::vector<Trial> trials() {
 inline Model baseline_of(const Trial& trial) {
   Model model = trial.axis ? axis_model() : bench_model();
   if (trial.id == "winding_tempco") model.set("tempco_per_K", 0.0);
+  if (trial.id == "law.exchanged_heating") {
+    model.current = ThesisCurrentModel{0.0, 0.0, -0.5, 10.0, 1.9, 1.0};
+    model.thermal = ThesisThermalModel{0.15, 0.0, 0.02, 0.05, 0.3, 1.0};
+  }
   if (trial.id == "third_thermal_mass")
     model.effects["second_thermal_mass"] = {{"winding_share", 0.25}, {"coupling", 0.6}};
   if (trial.id == "servo_delay") model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-// Bristles and the rise of friction near standstill, stepped here apart from the library's equations: each is found, and
+// Bristles, the rise of friction near standstill and gears with play, stepped here apart from the library's equations: each is found, and
 // none is taken for its neighbour.
 
 using namespace thermopower::gap;
@@ -19,6 +19,7 @@ namespace {
 struct Joint {
   double bristle_Nm = 0.0, bend_rad = 0.0;
   double coulomb_Nm = 0.0, rise_Nm = 0.0, knee_rad_per_s = 1.0, exponent = 2.0;
+  double far_share = 0.0, gap_rad = 0.0;  ///< of the inertia, behind a gap between teeth
 };
 
 constexpr double inertia = 1e-3, viscous = 1e-3, torque_constant = 0.2;
@@ -29,7 +30,8 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
   r.name = "joint";
   r.t_s.resize(rows);
   Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double theta = 0.0, omega = 0.0, bent = 0.0;
+  double theta = 0.0, omega = 0.0, bent = 0.0, far_theta = 0.0, far_omega = 0.0;
+  const double near = inertia * (1.0 - joint.far_share), far = inertia * joint.far_share;
   for (int i = 0; i < rows; ++i) {
     const double t = 0.01 * i, phase = static_cast<double>(seed);
     r.t_s[i] = t;
@@ -45,9 +47,19 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
         bent += h * (omega - std::fabs(omega) * bent / joint.bend_rad);
         push -= joint.bristle_Nm * bent / joint.bend_rad;
       }
+      if (far > 0.0) {
+        // Teeth of steel on a soft shaft: they push and never pull.
+        const double lead = theta - far_theta, way = lead < 0.0 ? -1.0 : 1.0;
+        const double pressed = std::fabs(lead) - 0.5 * joint.gap_rad;
+        const double tooth =
+            pressed > 0.0 ? way * std::fmax(0.0, 4.0 * pressed + 0.004 * way * (omega - far_omega)) : 0.0;
+        push -= tooth;
+        far_omega += h * tooth / far;
+        far_theta += h * far_omega;
+      }
       const double rise =
           joint.rise_Nm * std::exp(-std::pow(std::fabs(omega) / joint.knee_rad_per_s, joint.exponent));
-      const double next = omega + h * push / inertia, brake = h * (joint.coulomb_Nm + rise) / inertia;
+      const double next = omega + h * push / near, brake = h * (joint.coulomb_Nm + rise) / near;
       omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
       theta += h * omega;
     }
@@ -108,4 +120,22 @@ TEST_CASE("the rise of friction near standstill is found with its exponent") {
     CHECK(diagnosis.cause.front().effect == "stribeck_friction");
     CHECK(parameter_of(diagnosis, "exponent") == Approx(exponent).epsilon(0.15));
   }
+}
+
+TEST_CASE("play between motor and load is told from a spring between them") {
+  Joint joint;
+  joint.far_share = 0.6;
+  joint.gap_rad = 0.03;
+  const Diagnosis diagnosis = diagnosed(joint);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "backlash");
+  CHECK(parameter_of(diagnosis, "gap_rad") == Approx(0.03).epsilon(0.1));
+  CHECK(parameter_of(diagnosis, "far_share") == Approx(0.6).epsilon(0.1));
+
+  joint.gap_rad = 0.0;
+  const Diagnosis sprung = diagnosed(joint);
+  INFO(sprung.reason);
+  REQUIRE(sprung.cause.size() == 1);
+  CHECK(sprung.cause.front().effect == "compliance");
 }

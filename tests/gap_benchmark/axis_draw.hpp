@@ -45,7 +45,7 @@ inline AxisSetup draw_axis(const std::vector<std::string>& wanted, Random& rando
   for (const int i : {inertia, viscous, torque_constant})
     c.plant[static_cast<std::size_t>(i)] *= 1.0 + random.uniform(-0.035, 0.035);
   c.dt_s = random.pick({0.001, 0.002, 0.004, 0.004, 0.005, 0.01, 0.01, 0.01, 0.02});
-  if (wants("compliance")) c.dt_s = std::min(c.dt_s, 0.01);
+  if (wants("compliance") || wants("backlash")) c.dt_s = std::min(c.dt_s, 0.01);
   c.has_motor = wants("torque_fade") || random.chance(0.35);
   s.noise_angle_deg = random.log_uniform(0.006, 0.05);
   s.noise_rate_dps = random.log_uniform(0.05, 0.4);
@@ -75,16 +75,20 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
   const AxisContext& c = s.context;
   s.unknown = unknown;
   switch (unknown) {
-    case AxisUnknown::backlash:
-      s.plant[far_share] = random.uniform(0.35, 0.8);
-      s.plant[spring_Hz] = random.uniform(14.0, 25.0);
-      s.plant[spring_damping] = random.uniform(0.1, 0.3);
-      s.plant[gap_deg] = random.uniform(2.0, 9.0);
+    case AxisUnknown::slipping_clutch:
+      s.plant[far_share] = random.uniform(0.35, 0.7);
+      s.plant[clutch_Nm] = c.torque_Nm * random.uniform(0.25, 0.8);
+      s.plant[clutch_dps] = random.log_uniform(2.0, 8.0);
       break;
     case AxisUnknown::notch:
       s.plant[notch_Nm] = c.torque_Nm * random.uniform(0.7, 2.0);
       s.plant[notch_deg] = random.uniform(-8.0, 8.0);
       s.plant[notch_width_deg] = random.uniform(1.5, 5.0);
+      break;
+    case AxisUnknown::run_out:
+      s.plant[coulomb_Nm] = c.torque_Nm * random.uniform(0.2, 0.6);
+      s.plant[run_out_share] = random.uniform(0.7, 0.98);
+      s.plant[run_out_count] = random.pick({1.0, 2.0, 3.0});
       break;
     case AxisUnknown::warming_grease:
       s.plant[viscous] *= 1.02;
@@ -104,9 +108,8 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
       s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5);
       s.unknown_time_s = 1.0 / random.uniform(2.0, 7.0);
       break;
-    case AxisUnknown::eccentric_encoder:
-      s.plant[eccentric_deg] = random.uniform(0.8, 3.0);
-      s.plant[eccentric_count] = random.pick({4.0, 6.0, 8.0});
+    case AxisUnknown::weak_brake:
+      s.plant[brake_share] = random.uniform(0.3, 0.7);
       break;
     case AxisUnknown::end_stop:
       s.plant[stop_deg] = c.swing_rad * degrees_per_radian * random.uniform(0.7, 1.2);
@@ -292,15 +295,14 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
       for (const auto& f : effect.suspect(c))
         values[id].push_back(setup.plant[static_cast<std::size_t>(f.index)]);
     }
-    if (unknown == AxisUnknown::eccentric_encoder)
-      where.push_back({{"signals", {"angle_deg"}}, {"submodel", "sensing.angle"}});
-    else if (unknown != AxisUnknown::none)
+    if (unknown != AxisUnknown::none)
       where.push_back({{"signals", {"rate_dps", "angle_deg"}},
-                       {"submodel", unknown == AxisUnknown::backlash ? "mechanical.structure"
+                       {"submodel", unknown == AxisUnknown::slipping_clutch ? "mechanical.structure"
                                     : unknown == AxisUnknown::gusts || unknown == AxisUnknown::vibration ||
                                             unknown == AxisUnknown::end_stop
                                         ? "mechanical.load"
-                                        : "mechanical.friction"}});
+                                    : unknown == AxisUnknown::weak_brake ? "mechanical.drive"
+                                                                         : "mechanical.friction"}});
     label["where"] = where;
     label["parameters"] = values;
     label["excitation"] = {name(train.motion), name(heldout.motion)};

@@ -162,17 +162,34 @@ inline const std::vector<AxisEffect>& axis_effects() {
                      {spring_damping, 0.005, 0.4, {0.06}}};
        },
        {}},
+      {"backlash",
+       "mechanical.structure",
+       motion,
+       [](const Context& c) { return c.dt_s <= 0.0101; },
+       [](Random& r, const Context&, Values& p) {
+         p[far_share] = r.uniform(0.3, 0.8);
+         p[spring_Hz] = r.uniform(14.0, 25.0);
+         p[spring_damping] = r.uniform(0.1, 0.3);
+         p[gap_deg] = r.log_uniform(0.8, 9.0);
+       },
+       [](const Context&) {
+         return List{{far_share, 0.08, 0.92, {0.35, 0.6}},
+                     {spring_Hz, 5.0, 40.0, {18.0}},
+                     {spring_damping, 0.02, 0.8, {0.2}},
+                     {gap_deg, 0.2, 20.0, {1.5, 5.0}}};
+       },
+       {"compliance"}},
       {"presliding_friction",
        "mechanical.friction",
        motion,
        always,
        [](Random& r, const Context& c, Values& p) {
-         p[magnetic_Nm] = c.torque_Nm * r.log_uniform(0.1, 0.6);
-         p[magnetic_deg] = r.log_uniform(0.8, 20.0);
+         p[bristle_Nm] = c.torque_Nm * r.log_uniform(0.1, 0.6);
+         p[bristle_deg] = r.log_uniform(0.8, 20.0);
        },
        [](const Context& c) {
-         return List{{magnetic_Nm, 0.0, 2.0 * c.torque_Nm, {0.2 * c.torque_Nm}},
-                     {magnetic_deg, 0.2, 40.0, {2.0, 10.0}}};
+         return List{{bristle_Nm, 0.0, 2.0 * c.torque_Nm, {0.2 * c.torque_Nm}},
+                     {bristle_deg, 0.2, 40.0, {2.0, 10.0}}};
        },
        {"coulomb_friction"}},
       {"actuation_delay",
@@ -229,6 +246,18 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{angle_drift_dps, -12.0, 12.0, {0.2}}};
        },
        {}},
+      {"encoder_eccentricity",
+       "sensing.angle",
+       {"angle_deg"},
+       always,
+       [](Random& r, const Context&, Values& p) {
+         p[eccentric_deg] = r.log_uniform(0.3, 3.0);
+         p[eccentric_count] = r.pick({2.0, 4.0, 6.0, 8.0});
+       },
+       [](const Context&) {
+         return List{{eccentric_deg, -6.0, 6.0, {0.5}}, {eccentric_count, 0.8, 12.0, {2.0, 4.0, 6.0, 8.0}}};
+       },
+       {}},
       {"rate_bias",
        "sensing.rate",
        {"rate_dps", "angle_deg"},
@@ -255,27 +284,29 @@ inline std::vector<Free> axis_slack(const AxisContext& c, double slack = 0.04) {
 /// Causes that no catalogue of INTERFACE lists.
 enum class AxisUnknown {
   none,
-  backlash,
+  slipping_clutch,
   notch,
+  run_out,
   warming_grease,
   gusts,
   wear,
   quadratic_drag,
   vibration,
-  eccentric_encoder,
+  weak_brake,
   end_stop
 };
 
 inline const std::vector<std::pair<AxisUnknown, std::string>>& axis_unknowns() {
   static const std::vector<std::pair<AxisUnknown, std::string>> list = {
-      {AxisUnknown::backlash, "backlash between motor and load"},
+      {AxisUnknown::slipping_clutch, "a clutch that slips between motor and load"},
       {AxisUnknown::notch, "a notch: it sticks at one position"},
+      {AxisUnknown::run_out, "a bent shaft: friction that varies over the turn"},
       {AxisUnknown::warming_grease, "grease that thins while it is worked"},
       {AxisUnknown::gusts, "gusts of wind on the load"},
       {AxisUnknown::wear, "a bearing that breaks in mid recording"},
       {AxisUnknown::quadratic_drag, "air drag, with the square of the rate"},
       {AxisUnknown::vibration, "a vibration from outside, not logged"},
-      {AxisUnknown::eccentric_encoder, "an encoder mounted off centre"},
+      {AxisUnknown::weak_brake, "a drive that is weak while it brakes"},
       {AxisUnknown::end_stop, "an elastic end stop"},
   };
   return list;

@@ -39,22 +39,28 @@ enum AxisParameter : int {
   far_share,
   spring_Hz,
   spring_damping,
+  gap_deg,
+  // friction that bends before it slides
+  bristle_Nm,
+  bristle_deg,
   // sensors
   angle_gain,
   angle_drift_dps,
   rate_bias_dps,
+  eccentric_deg,
+  eccentric_count,
   // effects that have no name in the catalogue
-  gap_deg,
   notch_Nm,
   notch_deg,
   notch_width_deg,
-  magnetic_Nm,
-  magnetic_deg,
+  run_out_share,
+  run_out_count,
+  clutch_Nm,
+  clutch_dps,
   drag_Nm_per_dps2,
   warming_share,
   warming_s,
-  eccentric_deg,
-  eccentric_count,
+  brake_share,
   stop_deg,
   stop_Nm_per_rad,
   axis_parameter_count
@@ -70,7 +76,7 @@ inline AxisParameters axis_defaults() {
   p[spring_Hz] = 10.0;
   p[spring_damping] = 0.05;
   p[angle_gain] = 1.0;
-  p[notch_width_deg] = p[magnetic_deg] = p[warming_s] = 1.0;
+  p[notch_width_deg] = p[bristle_deg] = p[warming_s] = p[run_out_count] = p[clutch_dps] = 1.0;
   return p;
 }
 
@@ -82,16 +88,18 @@ struct AxisInput {
   double hidden_Nm = 0.0, hidden_wear = 1.0;  ///< disturbances that no column shows
 };
 
-/// Motor side and far side of the spring, in rad; `turned` is the magnetic memory, `warm` the warmth of the
-/// grease.
+/// Motor side and far side of the spring, in rad; `bent` is how far the bristles are bent, as a share of the most,
+/// `warm` the warmth of the grease.
 struct AxisState {
-  double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, turned = 0.0, warm = 0.0;
+  double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, bent = 0.0, warm = 0.0;
+  bool touching = false;  ///< of a spring with a gap: one side pushes the other
 };
 
 /// An axis with dry friction, as physics: it slides, or it sticks and holds still; or, where it is greased, it
 /// creeps on a film that carries all of the friction from `film_dps` on. Classical Runge-Kutta at a quarter of
 /// a millisecond, or less where the film is stiff, inside each phase; the moment at which it comes to rest is
-/// located, not stepped over, and a delayed command switches at its own instant.
+/// located, not stepped over, and so is the moment at which the sides of a gap meet or part; a delayed command switches
+/// at its own instant.
 class AxisPlant {
 public:
   explicit AxisPlant(const AxisParameters& parameters, double step_scale = 1.0)
@@ -105,6 +113,7 @@ public:
       step_s_ = std::min(step_s_, 0.1 / omega);
     }
     const bool rubs = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0;
+    if (p_[gap_deg] > 0.0) half_gap_ = 0.5 * p_[gap_deg] / degrees_per_radian;
     creeps_ = rubs && p_[film_dps] > 0.0;
     dry_ = rubs && !creeps_;
   }
@@ -131,7 +140,7 @@ public:
     }
     const double rate = (rate_dps - p_[rate_bias_dps]) / degrees_per_radian;
     if (first) {
-      x = AxisState{angle, rate, angle, rate, 0.0, 0.0};
+      x = AxisState{angle, rate, angle, rate, 0.0, 0.0, false};
     } else if (absolute) {
       x.angle = angle;
       x.rate = rate;
@@ -168,10 +177,14 @@ public:
     const double h = duration_s / steps;
     for (int i = 0; i < steps; ++i) {
       double left_s = h;
-      for (int events = 0; events < 6 && left_s > 0.0; ++events) {
+      for (int events = 0; events < 12 && left_s > 0.0; ++events) {
         if (!dry_) {
-          x = stepped(x, held, 0.0, false, left_s);
-          break;
+          const double until_s = until_contact_changes(x, held, 0.0, false, left_s);
+          x = stepped(x, held, 0.0, false, until_s);
+          if (until_s >= left_s) break;
+          x.touching = !x.touching;
+          left_s -= until_s;
+          continue;
         }
         double way = x.rate > 0.0 ? 1.0 : -1.0;
         bool stuck = false;
@@ -181,10 +194,16 @@ public:
           stuck = std::fabs(push) <= friction(x, held, way);
         }
         const AxisState before = x;
-        x = stepped(before, held, way, stuck, left_s);
-        if (stuck || x.rate * way >= 0.0) break;
+        const double until_s = until_contact_changes(before, held, way, stuck, left_s);
+        x = stepped(before, held, way, stuck, until_s);
+        if (stuck || x.rate * way >= 0.0) {
+          if (until_s >= left_s) break;
+          x.touching = !x.touching;
+          left_s -= until_s;
+          continue;
+        }
         // It came to rest on the way: find when.
-        double low = 0.0, high = left_s, rate_low = before.rate, rate_high = x.rate;
+        double low = 0.0, high = until_s, rate_low = before.rate, rate_high = x.rate;
         for (int k = 0; k < 40 && high - low > 1e-12; ++k) {
           double middle =
               k % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * rate_low / (rate_low - rate_high);
@@ -225,7 +244,7 @@ private:
   using Rates = std::array<double, 6>;
 
   AxisParameters p_;
-  double step_scale_ = 1.0, step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0;
+  double step_scale_ = 1.0, step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0, half_gap_ = 0.0;
   bool dry_ = false, creeps_ = false;
 
   double friction(const AxisState& x, const Held& held, double way) const {
@@ -234,6 +253,7 @@ private:
       const double v = std::fabs(x.rate) * degrees_per_radian / p_[stribeck_dps];
       torque *= 1.0 + p_[stick_ratio] * std::exp(-std::pow(v, p_[stribeck_exponent]));
     }
+    if (p_[run_out_share] > 0.0) torque *= 1.0 + p_[run_out_share] * std::sin(p_[run_out_count] * x.angle);
     torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm);
     if (p_[notch_Nm] > 0.0) {
       const double z = (x.angle * degrees_per_radian - p_[notch_deg]) / p_[notch_width_deg];
@@ -242,14 +262,39 @@ private:
     return torque;
   }
 
-  double spring_torque(const AxisState& x) const {
-    double twist = x.angle - x.far_angle;
-    if (p_[gap_deg] > 0.0) {
-      const double half = 0.5 * p_[gap_deg] / degrees_per_radian;
-      if (std::fabs(twist) <= half) return 0.0;
-      twist -= std::copysign(half, twist);
+  /// What two sides that are pressed together pass on, N m; they cannot pull.
+  double contact_torque(const AxisState& x) const {
+    const double twist = x.angle - x.far_angle;
+    return spring_ * (twist - std::copysign(half_gap_, twist)) + damper_ * (x.rate - x.far_rate);
+  }
+
+  bool pushes(const AxisState& x) const {
+    const double twist = x.angle - x.far_angle;
+    return std::fabs(twist) > half_gap_ && contact_torque(x) * twist > 0.0;
+  }
+
+  /// How long the sides of a gap go on touching, or apart, at most `most_s`.
+  double until_contact_changes(const AxisState& x, const Held& held, double way, bool stuck,
+                               double most_s) const {
+    if (half_gap_ <= 0.0) return most_s;
+    const auto changed = [&](double h) { return pushes(stepped(x, held, way, stuck, h)) != x.touching; };
+    if (!changed(most_s)) return most_s;
+    double low = 0.0, high = most_s;
+    for (int k = 0; k < 40 && high - low > 1e-12; ++k) {
+      const double middle = 0.5 * (low + high);
+      (changed(middle) ? high : low) = middle;
     }
-    return spring_ * twist + damper_ * (x.rate - x.far_rate);
+    return high < most_s ? high : std::nextafter(most_s, 0.0);
+  }
+
+  /// What passes from the motor's side to the far one, N m.
+  double spring_torque(const AxisState& x) const {
+    if (p_[clutch_Nm] > 0.0) {
+      const double slip = (x.rate - x.far_rate) * degrees_per_radian / p_[clutch_dps];
+      return p_[clutch_Nm] * slip / std::sqrt(1.0 + slip * slip);
+    }
+    if (half_gap_ > 0.0) return x.touching ? contact_torque(x) : 0.0;
+    return spring_ * (x.angle - x.far_angle) + damper_ * (x.rate - x.far_rate);
   }
 
   /// Torque of the surroundings at an angle: weight, cable, end stop.
@@ -268,6 +313,10 @@ private:
   /// All torque on the motor side but dry friction.
   double without_friction(const AxisState& x, const Held& held) const {
     double torque = held.motor_Nm + held.hidden_Nm;
+    if (p_[brake_share] > 0.0) {  // weak while it turns against its torque, from some 2 deg/s on
+      const double against = std::copysign(x.rate * degrees_per_radian / 2.0, -held.motor_Nm * x.rate);
+      torque -= p_[brake_share] * held.motor_Nm * 0.5 * (1.0 + std::tanh(against));
+    }
     double b = p_[viscous];
     if (p_[warming_share] > 0.0) b *= 1.0 - p_[warming_share] * x.warm;
     if (dry_ || creeps_) torque -= b * x.rate;
@@ -275,7 +324,7 @@ private:
     if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
       torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) +
                 p_[cogging_cos_Nm] * std::cos(p_[cogging_count] * x.angle);
-    if (p_[magnetic_Nm] > 0.0) torque -= p_[magnetic_Nm] * x.turned;
+    if (p_[bristle_Nm] > 0.0) torque -= p_[bristle_Nm] * x.bent;
     if (p_[drag_Nm_per_dps2] > 0.0) {
       const double v = x.rate * degrees_per_radian;
       torque -= p_[drag_Nm_per_dps2] * v * std::fabs(v);
@@ -300,16 +349,21 @@ private:
       d[2] = x.far_rate;
       d[3] = (spring_torque(x) + load_torque(x.far_angle, x.far_rate)) / (p_[inertia] * p_[far_share]);
     }
-    if (p_[magnetic_Nm] > 0.0)
-      d[4] = (x.rate - std::fabs(x.rate) * x.turned) * degrees_per_radian / p_[magnetic_deg];
+    if (p_[bristle_Nm] > 0.0)
+      d[4] = (x.rate - std::fabs(x.rate) * x.bent) * degrees_per_radian / p_[bristle_deg];
     if (p_[warming_share] > 0.0)
       d[5] = (std::min(1.0, std::fabs(x.rate) * degrees_per_radian / 80.0) - x.warm) / p_[warming_s];
     return d;
   }
 
   static AxisState moved(const AxisState& x, const Rates& d, double h) {
-    return {x.angle + h * d[0],    x.rate + h * d[1],   x.far_angle + h * d[2],
-            x.far_rate + h * d[3], x.turned + h * d[4], x.warm + h * d[5]};
+    return {x.angle + h * d[0],
+            x.rate + h * d[1],
+            x.far_angle + h * d[2],
+            x.far_rate + h * d[3],
+            x.bent + h * d[4],
+            x.warm + h * d[5],
+            x.touching};
   }
 
   AxisState stepped(const AxisState& x, const Held& held, double way, bool stuck, double h) const {

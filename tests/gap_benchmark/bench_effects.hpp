@@ -47,6 +47,23 @@ inline const std::vector<BenchEffect>& bench_effects() {
                                   {housing_start_K, -25.0, 10.0, {0.0}}};
        },
        {}},
+      {"enclosure",
+       "thermal.loss",
+       {"motor_C"},
+       [](const Context& c) { return !c.thesis(); },
+       [](Random& r, const Context&, Values& p) {
+         p[box_W_per_K] = p[conductance] * r.log_uniform(0.7, 4.0);
+         // Its time constant lies between a tenth of the motor's and twice that.
+         p[box_J_per_K] = p[heat_capacity] / p[conductance] * p[box_W_per_K] * r.log_uniform(0.1, 2.0);
+       },
+       [](const Context& c) {
+         const double g = c.model[conductance], capacity = c.model[heat_capacity];
+         return std::vector<Free>{
+             {box_W_per_K, 0.3 * g, 10.0 * g, {1.0 * g, 3.0 * g}},
+             {box_J_per_K, 0.03 * capacity, 10.0 * capacity, {0.3 * capacity, 2.0 * capacity}},
+             {box_start_K, -5.0, 40.0, {0.0}}};
+       },
+       {}},
       {"radiation",
        "thermal.loss",
        {"motor_C"},

@@ -53,9 +53,12 @@ enum BenchParameter : int {
   sensor_lag_s,
   sensor_gain,
   supply_heating,
+  box_J_per_K,
+  box_W_per_K,
   // what nobody measures at the start of a run
   housing_start_K,
   winding_start_K,
+  box_start_K,
   // effects that have no name in the catalogue
   fan_gain,
   fan_on_C,
@@ -91,6 +94,7 @@ struct BenchInput {
 
 struct BenchState {
   double winding_C = 20.0, housing_C = 20.0, sensor_C = 20.0, soak_C = 20.0, charge_Ah = 0.0;
+  double box_C = 20.0;  ///< air around the motor, where that stands in a box
   bool fan = false;
 };
 
@@ -106,6 +110,8 @@ public:
       fastest_s = std::min(fastest_s, p_[winding_share] * p_[heat_capacity] / p_[coupling_W_per_K]);
     if (p_[sensor_lag_s] > 0.0) fastest_s = std::min(fastest_s, p_[sensor_lag_s]);
     if (p_[soak_J_per_K] > 0.0) fastest_s = std::min(fastest_s, p_[soak_J_per_K] / p_[soak_W_per_K]);
+    if (p_[box_J_per_K] > 0.0)
+      fastest_s = std::min(fastest_s, p_[box_J_per_K] / (p_[box_W_per_K] + 2.0 * p_[conductance]));
     step_s_ = std::min(0.5, fastest_s / 12.0);
     if (p_[latent_J] > 0.0 || p_[short_share] > 0.0) step_s_ = std::min(step_s_, 0.1);
     step_s_ *= step_scale;
@@ -155,6 +161,7 @@ public:
     x.winding_C = x.sensor_C + (p_[sensor_lag_s] > 0.0 ? p_[winding_start_K] : 0.0);
     x.housing_C = x.winding_C + (two_nodes() ? p_[housing_start_K] : 0.0);
     x.soak_C = x.winding_C;
+    x.box_C = u.ambient_C + p_[air_bias_K] + p_[box_start_K];
     return x;
   }
 
@@ -187,9 +194,13 @@ public:
     return i * u.supply_V * (root + p_[supply_heating] * (1.0 - root));
   }
 
+  /// The air around the motor.
+  double air_around(const BenchInput& u, const BenchState& x) const {
+    return p_[box_J_per_K] > 0.0 ? x.box_C : u.ambient_C + p_[air_bias_K];
+  }
+
   /// Heat from the outermost node to everything around, W.
-  double loss(const BenchInput& u, double outer_C, bool fan, double base_W_per_K) const {
-    const double air_C = u.ambient_C + p_[air_bias_K];
+  double loss(const BenchInput& u, double outer_C, bool fan, double base_W_per_K, double air_C) const {
     const double rise = outer_C - air_C;
     double g = base_W_per_K * u.hidden_loss;
     if (p_[convection_exponent] > 0.0)
@@ -214,7 +225,7 @@ private:
     return x.fan ? x.winding_C < p_[fan_off_C] : x.winding_C > p_[fan_on_C];
   }
 
-  using Rates = std::array<double, 5>;
+  using Rates = std::array<double, 6>;
 
   Rates rates(const BenchState& x, const BenchInput& u) const {
     double capacity = p_[heat_capacity], base = p_[conductance];
@@ -229,20 +240,24 @@ private:
     Rates d{};
     const double heat_W = heating(u, x),
                  outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + u.hidden_W;
+    const double air_C = air_around(u, x),
+                 lost_W = loss(u, two_nodes() ? x.housing_C : x.winding_C, x.fan, base, air_C);
     const double soak_W = p_[soak_J_per_K] > 0.0 ? p_[soak_W_per_K] * (x.winding_C - x.soak_C) : 0.0;
     if (two_nodes()) {
       const double across = p_[coupling_W_per_K] * (x.winding_C - x.housing_C);
       d[0] = (heat_W + outside_W - across - soak_W) / (p_[winding_share] * capacity);
-      d[1] = (across - loss(u, x.housing_C, x.fan, base)) / ((1.0 - p_[winding_share]) * capacity);
+      d[1] = (across - lost_W) / ((1.0 - p_[winding_share]) * capacity);
     } else {
       if (p_[latent_J] > 0.0) {
         const double z = (x.winding_C - p_[melting_C]) / p_[melting_width_K];
         capacity += p_[latent_J] * std::exp(-0.5 * z * z) / (p_[melting_width_K] * 2.5066282746310002);
       }
-      d[0] = (heat_W + outside_W - soak_W - loss(u, x.winding_C, x.fan, base)) / capacity;
+      d[0] = (heat_W + outside_W - soak_W - lost_W) / capacity;
     }
     if (p_[sensor_lag_s] > 0.0) d[2] = (x.winding_C - x.sensor_C) / p_[sensor_lag_s];
     if (p_[soak_J_per_K] > 0.0) d[3] = soak_W / p_[soak_J_per_K];
+    if (p_[box_J_per_K] > 0.0)
+      d[5] = (lost_W - p_[box_W_per_K] * (x.box_C - u.ambient_C - p_[air_bias_K])) / p_[box_J_per_K];
     if (p_[internal_ohm] > 0.0 || p_[volt_per_Ah] > 0.0)
       d[4] = current(u, x) * std::sqrt(std::max(0.0, u.power_param / 255.0 - p_[dead_duty])) / 3600.0;
     return d;
@@ -255,6 +270,7 @@ private:
     y.sensor_C += h * d[2];
     y.soak_C += h * d[3];
     y.charge_Ah += h * d[4];
+    y.box_C += h * d[5];
     return y;
   }
 

@@ -84,7 +84,7 @@ TEST_CASE("heat in is heat out plus heat stored, with two nodes and every kind o
     x = b;
     plant.advance(x, u, 0.5 * h);
     const auto net = [&](const BenchState& s) {
-      return plant.heating(u, s) - plant.loss(u, s.housing_C, false, p[conductance]);
+      return plant.heating(u, s) - plant.loss(u, s.housing_C, false, p[conductance], plant.air_around(u, s));
     };
     balance_J += h / 6.0 * (net(a) + 4.0 * net(b) + net(x));
   }

@@ -233,14 +233,14 @@ struct Axis<M, false, true> {
 template <class M>
 struct Axis<M, true, true> {
   static double load(float a, float w, float d, const double* z) {
-    return M::load_Nm(a, w, d, static_cast<float>(z[0]), static_cast<float>(z[1]));
+    return M::load_Nm(a, w, d, static_cast<float>(z[1]), static_cast<float>(z[0]));
   }
   static double dry(float a, float w, float d, float C, const double* z) {
-    return M::dry_friction_Nm(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
+    return M::dry_friction_Nm(a, w, d, C, static_cast<float>(z[1]), static_cast<float>(z[0]));
   }
   static void slopes(float a, float w, float d, float C, const double* z, double* out) {
-    out[0] = M::lagged_Nm_per_s(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
-    out[1] = M::bent_rad_per_s(a, w, d, C, static_cast<float>(z[0]), static_cast<float>(z[1]));
+    out[0] = M::lagged_Nm_per_s(a, w, d, C, static_cast<float>(z[1]), static_cast<float>(z[0]));
+    out[1] = M::bent_rad_per_s(a, w, d, C, static_cast<float>(z[1]), static_cast<float>(z[0]));
   }
 };
 
@@ -253,14 +253,14 @@ double gap_of(If<false>) {
   return 0.0;
 }
 
-// Stretch of a spring with free play, and the share of the damper that acts; gap ends are rounded over a hundredth.
-inline double stretch_of(double twist, double gap, double& engaged) {
-  engaged = 1.0;
-  if (!(gap > 0.0)) return twist;
-  const double width = 0.005 * gap, past = (fabs(twist) - 0.5 * gap) / width;
+// What a spring and a damper transmit, with a gap or without: gap ends are rounded over a hundredth, and never pull.
+inline double transmitted(double twist, double rate, double gap, double spring, double damper) {
+  if (!(gap > 0.0)) return spring * twist + damper * rate;
+  const double width = 0.005 * gap, side = twist < 0.0 ? -1.0 : 1.0,
+               past = (side * twist - 0.5 * gap) / width;
   const double stretch = past > 30.0 ? width * past : width * log(1.0 + exp(past));
-  engaged = past > 30.0 ? 1.0 : exp(past) / (1.0 + exp(past));
-  return twist < 0.0 ? -stretch : stretch;
+  const double engaged = past > 30.0 ? 1.0 : exp(past) / (1.0 + exp(past));
+  return side * fmax(0.0, spring * stretch + damper * engaged * side * rate);
 }
 
 // A motor at a voltage has a torque that depends on its rate.
@@ -305,9 +305,7 @@ void run_axis(const Row* rows, int count, const double* angle_readings, const do
       const auto slope = [&](double a, double w, double s, double u, double& dw, double& du) {
         const float fa = static_cast<float>(a), fw = static_cast<float>(w);
         const float now = drive_at(&M::drive_Nm, command, motor, w);
-        double engaged = 0.0;
-        const double stretch = stretch_of(s, gap, engaged);
-        const double pull = springy ? spring * stretch + damper * engaged * u : 0.0;
+        const double pull = springy ? transmitted(s, u, gap, spring, damper) : 0.0;
         const double torque = static_cast<double>(now) + Joint::load(fa, fw, now, own) -
                               static_cast<double>(M::viscous_Nms_per_rad()) * w -
                               Joint::dry(fa, fw, now, motor, own) + pull;

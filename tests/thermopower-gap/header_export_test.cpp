@@ -12,7 +12,6 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
-#include <thermopower/plant/effects/backlash.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -30,7 +29,6 @@ namespace {
 const Catalogue& catalogue() {
   static const Catalogue all = [] {
     Catalogue with_own = standard_catalogue();
-    with_own.add<Backlash>();
     with_own.add<own_effects::HeatPipe>();
     with_own.add<own_effects::Paddle>();
     with_own.add<own_effects::Rounded>();
@@ -348,8 +346,31 @@ TEST_CASE("nodes that firmware's types do not have are listed, with their consta
   }
 }
 
+TEST_CASE("a reading that bends is listed, and an exchanged law is written as it is") {
+  const Trial bent{"bent",
+                   {{"encoder_eccentricity", {{"sin_deg", 1.0}, {"cos_deg", 0.5}, {"cycles_per_turn", 2.0}}}},
+                   true};
+  const io::MotorModelHeader header = io::motor_model_header(model_of(bent), "a test", catalogue());
+  REQUIRE(header.left_out.size() == 1);
+  CHECK(header.left_out[0].rfind("encoder_eccentricity: ", 0) == 0);
+  CHECK(header.text.find("static float encoder_eccentricity_sin_deg() { return 1.0f; }") !=
+        std::string::npos);
+  CHECK(header.text.find("true_angle_deg") == std::string::npos);
+
+  Model law;
+  law.name = "law";
+  law.supply = SupplyModel{12.0};
+  law.thermal = ThesisThermalModel{0.05, 0.0, 0.2435, 0.125, -0.5, 1.0};
+  law.effects["law.exchanged_heating"] = {};
+  const io::MotorModelHeader exchanged = io::motor_model_header(law, "a test", catalogue());
+  CHECK(exchanged.left_out.empty());
+  CHECK(exchanged.text.find("per_minute(0.0f, 0.125f, 0.2435f, -0.5f, 1.0f)") != std::string::npos);
+}
+
 TEST_CASE("there is a trial for every effect of the catalogue") {
-  std::set<std::string> tried{"third_thermal_mass", "enclosure"};  // above: they do not write themselves
+  // These are above: they do not write themselves, or have no parameters.
+  std::set<std::string> tried{"third_thermal_mass", "enclosure", "encoder_eccentricity",
+                              "law.exchanged_heating"};
   for (const Trial& trial : trials())
     for (const auto& effect : trial.effects) tried.insert(effect.first);
   for (const EffectInfo& info : standard_catalogue().list()) {

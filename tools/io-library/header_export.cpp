@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -142,6 +143,17 @@ private:
     torques_in_every_branch(trace, alone);
     trace.every_branch(
         [&] { return std::vector<Expression>{axis_readings(trace, alone, trace.symbol("x")).angle_deg}; });
+    // Readings are undone by two evaluations.
+    const auto shown_deg = [&](double angle_deg) {
+      plant::AxisReadings<double> read{0.0, angle_deg, 0.0};
+      one.entry->of<double>().call(one.values.data(), read);
+      return read.angle_deg;
+    };
+    const double at_0 = shown_deg(0.0), per_deg = shown_deg(1.0) - at_0;
+    for (const double angle_deg : {-77.0, 31.0, 190.0})
+      if (std::abs(shown_deg(angle_deg) - at_0 - per_deg * angle_deg) >
+          1e-9 * (1.0 + std::abs(per_deg * angle_deg)))
+        throw NotTraceable("what it does to the angle's reading cannot be undone in closed form");
   }
 
   void leave(const std::string& id, const std::string& why) {
@@ -450,16 +462,19 @@ private:
     const auto* lumped = std::get_if<LumpedThermalModel>(&m_.thermal);
     const auto* thesis = std::get_if<ThesisThermalModel>(&m_.thermal);
     if (lumped == nullptr && thesis == nullptr) return;
-    plant::ThermalStructure<double> shape{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, false, false, false, false};
+    plant::ThermalStructure<double> shape{1.0, 0.0,   0.0,   0.0,   0.0,   0.0,
+                                          0.0, false, false, false, false, false};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
     // What stands behind the surface or around the body is no part of firmware's types.
     for (const Written& one : written_) {
-      plant::ThermalStructure<double> alone{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, false, false, false, false};
+      plant::ThermalStructure<double> alone{1.0, 0.0,   0.0,   0.0,   0.0,   0.0,
+                                            0.0, false, false, false, false, false};
       one.entry->of<double>().call(one.values.data(), alone);
       if (alone.has_further_nodes())
         leave(one.entry->info.id, "`Thermal` has no nodes but winding and surface");
     }
     two_nodes_ = shape.two_nodes;
+    heating_exchanged_ = shape.heating_exchanged;
     if (shape.two_nodes && lumped == nullptr) {
       for (const Written& one : written_)
         if (one.entry->hooks.thermal_structure)
@@ -585,9 +600,11 @@ private:
       of_heating = "{" + literal(lumped->heat_capacity_J_per_K) + "}";
     } else {
       heating = "thermopower::ThesisHeating<float>";
+      double slope_V0 = thesis->rinv_slope_V0, offset_V1 = thesis->rinv_offset_V1;
+      if (heating_exchanged_) std::swap(slope_V0, offset_V1);
       of_heating = "thermopower::ThesisHeating<float>::per_minute(" + literal(thesis->rinv_slope_V1) + ", " +
-                   literal(thesis->rinv_slope_V0) + ", " + literal(thesis->rinv_offset_V1) + ", " +
-                   literal(thesis->rinv_offset_V0) + ", " + literal(thesis->minimum_V_rms) + ")";
+                   literal(slope_V0) + ", " + literal(offset_V1) + ", " + literal(thesis->rinv_offset_V0) +
+                   ", " + literal(thesis->minimum_V_rms) + ")";
     }
     body_ +=
         "  typedef thermopower::ThermalModel<" + heating + ", " + type +
@@ -742,6 +759,7 @@ private:
   std::set<std::string> unwritten_;
   std::vector<std::string> left_out_;
   bool two_nodes_ = false;
+  bool heating_exchanged_ = false;  ///< of the thesis's heating law
   double folded_ohm_ = 0.0;
   std::string before_, body_;
 };

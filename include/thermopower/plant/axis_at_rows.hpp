@@ -25,10 +25,9 @@ namespace thermopower::plant {
 /// Twist of a spring between two inertias, and its rate, while the near one moves as measured:
 /// q'' = -rate' - w^2 q - 2 z w q', with q of the far side relative to the near one.
 struct SpringTwist {
-  Eigen::VectorXd angle_rad;         ///< q
-  Eigen::VectorXd rate_rad_per_s;    ///< q'
-  Eigen::VectorXd stretch_rad;       ///< what of q stretches the spring: all of it, without free play
-  Eigen::VectorXd damped_rad_per_s;  ///< what of q' the damper sees
+  Eigen::VectorXd angle_rad;        ///< q
+  Eigen::VectorXd rate_rad_per_s;   ///< q'
+  Eigen::VectorXd pull_rad_per_s2;  ///< w^2 q + 2 z w q', where there is no free play
 
   /// @param rate        of the near side, rad/s, without holes
   /// @param w_rad_per_s natural frequency of the far side on the spring, > 0
@@ -36,26 +35,19 @@ struct SpringTwist {
   /// @param gap_rad     free play of the spring; 0: none
   SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping,
               double gap_rad = 0.0)
-      : angle_rad(rate.size()),
-        rate_rad_per_s(rate.size()),
-        stretch_rad(rate.size()),
-        damped_rad_per_s(rate.size()) {
+      : angle_rad(rate.size()), rate_rad_per_s(rate.size()), pull_rad_per_s2(rate.size()) {
     constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
     const double w = w_rad_per_s;
-    const auto play = [&](double q) {
-      return gap_rad > 0.0 ? free_play(q, gap_rad) : FreePlay<double>{q, 1.0};
-    };
     const auto pulled = [&](double q, double v) {
-      const FreePlay<double> at = play(q);
-      return w * w * at.stretch_rad + 2.0 * damping * w * at.engaged * v;
+      return gap_rad > 0.0 ? across_gap(q, v, gap_rad, w * w, 2.0 * damping * w)
+                           : w * w * q + 2.0 * damping * w * v;
     };
     for (const RunSpan& run : rows.runs) {
       double q = 0.0, v = 0.0;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         angle_rad[i] = q;
         rate_rad_per_s[i] = v;
-        stretch_rad[i] = play(q).stretch_rad;
-        damped_rad_per_s[i] = play(q).engaged * v;
+        pull_rad_per_s2[i] = pulled(q, v);
         if (i + 1 == run.end) break;
         const double step = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step;
         const int parts = std::max(1, static_cast<int>(std::ceil(w * step / longest_rad)));
@@ -131,9 +123,7 @@ public:
       const double reduced = v.inertia_kgm2 * shape.far_share;
       const SpringTwist twist(rate, *rows_, w, shape.spring_damping * std::sqrt(1.0 - shape.far_share),
                               shape.gapped ? shape.gap_rad : 0.0);
-      v.motion_Nm +=
-          reduced * shape.spring_rad_per_s *
-          (shape.spring_rad_per_s * twist.stretch_rad + 2.0 * shape.spring_damping * twist.damped_rad_per_s);
+      v.motion_Nm += reduced / (1.0 - shape.far_share) * twist.pull_rad_per_s2;
     }
     return v;
   }

@@ -26,9 +26,9 @@ public:
   AxisRollout(const Instance<Scalar>& instance, const Inputs& inputs)
       : instance_(instance), inputs_(inputs), step_(instance) {}
 
-  /// The state in which the readings at `row` are these; the spring is relaxed.
+  /// The state in which the readings at `row` are these; the spring is relaxed. A reading must grow with what it is of.
   AxisState<Scalar> start(Eigen::Index row, double run_start_s, double angle_deg, double rate_dps) const {
-    // Readings are affine in the state: two evaluations invert them.
+    // Most readings are affine in the state: two evaluations invert them.
     const double t_s = inputs_.t_s[row] - run_start_s;
     const AxisReadings<Scalar> at_0 = read(t_s, constant<Scalar>(0.0), constant<Scalar>(0.0));
     const AxisReadings<Scalar> at_1 = read(t_s, constant<Scalar>(1.0), constant<Scalar>(1.0));
@@ -36,6 +36,7 @@ public:
     AxisState<Scalar> state{zero, zero, zero, zero, {}};
     state.angle_rad = (angle_deg - at_0.angle_deg) / (at_1.angle_deg - at_0.angle_deg) * rad_per_deg;
     state.rate_rad_per_s = (rate_dps - at_0.rate_dps) / (at_1.rate_dps - at_0.rate_dps) * rad_per_deg;
+    approach(t_s, angle_deg, state);
     return state;
   }
 
@@ -122,6 +123,23 @@ private:
     const AxisState<Scalar> state = start(row, inputs_.t_s[run.begin], angle_deg, rate_dps);
     return {Scalar(state.angle_rad * (1.0 / rad_per_deg)),
             Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))};
+  }
+
+  /// Newton's steps to the angle whose reading is the measured one, for readings that bend.
+  void approach(double t_s, double angle_deg, AxisState<Scalar>& state) const {
+    constexpr double near_deg = 1e-9, apart_deg = 1e-4;
+    bool there = instance_.axis_readings.empty();
+    for (int step = 0; step < 12 && !there; ++step) {
+      const Scalar at_deg = state.angle_rad * (1.0 / rad_per_deg), rate_dps = constant<Scalar>(0.0);
+      const AxisReadings<Scalar> here = read(t_s, at_deg, rate_dps);
+      const double off_deg = value_of(here.angle_deg) - angle_deg;
+      if (step == 0 && std::abs(off_deg) < near_deg) return;
+      there = std::abs(off_deg) < near_deg;  // one step more, for the derivatives
+      const AxisReadings<Scalar> beside = read(t_s, Scalar(at_deg + apart_deg), rate_dps);
+      const double slope = (value_of(beside.angle_deg) - value_of(here.angle_deg)) / apart_deg;
+      if (!(std::abs(slope) > near_deg)) return;
+      state.angle_rad -= (here.angle_deg - angle_deg) * (rad_per_deg / slope);
+    }
   }
 
   AxisReadings<Scalar> read(double t_s, const Scalar& angle_deg, const Scalar& rate_dps) const {

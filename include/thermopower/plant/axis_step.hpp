@@ -213,11 +213,9 @@ private:
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {
-    if (instance_.axis_structure.gapped) {
-      const auto play = free_play(state.twist_rad, instance_.axis_structure.gap_rad);
-      return spring_Nm_per_rad_ * play.stretch_rad +
-             damper_Nms_per_rad_ * (play.engaged * state.twist_rate_rad_per_s);
-    }
+    if (instance_.axis_structure.gapped)
+      return across_gap(state.twist_rad, state.twist_rate_rad_per_s, instance_.axis_structure.gap_rad,
+                        spring_Nm_per_rad_, damper_Nms_per_rad_);
     return spring_Nm_per_rad_ * state.twist_rad + damper_Nms_per_rad_ * state.twist_rate_rad_per_s;
   }
 

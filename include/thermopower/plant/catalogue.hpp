@@ -195,10 +195,11 @@ private:
     if (info.id.rfind("calibration.", 0) == 0)
       throw InvalidInput(effect + ": ids that start with calibration. belong to the engine");
     for (const Need need : info.needs) {
-      const bool bench_only =
-          need == Need::thermal_model || need == Need::current_model || need == Need::ohmic_without_tempco ||
-          need == Need::supply_not_logged || need == Need::current_A || need == Need::power_param ||
-          need == Need::two_nodes || need == Need::airspeed_mps || need == Need::neighbour_C;
+      const bool bench_only = need == Need::thermal_model || need == Need::current_model ||
+                              need == Need::ohmic_without_tempco || need == Need::supply_not_logged ||
+                              need == Need::current_A || need == Need::power_param ||
+                              need == Need::two_nodes || need == Need::thesis_thermal ||
+                              need == Need::airspeed_mps || need == Need::neighbour_C;
       const bool axis_only = need == Need::axis_model || need == Need::angle_deg || need == Need::open_loop ||
                              need == Need::closed_loop;
       if ((bench_only && !hooks.any_bench()) || (axis_only && !hooks.any_axis()))

@@ -27,8 +27,9 @@ enum class Need {
   neighbour_C,           ///< recorded
   two_nodes,  ///< the model's body has winding and surface: `second_thermal_mass` is among its effects
   supply_not_logged,  ///< there is no column `supply_V`
-  open_loop,          ///< the command is recorded
-  closed_loop         ///< the model has a servo, its target is recorded and the command is not
+  thesis_thermal,  ///< the body warms by the thesis's law, whose heat capacity depends on voltage and temperature
+  open_loop,       ///< the command is recorded
+  closed_loop      ///< the model has a servo, its target is recorded and the command is not
 };
 
 /// As lists of effects print it.
@@ -60,6 +61,8 @@ inline const char* to_string(Need need) {
       return "no supply_V";
     case Need::two_nodes:
       return "a model with second_thermal_mass";
+    case Need::thesis_thermal:
+      return "the thesis's thermal law";
     case Need::open_loop:
       return "command recorded";
     case Need::closed_loop:
@@ -160,6 +163,9 @@ struct EffectInfo {
   /// What the joint remembers because of it; only with hooks on AxisTerms or FrictionTerms, at most
   /// `most_own_states` in a model.
   std::vector<HiddenState> states = {};
+  /// Whether it costs much to simulate: then it is looked at only where no other single cause brings the data to
+  /// their noise.
+  bool costly = false;
 };
 
 }  // namespace thermopower::plant

@@ -10,6 +10,7 @@
 #include <thermopower/plant/servo_loop.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::plant {
@@ -78,7 +79,7 @@ struct Instance {
     set_constants(model, factors);
     const Scalar none = constant<Scalar>(0.0);
     thermal_structure = {
-        constant<Scalar>(1.0), none, none, none, none, none, none, false, false, false, false};
+        constant<Scalar>(1.0), none, none, none, none, none, none, false, false, false, false, false};
     axis_structure = {none, none, none, none, none, false, false, false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {
@@ -88,6 +89,9 @@ struct Instance {
       parameters_.push_back(own != nullptr ? own->parameters : of_model(model, *entry, factors));
       bind(*entry, parameters_.back().data());
     }
+    // 1/r = (s1 V + s0) T + o1 V + o0, and with V and T in each other's place (s1 V + o1) T + s0 V + o0.
+    if (thermal_structure.heating_exchanged)
+      std::swap(heating_law.slope_V0_J_per_K2, heating_law.offset_V1_J_per_K);
   }
 
   Instance(const Instance&) = delete;  // the bound effects point into it

@@ -77,6 +77,8 @@ struct ThermalStructure {
   bool lagged = false;       ///< to be set with the lag: the thermometer follows the winding late
   bool soaks = false;        ///< to be set with its share: there is a node behind the surface
   bool enclosed = false;     ///< to be set with its share: the air around the body warms up
+  bool heating_exchanged =
+      false;  ///< the thesis's heating law takes the temperature for the voltage, and the reverse
 
   /// Whether there are nodes besides winding and surface.
   bool has_further_nodes() const { return soaks || enclosed; }

@@ -75,7 +75,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
       if (!shows(candidate, *entry, parameter, at, travel_rad)) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
-    if (all) return true;
+    if (all && !entry->info.parameters.empty()) return true;
   }
   return false;
 }

@@ -25,14 +25,18 @@ public:
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
-    FitOptions quick;
-    quick.iterations = 10;
-    quick.relative_decrease = 1e-3;
     std::vector<Explanation> all{Explanation{}};
     all.insert(all.end(), singles.begin(), singles.end());
-    std::vector<Candidate> candidates = coarse_.fit_all(all, quick);
+    std::vector<Candidate> candidates = coarse_.fit_all(all, quick());
     refine(candidates, 0, 7);
     return candidates;
+  }
+
+  /// Adds further single explanations, fitted.
+  void add_singles(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+    const std::size_t first = candidates.size();
+    for (Candidate& one : coarse_.fit_all(singles, quick())) candidates.push_back(std::move(one));
+    refine(candidates, first, 7);
   }
 
   /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
@@ -102,6 +106,13 @@ public:
   }
 
 private:
+  static FitOptions quick() {
+    FitOptions options;
+    options.iterations = 10;
+    options.relative_decrease = 1e-3;
+    return options;
+  }
+
   /// Whether each of a few causes is of a submodel that the other explanation blames, too.
   static bool is_related(const Explanation& few, const Explanation& all) {
     if (few.effects.empty() || few.size() > all.size()) return false;

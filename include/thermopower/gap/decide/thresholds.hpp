@@ -47,6 +47,8 @@ struct DecisionThresholds {
   double doubt_by_rest = 0.5;
   /// Probability that one of hundreds of pairs passes for a single cause that the catalogue lacks.
   double pair_for_unknown = 0.15;
+  /// Multiple of the noise above which causes that cost much to simulate are looked for.
+  double room_for_costly = 1.1;
   /// Multiple of the noise above which a second cause is looked for.
   double room_for_second = 1.4;
   /// Share of what one cause leaves that a second one must take away.

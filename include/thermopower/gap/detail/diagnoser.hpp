@@ -301,7 +301,13 @@ private:
     for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
     problem.sigma = coarse_problem.sigma;
     const Search searching(coarse, fine, options_.threads);
-    const std::vector<Explanation> causes = singles();
+    std::vector<Explanation> causes = singles();
+    const auto is_cheap = [](const Explanation& one) {
+      return one.effects.empty() || !one.effects.front()->info.costly;
+    };
+    const auto cheap_end = std::stable_partition(causes.begin(), causes.end(), is_cheap);
+    const std::vector<Explanation> costly(cheap_end, causes.end());
+    causes.erase(cheap_end, causes.end());
     candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
@@ -310,6 +316,15 @@ private:
       searching.renew(candidates);
     };
     renew();
+    const Candidate& cheapest = Search::best(candidates);
+    bool at_noise = true;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      at_noise = at_noise && cheapest.train.mean(i) <= decision.room_for_costly * decision.room_for_costly;
+    if (!costly.empty() && !at_noise) {
+      searching.add_singles(candidates, costly);
+      causes.insert(causes.end(), costly.begin(), costly.end());
+      renew();
+    }
     if (worst != nullptr && !(*worst = overlooked_by(attempt)).empty()) return attempt;
     if (options_.effects_at_once > 1) {
       // Constants move in every explanation: only effects are joined.

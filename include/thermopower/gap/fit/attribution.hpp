@@ -184,7 +184,7 @@ private:
       const auto at = static_cast<Eigen::Index>(i);
       if (!one.standard) continue;
       if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
-      if (!(*one.standard > one.lower) || again[at] > *one.standard) continue;
+      if (!one.logarithmic || !(*one.standard > one.lower) || again[at] > *one.standard) continue;
       again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
       trapped = true;
     }
@@ -311,6 +311,9 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
           break;
         case Need::two_nodes:
           here = model.effects.count("second_thermal_mass") > 0;
+          break;
+        case Need::thesis_thermal:
+          here = std::holds_alternative<ThesisThermalModel>(model.thermal);
           break;
         case Need::open_loop:
           here = inputs.axis() && !inputs.closed_loop;

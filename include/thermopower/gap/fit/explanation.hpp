@@ -127,7 +127,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
                       {},
                       parameter.logarithmic,
                       {}});
-      if (parameter.standard && parameter.logarithmic) list.back().standard = to(*parameter.standard);
+      if (parameter.standard) list.back().standard = to(*parameter.standard);
     }
   return list;
 }
@@ -159,12 +159,14 @@ inline Model augmented(const Model& model, const Explanation& explanation,
     }
     ++index;
   }
-  for (const CatalogueEntry* entry : explanation.effects)
+  for (const CatalogueEntry* entry : explanation.effects) {
+    EffectParameters& parameters = result.effects[entry->info.id];  // a law may have none
     for (const Parameter& parameter : entry->info.parameters) {
       const bool logarithmic = coordinates[static_cast<std::size_t>(index)].logarithmic;
-      result.effects[entry->info.id][parameter.name] = logarithmic ? std::exp(at[index]) : at[index];
+      parameters[parameter.name] = logarithmic ? std::exp(at[index]) : at[index];
       ++index;
     }
+  }
   return result;
 }
 

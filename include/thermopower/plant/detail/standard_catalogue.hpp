@@ -9,6 +9,7 @@
 #include <thermopower/plant/effects/asymmetric_friction.hpp>
 #include <thermopower/plant/effects/asymmetric_viscous.hpp>
 #include <thermopower/plant/effects/back_emf.hpp>
+#include <thermopower/plant/effects/backlash.hpp>
 #include <thermopower/plant/effects/cable_spring.hpp>
 #include <thermopower/plant/effects/cogging.hpp>
 #include <thermopower/plant/effects/compliance.hpp>
@@ -20,6 +21,8 @@
 #include <thermopower/plant/effects/drive_deadband.hpp>
 #include <thermopower/plant/effects/drive_lag.hpp>
 #include <thermopower/plant/effects/enclosure.hpp>
+#include <thermopower/plant/effects/encoder_eccentricity.hpp>
+#include <thermopower/plant/effects/exchanged_heating_law.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
@@ -62,6 +65,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<ThermometerLag>();
     all.add<ThermometerGain>();
     all.add<SupplyPowerHeating>();
+    all.add<ExchangedHeatingLaw>();
     all.add<SupplySag>();
     all.add<SeriesResistance>();
     all.add<DeadTime>();
@@ -79,6 +83,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<CableSpring>();
     all.add<Cogging>();
     all.add<Compliance>();
+    all.add<Backlash>();
     all.add<ActuationDelay>();
     all.add<ServoDelay>();
     all.add<TorqueSaturation>();
@@ -90,6 +95,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<DriveLag>();
     all.add<AngleScale>();
     all.add<AngleBiasDrift>();
+    all.add<EncoderEccentricity>();
     all.add<RateBias>();
     return all;
   }();

@@ -10,24 +10,30 @@ namespace thermopower::plant {
 
 /// Part of the inertia is coupled with free play: inside the gap nothing is transmitted, at its ends two sides meet on
 /// a spring and a damper. The near side is driven and measured.
-/// Not in the standard catalogue: it simulates and exports, but fits do not find it reliably. Add it to a catalogue of
-/// your own where you know the play.
 struct Backlash {
   /// Its parameters, in this order.
   enum Parameters { gap_rad, far_share, contact_Hz, damping };
 
   /// What it is.
   static EffectInfo info() {
-    return {"backlash",
-            Submodel::mechanical_structure,
-            "J1 dw/dt = drive - contact(q), J2 dw2/dt = contact(q), contact = 0 for |q| < gap / 2",
-            "Teeth have play: the far side is free for an angle after each reversal, and then it is hit.",
-            {parameter(gap_rad, "gap_rad").unit("rad").within(5e-3, 1.0).logarithmic().starts({0.05}),
-             parameter(far_share, "far_share").unit("1").within(0.02, 0.97).starts({0.5}),
-             parameter(contact_Hz, "contact_Hz").unit("Hz").within(5.0, 50.0).logarithmic().starts({20.0}),
-             parameter(damping, "damping").unit("1").within(1e-3, 2.0).logarithmic().starts({0.15})},
-            {Need::axis_model},
-            "slow reversals at small torque, and fast ones"};
+    EffectInfo info{
+        "backlash",
+        Submodel::mechanical_structure,
+        "J1 dw/dt = drive - contact(q), J2 dw2/dt = contact(q), contact = 0 for |q| < gap / 2",
+        "Teeth have play: the far side is free for an angle after each reversal, and then it is hit.",
+        {parameter(gap_rad, "gap_rad")
+             .unit("rad")
+             .within(1e-3, 1.0)
+             .logarithmic()
+             .starts({0.015, 0.06})
+             .degenerate_at_bounds(),
+         parameter(far_share, "far_share").unit("1").within(0.02, 0.97).starts({0.35, 0.65}),
+         parameter(contact_Hz, "contact_Hz").unit("Hz").within(5.0, 50.0).logarithmic().starts({20.0}),
+         parameter(damping, "damping").unit("1").within(1e-3, 2.0).logarithmic().starts({0.15})},
+        {Need::axis_model},
+        "slow reversals at small torque, and fast ones"};
+    info.costly = true;
+    return info;
   }
 
   /// Puts part of the inertia behind a gap.

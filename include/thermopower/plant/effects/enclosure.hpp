@@ -20,8 +20,12 @@ struct Enclosure {
         Submodel::thermal_loss,
         "q C dE/dt = loss - g (E - Ta), and the body's air is E",
         "The body stands in a box: the air around it warms up, and the loss falls behind what its rise says.",
-        {parameter(share, "share").unit("1").within(0.1, 20.0).logarithmic().starts({1.0}),
-         parameter(conductance_W_per_K, "W_per_K").unit("W/K").within(0.02, 3.0).logarithmic().starts({0.3})},
+        {parameter(share, "share").unit("1").within(0.02, 50.0).logarithmic().starts({1.0}),
+         parameter(conductance_W_per_K, "W_per_K")
+             .unit("W/K")
+             .within(5e-3, 50.0)
+             .logarithmic()
+             .starts({0.3, 2.0})},
         {Need::thermal_model, Need::motor_C},
         "a long step of power, and the temperature of the air in the box"};
   }
