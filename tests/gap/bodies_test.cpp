@@ -118,3 +118,53 @@ TEST_CASE("two nodes are not taken for three") {
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause.front().effect == "second_thermal_mass");
 }
+
+TEST_CASE("a heating law that was called with its arguments exchanged is named") {
+  // dT/dt = V I / c(V) - k (T - Ta) with c = 60 (0.2435 V - 0.4952) J/K, and a current of its own.
+  test::Noise noise(5);
+  const auto recorded = [&](int rows, double phase) {
+    Recording r;
+    r.name = "heating law";
+    r.t_s.resize(rows);
+    Eigen::VectorXd power(rows), current(rows), motor(rows), ambient(rows), supply(rows);
+    double motor_C = 24.0;
+    for (int i = 0; i < rows; ++i) {
+      const double level = (i / 120) % 4 == 3 ? 0.0 : 60.0 + 40.0 * std::sin(phase + i / 120);
+      const double v = 13.0 * std::sqrt(level / 255.0);
+      const auto ampere = [&] {
+        return v > 1.0 ? 1e-3 * ((0.6311 * v - 2.497) * motor_C + 0.1257 * std::pow(v, 3.4135)) : 0.0;
+      };
+      r.t_s[i] = 5.0 * i;
+      power[i] = level;
+      supply[i] = 13.0;
+      ambient[i] = 24.0;
+      current[i] = std::fmax(ampere(), 0.0) + 0.0005 * noise();
+      motor[i] = motor_C + 0.05 * noise();
+      for (int k = 0; k < 50; ++k) {
+        const double heating = v > 1.0 ? v * std::fmax(ampere(), 0.0) / (60.0 * (0.2435 * v - 0.4952)) : 0.0;
+        motor_C += 0.1 * (heating - 0.05 / 60.0 * (motor_C - 24.0));
+      }
+    }
+    r.set("power_param", power);
+    r.set("current_A", current);
+    r.set("motor_C", motor);
+    r.set("ambient_C", ambient);
+    r.set("supply_V", supply);
+    return r;
+  };
+  Model model;
+  model.name = "heating law";
+  model.supply = SupplyModel{13.0};
+  model.current = ThesisCurrentModel{0.0, 0.6311, -2.497, 0.1257, 3.4135, 1.0};
+  model.thermal = ThesisThermalModel{0.05, 0.0, 0.2435, 0.0, -0.4952, 1.0};  // 0.2435 times the temperature
+  Options options;
+  options.effects_at_once = 1;
+  const Diagnosis diagnosis = diagnose(model, {recorded(1500, 0.3)}, {recorded(900, 1.1)}, options);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.verdict == Verdict::explained);
+  CHECK(diagnosis.cause.front().effect == "law.exchanged_heating");
+  CHECK(diagnosis.augmented.effects.count("law.exchanged_heating") == 1);
+  std::get<ThesisThermalModel>(model.thermal) = {0.05, 0.0, 0.0, 0.2435, -0.4952, 1.0};
+  CHECK(diagnose(model, {recorded(1500, 0.3)}, {recorded(900, 1.1)}, options).verdict == Verdict::no_gap);
+}

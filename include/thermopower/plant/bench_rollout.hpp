@@ -174,7 +174,7 @@ public:
   struct HeatFlows {
     Scalar heat_W;        ///< into the winding node
     Scalar loss_W;        ///< out of the surface node
-    Scalar rise_K_per_J;  ///< of all nodes together; 0 where the law has no capacity
+    Scalar rise_K_per_J;  ///< of all nodes together, > 0
     Scalar outside_C;     ///< the air that the surroundings have, after the effects on it
   };
 
@@ -218,8 +218,16 @@ public:
       rise_K_per_J = instance_.heating_law.rise_K_per_J(v_V, winding_C);
       if (!(value_of(electrical.v_rms_V) > value_of(floor_V))) terms.heat_W -= electrical.winding_W;
       const Scalar natural_rate = instance_.cooling_per_s * terms.conductance_factor * rise_K;
-      loss_W = (value_of(rise_K_per_J) > 0.0 ? Scalar(natural_rate / rise_K_per_J) : constant<Scalar>(0.0)) +
-               terms.extra_loss_W;
+      if (value_of(rise_K_per_J) > 0.0) {
+        loss_W = natural_rate / rise_K_per_J + terms.extra_loss_W;
+      } else {
+        // Nor has it one where 1/r is not positive: watts do nothing there. What cools is a rate, whatever the
+        // capacity is taken to be.
+        constexpr double any_K_per_J = 1.0 / 60.0;
+        rise_K_per_J = constant<Scalar>(any_K_per_J);
+        terms.heat_W = constant<Scalar>(0.0);
+        loss_W = natural_rate / any_K_per_J;
+      }
     }
     return {terms.heat_W, loss_W, rise_K_per_J, outside_C};
   }
