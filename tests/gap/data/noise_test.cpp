@@ -109,6 +109,18 @@ TEST_CASE("runs may differ in their noise, and readings in coarse steps have the
         }) == Approx(1.0).epsilon(0.2));
 }
 
+TEST_CASE("a step that happens to repeat among smaller ones is no quantum") {
+  // A wide motion logged to 0.01: none of its many steps repeats often, but one of them.
+  Eigen::VectorXd values(2000);
+  double at = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    at +=
+        i % 40 == 0 ? 1.02 : 0.01 * std::round(200.0 * std::sin(0.7 * std::pow(static_cast<double>(i), 1.3)));
+    values[i] = at;
+  }
+  CHECK(quantum_of(values) < 0.02);
+}
+
 TEST_CASE("a few odd samples do not hide a quantum") {
   Eigen::VectorXd values(1000);
   for (Eigen::Index i = 0; i < values.size(); ++i)

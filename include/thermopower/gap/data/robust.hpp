@@ -74,7 +74,7 @@ namespace thermopower::gap {
 /// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
 /// ever differ by the same amount.
 inline double quantum_of(const Eigen::VectorXd& values) {
-  constexpr double often = 0.01, same = 1e-3;
+  constexpr double often = 0.01, same = 1e-3, odd = 0.1;
   constexpr std::size_t enough = 20000;
   std::vector<double> steps;
   double previous = std::nan(""), largest = 0.0;
@@ -93,7 +93,9 @@ inline double quantum_of(const Eigen::VectorXd& values) {
   for (std::size_t from = 0; from < steps.size();) {
     std::size_t to = from;
     while (to < steps.size() && steps[to] <= steps[from] * (1.0 + same)) ++to;
-    if (static_cast<double>(to - from) >= needed) return steps[from];
+    // Where many steps are smaller, this one only happens to repeat.
+    if (static_cast<double>(to - from) >= needed)
+      return static_cast<double>(from) <= odd * static_cast<double>(steps.size()) ? steps[from] : 0.0;
     from = to;
   }
   return 0.0;
