@@ -29,7 +29,12 @@ struct StribeckFriction {
                  .exceeds("transition_rad_per_s")
                  .starts({0.1, 0.5, 2.0}),
              friction_transition(transition), friction_tail(tail),
-             parameter(exponent, "exponent").unit("1").within(0.5, 6.0).standard(2.0).starts({2.0})},
+             parameter(exponent, "exponent")
+                 .unit("1")
+                 .within(0.7, 6.0)
+                 .standard(2.0)
+                 .starts({2.0})
+                 .degenerate_at_bounds()},
             {Need::axis_model},
             "very slow motion through standstill in both directions"};
   }
