@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/numeric.hpp"
+#include "../detail/probe.hpp"
 
 /// @file energy_meter.hpp
 /// Energy and average power, eq 4.24 to 4.26. What is integrated is part of the type: the thesis compares
@@ -30,11 +31,30 @@ struct AtSupply {
   }
 };
 
+namespace detail {
+/// Where power is measured.
+template <class Candidate, class Number, class = int>
+struct IsMeterPlace {
+  static constexpr bool value = false;
+};
+template <class Candidate, class Number>
+struct IsMeterPlace<Candidate, Number,
+                    typename Exists<decltype(Candidate::power_W(probe<const Number>(), probe<const Number>(),
+                                                                probe<const Number>()))>::Type> {
+  static constexpr bool value = true;
+};
+}  // namespace detail
+
 /// Sums P dt (eq 4.24) and divides by the time (eq 4.25).
 /// @tparam Where  `AtWinding` or `AtSupply`. Numbers of the two are not comparable.
 /// @ingroup actuator
 template <class Where, class Number = float>
 class EnergyMeter {
+  static_assert(
+      detail::IsMeterPlace<Where, Number>::value,
+      "thermopower: the first parameter of EnergyMeter must be where the power is measured: AtWinding or "
+      "AtSupply");
+
 public:
   /// What one logs.
   struct State {

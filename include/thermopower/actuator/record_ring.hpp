@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "../detail/crc16.hpp"
+#include "../detail/probe.hpp"
 
 /// @file record_ring.hpp
 /// Records through a loss of power: a ring of slots in a memory that keeps them, and one record in a memory
@@ -23,6 +24,18 @@ template <class Memory>
 bool is_memory_ready(Memory&, long) noexcept {
   return true;
 }
+
+/// A record: how many bytes, and whether they are whole.
+template <class Candidate, class = int>
+struct IsRecord {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsRecord<Candidate, typename Exists<decltype(Candidate::size()),
+                                           decltype(probe<Candidate>().read(
+                                               static_cast<const uint8_t*>(nullptr)))>::Type> {
+  static constexpr bool value = true;
+};
 
 }  // namespace detail
 
@@ -114,6 +127,10 @@ private:
 /// @tparam Record  as RecordRing takes it
 template <class Record>
 struct Retained {
+  static_assert(
+      detail::IsRecord<Record>::value,
+      "thermopower: the parameter of Retained must be a record: a type with static size(), read(bytes) and "
+      "write(bytes), such as StoredState");
   uint8_t bytes[Record::size()];  ///< The record, with its own check sum.
   uint16_t boots;                 ///< Resets since power came; right only after `recall()`.
   uint16_t boots_check;           ///< The complement of `boots`, so that noise is no count.

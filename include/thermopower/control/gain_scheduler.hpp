@@ -47,6 +47,16 @@ struct GainConfig {
 };
 
 namespace detail {
+/// A table of gains: `size()` and `gains()`.
+template <class Candidate, class = int>
+struct IsGainTable {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsGainTable<Candidate,
+                   typename Exists<decltype(Candidate::size()), decltype(*Candidate::gains())>::Type> {
+  static constexpr bool value = true;
+};
 /// Eq 4.27, plus `rounding`, as a whole count; 0 where the gains are not numbers.
 inline uint8_t scheduled_gain(uint8_t power, const GainConfig& config, float rounding) noexcept {
   const float gain = config.gain_low_power -
@@ -83,6 +93,9 @@ struct RoundedGain {
 /// @ingroup control
 template <class Table>
 struct TableGain {
+  static_assert(
+      detail::IsGainTable<Table>::value,
+      "thermopower: the parameter of TableGain must be a table: a type with static size() and gains(), in flash");
   /// The table is the configuration.
   struct Config {
     static Config standard() noexcept { return Config(); }  ///< Nothing to set.

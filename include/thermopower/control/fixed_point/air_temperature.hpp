@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../../fixed_point/units.hpp"
+#include "../../detail/probe.hpp"
 #include "../air_temperature.hpp"
 
 /// @file control/fixed_point/air_temperature.hpp
@@ -29,11 +30,32 @@ struct ProgrammedAir : StandardAir {
   static constexpr double fall_per_s() { return 0.0; }  ///< At once.
 };
 
+}  // namespace fixed_point
+namespace detail {
+/// Constants of the air: what StandardAir has.
+template <class Candidate, class = int>
+struct IsAirConstants {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsAirConstants<
+    Candidate,
+    typename Exists<decltype(Candidate::minimum_plausible_C()), decltype(Candidate::maximum_plausible_C()),
+                    decltype(Candidate::maximum_difference_K()), decltype(Candidate::fall_per_s())>::Type> {
+  static constexpr bool value = true;
+};
+}  // namespace detail
+namespace fixed_point {
+
 /// Fuses two thermometers as thermopower::AirTemperature does, whose documentation says why.
 /// @tparam Constants  StandardAir, or your own
 /// @ingroup control
 template <class Constants = StandardAir>
 class AirTemperature {
+  static_assert(
+      thermopower::detail::IsAirConstants<Constants>::value,
+      "thermopower: the parameter of AirTemperature must be constants, such as StandardAir or a type derived "
+      "from it");
   static_assert(Constants::minimum_plausible_C() >= -60 && Constants::maximum_plausible_C() <= 125 &&
                     Constants::minimum_plausible_C() < Constants::maximum_plausible_C(),
                 "thermopower: plausible air for a fixed-point model must be within -60 .. 125 degC");
