@@ -1,0 +1,51 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# sh cmake/release.sh [directory]        the release archive of the last commit and its check sum, in build/release-archive or there
+# sh cmake/release.sh --try [directory]  the same, made twice and compared, unpacked, installed, and used by a program
+# The same commit gives the same bytes: names, order, times and owners are the commit's, and gzip stores no time.
+set -eu
+cd "$(dirname "$0")/.."
+try=
+if [ "${1-}" = --try ]; then
+  try=yes
+  shift
+fi
+directory=${1-build/release-archive}
+
+if [ -n "$(git status --porcelain --untracked-files=no)" ]; then
+  echo "release.sh: there are changes that are not committed; an archive is of a commit" >&2
+  exit 1
+fi
+number() { sed -n "s/.*int $1_number() { return \([0-9]*\); }.*/\1/p" include/thermopower/version.hpp; }
+name=thermopower-$(number major).$(number minor).$(number patch)
+
+archive() {  # archive <file>
+  git -c core.autocrlf=false -c tar.umask=0022 archive --format=tar --prefix="$name/" -o "$1.tar" HEAD
+  gzip -n -9 <"$1.tar" >"$1"
+  rm "$1.tar"
+}
+mkdir -p "$directory"
+archive "$directory/$name.tar.gz"
+(cd "$directory" && sha256sum "$name.tar.gz" | tee "$name.tar.gz.sha256")
+[ -n "$try" ] || exit 0
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+TZ=Asia/Tokyo LC_ALL=C archive "$scratch/again.tar.gz"
+cmp "$directory/$name.tar.gz" "$scratch/again.tar.gz"
+tar -xzf "$directory/$name.tar.gz" -C "$scratch"
+cmake -S "$scratch/$name" -B "$scratch/build" --log-level=WARNING -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF \
+  -DCMAKE_INSTALL_PREFIX="$scratch/installed" >/dev/null
+cmake --install "$scratch/build" >/dev/null
+cat >"$scratch/program.cpp" <<'PROGRAM'
+#include <thermopower/thermopower.hpp>
+int main() {
+  thermopower::SafetyLimiter<> limiter;
+  return limiter.step({255, 90.0f, 0.0f}, 0.03f).power == 1 ? 0 : 1;
+}
+PROGRAM
+"${CXX:-c++}" -std=c++11 -I "$scratch/installed/include" "$scratch/program.cpp" -o "$scratch/program"
+"$scratch/program"
+echo "release.sh: the archive is the same twice, installs, and its headers compile and decide"
