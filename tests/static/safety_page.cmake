@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# Every test that docs/explain/safety.md names must be one: cmake -DPAGE=... -DBUILD=... -DCTEST=... -P safety_page.cmake
+file(STRINGS ${PAGE} rows REGEX "^\\| [0-9]+ \\|")
+execute_process(COMMAND ${CTEST} -N WORKING_DIRECTORY ${BUILD} OUTPUT_VARIABLE listed ERROR_QUIET RESULT_VARIABLE failed)
+if(failed)
+  message(FATAL_ERROR "ctest -N failed in ${BUILD}")
+endif()
+set(count 0)
+foreach(row IN LISTS rows)
+  string(REGEX REPLACE "^.*\\| ([^|]*) \\|$" "\\1" tests "${row}")
+  string(REGEX MATCHALL "`[a-z_0-9]+`" names "${tests}")
+  if(NOT names)
+    message(FATAL_ERROR "a guarantee without a test: ${row}")
+  endif()
+  foreach(name IN LISTS names)
+    string(REPLACE "`" "" name "${name}")
+    math(EXPR count "${count} + 1")
+    if(NOT listed MATCHES "Test +#[0-9]+: ${name}\n")
+      message(FATAL_ERROR "${PAGE} names a test that does not exist here: ${name}")
+    endif()
+  endforeach()
+endforeach()
+if(count LESS 20)
+  message(FATAL_ERROR "${PAGE}: only ${count} tests found in its table")
+endif()
+message(STATUS "${count} tests named, all there")
