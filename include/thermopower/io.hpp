@@ -20,5 +20,6 @@
 #include <thermopower/io/recording_file.hpp>
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
+#include <thermopower/io/sbgc_capture.hpp>
 #include <thermopower/io/simulator_export.hpp>
 #include <thermopower/io/summary.hpp>

@@ -5,6 +5,7 @@
 
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/mcap_file.hpp>
+#include <thermopower/io/sbgc_capture.hpp>
 
 #include <utility>
 
@@ -55,6 +56,7 @@ RecordingFile to_recording(CsvTable table) {
 
 RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices) {
   if (is_mcap(path)) return read_mcap(path, choices);
+  if (is_sbgc_capture(path)) return read_sbgc_capture(path, choices);
   return to_recording(read_csv(path, known_columns(), choices));
 }
 

@@ -4,6 +4,8 @@
 // thermopower-gap: where a simulated actuator and the real one part, which effect is missing, and how far the
 // gap shrinks with it.
 
+#include "fleet.hpp"
+
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
@@ -348,6 +350,10 @@ int list_columns(const std::string& path, const std::string& proposal) {
     const io::McapContents contents = io::list_mcap(path);
     text = io::columns_text(contents);
     columns = contents.columns;
+  } else if (io::is_sbgc_capture(path)) {
+    const io::SbgcCaptureContents contents = io::list_sbgc_capture(path);
+    text = io::columns_text(contents);
+    columns = contents.columns;
   } else {
     columns = io::list_columns(path);
     text = io::columns_text(columns);
@@ -398,7 +404,7 @@ int run(int count, char** values) {
   diagnosing->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
   diagnosing
       ->add_option("--recording", arguments.recordings,
-                   "a recording to find and fit on (CSV, MCAP); may be repeated")
+                   "a recording to find and fit on (CSV, MCAP, SimpleBGC capture); may be repeated")
       ->required();
   diagnosing->add_option("--heldout", arguments.held_out,
                          "a recording to judge on; without it the last 30 % of each recording");
@@ -426,7 +432,9 @@ int run(int count, char** values) {
 
   CLI::App* const predicting = app.add_subcommand("predict", "simulate a recording with a model");
   predicting->add_option("--model", arguments.model, "a model, with effects or without (JSON)")->required();
-  predicting->add_option("--recording", arguments.recordings, "a recording (CSV, MCAP); may be repeated")
+  predicting
+      ->add_option("--recording", arguments.recordings,
+                   "a recording (CSV, MCAP, SimpleBGC capture); may be repeated")
       ->required();
   predicting->add_option("--predictions", arguments.predictions, "where the predictions go (CSV)")
       ->required();
@@ -440,7 +448,9 @@ int run(int count, char** values) {
   CLI::App* const checking = app.add_subcommand(
       "check", "say what is wrong with recordings, and what they can show; nothing is fitted");
   checking->add_option("--model", arguments.model, "the simulation under test (JSON)")->required();
-  checking->add_option("--recording", arguments.recordings, "a recording (CSV, MCAP); may be repeated")
+  checking
+      ->add_option("--recording", arguments.recordings,
+                   "a recording (CSV, MCAP, SimpleBGC capture); may be repeated")
       ->required();
   checking->add_option("--heldout", arguments.held_out, "a recording to judge on; may be repeated");
   checking->add_option("--report", arguments.report, "write the same for machines (JSON)");
@@ -469,8 +479,26 @@ int run(int count, char** values) {
   std::string listed, proposal;
   CLI::App* const columns =
       app.add_subcommand("columns", "list what is in a file, and propose what its columns are");
-  columns->add_option("file", listed, "a recording (CSV, MCAP), - for standard input")->required();
+  columns->add_option("file", listed, "a recording (CSV, MCAP, SimpleBGC capture), - for standard input")
+      ->required();
   columns->add_option("--proposal", proposal, "write the proposals as a mapping file for --map");
+
+  FleetArguments fleet;
+  CLI::App* const many = app.add_subcommand(
+      "fleet", "diagnose every log of a table, one process each; the same command resumes");
+  many->add_option(
+          "manifest", fleet.manifest,
+          "the logs (CSV): log, model, and where needed unit, heldout, map; paths from its folder on")
+      ->required();
+  many->add_option("--out", fleet.out, "folder of the results: reports/ and logs.csv")->required();
+  many->add_option("--workers", fleet.workers,
+                   "processes at a time; 0: one per core. The results do not depend on it")
+      ->check(CLI::Range(0u, 1024u))
+      ->capture_default_str();
+  many->add_option("--column", arguments.columns, "as for diagnose, of every log");
+  many->add_option("--without", arguments.without, "as for diagnose");
+  CLI::Option* const horizon =
+      many->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(positive);
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
 
@@ -488,6 +516,17 @@ int run(int count, char** values) {
     return made;
   }
   if (*checking) return check(arguments);
+  if (*many) {
+    check_ids(arguments.without, gap::standard_catalogue());
+    column_choices(arguments);
+    for (const std::string& one : arguments.columns)
+      fleet.options.insert(fleet.options.end(), {"--column", one});
+    for (const std::string& one : arguments.without)
+      fleet.options.insert(fleet.options.end(), {"--without", one});
+    if (horizon->count() > 0)
+      fleet.options.insert(fleet.options.end(), {"--horizon", std::to_string(arguments.horizon_s)});
+    return run_fleet(fleet);
+  }
   if (*columns) return list_columns(listed, proposal);
   if (*exporting) return export_model(arguments);
   return *predicting ? predict(arguments) : diagnose(arguments);

@@ -23,8 +23,8 @@ struct RecordingFile {
   std::vector<Finding> findings;  ///< notes of the reader; the check of the data makes others
 };
 
-/// @brief Reads a recording from a CSV or MCAP file, whichever it begins like. @throws InputError, see read_csv() and
-/// read_mcap()
+/// @brief Reads a recording from a CSV file, an MCAP file or a capture of a SimpleBGC board's serial line, whichever it begins
+/// like. @throws InputError, see read_csv(), read_mcap() and read_sbgc_capture()
 /// @param choices columns that go by another name or unit in the file
 RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices = {});
 
