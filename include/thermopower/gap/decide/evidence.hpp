@@ -88,6 +88,25 @@ inline double level(const Candidate& candidate, std::size_t signal) {
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
+/// The root mean square of a held-out signal, in units of the noise floor.
+inline double held_out_level(const SignalSums& sums, std::size_t signal) {
+  return std::sqrt(sums.mean(signal));
+}
+
+/// The largest of them.
+inline double worst_level(const SignalSums& sums) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, held_out_level(sums, i));
+  return worst;
+}
+
+/// The largest root mean square of a candidate over its signals, training and held-out data together.
+inline double worst_level(const Candidate& candidate) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
+  return worst;
+}
+
 /// Whether a candidate scores as well as another where it matters. With many rows a smaller difference can still
 /// be significant; it then tells of the small errors that every model has, not of the cause. The further the
 /// better one is above the noise, the larger are the errors that it has itself: an explanation with fewer
@@ -133,12 +152,8 @@ inline bool does_nothing_more(const Candidate& candidate, const Candidate& const
 
 /// Whether a candidate scores what the noise allows.
 inline bool is_at_the_noise(const Candidate& candidate) {
-  if (!candidate.held_out.any()) return false;
-  for (std::size_t i = 0; i < signal_count; ++i)
-    if (level(candidate, i) > decision.no_gap ||
-        candidate.held_out.mean(i) > decision.no_gap * decision.no_gap)
-      return false;
-  return true;
+  return candidate.held_out.any() && worst_level(candidate) <= decision.no_gap &&
+         worst_level(candidate.held_out) <= decision.no_gap;
 }
 
 /// Marks effects beside which constants move that alone bring everything to the noise: the constants are the answer,

@@ -30,25 +30,6 @@ struct Reference {
   SignalSums recalibrated;   ///< its constants refitted
 };
 
-/// The root mean square of a held-out signal, in units of the noise floor.
-inline double held_out_level(const SignalSums& sums, std::size_t signal) {
-  return std::sqrt(sums.mean(signal));
-}
-
-/// The largest of them.
-inline double worst_level(const SignalSums& sums) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, held_out_level(sums, i));
-  return worst;
-}
-
-/// The largest root mean square of a candidate over its signals, training and held-out data together.
-inline double worst_level(const Candidate& candidate) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
-  return worst;
-}
-
 /// Whether a candidate shrinks some signal's held-out score by more than the tolerance.
 inline bool matters(const Candidate& candidate, const Candidate& than, double tolerance) {
   bool better = false;
@@ -185,12 +166,10 @@ inline Conclusion nothing_known(const char* reason) {
 /// Whether the training data have readings enough for what an explanation leaves free: the parameters of its effects,
 /// and the constants that moved by more than is known of them.
 inline bool has_readings_enough(const Candidate& candidate, const Model& model) {
-  double free = candidate.explanation.parameter_count(), readings = 0.0;
-  free -= static_cast<double>(candidate.explanation.released.size());
-  Eigen::Index at = 0;
-  for (const CalibratedConstant& constant : model.calibrated())
-    if (std::abs(candidate.fit.at[at++]) > known_constants.within * model.uncertainty_of(constant))
-      free += 1.0;
+  const double free = static_cast<double>(candidate.explanation.parameter_count()) +
+                      static_cast<double>(moved_constants(candidate, model).size()) -
+                      static_cast<double>(candidate.explanation.released.size());
+  double readings = 0.0;
   for (double samples : candidate.train.samples) readings += samples;
   return readings >= decision.readings_per_parameter * free;
 }

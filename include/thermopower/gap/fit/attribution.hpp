@@ -30,6 +30,20 @@ struct Candidate {
   bool idle = false;         ///< constants moved beside it that alone explain everything
 };
 
+/// Indices into Model::calibrated() of the constants that a fit moved by more than is known of them.
+inline std::vector<int> moved_constants(const Candidate& candidate, const Model& model) {
+  constexpr double rounding = 1e-9;  // of the bound that the empty explanation stays within
+  std::vector<int> moved;
+  int index = 0;
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    if (std::abs(candidate.fit.at[index]) >
+        known_constants.within * model.uncertainty_of(constant) * (1.0 + rounding))
+      moved.push_back(index);
+    ++index;
+  }
+  return moved;
+}
+
 /// Fits explanations to training data.
 class Attribution {
 public:

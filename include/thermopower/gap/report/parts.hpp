@@ -162,16 +162,11 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
 /// released and stayed is none, and one that was not and went is one. Explanations that turn out to be the same,
 /// or to be empty, are dropped, the worse one.
 inline void name_moved_constants(std::vector<Candidate>& candidates, const Model& model) {
-  const std::vector<CalibratedConstant> constants = model.calibrated();
   std::vector<Candidate> kept{std::move(candidates.front())};
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& one = candidates[i];
     if (one.explanation.effects.empty()) {
-      one.explanation.released.clear();
-      for (std::size_t k = 0; k < constants.size(); ++k)
-        if (std::abs(one.fit.at[static_cast<Eigen::Index>(k)]) >
-            known_constants.within * model.uncertainty_of(constants[k]) * (1.0 + 1e-9))
-          one.explanation.released.push_back(static_cast<int>(k));
+      one.explanation.released = moved_constants(one, model);
       if (one.explanation.released.empty()) continue;
       const auto same = std::find_if(kept.begin(), kept.end(), [&](const Candidate& other) {
         return other.explanation.effects.empty() && other.explanation.released == one.explanation.released;
