@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# THERMOPOWER_SANITIZE: OFF, ALL, or PROGRAMS: everything but the directories of numerical work, which take three times as
+# long to compile and ten times as long to run under the sanitizers. What reads foreign bytes, files and options, and what
+# runs in firmware, is under them either way.
+set(THERMOPOWER_SANITIZE OFF CACHE STRING "Address and undefined-behaviour sanitizers: OFF, PROGRAMS or ALL")
+set_property(CACHE THERMOPOWER_SANITIZE PROPERTY STRINGS OFF PROGRAMS ALL)
+if(NOT THERMOPOWER_SANITIZE MATCHES "^(OFF|PROGRAMS|ALL)$")
+  message(FATAL_ERROR "thermopower: THERMOPOWER_SANITIZE is \"${THERMOPOWER_SANITIZE}\"; it must be OFF, PROGRAMS or ALL")
+endif()
+
+set(thermopower_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized)
+
+# thermopower_sanitize(): this directory and those added below it from here on.
+macro(thermopower_sanitize)
+  if(THERMOPOWER_SANITIZE)
+    add_compile_options(${thermopower_sanitizers})
+    add_link_options(-fsanitize=address,undefined)
+  endif()
+endmacro()
+
+# thermopower_numerical_directory(): this directory is under the sanitizers only if everything is. What it links may need
+# their libraries all the same.
+macro(thermopower_numerical_directory)
+  if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS")
+    get_directory_property(thermopower_options COMPILE_OPTIONS)
+    list(REMOVE_ITEM thermopower_options ${thermopower_sanitizers})
+    set_directory_properties(PROPERTIES COMPILE_OPTIONS "${thermopower_options}")
+  endif()
+endmacro()
