@@ -20,8 +20,10 @@ namespace thermopower::gap {
 class Search {
 public:
   /// Both attributions must pose the same question to different amounts of data, and outlive this object.
-  Search(const Attribution& coarse, const Attribution& fine, unsigned threads)
-      : coarse_(coarse), fine_(fine), threads_(threads) {}
+  /// @param suspects  submodels in which the measured rows themselves say that something is missing
+  Search(const Attribution& coarse, const Attribution& fine, unsigned threads,
+         std::vector<plant::SubmodelName> suspects = {})
+      : coarse_(coarse), fine_(fine), threads_(threads), suspects_(std::move(suspects)) {}
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
@@ -166,10 +168,7 @@ private:
   /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear
   /// promise, the most promising fitted.
   void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
-    std::vector<const Candidate*> seeds;
-    for (std::size_t index : by_fitness(candidates, 0))
-      if (static_cast<int>(candidates[index].explanation.effects.size()) == size - 1 && seeds.size() < 5)
-        seeds.push_back(&candidates[index]);
+    const std::vector<const Candidate*> seeds = seeds_of(candidates, size - 1);
     std::vector<Promise> promises;
     for (const Candidate* near : seeds)
       for (const Explanation& single : singles)
@@ -188,6 +187,26 @@ private:
       if (kept.size() < 14 && seen.insert(ids).second) kept.push_back(std::move(one));
     }
     add_fitted(candidates, kept);
+  }
+
+  /// The best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
+  /// causes of one size neither does well alone, and what does is another effect that makes up for some of both.
+  std::vector<const Candidate*> seeds_of(const std::vector<Candidate>& candidates, int size) const {
+    constexpr std::size_t best_of_all = 5;
+    constexpr int best_of_submodel = 2;
+    std::vector<const Candidate*> seeds, others;
+    for (std::size_t index : by_fitness(candidates, 0))
+      if (static_cast<int>(candidates[index].explanation.effects.size()) == size)
+        (seeds.size() < best_of_all ? seeds : others).push_back(&candidates[index]);
+    if (size != 1) return seeds;
+    for (const plant::SubmodelName& suspect : suspects_) {
+      int found = 0;
+      for (const Candidate* one : others)
+        if (found < best_of_submodel && one->explanation.effects.front()->info.submodel == suspect &&
+            std::find(seeds.begin(), seeds.end(), one) == seeds.end())
+          seeds.push_back(one), ++found;
+    }
+    return seeds;
   }
 
   /// Fits sets from the fits of their parts and takes them among the candidates.
@@ -229,6 +248,7 @@ private:
   const Attribution& coarse_;
   const Attribution& fine_;
   unsigned threads_;
+  std::vector<plant::SubmodelName> suspects_;
 };
 
 }  // namespace thermopower::gap

@@ -300,7 +300,7 @@ private:
     const Attribution coarse(coarse_problem, options_.threads), fine(problem, options_.threads);
     for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
     problem.sigma = coarse_problem.sigma;
-    const Search searching(coarse, fine, options_.threads);
+    const Search searching(coarse, fine, options_.threads, suspects());
     std::vector<Explanation> causes = singles();
     const auto is_cheap = [](const Explanation& one) {
       return one.effects.empty() || !one.effects.front()->info.costly;
@@ -342,6 +342,15 @@ private:
     judge(attempt, fine);
     weigh(candidates, attempt.weight, model_);
     return attempt;
+  }
+
+  /// The submodels in which the measured rows say that something is missing, where there are several: then two causes
+  /// may be.
+  std::vector<plant::SubmodelName> suspects() const {
+    std::vector<plant::SubmodelName> found;
+    for (const Location& one : result_.where)
+      if (std::find(found.begin(), found.end(), one.submodel) == found.end()) found.push_back(one.submodel);
+    return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
   }
 
   /// Range of the angle in the training data; without an angle any.
