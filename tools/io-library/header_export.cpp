@@ -296,7 +296,7 @@ private:
         dry.transition_rad_per_s.is_constant() && !(dry.transition_rad_per_s.constant_value() > 0.0);
     // What friction there is besides the header's viscous one; a factor works on that one, too.
     Expression friction = dry.torque_Nm * dry.factor + viscous_Nms_per_rad * (dry.factor - 1.0) * rate;
-    const bool steep = dry.tail.is_constant() && !(dry.tail.constant_value() > 0.0);
+    const bool steep = dry.tail.is_constant() && dry.tail.constant_value() == 0.0;
     const Expression transitions = none ? Expression(0.0) : rate / dry.transition_rad_per_s;
     if (!none)
       friction += size * dry.factor * (steep ? tanh(transitions) : plant::film_share(transitions, dry.tail));

@@ -193,7 +193,7 @@ private:
     const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
     constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
     // Where there is none, its derivative may still be asked for.
-    const bool has_tail = !std::is_same<Scalar, double>::value || value_of(now.tail) > 0.0;
+    const bool has_tail = !std::is_same<Scalar, double>::value || value_of(now.tail) != 0.0;
     if (!has_tail && std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
       if (stiffness != nullptr) *stiffness = constant<Scalar>(0.0);
       return forward ? size_Nm : Scalar(-size_Nm);
@@ -204,12 +204,8 @@ private:
       if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
       return size_Nm * share;
     }
-    const Scalar steep = tanh(x), within = 1.0 / (magnitude(x) + 1.0), gentle = x * within;
-    if (stiffness != nullptr) {
-      const Scalar slope = 1.0 - steep * steep;
-      *stiffness = size_Nm * (slope + now.tail * (within * within - slope)) / now.transition_rad_per_s;
-    }
-    return size_Nm * (steep + now.tail * (gentle - steep));
+    if (stiffness != nullptr) *stiffness = size_Nm * film_slope(x, now.tail) / now.transition_rad_per_s;
+    return size_Nm * film_share(x, now.tail);
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {

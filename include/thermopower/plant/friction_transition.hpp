@@ -19,11 +19,11 @@ inline Parameter friction_transition(int index) {
       .standard(0.01);
 }
 
-/// The other parameter that every dry friction has: how slowly it becomes full beyond the transition, 0 (as tanh) to 1
-/// (as x / (1 + |x|)); 0 where a model leaves it out.
+/// The other parameter that every dry friction has: how slowly it becomes full beyond the transition, from -1 (in
+/// proportion to the rate, then at once) over 0 (as tanh) to 1 (as x / (1 + |x|)); 0 where a model leaves it out.
 /// @param index  by which the effect reads it
 inline Parameter friction_tail(int index) {
-  return parameter(index, "tail").unit("1").within(0.0, 1.0).starts({0.0, 0.6}).standard(0.0);
+  return parameter(index, "tail").unit("1").within(-1.0, 1.0).starts({0.0, 0.6}).standard(0.0);
 }
 
 }  // namespace thermopower::plant

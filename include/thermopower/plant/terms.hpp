@@ -125,15 +125,28 @@ struct AxisTerms {
 };
 
 /// The share of dry friction that acts at a rate, with its sign: tanh(x) where `tail` is 0, x / (1 + |x|) where it is
-/// 1, and what lies between in proportion. A film that is sheared carries a torque that turns over with the rate; how
-/// slowly it becomes the full one differs from joint to joint, and a creeping motion shows it.
+/// 1, x cut off at -1 and 1 where it is -1, and what lies between in proportion. A film that is sheared carries a torque
+/// that turns over with the rate; how soon it becomes the full one differs from joint to joint, and a creeping motion
+/// shows it. What simulators do in dry friction's place, a damper with a limit, is the last of the three.
 /// @param x     rate over the transition
-/// @param tail  0..1
+/// @param tail  -1..1
 template <class Scalar>
 Scalar film_share(const Scalar& x, const Scalar& tail) {
   using std::tanh;
-  const Scalar steep = tanh(x);
-  return steep + tail * (x / (magnitude(x) + 1.0) - steep);
+  const Scalar steep = tanh(x), gentle = x / (magnitude(x) + 1.0);
+  const Scalar abrupt = (magnitude(Scalar(x + 1.0)) - magnitude(Scalar(x - 1.0))) * 0.5;
+  const Scalar size = magnitude(tail);
+  return steep + (size + tail) * 0.5 * (gentle - steep) + (size - tail) * 0.5 * (abrupt - steep);
+}
+
+/// Derivative of `film_share` by x, for scalars that are numbers.
+template <class Scalar>
+Scalar film_slope(const Scalar& x, const Scalar& tail) {
+  using std::tanh;
+  const Scalar steep = tanh(x), bend = 1.0 - steep * steep, within = 1.0 / (magnitude(x) + 1.0);
+  const double abrupt = value_of(magnitude(x)) < 1.0 ? 1.0 : 0.0;
+  const Scalar size = magnitude(tail);
+  return bend + (size + tail) * 0.5 * (within * within - bend) + (size - tail) * 0.5 * (abrupt - bend);
 }
 
 /// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
@@ -154,7 +167,7 @@ struct FrictionTerms {
   Scalar torque_Nm;                 ///< friction of other kinds than the dry one, taken off the other torques
   bool dry = false;                 ///< some effect has dry friction
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
-  Scalar tail = 0.0;  ///< how slowly it becomes full beyond the transition, 0..1, by `film_share`
+  Scalar tail = 0.0;  ///< how slowly it becomes full beyond the transition, -1..1, by `film_share`
 
   /// Torque that the gears transmit, N m: |drive - load|. A drive that holds a load against it passes both.
   Scalar transmitted_Nm() const { return magnitude(Scalar(drive_Nm - load_Nm)); }
@@ -163,12 +176,12 @@ struct FrictionTerms {
   /// longest tail.
   void add_friction(const Scalar& forward, const Scalar& backward, const Scalar& transition,
                     const Scalar& longest_tail = 0.0) {
-    dry = true;
     forward_Nm += forward;
     backward_Nm += backward;
     transition_rad_per_s = larger(transition_rad_per_s, transition);
-    if (!(value_of(longest_tail) < value_of(tail)))
+    if (!dry || !(value_of(longest_tail) < value_of(tail)))
       tail = longest_tail;  // equal: it is the one that may vary
+    dry = true;
   }
 };
 
