@@ -56,13 +56,14 @@ double by_root(double w) { return w / std::sqrt(w * w + 0.03 * 0.03); }
 double by_arc_tangent(double w) { return std::atan(w / 0.01) * 0.6366197723675814; }
 double by_fraction(double w) { return w / (std::abs(w) + 0.008); }
 double by_exponential(double w) { return std::copysign(1.0 - std::exp(-std::abs(w) / 0.02), w); }
+double by_limit(double w) { return std::fmax(-1.0, std::fmin(1.0, w / 0.03)); }
 
 }  // namespace
 
 TEST_CASE("friction is found at its size whatever the shape of the film it creeps on") {
   constexpr double friction_Nm = 0.006;
   const Model model = axis_model();
-  for (const Film film : {by_root, by_arc_tangent, by_fraction, by_exponential}) {
+  for (const Film film : {by_root, by_arc_tangent, by_fraction, by_exponential, by_limit}) {
     const std::vector<Inputs> inputs{prepare(model, creeping(film, friction_Nm, 7))};
     const FitProblem problem = problem_of(model, inputs);
     const Candidate fitted =
