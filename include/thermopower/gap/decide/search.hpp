@@ -150,7 +150,8 @@ private:
     return order;
   }
 
-  /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end.
+  /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
+  /// after some steps are in sight of the best one.
   void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
     FitOptions look;
     look.iterations = 1;
@@ -159,10 +160,25 @@ private:
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(count, order.size()));
     if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
-    FitOptions finish;
-    finish.iterations = 25;
-    finish.relative_decrease = 1e-6;
-    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], finish); });
+    FitOptions some, rest;
+    some.iterations = 10;
+    rest.iterations = 15;
+    some.relative_decrease = rest.relative_decrease = 1e-6;
+    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], some); });
+    constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
+    const Candidate& leader = best(candidates);
+    double samples = 0.0;
+    for (double of_signal : leader.train.samples) samples += of_signal;
+    const double least = fitness(leader);
+    std::vector<std::size_t> unfinished;
+    for (std::size_t index : order) {
+      const Candidate& one = candidates[index];
+      const bool converged = one.fit.iterations < some.iterations;
+      if (!converged && (index == 0 || fitness(one) - least < out_of_sight * samples))
+        unfinished.push_back(index);
+    }
+    in_parallel(unfinished.size(), threads_,
+                [&](std::size_t i) { fine_.polish(candidates[unfinished[i]], rest); });
   }
 
   /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear
