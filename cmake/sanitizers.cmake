@@ -12,6 +12,13 @@ endif()
 
 set(thermopower_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized)
 
+# Eigen allocates by hand under the address sanitizer and by malloc without it. Where both kinds of code meet in one program
+# they must agree: on malloc, whose blocks are aligned to 16 bytes either way.
+if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS" AND TARGET thermopower_desktop)
+  target_compile_definitions(thermopower_desktop INTERFACE
+    $<BUILD_INTERFACE:$<$<IN_LIST:-fno-sanitize-recover=all,$<TARGET_PROPERTY:COMPILE_OPTIONS>>:EIGEN_MALLOC_ALREADY_ALIGNED=1>>)
+endif()
+
 # thermopower_sanitize(): this directory and those added below it from here on.
 macro(thermopower_sanitize)
   if(THERMOPOWER_SANITIZE)
