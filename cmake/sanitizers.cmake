@@ -36,3 +36,11 @@ macro(thermopower_numerical_directory)
     set_directory_properties(PROPERTIES COMPILE_OPTIONS "${thermopower_options}")
   endif()
 endmacro()
+
+# What a project outside must be configured with to link what was built here.
+set(thermopower_user_options "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}")
+if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS")
+  list(APPEND thermopower_user_options -DCMAKE_EXE_LINKER_FLAGS=-fsanitize=address,undefined)
+elseif(THERMOPOWER_SANITIZE STREQUAL "ALL")
+  set(thermopower_user_options "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS} -fsanitize=address,undefined")
+endif()

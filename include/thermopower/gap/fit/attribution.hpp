@@ -189,7 +189,8 @@ private:
   /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
   /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
   /// that ended shortly before it begins once more there. A shape that ended at its far bound may have run there from
-  /// a start on the wrong side: then all that have a standard begin once more from it.
+  /// a start on the wrong side: then all that have a standard begin once more from it. Two families of shapes meet at
+  /// the standard one, and a fit that stopped shortly below it looks at the other side.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
     Eigen::VectorXd again = candidate.fit.at;
     bool trapped = false, far = false;
@@ -198,6 +199,12 @@ private:
       const auto at = static_cast<Eigen::Index>(i);
       if (!one.standard) continue;
       if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
+      const bool other_side =
+          !one.logarithmic && one.lower < 0.0 && again[at] < *one.standard && again[at] > 0.5 * one.lower;
+      if (other_side) {
+        again[at] = 2.0 * *one.standard - again[at];
+        trapped = true;
+      }
       if (!one.logarithmic || !(*one.standard > one.lower) || again[at] > *one.standard) continue;
       again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
       trapped = true;
