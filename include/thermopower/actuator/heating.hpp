@@ -53,8 +53,11 @@ struct HeatCapacityHeating {
   }
 };
 
-/// The thesis's coefficient of heating: 1/r = (s1 V + s0) T + (o1 V + o0), with V = V_rms and T the motor's
-/// temperature in degC. 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute`
+/// The thesis's coefficient of heating, with V = V_rms and T the motor's temperature in degC.
+/// \f[
+/// \frac{1}{r} = (s_1 V + s_0) \, T + (o_1 V + o_0)
+/// \f]
+/// 1/r is an apparent heat capacity, so the constants are kept in J/K; `per_minute`
 /// takes them as the thesis prints them. No heating at or below `minimum_V_rms`, nor, with a least capacity of
 /// 0, where 1/r is not positive. As programmed that is so: the yaw motor below 2 degC is never believed to
 /// warm (1/r = 0.2435 T - 0.4952), which is no thermal protection at all.

@@ -10,8 +10,11 @@
 
 namespace thermopower {
 
-/// Natural convection: loss = G (T - T_air) (|T - T_air| / T_ref)^n. At a difference of `reference_K` it
-/// equals Newton's G. n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
+/// Natural convection: a loss that grows faster than the temperature difference.
+/// \f[
+/// \mathrm{loss} = G \, (T - T_\mathrm{air}) \left( \frac{|T - T_\mathrm{air}|}{T_\mathrm{ref}} \right)^{n}
+/// \f]
+/// At a difference of `reference_K` it equals Newton's G. n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
 /// @ingroup actuator
 template <class Number = float>
 struct NaturalConvection {

@@ -9,7 +9,10 @@
 
 namespace thermopower {
 
-/// Current law: I = V_rms / R(T) with R(T) = R_ref (1 + a (T - T_ref)).
+/// Current law: Ohm's, with a resistance that rises with temperature.
+/// \f[
+/// I = \frac{V_\mathrm{rms}}{R(T)}, \qquad R(T) = R_\mathrm{ref} \, (1 + a \, (T - T_\mathrm{ref}))
+/// \f]
 /// Take it when the winding's resistance is known or can be measured; it is physical at any voltage and
 /// temperature.
 /// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the

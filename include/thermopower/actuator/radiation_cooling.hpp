@@ -10,8 +10,10 @@
 
 namespace thermopower {
 
-/// Radiation to surroundings at air temperature: loss = sigma A eps (T^4 - T_air^4), in kelvin
-/// (Stefan-Boltzmann).
+/// Radiation to surroundings at air temperature (Stefan-Boltzmann), temperatures in kelvin.
+/// \f[
+/// \mathrm{loss} = \sigma A \varepsilon \, (T^4 - T_\mathrm{air}^4)
+/// \f]
 /// @ingroup actuator
 template <class Number = float>
 struct RadiationCooling {

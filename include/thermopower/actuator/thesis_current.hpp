@@ -9,8 +9,11 @@
 
 namespace thermopower {
 
-/// Current law of the thesis: I = m(V) T + b(V), eq 4.1, with m(V) = m2 V^2 + m1 V + m0 (eq 4.2, 4.4) and
-/// b(V) = base V^exponent (eq 4.3, 4.5); T in degC. Zero at or below `minimum_V_rms`, and never negative (as
+/// Current law of the thesis, eq 4.1, with eq 4.2 and 4.4 for m and eq 4.3 and 4.5 for b; T in degC.
+/// \f[
+/// I = m(V) \, T + b(V), \qquad m(V) = m_2 V^2 + m_1 V + m_0, \qquad b(V) = b_1 V^{\,n}
+/// \f]
+/// Zero at or below `minimum_V_rms`, and never negative (as
 /// programmed).
 ///
 /// The text prints m2 with a plus sign; the program and the regression of Tables 4.1 and 4.2 have a minus.

@@ -13,8 +13,12 @@ namespace thermopower {
 
 /// Two-node thermal model, stepped exactly for constant inputs at any step size:
 ///
-///     C_w dT_w/dt = P - K (T_w - T_b)
-///     C_b dT_b/dt = K (T_w - T_b) - G (T_b - T_air)
+/// \f[
+/// \begin{aligned}
+/// C_w \, \dot T_w &= P - K \, (T_w - T_b) \\[.5em]
+/// C_b \, \dot T_b &= K \, (T_w - T_b) - G \, (T_b - T_\mathrm{air})
+/// \end{aligned}
+/// \f]
 ///
 /// Take it when the winding is much faster than the housing, so that a short overload heats copper long
 /// before a thermometer on the housing shows it. Both eigenvalues are real and negative (the network has no

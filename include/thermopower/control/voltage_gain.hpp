@@ -14,7 +14,9 @@ namespace thermopower {
 /// R(T), with V_rms = V_supply sqrt(POWER / 255), R rising and k falling with temperature. So, against the
 /// point where the gain was tuned:
 ///
-///     P = P_tuned  sqrt(POWER_tuned / POWER)  V_tuned / V  R(T) / R(T_tuned)  k(T_tuned) / k(T)
+/// \f[
+/// P = P^* \, \sqrt{\frac{\mathrm{POWER}^*}{\mathrm{POWER}}} \; \frac{V^*}{V} \; \frac{R(T)}{R(T^*)} \; \frac{k(T^*)}{k(T)}
+/// \f]
 ///
 /// Eq 4.27 draws a straight line between two tuned powers instead, at one supply and temperature. Take this
 /// one when the supply sags or the motor gets warm. Without facts (`step(power)`) the supply and temperature

@@ -67,7 +67,9 @@ struct CertifiedTwoNodeConfig {
 
 /// Two nodes with bounds instead of constants:
 ///
-///     C_w dT_w/dt = P - K (T_w - T_b),   C_b dT_b/dt = K (T_w - T_b) - G (T_b - T_air)
+/// \f[
+/// C_w \, \dot T_w = P - K \, (T_w - T_b), \qquad C_b \, \dot T_b = K \, (T_w - T_b) - G \, (T_b - T_\mathrm{air})
+/// \f]
 ///
 /// K, G, the air, the supply and the resistance may change at any time within their bounds; C_w and C_b are
 /// constant but unknown.
