@@ -85,21 +85,9 @@ AdaptiveGimbal ours(const Scenario& scenario) {
   return AdaptiveGimbal(started_C, tuning);
 }
 
-// Constant power at the stiffness of ours, to show what the gain alone does.
-ConstantPower stiff_constant(const Scenario&) {
-  std::array<std::uint8_t, 3> gains{};
-  gains[0] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(0, tuning).gain)
-                 .step(standard_power, AxisFacts::unknown());
-  gains[1] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm2606_90t>(1, tuning).gain)
-                 .step(standard_power, AxisFacts::unknown());
-  gains[2] = EasedGain<VoltageGain>(adaptive_axis<motors::Bgm5208_200_12>(2, tuning).gain)
-                 .step(standard_power, AxisFacts::unknown());
-  return ConstantPower({standard_power, standard_power, standard_power}, gains);
-}
-
 std::vector<Policy> policies() {
   return {policy("constant power", Palette::constant, [](const Scenario&) { return constant_power(); }),
-          policy("constant, stiff", "#343a40", stiff_constant),
+          policy("constant, stiff", "#343a40", [](const Scenario&) { return stiff_constant_power(tuning); }),
           policy("thesis", Palette::thesis, [](const Scenario&) { return thesis_gimbal(); }),
           policy("corrected", Palette::corrected, [](const Scenario&) { return corrected_gimbal(); }),
           policy("ours, not told", "#66d9e8",

@@ -122,3 +122,26 @@ TEST_CASE("Our law points better for less energy than constant power and the the
     CHECK(own.over_limit_s() == 0.0);
   }
 }
+
+TEST_CASE(
+    "Our law is at most 10 % worse than constant power with the same stiff gain, for at most half its energy") {
+  // Draws that neither its tuning nor the documentation's tables use.
+  for (const std::uint64_t draw : {50u, 51u})
+    for (const Scenario& scenario : standard_scenarios(60.0, draw)) {
+      INFO(scenario.name << ", draw " << draw);
+      std::array<float, 3> started_C;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double winding_C = scenario.axes[i].winding_C;
+        started_C[i] = static_cast<float>((std::isnan(winding_C) ? scenario.air_C : winding_C) + 3.0);
+      }
+      AdaptiveGimbal ours(started_C);
+      ConstantPower constant = stiff_constant_power();
+      const RigMetrics own = run_rig(RigConfig::thesis(), scenario, ours),
+                       other = run_rig(RigConfig::thesis(), scenario, constant);
+      // At rest both stand still: half of what telemetry can tell apart is no difference.
+      const double half_a_count_deg = 0.5 * 360.0 / 16384.0;
+      CHECK(own.error_rms_deg() < std::fmax(1.10 * other.error_rms_deg(), half_a_count_deg));
+      CHECK(own.energy_J < 0.5 * other.energy_J);
+      CHECK(own.over_limit_s() == 0.0);
+    }
+}

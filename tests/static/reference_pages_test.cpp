@@ -43,7 +43,8 @@ std::string menus() {
   for (const char* folder : {"actuator", "control", "sbgc"}) {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(THERMOPOWER_INCLUDE) / folder)) {
       if (entry.path().extension() != ".hpp") continue;
-      static const std::regex head("/// \\| (law|rule|step|limiter|motor|network|heat|gain|supply) \\|.*");
+      static const std::regex head(
+          "/// \\| (law|rule|step|limiter|motor|network|heat|gain|drive|supply) \\|.*");
       std::string table;
       bool is_menu = false;
       for (const std::string& line : lines_of(entry.path())) {

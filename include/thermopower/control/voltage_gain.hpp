@@ -6,23 +6,46 @@
 #include "axis_facts.hpp"
 
 /// @file voltage_gain.hpp
-/// The proportional gain from the torque that is really there: V_rms, winding resistance and torque constant.
+/// The proportional gain from the torque that is really there: the drive's voltage, winding resistance and torque
+/// constant.
+///
+/// | drive | its voltage | when to take it |
+/// |---|---|---|
+/// | `SwitchedDrive` | V_supply sqrt(POWER / 255), eq 3.11 | the V_rms of a switched supply drives the winding; the default, as `VoltageGain` |
+/// | `SineDrive` | V_supply POWER / 255 | POWER scales a sine's amplitude: the thesis motors, whose measured current rises with POWER^0.93 to 0.95 |
 
 namespace thermopower {
 
-/// Keeps gain times torque authority constant. Authority is torque per count of the inner loop: k(T) V_rms /
-/// R(T), with V_rms = V_supply sqrt(POWER / 255), R rising and k falling with temperature. So, against the
-/// point where the gain was tuned:
+/// V_rms of a switched supply, eq 3.11.
+/// @ingroup control
+struct SwitchedDrive {
+  /// Voltage against voltage of two powers. @param power_ratio  POWER against POWER, above 0
+  static float voltage_ratio(float power_ratio) noexcept { return sqrtf(power_ratio); }
+};
+
+/// A sine whose amplitude POWER scales. The currents of Tables 4.1 and 4.2 rise with POWER^0.93 and POWER^0.95: 3 to 5 %
+/// from this at half the power, where `SwitchedDrive` is 35 % away.
+/// @ingroup control
+struct SineDrive {
+  /// Voltage against voltage of two powers. @param power_ratio  POWER against POWER, above 0
+  static float voltage_ratio(float power_ratio) noexcept { return power_ratio; }
+};
+
+/// Keeps gain times torque authority constant. Authority is torque per count of the inner loop: k(T) V_w /
+/// R(T), with the drive's voltage V_w, R rising and k falling with temperature. So, against the point where
+/// the gain was tuned:
 ///
 /// \f[
-/// P = P^* \, \sqrt{\frac{\mathrm{POWER}^*}{\mathrm{POWER}}} \; \frac{V^*}{V} \; \frac{R(T)}{R(T^*)} \; \frac{k(T^*)}{k(T)}
+/// P = P^* \, \frac{V_w(\mathrm{POWER}^*)}{V_w(\mathrm{POWER})} \; \frac{V^*}{V} \; \frac{R(T)}{R(T^*)} \; \frac{k(T^*)}{k(T)}
 /// \f]
 ///
 /// Eq 4.27 draws a straight line between two tuned powers instead, at one supply and temperature. Take this
 /// one when the supply sags or the motor gets warm. Without facts (`step(power)`) the supply and temperature
 /// of the tuning are assumed.
+/// @tparam Drive  one of the drives above, or one of your own with `static float voltage_ratio(float)`
 /// @ingroup control
-class VoltageGain {
+template <class Drive>
+class BasicVoltageGain {
 public:
   /// What one tunes.
   struct Config {
@@ -63,7 +86,7 @@ public:
   };
 
   /// @param config  constants; ask `validate()` once
-  explicit VoltageGain(const Config& config = Config::standard()) noexcept : config_(config) {}
+  explicit BasicVoltageGain(const Config& config = Config::standard()) noexcept : config_(config) {}
 
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
@@ -107,9 +130,9 @@ private:
         detail::at_least(1.0f - config_.magnet_tempco_per_K * over_reference_K(body_C), 0.1f);
     const float ratio = static_cast<float>(config_.tuned_power) /
                         static_cast<float>(power < least_power() ? least_power() : power);
-    const float gain =
-        config_.gain_low_power * sqrtf(ratio) * config_.nominal_supply_V * resistance / (supply_V * torque) +
-        0.5f;
+    const float gain = config_.gain_low_power * Drive::voltage_ratio(ratio) * config_.nominal_supply_V *
+                           resistance / (supply_V * torque) +
+                       0.5f;
     if (!(gain > 0.0f)) return 0;
     return gain >= static_cast<float>(config_.highest_gain) ? config_.highest_gain
                                                             : static_cast<uint8_t>(gain);
@@ -120,5 +143,9 @@ private:
   uint8_t power_ = 0, gain_ = 0;
   bool has_asked_ = false;
 };
+
+/// The gain behind a switched supply.
+/// @ingroup control
+typedef BasicVoltageGain<SwitchedDrive> VoltageGain;
 
 }  // namespace thermopower

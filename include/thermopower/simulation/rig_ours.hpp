@@ -11,16 +11,19 @@
 #include <thermopower/simulation/rig_policies.hpp>
 
 /// @file rig_ours.hpp
-/// The library's own choice for the rig: learned holding power with a reserve while the axis is disturbed,
-/// corrected for the supply, under a certified limiter, with the gain from the torque that is there, eased
-/// for errors that no tracking makes.
+/// The library's own choice for the rig: learned holding power, corrected for the supply, with a reserve while
+/// the axis is disturbed, under a certified limiter, with the gain from the torque that is there, eased for
+/// errors that no tracking makes.
 
 namespace thermopower::simulation {
 
+/// Its gain: the motors' current rises nearly with POWER, and the torque with it.
+using AdaptiveGain = EasedGain<BasicVoltageGain<SineDrive>>;
+
 /// One axis of it.
 template <class Motor>
-using AdaptiveAxis = AxisController<Motor, SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<8>>>,
-                                    CertifiedLimiter<CertifiedTwoNode, SquareHeat>, EasedGain<VoltageGain>>;
+using AdaptiveAxis = AxisController<Motor, ReserveLaw<SagAwareLaw<AdaptiveHoldingLaw<8>>>,
+                                    CertifiedLimiter<CertifiedTwoNode, SquareHeat>, AdaptiveGain>;
 
 /// What was tuned for the rig, on draws (see `standard_scenarios`) that no table in the documentation uses.
 struct AdaptiveTuning {
@@ -29,12 +32,12 @@ struct AdaptiveTuning {
   /// Holds each axis at rest: roll carries the most weight.
   std::array<std::uint8_t, 3> least_power = {26, 20, 18};
   /// Kept while the axis is being disturbed.
-  std::array<std::uint8_t, 3> reserve_power = {48, 38, 35};
+  std::array<std::uint8_t, 3> reserve_power = {50, 46, 46};
   float moving_error_deg = 0.08f;  ///< An error beyond this is a disturbance.
   float calm_s = 4.0f;             ///< The reserve outlasts the last disturbance by this.
   float forgetting_per_s = 2.0f;   ///< Counts per second that a learned power sinks.
-  /// Gain at POWER 45 against the one that is as stiff as eq 4.27 is at POWER 89.
-  float stiffness = 2.0f;
+  /// Stiffness of the loop at every POWER, against that of eq 4.27 at POWER 89; as far as a P of 255 reaches.
+  float stiffness = 2.67f;
   float ease_from_deg = 1.5f;  ///< Error beyond which the gain is eased.
   std::uint8_t far_gain = 3;   ///< Not eased below this.
 };
@@ -45,11 +48,11 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
   typedef AdaptiveAxis<Motor> Axis;
   const bool is_large = axis == 2;
   typename Axis::Config config = Axis::Config::standard();
-  auto& reserve = config.power_law.law;
+  auto& reserve = config.power_law;
   reserve.reserve_power = tuning.reserve_power[axis];
   reserve.moving_error_deg = tuning.moving_error_deg;
   reserve.calm_s = tuning.calm_s;
-  auto& holding = reserve.law;
+  auto& holding = reserve.law.law;
   holding.tolerance_deg = tuning.tolerance_deg;
   holding.full_power_error_deg = tuning.full_power_error_deg;
   holding.least_power = tuning.least_power[axis];
@@ -74,12 +77,23 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
 
   constexpr float gain_at_89[3] = {17.0f, 154.0f, 26.7f};
   auto& gain = config.gain.gain;
-  gain.gain_low_power = std::fmin(255.0f, tuning.stiffness * gain_at_89[axis] * 1.88f);  // (89 / 45)^0.93
-  gain.tuned_power = 45;
+  gain.gain_low_power = std::fmin(255.0f, tuning.stiffness * gain_at_89[axis]);
+  gain.tuned_power = standard_power;
   gain.magnet_tempco_per_K = 0.0012f;
   config.gain.ease_from_deg = tuning.ease_from_deg;
   config.gain.far_gain = tuning.far_gain;
   return config;
+}
+
+/// Constant power with the gain that ours has at that power: what the stiffness alone is worth.
+inline ConstantPower stiff_constant_power(const AdaptiveTuning& tuning = {},
+                                          std::uint8_t power = standard_power) {
+  const auto gain = [power](const AdaptiveGain::Config& config) {
+    return AdaptiveGain(config).step(power, AxisFacts::unknown());
+  };
+  return ConstantPower({power, power, power}, {gain(adaptive_axis<motors::Bgm2606_90t>(0, tuning).gain),
+                                               gain(adaptive_axis<motors::Bgm2606_90t>(1, tuning).gain),
+                                               gain(adaptive_axis<motors::Bgm5208_200_12>(2, tuning).gain)});
 }
 
 /// The gimbal of three such axes.
