@@ -8,7 +8,8 @@ foreach(width 390 1400)
   file(WRITE ${host} "<!DOCTYPE html><body><iframe id=\"f\" style=\"width:${width}px;height:900px;border:0\"></iframe><pre id=\"o\">not loaded</pre>
 <script>
 const say = text => { o.textContent = text; };
-f.onload = () => {
+f.onload = () => { try { look(); } catch (error) { say('WRONG: ' + error); } };
+function look() {
   const page = f.contentWindow, d = f.contentDocument, wrong = [];
   const check = (good, text) => { if (!good) wrong.push(text); };
   check(d.documentElement.scrollWidth <= ${width}, 'the page is ' + d.documentElement.scrollWidth + ' px wide');
@@ -32,8 +33,23 @@ f.onload = () => {
   check(Math.abs(value('baseline') - value('measured') - 1) < 0.05, 'as configured reads ' + value('baseline'));
   chart.querySelector('.key[data-role=baseline]').click();
   check(page.getComputedStyle(chart.querySelector('.plot .curve.baseline')).display === 'none', 'a curve is not switched off');
+  // What was not chosen is drawn when somebody asks, in every picture of it, and goes again.
+  const rivals = () => [...d.querySelectorAll('.plot .curve.rival1')].filter(c => page.getComputedStyle(c).display !== 'none').length;
+  check(rivals() === 0, 'a rival is drawn unasked');
+  d.querySelector('.key.switch[data-role=rival1]').click();
+  check(rivals() >= 2, 'a rival is not drawn');
+  check([...d.querySelectorAll('.key[data-role=rival1]')].every(k => k.getAttribute('aria-pressed') === 'true'), 'its keys do not say so');
+  plot.dispatchEvent(new page.PointerEvent('pointermove', {clientX: box.left + box.width / 4, clientY: box.top + 5, bubbles: true}));
+  check(Math.abs(value('rival1') - value('measured') - 0.25) < 0.05, 'the rival reads ' + value('rival1'));
+  d.querySelector('.chart .key[data-role=rival1]').click();
+  check(rivals() === 0, 'a rival is not switched off');
+  // On an axis of decades the words are numbers, not logarithms.
+  const decades = d.querySelector('.chart[data-log]'), spot = decades.querySelector('.plot').getBoundingClientRect();
+  decades.querySelector('.plot').dispatchEvent(new page.PointerEvent('pointermove', {clientX: spot.right - 1, clientY: spot.top + 5, bubbles: true}));
+  const hertz = parseFloat(decades.querySelector('.xl').textContent.replace('at', ''));
+  check(Math.abs(hertz - 0.5) < 0.06, 'the highest frequency reads ' + hertz);
   say(wrong.length ? 'WRONG: ' + wrong.join('; ') : 'ALL WELL');
-};
+}
 f.contentWindow.addEventListener('error', event => say('WRONG: ' + event.message));
 f.src = 'file://${PAGE}';
 </script>")

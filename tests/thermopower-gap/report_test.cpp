@@ -91,7 +91,12 @@ std::pair<Diagnosis, std::vector<Recording>> four_runs() {
   d.series.clear();
   d.series.push_back({Signal::motor_C, "degC", recording.name, recording.t_s, measured, measured + error,
                       measured + 0.5 * error, measured});
+  d.series[0].rivals.push_back({{"natural_convection"}, measured + 0.25 * error});
+  d.ranking.push_back({{"natural_convection"}, 0.3, 1.0, 2.0, 0.2, false, false, false, {}, {}});
   d.gap.resize(1);
+  d.correlation.names = {"conductance.scale", "radiation.emissive_area_m2", "heat_capacity.scale"};
+  d.correlation.of.resize(3, 3);
+  d.correlation.of << 1.0, -0.97, missing, -0.97, 1.0, 0.25, missing, 0.25, 1.0;
   return {d, {recording}};
 }
 
@@ -223,7 +228,6 @@ TEST_CASE("runs are told apart by their names, with what drove them, also where 
     CHECK_THAT(html, ContainsSubstring(row));
   // Without the recordings a run begins where stamps fall.
   CHECK_THAT(io::report_html(d, "motor", {}), ContainsSubstring("drive.<wbr>csv, run 3"));
-  std::ofstream(THERMOPOWER_PAGE) << html;
 }
 
 TEST_CASE("a thinned curve keeps its highest peak, in its place") {
@@ -301,6 +305,104 @@ TEST_CASE("errors' histogram and correlation are what they are of known errors")
     }
   two.runs = {{0, 30, "a"}, {30, 60, "b"}};
   for (const double y : io::autocorrelation(two).y) CHECK(y == Approx(1.0));
+}
+
+TEST_CASE("a spectrum holds the errors' mean square, shows a tone at its frequency, and white noise flat") {
+  io::RunErrors of;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 0.3);
+  const double step_s = 0.02;
+  for (int i = 0; i < 20000; ++i) {
+    of.errors.push_back(normal(random) + 5.0);  // an offset is no part of it
+    of.t_s.push_back(step_s * i);
+  }
+  of.runs.push_back({0, 20000, {}});
+  const io::Curve noise = io::spectrum(of), floor = io::white_spectrum(of, 0.3);
+  REQUIRE(noise.x.size() > 40);
+  // Up to half the sampling rate, but for less than a twelfth of an octave and a line.
+  CHECK(noise.x.back() <= 0.5 / step_s);
+  CHECK(noise.x.back() > 0.5 / step_s * std::exp2(-1.0 / 12.0) - 1.0 / (1024 * step_s));
+  for (std::size_t i = 0; i + 1 < noise.x.size(); ++i) CHECK(noise.y[i] == Approx(floor.y[i]).epsilon(0.35));
+  CHECK(floor.y[0] * floor.y[0] * 0.5 / step_s == Approx(0.09));  // over all frequencies: the variance
+
+  io::RunErrors tone = of;
+  for (int i = 0; i < 20000; ++i) {
+    tone.errors[static_cast<std::size_t>(i)] = std::sin(2.0 * 3.14159265358979 * 3.0 * step_s * i);
+    if (i % 500 == 7) tone.errors[static_cast<std::size_t>(i)] = missing;
+  }
+  const io::Curve peak = io::spectrum(tone);
+  const auto top = std::max_element(peak.y.begin(), peak.y.end()) - peak.y.begin();
+  CHECK(peak.x[static_cast<std::size_t>(top)] == Approx(3.0).epsilon(0.06));
+  // Far from the tone there is next to nothing of it.
+  CHECK(peak.y[1] < 0.03 * peak.y[static_cast<std::size_t>(top)]);
+
+  of.errors.resize(12);
+  of.t_s.resize(12);
+  of.runs = {{0, 12, {}}};
+  CHECK(io::spectrum(of).x.empty());
+}
+
+TEST_CASE("the spectrum's square over all frequencies is the mean square, for errors of any colour") {
+  io::RunErrors of;
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  double alike = 0.0, square = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    alike = 0.6 * alike + normal(random);
+    of.errors.push_back(alike);
+    of.t_s.push_back(0.1 * i);
+    square += alike * alike;
+  }
+  of.runs.push_back({0, 40000, {}});
+  const io::Curve curve = io::spectrum(of);
+  double integral = curve.y[0] * curve.y[0] * curve.x[0];
+  for (std::size_t i = 1; i < curve.x.size(); ++i)
+    integral +=
+        0.5 * (curve.y[i] * curve.y[i] + curve.y[i - 1] * curve.y[i - 1]) * (curve.x[i] - curve.x[i - 1]);
+  CHECK(integral == Approx(square / 40000.0).epsilon(0.06));
+}
+
+TEST_CASE("an axis of decades says powers of ten, and leaves out what has no logarithm") {
+  io::Chart chart;
+  chart.logarithmic = true;
+  chart.series.push_back({"x",
+                          "measured",
+                          io::Series::Style::line,
+                          {0.01, 1.0, 100.0, 1000.0},
+                          {1.0, 10.0, 0.0, 1000.0},
+                          {},
+                          {}});
+  const std::string html = io::to_html(chart);
+  for (const char* tick : {">0.01<", ">0.1<", ">10<", ">1e+03<"}) CHECK_THAT(html, ContainsSubstring(tick));
+  const auto points = points_of(html, "curve measured");
+  REQUIRE(points.size() == 3);
+  CHECK(points[1].first == 40000);  // two of five decades
+}
+
+TEST_CASE("the page shows what estimates have in common, and each explanation that was drawn") {
+  auto [d, held_out] = four_runs();
+  const std::string html = io::report_html(d, "motor", {}, held_out);
+  // The effect's parameter first, then the constant that hangs together with it most.
+  const std::size_t table = html.find("class=\"together\"");
+  REQUIRE(table != std::string::npos);
+  CHECK_THAT(html.substr(table), ContainsSubstring("1\u2002radiation.") && ContainsSubstring("\u22120.97") &&
+                                     ContainsSubstring("0.25") && !ContainsSubstring("nan"));
+  CHECK(html.find("1\u2002radiation") < html.find("2\u2002conductance"));
+  CHECK_THAT(html, ContainsSubstring("class=\"key switch\" data-role=\"augmented\"") &&
+                       ContainsSubstring("class=\"key switch\" data-role=\"rival1\"") &&
+                       ContainsSubstring("html:not(.js) .curve.rival1"));
+  const auto json = nlohmann::ordered_json::parse(io::report_json(d));
+  CHECK(json["correlation"]["names"].size() == 3);
+  CHECK(json["correlation"]["of"][1][0] == -0.97);
+  CHECK(json["correlation"]["of"][0][2].is_null());
+  // For gap_page_in_browser: what is left has a spectrum.
+  const Eigen::VectorXd exact = d.series[0].augmented;
+  for (Eigen::Index i = 0; i < exact.size(); ++i) d.series[0].augmented[i] += i % 2 == 0 ? 0.1 : -0.1;
+  std::ofstream(THERMOPOWER_PAGE) << io::report_html(d, "motor", {}, held_out);
+  d.correlation = {};
+  d.series[0].rivals.clear();
+  CHECK_THAT(io::report_html(d, "motor", {}, held_out),
+             !ContainsSubstring("<table class=\"together\"") && !ContainsSubstring("data-role=\"rival1\""));
 }
 
 TEST_CASE("charts of nothing, of one point and of NaN are pictures all the same") {

@@ -68,6 +68,13 @@ std::string tick_text(double value, double step) {
   return std::string(text[0] == '-' ? "\u2212" : "") + (text[0] == '-' ? text + 1 : text);
 }
 
+// A power of ten, or 2 or 5 times one, of which the axis shows the logarithm.
+std::string decade_text(double logarithm) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.3g", std::pow(10.0, logarithm));
+  return text;
+}
+
 std::string exact(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -144,6 +151,7 @@ public:
       out += " data-group=\"" + escaped(chart_.group) + "\" data-view=\"" + exact(view_.from) + " " +
              exact(view_.to) + "\"";
     if (chart_.zero_line) out += " data-zero";
+    if (chart_.logarithmic) out += " data-log";
     out += ">\n";
     legend(out);
     out += "<div class=\"plot\" style=\"height:" + std::to_string(chart_.height) + "px\"><svg viewBox=\"" +
@@ -195,15 +203,32 @@ private:
              "v" + std::to_string(2 * far) + "\"/>\n";
   }
 
+  // Places and words of about so many ticks.
+  std::vector<std::pair<double, std::string>> ticks_of(const Range& range, int about) const {
+    std::vector<std::pair<double, std::string>> list;
+    if (chart_.logarithmic) {
+      const double decades = std::max(1.0, std::ceil((range.to - range.from) / about));
+      const bool between = range.to - range.from < 2.0;
+      for (double whole = std::floor(range.from / decades) * decades; whole <= range.to; whole += decades)
+        for (const double factor : {1.0, 2.0, 5.0}) {
+          const double at = whole + std::log10(factor);
+          if ((factor == 1.0 || between) && range.holds(at)) list.emplace_back(at, decade_text(at));
+        }
+      return list;
+    }
+    const double step = tick_step(range.to - range.from, about);
+    for (double at = std::ceil(range.from / step) * step; at <= range.to + 1e-9 * step; at += step)
+      list.emplace_back(at, tick_text(at, step));
+    return list;
+  }
+
   void ticks(std::string& out) const {
-    const double x_step = tick_step(view_.to - view_.from, 6);
-    for (double x = std::ceil(view_.from / x_step) * x_step; x <= view_.to + 1e-9 * x_step; x += x_step)
+    for (const auto& [x, text] : ticks_of(view_, 6))
       out += "<i class=\"gx\" style=\"left:" + share((x - view_.from) / (view_.to - view_.from)) + "\"><b>" +
-             tick_text(x, x_step) + "</b></i>";
-    const double y_step = tick_step(y_.to - y_.from, std::max(3, chart_.height / 36));
-    for (double y = std::ceil(y_.from / y_step) * y_step; y <= y_.to + 1e-9 * y_step; y += y_step)
-      out += "<i class=\"gy\" style=\"top:" + share((y_.to - y) / (y_.to - y_.from)) + "\"><b>" +
-             tick_text(y, y_step) + "</b></i>";
+             text + "</b></i>";
+    for (const auto& [y, text] : ticks_of(y_, std::max(3, chart_.height / 36)))
+      out += "<i class=\"gy\" style=\"top:" + share((y_.to - y) / (y_.to - y_.from)) + "\"><b>" + text +
+             "</b></i>";
   }
 
   // Finer where the picture begins, coarser elsewhere.
@@ -299,6 +324,16 @@ private:
 
 }  // namespace
 
-std::string to_html(const Chart& chart) { return Drawing(chart).draw(); }
+std::string to_html(const Chart& chart) {
+  if (!chart.logarithmic) return Drawing(chart).draw();
+  Chart in_decades = chart;
+  const auto decades = [](double value) {
+    return value > 0.0 ? std::log10(value) : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (Series& series : in_decades.series)
+    for (auto* values : {&series.x, &series.y, &series.low, &series.high})
+      std::transform(values->begin(), values->end(), values->begin(), decades);
+  return Drawing(in_decades).draw();
+}
 
 }  // namespace thermopower::io

@@ -32,7 +32,9 @@ struct Chart {
   std::optional<std::pair<double, double>> shade;  ///< range of x that is shaded (where the gap lies)
   std::optional<std::pair<double, double>> view;   ///< range of x shown at first; else all of it
   std::optional<double> mark;                      ///< an x with a line of its own
-  double band = 0.0;       ///< half height of a band around y = 0: what noise makes; 0: none
+  double band = 0.0;  ///< half height of a band around y = 0: what noise makes; 0: none
+  /// Decades on an axis; what is not above 0 is left out there. With neither shade, view, mark nor band.
+  bool logarithmic = false;
   bool zero_line = false;  ///< y = 0 is on the picture and has a line, for quantities whose ideal is none
   std::string group;       ///< charts of one group are zoomed together; empty: this one cannot be zoomed
   int height = 240;        ///< of the plot, in CSS pixels; its width is the page's

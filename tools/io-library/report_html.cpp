@@ -18,6 +18,8 @@ namespace thermopower::io {
 namespace {
 
 // Curves are most of a page: so many are drawn, of the runs where the gap is largest.
+constexpr const char* rival_roles[] = {"rival1", "rival2", "rival3"};
+constexpr std::size_t most_rivals = 3, most_together = 8;
 constexpr std::size_t most_pictures = 6, most_runs_drawn = 4, most_runs_listed = 40, most_ranked = 12;
 
 std::vector<double> numbers(const Eigen::VectorXd& values) {
@@ -50,6 +52,7 @@ public:
     where();
     which();
     constants();
+    together();
     data();
     foot();
     return std::move(out_);
@@ -268,7 +271,7 @@ private:
             "</h2>\n<p class=\"next\">" + escaped(d_.next_experiment) + "</p>\n";
   }
 
-  Series part(const HeldOutRun& run, const SignalSeries& s, const char* label, const char* role,
+  Series part(const HeldOutRun& run, const SignalSeries& s, const std::string& label, const char* role,
               const Eigen::VectorXd& values, bool minus_measured) const {
     Series series{label, role, Series::Style::line, {}, {}, {}, {}};
     for (Eigen::Index i = run.begin; i < run.end && i < values.size(); ++i) {
@@ -291,6 +294,10 @@ private:
       chart.series.push_back(part(run, s, "recalibrated", "recalibrated", s.recalibrated, minus_measured));
     if (has_cause() && s.augmented.size() == s.t_s.size())
       chart.series.push_back(part(run, s, "with the effect", "augmented", s.augmented, minus_measured));
+    for (std::size_t i = 0; i < s.rivals.size() && i < most_rivals; ++i)
+      if (s.rivals[i].values.size() == s.t_s.size())
+        chart.series.push_back(part(run, s, joined(s.rivals[i].effects).c_str(), rival_roles[i],
+                                    s.rivals[i].values, minus_measured));
     if (minus_measured) {
       chart.zero_line = true;
       chart.height = 170;
@@ -433,8 +440,8 @@ private:
         out_ +=
             "<h2>What is left</h2>\n<p class=\"soft\">Errors " +
             std::string(has_cause() ? "with the effect" : "as configured") +
-            ", over all held-out rows. Noise alone would follow the dashed curve on the left, and fall to zero at once on the right"
-            " (an axis\u2019s errors are alike within a window).</p>\n";
+            ", over all held-out rows. Noise alone would follow the dashed curve on the left, fall to zero at once on the right"
+            " (an axis\u2019s errors are alike within a window), and have the same spectrum at every frequency.</p>\n";
       first = false;
       const double width = 4.0 * std::max(rms, gap.noise_floor);
       const std::string unit = unit_text(gap.unit).empty() ? "" : " / " + unit_text(gap.unit);
@@ -458,8 +465,28 @@ private:
       right.height = 170;
       right.zero_line = true;
       right.series.push_back({"errors", role, Series::Style::line, correlation.x, correlation.y, {}, {}});
-      out_ += "<div class=\"pair\">\n" + to_html(left) + to_html(right) + "</div>\n";
+      out_ += "<div class=\"pair\">\n" + to_html(left) + to_html(right) + "</div>\n" +
+              spectrum_picture(gap, of, unit);
     }
+  }
+
+  std::string spectrum_picture(const GapScore& gap, const RunErrors& left, const std::string& unit) const {
+    Chart chart;
+    chart.title = "Spectrum of the errors of the " + signal_text(gap.signal);
+    chart.x_label = "frequency / Hz";
+    chart.y_label =
+        signal_text(gap.signal) + ": spectrum of the errors" + (unit.empty() ? unit : unit + " per \u221aHz");
+    chart.height = 190;
+    chart.logarithmic = true;
+    const auto draw = [&chart](const char* label, const char* role, const Curve& curve) {
+      if (curve.x.size() > 2)
+        chart.series.push_back({label, role, Series::Style::line, curve.x, curve.y, {}, {}});
+    };
+    draw("as configured", "baseline", spectrum(errors_of(runs_, gap.signal, false)));
+    if (has_cause()) draw("with the effect", "augmented", spectrum(left));
+    if (gap.noise_floor > 0.0)
+      draw("noise floor, were it white", "noise", white_spectrum(left, gap.noise_floor));
+    return chart.series.empty() ? "" : to_html(chart);
   }
 
   void missing() {
@@ -536,6 +563,17 @@ private:
            std::string(width) + "px\"></span></span>" + percent_html(share) + "</td>";
   }
 
+  // The class of an explanation's curves; empty where none are drawn.
+  std::string role_of(const RankedExplanation& one) const {
+    if (runs_.empty()) return {};
+    if (has_cause() && is_chosen(one)) return "augmented";
+    for (const HeldOutRun& run : runs_)
+      for (const SignalSeries* s : run.signals)
+        for (std::size_t i = 0; i < s->rivals.size() && i < most_rivals; ++i)
+          if (s->rivals[i].effects == one.effects) return rival_roles[i];
+    return {};
+  }
+
   void explanation(const RankedExplanation& one) {
     const bool chosen = is_chosen(one) && has_cause();
     out_ += std::string("<tr") +
@@ -562,6 +600,11 @@ private:
       like += (like.empty() ? "" : ", ") + breakable(joined(one.confusable[i].effects)) + " (" +
               readable(one.confusable[i].cosine, 2) + ")";
     if (!like.empty()) add("looks like " + like);
+    const std::string role = role_of(one);
+    if (!role.empty())
+      small += "<span class=\"key switch\" data-role=\"" + role +
+               "\"><svg viewBox=\"0 0 24 8\"><path class=\"curve " + role +
+               "\" d=\"M1 4h22\"/></svg>in the pictures</span>";
     out_ += (small.empty() ? "" : "<small>" + small + "</small>") + "</td>" + probability(one.probability) +
             "<td>" +
             (one.held_out_ratio > 0.0 ? "\u00d7\u2009" + readable(one.held_out_ratio, 2) : "\u2013") +
@@ -601,6 +644,67 @@ private:
               "</td></tr>\n";
     }
     out_ += "</table>\n";
+  }
+
+  // Those of the effect first, then the constants that hang together with them most.
+  std::vector<std::size_t> shown_together() const {
+    const auto& names = d_.correlation.names;
+    const auto largest = [&](std::size_t i) {
+      double most = 0.0;
+      for (std::size_t k = 0; k < names.size(); ++k)
+        if (k != i)
+          most = std::fmax(
+              most, std::fabs(d_.correlation.of(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
+      return most;
+    };
+    const auto is_constant = [&](std::size_t i) {
+      const std::string& name = names[i];
+      return name.size() > 6 && name.compare(name.size() - 6, 6, ".scale") == 0;
+    };
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < names.size(); ++i) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return is_constant(a) != is_constant(b) ? is_constant(b) : largest(a) > largest(b);
+    });
+    order.resize(std::min(order.size(), most_together));
+    return order;
+  }
+
+  void together() {
+    const auto& all = d_.correlation;
+    if (all.names.size() < 2 || all.of.rows() != static_cast<Eigen::Index>(all.names.size())) return;
+    const std::vector<std::size_t> shown = shown_together();
+    const auto at = [&](std::size_t a, std::size_t b) {
+      return all.of(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+    };
+    out_ +=
+        "<h2>What the estimates have in common</h2>\n<p class=\"soft\">Correlation of the parameters that were fitted together. Near 1 or "
+        "\u22121 the recording shows little more of two of them than one combination.</p>\n"
+        "<table class=\"together\">\n<tr><th class=\"t\">parameter</th>";
+    for (std::size_t k = 0; k < shown.size(); ++k) out_ += "<th>" + std::to_string(k + 1) + "</th>";
+    out_ += "</tr>\n";
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      out_ += "<tr><td class=\"t\">" + std::to_string(i + 1) + "\u2002" + breakable(all.names[shown[i]]) +
+              "</td>";
+      for (std::size_t k = 0; k < shown.size(); ++k) {
+        const double value = at(shown[i], shown[k]);
+        if (k > i) out_ += "<td></td>";
+        else if (k == i) out_ += "<td>1</td>";
+        else if (!std::isfinite(value)) out_ += "<td>\u2013</td>";
+        else {
+          char text[96];
+          std::snprintf(text, sizeof text, "<td style=\"background:rgba(%s,%.2f)\">%s%.2f</td>",
+                        value < 0.0 ? "213,94,0" : "0,114,178", 0.5 * std::fabs(value),
+                        value < 0.0 ? "\u2212" : "", std::fabs(value));
+          out_ += text;
+        }
+      }
+      out_ += "</tr>\n";
+    }
+    out_ += "</table>\n";
+    if (shown.size() < all.names.size())
+      out_ += "<p class=\"soft\">" + std::to_string(all.names.size() - shown.size()) +
+              " more constants were fitted along; all are in the JSON report.</p>\n";
   }
 
   void data() {

@@ -142,6 +142,14 @@ std::string report_json(const Diagnosis& diagnosis) {
                                         {"fitted", number(constant.fitted)},
                                         {"uncertainty", number(constant.uncertainty)}};
   }
+  Json matrix = Json::array();
+  for (Eigen::Index i = 0; i < diagnosis.correlation.of.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index k = 0; k < diagnosis.correlation.of.cols(); ++k)
+      row.push_back(number(diagnosis.correlation.of(i, k)));
+    matrix.push_back(std::move(row));
+  }
+  root["correlation"] = {{"names", diagnosis.correlation.names}, {"of", std::move(matrix)}};
   root["recalibration"] = diagnosis.recalibration;
   root["ranking"] = Json::array();
   for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));

@@ -38,6 +38,7 @@ class Chart {
     [this.x0, this.x1] = element.dataset.x.split(' ').map(Number);
     [this.y0, this.y1] = element.dataset.y.split(' ').map(Number);
     this.group = element.dataset.group;
+    this.logarithmic = 'log' in element.dataset;
     this.first = this.group ? element.dataset.view.split(' ').map(Number) : [this.x0, this.x1];
     this.view = this.first;
     this.curves = [...this.svg.querySelectorAll('.curve')];
@@ -105,13 +106,28 @@ class Chart {
       line.append(word);
       this.plot.append(line);
     };
-    const xStep = tickStep(view[1] - view[0], 6);
-    for (let x = Math.ceil(view[0] / xStep) * xStep; x <= view[1]; x += xStep)
-      tick('gx', 'left', (x - view[0]) / (view[1] - view[0]), tickText(x, xStep));
-    const yStep = tickStep(high - low, Math.max(3, Math.floor(this.plot.clientHeight / 36)));
-    for (let y = Math.ceil(low / yStep) * yStep; y <= high; y += yStep)
-      tick('gy', 'top', (high - y) / (high - low), tickText(y, yStep));
+    for (const [x, text] of this.ticks(view[0], view[1], 6))
+      tick('gx', 'left', (x - view[0]) / (view[1] - view[0]), text);
+    for (const [y, text] of this.ticks(low, high, Math.max(3, Math.floor(this.plot.clientHeight / 36))))
+      tick('gy', 'top', (high - y) / (high - low), text);
   }
+  // On a logarithmic axis places are logarithms, and words what they are of.
+  ticks(from, to, about) {
+    const list = [];
+    if (this.logarithmic) {
+      const decades = Math.max(1, Math.ceil((to - from) / about));
+      for (let whole = Math.floor(from / decades) * decades; whole <= to; whole += decades)
+        for (const factor of to - from < 2 ? [1, 2, 5] : [1]) {
+          const at = whole + Math.log10(factor);
+          if (at >= from && at <= to) list.push([at, String(Number((10 ** at).toPrecision(3)))]);
+        }
+      return list;
+    }
+    const step = tickStep(to - from, about);
+    for (let at = Math.ceil(from / step) * step; at <= to; at += step) list.push([at, tickText(at, step)]);
+    return list;
+  }
+  word(value) { return readable(this.logarithmic ? 10 ** value : value); }
   point(x) {
     if (!this.cursor) {
       this.cursor = document.createElement('div');
@@ -124,9 +140,9 @@ class Chart {
     for (const key of this.keys) {
       const curve = this.curves.find(one => one.classList.contains(key.dataset.role));
       const value = curve ? this.at(curve, x) : NaN;
-      if (key.lastChild.nodeName === 'EM') key.lastChild.textContent = Number.isFinite(value) ? readable(value) : '';
+      if (key.lastChild.nodeName === 'EM') key.lastChild.textContent = Number.isFinite(value) ? this.word(value) : '';
     }
-    this.time.textContent = 'at ' + readable(x) + ' \u00b7 ';
+    this.time.textContent = 'at ' + this.word(x) + ' \u00b7 ';
   }
   leave() {
     if (this.cursor) this.cursor.style.display = 'none';
@@ -148,21 +164,23 @@ const toggle = role => {
   document.querySelectorAll('.key[data-role="' + role + '"]').forEach(key => key.setAttribute('aria-pressed', String(!off)));
   charts.forEach(chart => { if (chart.keys.some(key => key.dataset.role === role)) chart.show(chart.view); });
 };
+// What was not chosen is drawn when somebody asks for it.
+for (const rival of ['rival1', 'rival2', 'rival3']) root.classList.add('no-' + rival);
+for (const key of document.querySelectorAll('.key[data-role]')) {
+  if (key.querySelector('.curve') === null) continue;
+  key.setAttribute('role', 'button');
+  key.setAttribute('tabindex', '0');
+  key.setAttribute('aria-pressed', String(!root.classList.contains('no-' + key.dataset.role)));
+  key.title = 'show or hide';
+  if (key.closest('.chart')) key.append(document.createElement('em'));
+  key.addEventListener('click', () => toggle(key.dataset.role));
+  key.addEventListener('keydown', event => {
+    if (event.key !== 'Enter' && event.key !== ' ') return;
+    event.preventDefault();
+    toggle(key.dataset.role);
+  });
+}
 for (const chart of charts) {
-  for (const key of chart.keys) {
-    if (key.querySelector('.curve') === null) continue;
-    key.setAttribute('role', 'button');
-    key.setAttribute('tabindex', '0');
-    key.setAttribute('aria-pressed', 'true');
-    key.title = 'show or hide';
-    key.append(document.createElement('em'));
-    key.addEventListener('click', () => toggle(key.dataset.role));
-    key.addEventListener('keydown', event => {
-      if (event.key !== 'Enter' && event.key !== ' ') return;
-      event.preventDefault();
-      toggle(key.dataset.role);
-    });
-  }
   const plot = chart.plot;
   const at = event => {
     const box = plot.getBoundingClientRect();

@@ -9,9 +9,9 @@ namespace thermopower::io {
 // elsewhere, and labels are text of the page and keep their size. On paper it is light whatever the screen.
 inline constexpr const char* report_style = R"css(
 :root{--paper:#fdfdfb;--ink:#1c1e21;--soft:#5b6066;--faint:#e4e4df;--card:#f4f4ef;--shade:#f3e7c4;--band:#dfe6ea;
---measured:#7d8288;--baseline:#d55e00;--augmented:#0072b2;--recalibrated:#7b5aa6;--input:#00795c;--good:#00795c;--doubt:#8a5d00;--bad:#b3261e;color-scheme:light}
+--measured:#7d8288;--baseline:#d55e00;--augmented:#0072b2;--recalibrated:#7b5aa6;--input:#00795c;--rival1:#00795c;--rival2:#b0457f;--rival3:#8a6500;--good:#00795c;--doubt:#8a5d00;--bad:#b3261e;color-scheme:light}
 @media screen and (prefers-color-scheme:dark){:root{--paper:#15171a;--ink:#e8e8e3;--soft:#a8adb3;--faint:#31353a;--card:#1e2125;--shade:#3a3420;--band:#263038;
---measured:#9aa0a6;--baseline:#ff9a4d;--augmented:#5bb8f5;--recalibrated:#b79ae0;--input:#4cc9a4;--good:#4cc9a4;--doubt:#e3b341;--bad:#ff8a80;color-scheme:dark}}
+--measured:#9aa0a6;--baseline:#ff9a4d;--augmented:#5bb8f5;--recalibrated:#b79ae0;--input:#4cc9a4;--rival1:#4cc9a4;--rival2:#f09ac6;--rival3:#e6c14c;--good:#4cc9a4;--doubt:#e3b341;--bad:#ff8a80;color-scheme:dark}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;-webkit-text-size-adjust:100%}
 main{max-width:980px;margin:0 auto;padding:44px 28px 64px;overflow-wrap:anywhere}
@@ -54,11 +54,14 @@ figure{margin:14px 0 22px}figcaption{font-size:13.5px;color:var(--soft);max-widt
 .plot,.chart{isolation:isolate}.js .plot{touch-action:pan-y;cursor:crosshair}.cursor,.sel{position:absolute;top:0;bottom:0;pointer-events:none}.cursor{width:1px;background:var(--ink);opacity:.6}.sel{background:var(--augmented);opacity:.15}
 path{vector-effect:non-scaling-stroke}.curve{fill:none;stroke-width:1.7;stroke-linejoin:round}.curve.measured{stroke:var(--measured);stroke-width:3.4;opacity:.75}
 .curve.baseline{stroke:var(--baseline);stroke-dasharray:7 3}.curve.augmented,.curve.effect{stroke:var(--augmented)}.curve.effect{stroke-width:2.4}
-.curve.recalibrated{stroke:var(--recalibrated);stroke-dasharray:2 3}.curve.input{stroke:var(--input)}.curve.noise{stroke:var(--ink);stroke-dasharray:4 3}
+.curve.recalibrated{stroke:var(--recalibrated);stroke-dasharray:2 3}.curve.input{stroke:var(--input)}.curve.rival1{stroke:var(--rival1);stroke-dasharray:9 2 2 2}.curve.rival2{stroke:var(--rival2);stroke-dasharray:5 2}.curve.rival3{stroke:var(--rival3);stroke-dasharray:2 2}
+html:not(.js) .curve.rival1,html:not(.js) .curve.rival2,html:not(.js) .curve.rival3,html:not(.js) [data-role^=rival],html:not(.js) .switch{display:none}.curve.noise{stroke:var(--ink);stroke-dasharray:4 3}
 .dots{fill:none;stroke-width:6;stroke-linecap:round}.dots.missing{stroke:var(--baseline)}.bars{fill:none;stroke-width:1.3;opacity:.6}.bars.missing{stroke:var(--baseline)}
 .zero{stroke:var(--soft);fill:none}.from{stroke:var(--bad);stroke-dasharray:3 3;fill:none}.shade{fill:var(--shade)}.band{fill:var(--band)}
-.no-measured .curve.measured,.no-baseline .curve.baseline,.no-recalibrated .curve.recalibrated,.no-augmented .curve.augmented,.no-effect .curve.effect,.no-input .curve.input,.no-noise .curve.noise{display:none}
-.no-baseline .key[data-role=baseline] .curve,.no-measured .key[data-role=measured] .curve,.no-recalibrated .key[data-role=recalibrated] .curve,.no-augmented .key[data-role=augmented] .curve{display:inline}
+.no-measured .curve.measured,.no-baseline .curve.baseline,.no-recalibrated .curve.recalibrated,.no-augmented .curve.augmented,.no-effect .curve.effect,.no-input .curve.input,.no-noise .curve.noise,.no-rival1 .curve.rival1,.no-rival2 .curve.rival2,.no-rival3 .curve.rival3{display:none}
+.no-baseline .key[data-role=baseline] .curve,.no-measured .key[data-role=measured] .curve,.no-recalibrated .key[data-role=recalibrated] .curve,.no-augmented .key[data-role=augmented] .curve,.js .key[data-role^=rival] .curve{display:inline}
+.together td,.together th{padding:5px 4px;text-align:center;font-size:13px}.together td.t,.together th.t{text-align:left}
+td .switch{display:block;font-weight:400;font-size:13px}.switch[aria-pressed=false]{text-decoration:none}
 footer{margin-top:52px;padding-top:14px;border-top:1px solid var(--faint);font-size:13.5px;color:var(--soft)}
 @media (max-width:600px){main{padding:24px 16px 40px}h1{font-size:25px}h2{margin-top:36px}table{font-size:13.5px}td,th{padding-left:5px;padding-right:5px}
 .track,.wide{display:none}.plot{margin-left:44px}.gx:nth-of-type(even) b{visibility:hidden}.key em{min-width:3.4em}.keys{gap:2px 12px}.keys .yl{flex-basis:100%}}

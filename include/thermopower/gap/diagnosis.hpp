@@ -105,16 +105,23 @@ struct GapScore {
   Interval ci95;                    ///< of shrunk_by, by a paired block bootstrap
 };
 
+/// What an explanation that was not chosen makes of a signal.
+struct RivalCurve {
+  std::vector<std::string> effects;  ///< its ids, as in `Diagnosis::ranking`
+  Eigen::VectorXd values;            ///< one per row of the series
+};
+
 /// Measured and simulated curves of one signal over one held-out run, for pictures.
 struct SignalSeries {
-  plant::SignalName signal;      ///< which
-  std::string unit;              ///< of the values: degC, A, deg or deg/s
-  std::string recording;         ///< name of the recording, all of its runs
-  Eigen::VectorXd t_s;           ///< stamps of the rows as recorded; the vectors below are as long
-  Eigen::VectorXd measured;      ///< NaN where missing
-  Eigen::VectorXd baseline;      ///< as configured
-  Eigen::VectorXd recalibrated;  ///< own constants refitted
-  Eigen::VectorXd augmented;     ///< with the causes (the baseline where there are none)
+  plant::SignalName signal;             ///< which
+  std::string unit;                     ///< of the values: degC, A, deg or deg/s
+  std::string recording;                ///< name of the recording, all of its runs
+  Eigen::VectorXd t_s;                  ///< stamps of the rows as recorded; the vectors below are as long
+  Eigen::VectorXd measured;             ///< NaN where missing
+  Eigen::VectorXd baseline;             ///< as configured
+  Eigen::VectorXd recalibrated;         ///< own constants refitted
+  Eigen::VectorXd augmented;            ///< with the causes (the baseline where there are none)
+  std::vector<RivalCurve> rivals = {};  ///< the likeliest other explanations, at most three
 };
 
 /// The missing physical quantity itself (watts, newton metres, volts) against the variable that orders it.
@@ -158,6 +165,13 @@ struct MovedConstant {
   double uncertainty = 0.0;  ///< standard deviation that was stated or assumed, as a share of `configured`
 };
 
+/// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of
+/// them than one combination.
+struct ParameterCorrelation {
+  std::vector<std::string> names;  ///< `<effect>.<parameter>`, and `<constant>.scale` of the model's own
+  Eigen::MatrixXd of;              ///< symmetric, 1 on its diagonal; NaN where nothing is known
+};
+
 /// What the named causes leave of the gap on held-out data.
 struct Remaining {
   plant::SignalName signal;                     ///< the signal that is furthest above its noise floor
@@ -189,6 +203,7 @@ struct Diagnosis {
   std::vector<Finding> findings;           ///< of the data, recording by recording
   std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
   std::vector<MovedConstant> constants;    ///< those that moved by more than two of their uncertainties
+  ParameterCorrelation correlation;        ///< of the chosen explanation; empty where none is
   std::optional<Remaining> remaining;      ///< of a partial verdict
   std::string recalibration;  ///< one sentence where refitted constants do worse on held-out data; else empty
   std::vector<SignalSeries> series;  ///< curves of every judged signal over the held-out recordings

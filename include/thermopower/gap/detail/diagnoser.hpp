@@ -456,7 +456,8 @@ private:
     result_.recalibrated = attempt.recalibrated;
     if (named) result_.augmented = fitted;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
-    score(result_, model_, full, held_out_inputs_, fitted, options_, catalogue_);
+    const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
+    score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
     note_recalibration(result_);
     if (named && conclusion.leaves_a_rest)
       result_.remaining = remaining(

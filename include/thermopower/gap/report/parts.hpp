@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
@@ -82,6 +83,50 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
   return list;
 }
 
+/// How the estimates of a fit hang together: its covariance, each coordinate in units of its own standard deviation.
+inline ParameterCorrelation correlation_of_parameters(const Candidate& candidate, const Weight& weight,
+                                                      std::size_t constants) {
+  ParameterCorrelation correlation;
+  const Eigen::MatrixXd covariance = covariance_of(candidate, weight).of;
+  const Eigen::Index n = covariance.rows();
+  if (n != static_cast<Eigen::Index>(candidate.list.size())) return correlation;
+  correlation.of = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    correlation.names.push_back(candidate.list[static_cast<std::size_t>(i)].name +
+                                (static_cast<std::size_t>(i) < constants ? ".scale" : ""));
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (k != i)
+        correlation.of(i, k) =
+            std::clamp(covariance(i, k) / std::sqrt(covariance(i, i) * covariance(k, k)), -1.0, 1.0);
+  }
+  return correlation;
+}
+
+/// An explanation that is drawn beside the chosen one.
+struct Rival {
+  std::vector<std::string> effects;  ///< its ids
+  Model model;                       ///< with them
+};
+
+/// The likeliest explanations that were not chosen and were judged on held-out data, at most three; each has a cause.
+inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, std::size_t chosen,
+                                    const Model& model) {
+  constexpr std::size_t most = 3;
+  std::vector<const Candidate*> order;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (i != chosen && candidates[i].explanation.size() > 0 && candidates[i].held_out.any())
+      order.push_back(&candidates[i]);
+  std::stable_sort(order.begin(), order.end(), [](const Candidate* a, const Candidate* b) {
+    return a->probability != b->probability ? a->probability > b->probability : a->deviance < b->deviance;
+  });
+  std::vector<Rival> rivals;
+  for (const Candidate* one : order)
+    if (rivals.size() < most)
+      rivals.push_back(
+          {one->explanation.ids(model), augmented(model, one->explanation, one->list, one->fit.at)});
+  return rivals;
+}
+
 /// Every explanation weighed, likeliest first.
 inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
                  const FitProblem& problem, const Weight& weight) {
@@ -150,6 +195,7 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   }
   for (std::size_t index : conclusion.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
+  result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
   for (const CalibratedConstant& constant : model.calibrated()) {
     const std::string name = constant.block + "." + constant.fields.front();
     const double sd = model.uncertainty_of(constant), moved = std::log(fitted.get(name) / model.get(name));
@@ -264,13 +310,16 @@ inline std::array<double, signal_count> noise_of(const Errors& errors, const std
   return sigma;
 }
 
-/// Scores and curves on held-out data.
+/// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param rivals  drawn beside it
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
-                  const std::vector<Inputs>& inputs, const Model& fitted, const Options& options,
-                  const Catalogue& catalogue) {
+                  const std::vector<Inputs>& inputs, const Model& fitted, const std::vector<Rival>& rivals,
+                  const Options& options, const Catalogue& catalogue) {
   const Errors before = errors_of(model, segments, catalogue);
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
   const Errors best = errors_of(fitted, segments, catalogue);
+  std::vector<Errors> others(rivals.size());
+  in_parallel(rivals.size(), options.threads,
+              [&](std::size_t i) { others[i] = errors_of(rivals[i].model, segments, catalogue); });
   // The augmented model is the fitted one where there is a cause, else the model as configured.
   const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
@@ -300,6 +349,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
       series.measured = one.of(signal);
       series.baseline = series.recalibrated = series.augmented =
           Eigen::VectorXd::Constant(one.rows(), missing);
+      for (const Rival& rival : rivals) series.rivals.push_back({rival.effects, series.baseline});
       for (; at < before.of[i].size(); ++at) {
         const Segment& segment = segments[static_cast<std::size_t>(before.segment[i][at])];
         if (segment.inputs != &one) break;
@@ -307,6 +357,9 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
         series.baseline[row] = before.simulated[i][at];
         series.recalibrated[row] = recalibrated.simulated[i][at];
         series.augmented[row] = after.simulated[i][at];
+        for (std::size_t k = 0; k < others.size(); ++k)
+          if (at < others[k].row[i].size() && others[k].row[i][at] == row)
+            series.rivals[k].values[row] = others[k].simulated[i][at];
       }
       result.series.push_back(std::move(series));
     }
