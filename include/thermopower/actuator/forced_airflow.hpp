@@ -15,7 +15,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct ForcedAirflow {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G in still air, above 0.
   Number airflow_gain;         ///< g: relative growth at 1 m/s, >= 0.

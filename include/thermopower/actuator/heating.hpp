@@ -22,7 +22,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct HeatCapacityHeating {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number heat_capacity_J_per_K;  ///< C, above 0.
 
@@ -68,7 +68,7 @@ struct HeatCapacityHeating {
 /// @ingroup actuator
 template <class Number = float>
 struct ThesisHeating {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number slope_V1_J_per_K2;  ///< s1, per volt
   Number slope_V0_J_per_K2;  ///< s0

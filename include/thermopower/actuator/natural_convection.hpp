@@ -18,7 +18,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct NaturalConvection {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G at a difference of `reference_K`, above 0.
   Number exponent;             ///< n, 0 .. 1.

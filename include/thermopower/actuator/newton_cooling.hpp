@@ -14,7 +14,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct RateCooling {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number cooling_per_s;  ///< k, above 0. The thesis prints s^-1 but means per minute: use `per_minute`.
 
@@ -50,7 +50,7 @@ struct RateCooling {
 /// @ingroup actuator
 template <class Number = float>
 struct NewtonCooling {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number conductance_W_per_K;  ///< G, above 0.
 

@@ -20,7 +20,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct OhmicCurrent {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number resistance_ohm;  ///< At `reference_C`, between the terminals that see V_rms. Above 0.
   Number tempco_per_K;    ///< Relative rise per kelvin: copper 0.00393. 0 .. 0.02.

@@ -17,7 +17,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct RadiationCooling {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number radiating_area_m2;  ///< A, above 0.
   Number emissivity;         ///< eps, 0 .. 1.

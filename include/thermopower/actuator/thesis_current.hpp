@@ -24,7 +24,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct ThesisCurrent {
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   Number slope_V2_A_per_K;  ///< m2, A/(K V^2)
   Number slope_V1_A_per_K;  ///< m1, A/(K V)

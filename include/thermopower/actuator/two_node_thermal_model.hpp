@@ -27,7 +27,7 @@ namespace thermopower {
 template <class Number = float>
 class TwoNodeThermalModel {
 public:
-  typedef Number Scalar;  ///< What it computes in.
+  typedef typename detail::ModelNumber<Number>::Type Scalar;  ///< What it computes in.
 
   /// What one tunes.
   struct Config {

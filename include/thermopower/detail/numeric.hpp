@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "probe.hpp"
+
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -12,6 +14,35 @@
 
 namespace thermopower {
 namespace detail {
+
+/// Whether a model can compute in it: `float`, `double`, or a class (lanes of numbers, a number that knows its
+/// derivatives).
+template <class Number, class = int>
+struct IsModelNumber {
+  static constexpr bool value = false;
+};
+template <>
+struct IsModelNumber<float, int> {
+  static constexpr bool value = true;
+};
+template <>
+struct IsModelNumber<double, int> {
+  static constexpr bool value = true;
+};
+template <class Number>
+struct IsModelNumber<Number, typename Exists<int Number::*>::Type> {
+  static constexpr bool value = true;
+};
+
+/// The number itself, where a model can compute in it.
+template <class Number>
+struct ModelNumber {
+  static_assert(
+      IsModelNumber<Number>::value,
+      "thermopower: the Number of a law or model must be float, double or a class that stands for one; whole "
+      "numbers have their own models in namespace fixed_point");
+  typedef Number Type;
+};
 
 /// Operations on one kind of scalar. This primary template serves every class that has a nested `Scalar`,
 /// compares to a plain `bool` and whose functions are found beside it (Eigen's AutoDiffScalar); lanes of

@@ -42,6 +42,33 @@ struct TakesNumber<Candidate, typename Exists<decltype(probe<Candidate>().step(u
   static constexpr bool value = true;
 };
 
+template <class Number>
+struct RealNumberAs {};
+template <>
+struct RealNumberAs<float> {
+  typedef int Type;
+};
+template <>
+struct RealNumberAs<double> {
+  typedef int Type;
+};
+/// Becomes a `float` or a `double` and nothing else, so that what takes a count does not take it.
+struct RealNumber {
+  template <class Number, class = typename RealNumberAs<Number>::Type>
+  operator Number() const noexcept;
+};
+
+/// Has `step(error_deg)` with a number that may be broken: a gain or a count is none.
+template <class Candidate, class = int>
+struct TakesError {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct TakesError<Candidate,
+                  typename Exists<decltype(probe<Candidate>().step(probe<const RealNumber>()))>::Type> {
+  static constexpr bool value = true;
+};
+
 /// Has `step(power, facts)`.
 template <class Candidate, class = int>
 struct TakesPowerAndFacts {
@@ -102,7 +129,7 @@ struct CanBeCut<Candidate,
 template <class Candidate>
 struct IsPowerLaw {
   static constexpr bool value =
-      HasConfig<Candidate>::value && (TakesNumber<Candidate>::value || TakesFacts<Candidate>::value);
+      HasConfig<Candidate>::value && (TakesError<Candidate>::value || TakesFacts<Candidate>::value);
 };
 
 /// A limiter takes inputs with a demand, or an axis's facts, and can be cut.
