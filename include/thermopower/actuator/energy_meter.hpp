@@ -63,6 +63,7 @@ public:
     Number last_power_W;  ///< Of the last step.
   };
 
+  /// Nothing measured yet.
   EnergyMeter() noexcept { start(); }
 
   /// Forgets everything.

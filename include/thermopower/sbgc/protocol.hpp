@@ -34,6 +34,7 @@ enum class Version : uint8_t {
 /// @ingroup sbgc
 class ProtocolV1 {
 public:
+  /// @brief Constants of its frames.
   enum : uint8_t { overhead = 5 /**< bytes of a frame besides its payload */ };
 
   /// @brief Can a frame start with this byte?
@@ -63,6 +64,7 @@ private:
 /// @ingroup sbgc
 class ProtocolV2 {
 public:
+  /// @brief Constants of its frames.
   enum : uint8_t { overhead = 6 /**< bytes of a frame besides its payload */ };
 
   /// @copydoc ProtocolV1::is_start
@@ -96,6 +98,7 @@ private:
 /// @ingroup sbgc
 class ProtocolAuto {
 public:
+  /// @brief Constants of its frames.
   enum : uint8_t { overhead = 6 /**< bytes of a frame besides its payload, at most */ };
 
   /// @copydoc ProtocolV1::is_start

@@ -46,10 +46,12 @@ struct ThesisLimit {
 template <class Constants = ThesisLimit>
 class PerCycle {
 public:
-  void lower(Ticks) noexcept {  ///< Too warm.
+  /// Too warm: one count down, whatever the time.
+  void lower(Ticks) noexcept {
     if (ceiling_ > least_power()) --ceiling_;
   }
-  void raise(Ticks) noexcept {  ///< Cool enough.
+  /// Cool enough: one count up, whatever the time.
+  void raise(Ticks) noexcept {
     if (ceiling_ < 255) ++ceiling_;
   }
   void cut() noexcept { ceiling_ = least_power(); }      ///< Much too warm, or a fault.
@@ -65,12 +67,14 @@ private:
 template <class Constants = ThesisLimit>
 class PerSecond {
 public:
-  void lower(Ticks ticks) noexcept {  ///< Too warm.
+  /// Too warm: down, as far as the time allows.
+  void lower(Ticks ticks) noexcept {
     const uint32_t way = static_cast<uint32_t>(ticks) * per_tick;
     const uint32_t room = ceiling_ - (static_cast<uint32_t>(least_power()) << 16);
     ceiling_ -= way < room ? way : room;
   }
-  void raise(Ticks ticks) noexcept {  ///< Cool enough.
+  /// Cool enough: up, as far as the time allows.
+  void raise(Ticks ticks) noexcept {
     const uint32_t way = static_cast<uint32_t>(ticks) * per_tick;
     const uint32_t room = (uint32_t(255) << 16) - ceiling_;
     ceiling_ += way < room ? way : room;
