@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "chain.hpp"
 #include "one_node.hpp"
 #include "two_node.hpp"
 #include "../detail/composition.hpp"
@@ -15,6 +16,7 @@
 /// |---|---|
 /// | `CertifiedTwoNode` | the winding is much faster than the housing, or both have limits of their own |
 /// | `CertifiedOneNode` | only one time constant is known |
+/// | `CertifiedChain<n>` | 2 to 8 nodes in a row, each with a limit of its own: winding, stator, housing, bracket |
 ///
 /// | heat | POWER p gives at most | when to take it |
 /// |---|---|---|
@@ -53,7 +55,7 @@ struct SquareHeat {
 
 /// Grants the largest power with which no node exceeds its limit, whatever the true constants within the
 /// bounds.
-/// @tparam Network  `CertifiedTwoNode` or `CertifiedOneNode`
+/// @tparam Network  `CertifiedTwoNode`, `CertifiedOneNode` or `CertifiedChain<n>`
 /// @tparam Heat     `LinearHeat` or `SquareHeat`
 ///
 /// Guarantees, for every actuator, air and supply within the bounds and every demand, when each plan comes at
@@ -65,7 +67,7 @@ template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
   static_assert(
       detail::IsCertifiedNetwork<Network>::value,
-      "thermopower: the first parameter of CertifiedLimiter must be a network: CertifiedTwoNode or CertifiedOneNode");
+      "thermopower: the first parameter of CertifiedLimiter must be a network: CertifiedTwoNode, CertifiedOneNode or CertifiedChain");
 
   static_assert(
       detail::IsHeatCount<Heat>::value,
@@ -264,6 +266,7 @@ public:
   }                                                                        ///< As in State, without the rest.
   float winding_upper_C() const noexcept { return network_.winding_C(); }  ///< As in State, without the rest.
   float body_upper_C() const noexcept { return network_.body_C(); }        ///< As in State, without the rest.
+  const Network& network() const noexcept { return network_; }             ///< The bounds themselves.
 
 private:
   // Between plans only the time and the largest count that acted are kept; of steps of one length only their
