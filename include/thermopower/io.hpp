@@ -23,3 +23,4 @@
 #include <thermopower/io/sbgc_capture.hpp>
 #include <thermopower/io/simulator_export.hpp>
 #include <thermopower/io/summary.hpp>
+#include <thermopower/io/text_table.hpp>

@@ -5,6 +5,7 @@
 
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/io/text_table.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -18,17 +19,6 @@ void append(std::string& out, double value) {
   if (!std::isfinite(value)) return;
   char text[32];
   out.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
-
-// RFC 4180: a field with a separator, a quote or a line break is quoted, quotes inside it are doubled.
-void append_quoted(std::string& out, const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    out += text;
-    return;
-  }
-  out += '"';
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  out += '"';
 }
 
 const Eigen::VectorXd* find(const std::vector<SimulatedSignal>& signals, const std::string& name) {
@@ -121,7 +111,7 @@ std::string predictions_csv(const Model& baseline, const Model& augmented,
         append(out, recordings[r].t_s[row]);
         if (runs > 1) {
           out += ',';
-          append_quoted(out, label);
+          append_csv_cell(out, label);
         }
         for (const auto* column : columns) {
           out += ',';
