@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace thermopower::io {
 namespace {
@@ -73,6 +75,30 @@ Json score(const GapScore& gap) {
           {"ci95", interval(gap.ci95)}};
 }
 
+// The covariance's lower triangle, row by row; six digits are more than it is known to.
+Json fitted(const RankedExplanation& one) {
+  const auto rounded = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return number(std::strtod(text, nullptr));
+  };
+  Json object = {{"names", Json::array()},
+                 {"at", Json::array()},
+                 {"logarithmic", Json::array()},
+                 {"at_bound", Json::array()},
+                 {"covariance", Json::array()}};
+  for (const FittedCoordinate& coordinate : one.fitted) {
+    object["names"].push_back(coordinate.name);
+    object["at"].push_back(number(coordinate.at));
+    object["logarithmic"].push_back(coordinate.logarithmic);
+    object["at_bound"].push_back(coordinate.at_bound);
+  }
+  for (Eigen::Index row = 0; row < one.covariance.rows(); ++row)
+    for (Eigen::Index column = 0; column <= row; ++column)
+      object["covariance"].push_back(rounded(one.covariance(row, column)));
+  return object;
+}
+
 Json ranked(const RankedExplanation& one) {
   Json confusable = Json::array();
   for (const auto& other : one.confusable)
@@ -84,7 +110,12 @@ Json ranked(const RankedExplanation& one) {
           {"at_bound", one.at_bound},
           {"refused", one.refused},
           {"parameters", parameters(one.parameters)},
-          {"confusable", confusable}};
+          {"confusable", confusable},
+          {"misfit", number(one.score)},
+          {"train_gain", number(one.train_gain)},
+          {"held_out_gain", number(one.held_out_gain)},
+          {"hidden_starts", one.hidden_starts},
+          {"fitted", fitted(one)}};
 }
 
 // Hundreds of short ranges help nobody: the first ones, and how many rows there are in all.

@@ -143,6 +143,14 @@ struct Likeness {
   double cosine = 0.0;               ///< of the signatures, whitened and freed of the baseline's constants
 };
 
+/// Where the fit of an explanation ended, as what is made of many recordings needs it.
+struct FittedCoordinate {
+  std::string name;          ///< `calibration.<id>` for the factor on a constant, or `<effect>.<parameter>`
+  double at = 0.0;           ///< the value, or its natural logarithm
+  bool logarithmic = false;  ///< `at` is a logarithm
+  bool at_bound = false;     ///< ended on a bound of its range
+};
+
 /// One explanation that was weighed.
 struct RankedExplanation {
   std::vector<std::string> effects;  ///< one id, or several acting together; empty: "nothing is missing"
@@ -155,6 +163,15 @@ struct RankedExplanation {
   bool refused = false;         ///< makes held-out data worse
   std::vector<ParameterEstimate> parameters;  ///< named `<effect>.<parameter>`
   std::vector<Likeness> confusable;           ///< others with a likeness of 0.9 or more
+  /// Twice the log of how much likelier it makes the training data than the empty explanation does, residuals of unknown
+  /// variance, rows divided by the length of their correlation; nothing is charged for parameters.
+  double train_gain = 0.0;
+  double held_out_gain =
+      0.0;  ///< the same of held-out data, parameters from training; NaN: was not looked at
+  int hidden_starts =
+      0;  ///< hidden states whose start the held-out gain fitted, because nobody measures them
+  std::vector<FittedCoordinate> fitted = {};  ///< every constant, then the effects' parameters
+  Eigen::MatrixXd covariance;  ///< of `fitted`; 0 by 0 where nobody looked at the fit's curvature
 };
 
 /// A constant of the baseline that the explanation moved by more than two of its uncertainties.

@@ -207,7 +207,9 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   mark_idle(candidates);
   const Candidate* best = nullptr;
   for (Candidate& one : candidates) {
-    one.deviance = penalty(one) + part(one.train, weight.correlation) + part(one.held_out, weight.held_out);
+    one.train_deviance = part(one.train, weight.correlation);
+    one.held_out_deviance = part(one.held_out, weight.held_out);
+    one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
     // What brings everything to the noise was shown, however little of a period the travel holds.
     one.on_bounds = ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad);
     if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;

@@ -21,9 +21,11 @@ struct Candidate {
   std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
   FitResult fit;                 ///< on training data, in the coordinates of `list`
   SignalSums train;              ///< residuals of the fit where it was fitted
-  SignalSums held_out;       ///< as a gap is judged, in units of the noise floor; empty until somebody looks
-  int hidden_starts = 0;     ///< starts that the held-out score fitted, because nobody measures them
-  double deviance = 0.0;     ///< twice the negative log evidence, without the shared constant
+  SignalSums held_out;    ///< as a gap is judged, in units of the noise floor; empty until somebody looks
+  int hidden_starts = 0;  ///< starts that the held-out score fitted, because nobody measures them
+  double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
+  double train_deviance = 0.0;     ///< what the training data alone say, no penalty counted
+  double held_out_deviance = 0.0;  ///< what the held-out data alone say; 0 until somebody looks
   double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none

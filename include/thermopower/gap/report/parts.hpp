@@ -162,6 +162,15 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     entry.absorbed = one.explanation.size() > 0 && squares > 0.99 * whole;
     entry.at_bound = one.on_bounds;
     entry.parameters = estimates(one, *problem.model, weight);
+    entry.train_gain = empty.train_deviance - one.train_deviance;
+    entry.held_out_gain = one.held_out.any() && empty.held_out.any()
+                              ? empty.held_out_deviance - one.held_out_deviance
+                              : missing;
+    entry.hidden_starts = one.hidden_starts;
+    for (std::size_t k = 0; k < one.list.size(); ++k)
+      entry.fitted.push_back({one.list[k].name, one.fit.at[static_cast<Eigen::Index>(k)],
+                              one.list[k].logarithmic, k < one.fit.at_bound.size() && one.fit.at_bound[k]});
+    entry.covariance = covariance_of(one, weight).of;
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;
       const double cosine = likeness(signatures[i], signatures[k]);
