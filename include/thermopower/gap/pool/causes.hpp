@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/pool/distributions.hpp>
+#include <thermopower/gap/pool/drift.hpp>
+#include <thermopower/gap/pool/mixed_effects.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap::pool {
+
+/// How probable each explanation is to one unit; by name, what is not there is next to impossible.
+using Probabilities = std::map<std::string, double>;
+
+/// How common an explanation is.
+struct Prevalence {
+  std::string explanation;  ///< its name
+  double share = 0.0;       ///< of the units, 0..1
+  Range share90;            ///< 90 % interval of it
+  double units = 0.0;       ///< how many that are; a sum of probabilities
+};
+
+/// Which explanations are common, and what each unit's is in their light.
+struct CommonCauses {
+  std::vector<Prevalence> common;    ///< the commonest first
+  std::vector<Probabilities> units;  ///< of each unit, over all explanations, once the shares are known
+};
+
+/// The shares of explanations in a fleet by maximum likelihood (EM on a mixture): an explanation that many units find
+/// likely gets likelier for those that cannot tell it from another one.
+/// @param units  probabilities with every explanation alike beforehand
+inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
+  constexpr double impossible = 1e-6;  // no diagnosis is as sure as that
+  constexpr int iterations = 300;
+  CommonCauses result;
+  std::map<std::string, Eigen::Index> column;
+  for (const Probabilities& unit : units)
+    for (const auto& [name, probability] : unit) column.emplace(name, 0);
+  if (column.empty()) return result;
+  Eigen::Index next = 0;
+  for (auto& [name, place] : column) place = next++;
+  const auto rows = static_cast<Eigen::Index>(units.size());
+  Eigen::ArrayXXd likely = Eigen::ArrayXXd::Constant(rows, next, impossible);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (const auto& [name, probability] : units[static_cast<std::size_t>(i)])
+      likely(i, column[name]) = std::max(probability, impossible);
+  Eigen::ArrayXd share = Eigen::ArrayXd::Constant(next, 1.0 / static_cast<double>(next));
+  Eigen::ArrayXXd own;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    own = likely.rowwise() * share.transpose();
+    own.colwise() /= own.rowwise().sum().eval();
+    share = own.colwise().mean().transpose();
+  }
+  result.units.resize(units.size());
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (const auto& [name, place] : column) result.units[static_cast<std::size_t>(i)][name] = own(i, place);
+  for (const auto& [name, place] : column) {
+    Prevalence one;
+    one.explanation = name;
+    one.share = share[place];
+    one.units = one.share * static_cast<double>(units.size());
+    // Jeffreys's interval of a share that was counted (Brown, Cai & DasGupta 2001).
+    const double a = one.units + 0.5, b = static_cast<double>(units.size()) - one.units + 0.5;
+    const auto quantile = [&](double below) {
+      double low = 0.0, high = 1.0;
+      for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (regularised_beta(a, b, middle) < below ? low : high) = middle;
+      }
+      return 0.5 * (low + high);
+    };
+    one.share90 = {quantile(0.05), quantile(0.95)};
+    result.common.push_back(one);
+  }
+  std::stable_sort(result.common.begin(), result.common.end(),
+                   [](const Prevalence& a, const Prevalence& b) { return a.share > b.share; });
+  return result;
+}
+
+/// What one unit's logs say for one explanation against none, summed over its logs.
+struct Gain {
+  double train = 0.0;  ///< twice the log likelihood ratio of the training data, its parameters fitted there
+  double held_out = 0.0;  ///< of held-out data, nothing fitted
+  int parameters = 1;     ///< that were fitted in each log
+};
+
+/// An effect that is too weak to be named in any log, and may be seen in all of them together.
+struct WeakEffect {
+  std::string explanation;       ///< its name
+  std::size_t units = 0;         ///< that looked at it
+  double held_out_median = 0.0;  ///< gain of a unit
+  double p = 1.0;  ///< one-sided: probability of such gains, were it no help on data it was not fitted to
+  bool stands = false;  ///< beyond chance, all explanations that were tried counted
+  double gain = 0.0;    ///< of all data, median unit, less twice the parameters fitted (Akaike)
+  std::vector<std::string> not_told_from;  ///< others that the fleet cannot tell from it
+};
+
+namespace detail {
+
+/// Wilcoxon's signed-rank test, one-sided: probability that values around 0 would be as much above it. By ranks, as one
+/// log far off must not decide for a fleet; the normal approximation, which is good from six values on.
+inline double signed_rank_p(const std::vector<double>& values) {
+  constexpr std::size_t fewest = 6;
+  std::vector<double> sorted;
+  for (const double one : values)
+    if (one != 0.0) sorted.push_back(one);
+  if (sorted.size() < fewest) return 1.0;
+  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  double sum = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double rank = static_cast<double>(i + 1);
+    sum += sorted[i] > 0.0 ? rank : -rank;
+    square += rank * rank;
+  }
+  const double z = (sum - 1.0) / std::sqrt(square);  // continuity
+  return z > 0.0 ? 0.5 * normal_tail(z) : 1.0 - 0.5 * normal_tail(z);
+}
+
+/// The middle of a sample; 0 where it is empty.
+inline double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace detail
+
+/// Looks for effects that help a little everywhere, among units whose own diagnosis names none.
+///
+/// Named is what helps on held-out data over the units, at a family-wise error of `level` over all explanations tried
+/// (Holm): no assumption on noise or its correlation is in that, only that units are independent. Among those the one
+/// with the largest gain leads; what the units do not beyond doubt prefer it to (paired over units, two-sided 5 %, as
+/// Vuong 1989 does over observations) is listed beside it.
+/// @param units  for each unit the explanations that were fitted and looked at on held-out data
+/// @return those that stand, the leading one first, then all others by p
+inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units,
+                                            double level = 0.01) {
+  std::map<std::string, std::vector<double>> held_out;
+  std::map<std::string, std::vector<double>> whole;
+  const auto all_data = [](const Gain& one) { return one.train + one.held_out - 2.0 * one.parameters; };
+  for (const auto& unit : units)
+    for (const auto& [name, gain] : unit) {
+      held_out[name].push_back(gain.held_out);
+      whole[name].push_back(all_data(gain));
+    }
+  std::vector<WeakEffect> list;
+  std::vector<double> p;
+  for (const auto& [name, values] : held_out) {
+    WeakEffect one;
+    one.explanation = name;
+    one.units = values.size();
+    one.gain = detail::median_of(whole[name]);
+    // Looked at in fewer than half of the units, it is a choice of those that liked it.
+    one.held_out_median = detail::median_of(values);
+    if (2 * values.size() >= units.size()) one.p = detail::signed_rank_p(values);
+    p.push_back(one.p);
+    list.push_back(one);
+  }
+  const std::vector<bool> stands = holm(p, level);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].stands = stands[i] && list[i].gain > 0.0;
+  std::stable_sort(list.begin(), list.end(), [](const WeakEffect& a, const WeakEffect& b) {
+    if (a.stands != b.stands) return a.stands;
+    return a.stands ? a.gain > b.gain : a.p < b.p;
+  });
+  if (list.empty() || !list.front().stands) return list;
+  for (std::size_t i = 1; i < list.size(); ++i) {
+    if (!list[i].stands) continue;
+    std::vector<double> difference;
+    for (const auto& unit : units) {
+      const auto one = unit.find(list.front().explanation), other = unit.find(list[i].explanation);
+      if (one != unit.end() && other != unit.end())
+        difference.push_back(all_data(one->second) - all_data(other->second));
+    }
+    constexpr double doubt = 0.025;
+    if (!(detail::signed_rank_p(difference) < doubt))
+      list.front().not_told_from.push_back(list[i].explanation);
+  }
+  return list;
+}
+
+}  // namespace thermopower::gap::pool

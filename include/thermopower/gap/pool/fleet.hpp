@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/pool/causes.hpp>
+#include <thermopower/gap/pool/drift.hpp>
+#include <thermopower/gap/pool/log_result.hpp>
+#include <thermopower/gap/pool/odd_units.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap::pool {
+
+/// The levels of a fleet's verdicts.
+struct FleetOptions {
+  double false_odd = 0.01;       ///< probability that a fleet of sound units has an odd one
+  double false_drift = 0.01;     ///< probability that a fleet without drift has one
+  double false_weak = 0.01;      ///< probability that a weak effect is named where there is none
+  double differs = 0.01;         ///< probability that alike units' parameter passes for one that differs
+  double family_share = 0.05;    ///< share of the units from which on a cause is a family's
+  std::size_t family_units = 4;  ///< and at least so many units
+  double misfit_matters =
+      1.25;  ///< factor on the RMSE from which on a worse fit makes a unit odd, as of a signal
+};
+
+/// Why a unit is odd.
+enum class Oddity {
+  none,       ///< it is not
+  parameter,  ///< a constant or a parameter is far from the others'
+  misfit,     ///< what explains the others does not explain it
+};
+
+/// The oddity's name, as reports spell it.
+inline const char* to_string(Oddity oddity) {
+  return oddity == Oddity::parameter ? "parameter" : oddity == Oddity::misfit ? "misfit" : "none";
+}
+
+/// A drift of one coordinate of a unit.
+struct UnitDrift {
+  std::string coordinate;  ///< its name
+  Drift drift;             ///< how it went
+};
+
+/// One unit after the fleet was looked at.
+struct UnitVerdict {
+  std::string unit;               ///< its name
+  std::vector<std::size_t> logs;  ///< indices of its logs that could be used
+  int family = -1;                ///< index of the family it is held against; -1: none
+  bool member = false;            ///< its own diagnoses name that family's cause
+  std::string own_cause;         ///< the likeliest explanation of its own logs, the fleet's shares considered
+  double own_probability = 0.0;  ///< of that
+  Oddity oddity = Oddity::none;  ///< why it is odd
+  Standing standing;             ///< among the family, by its parameters
+  double misfit = 1.0;           ///< RMSE with the family's cause over the family's usual one
+  std::optional<Estimate> estimate;  ///< in the family's coordinates, of all its logs
+  std::optional<Shrunken> shrunken;  ///< the same drawn to the family
+  std::vector<UnitDrift> drifts;     ///< those that stand
+};
+
+/// Units that share a cause.
+struct Family {
+  std::string cause;                     ///< ids with " + " between; empty: nothing is missing
+  Prevalence prevalence;                 ///< how common it is
+  std::vector<std::string> coordinates;  ///< that its units are compared in
+  std::vector<bool> logarithmic;         ///< of each
+  MixedEffects spread;        ///< of the units that are not odd; of size 0 where too few could be compared
+  std::vector<bool> differs;  ///< by coordinate: the units differ in it beyond their errors
+  std::vector<LogScatter> scatter;  ///< by coordinate: between the logs of one unit
+  double usual_misfit = 1.0;        ///< median reduced chi^2 of its units
+};
+
+/// A log that says nothing, and why.
+struct BadLog {
+  std::size_t log = 0;  ///< its index
+  std::string reason;   ///< what is wrong with it
+};
+
+/// Everything that many logs say together.
+struct FleetVerdict {
+  std::vector<Family> families;    ///< the commonest first
+  std::vector<UnitVerdict> units;  ///< in the order in which they first appear
+  std::vector<BadLog> bad_logs;    ///< in the order of the logs
+  std::vector<Prevalence> causes;  ///< every explanation that some unit finds likely
+  std::vector<WeakEffect> weak;    ///< in units whose own diagnosis finds nothing; those that stand first
+  bool structure_differs = false;  ///< there are several families
+  bool parameters_differ = false;  ///< in some family the units differ in some coordinate
+};
+
+namespace detail {
+
+/// One fleet under judgement.
+class FleetJudge {
+public:
+  FleetJudge(const std::vector<LogResult>& logs, const FleetOptions& options)
+      : logs_(logs), options_(options) {}
+
+  FleetVerdict run() {
+    gather();
+    find_families();
+    for (std::size_t f = 0; f < result_.families.size(); ++f) judge(f);
+    judge_drifts();
+    find_weak_effects();
+    result_.structure_differs = result_.families.size() > 1;
+    for (const Family& one : result_.families)
+      for (const bool differs : one.differs) result_.parameters_differ = result_.parameters_differ || differs;
+    return std::move(result_);
+  }
+
+private:
+  static constexpr const char* outside = "outside the catalogue";
+
+  void gather() {
+    std::map<std::string, std::size_t> known;
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      const LogResult& log = logs_[i];
+      if (log.verdict.empty() || log.verdict == "insufficient") {
+        result_.bad_logs.push_back({i, log.reason});
+        continue;
+      }
+      const std::string& name = log.unit.empty() ? log.log : log.unit;
+      const auto [place, is_new] = known.emplace(name, result_.units.size());
+      if (is_new) {
+        result_.units.emplace_back();
+        result_.units.back().unit = name;
+      }
+      result_.units[place->second].logs.push_back(i);
+    }
+    for (UnitVerdict& unit : result_.units)
+      std::stable_sort(unit.logs.begin(), unit.logs.end(),
+                       [&](std::size_t a, std::size_t b) { return logs_[a].time < logs_[b].time; });
+  }
+
+  /// What one log finds likely.
+  static Probabilities likely(const LogResult& log) {
+    if (log.verdict == "no_gap") return {{"", 1.0}};
+    if (log.verdict == "unexplained") return {{outside, 1.0}};
+    Probabilities result;
+    double total = 0.0;
+    // What has more effects than the cause that was named was held to do no more than it.
+    for (const FittedExplanation& one : log.ranking)
+      if (one.effects <= log.chosen_effects && one.probability > 0.0)
+        total += result[one.name] = one.probability;
+    for (auto& [name, probability] : result) probability /= total;
+    if (result.empty()) result[outside] = 1.0;
+    return result;
+  }
+
+  Probabilities likely(const UnitVerdict& unit) const {
+    constexpr double impossible = 1e-6;
+    Probabilities sum;
+    std::vector<Probabilities> each;
+    for (const std::size_t log : unit.logs) each.push_back(likely(logs_[log]));
+    for (const Probabilities& one : each)
+      for (const auto& [name, probability] : one) sum[name] = 0.0;
+    double largest = -1e300, total = 0.0;
+    for (auto& [name, value] : sum) {
+      for (const Probabilities& one : each) {
+        const auto found = one.find(name);
+        value += std::log(std::max(found == one.end() ? 0.0 : found->second, impossible));
+      }
+      largest = std::max(largest, value);
+    }
+    for (auto& [name, value] : sum) total += value = std::exp(value - largest);
+    for (auto& [name, value] : sum) value /= total;
+    return sum;
+  }
+
+  void find_families() {
+    std::vector<Probabilities> units;
+    for (const UnitVerdict& one : result_.units) units.push_back(likely(one));
+    const CommonCauses found = common_causes(units);
+    const double count = static_cast<double>(units.size());
+    const double least = std::max(static_cast<double>(options_.family_units), options_.family_share * count);
+    for (const Prevalence& one : found.common) {
+      constexpr double mentioned = 0.5;  // units
+      if (one.units >= mentioned) result_.causes.push_back(one);
+      if (one.explanation == outside || !(one.units >= least - 0.5)) continue;
+      result_.families.emplace_back();
+      result_.families.back().cause = one.explanation;
+      result_.families.back().prevalence = one;
+    }
+    for (std::size_t i = 0; i < result_.units.size(); ++i) {
+      UnitVerdict& unit = result_.units[i];
+      for (const auto& [name, probability] : found.units[i])
+        if (probability > unit.own_probability) unit.own_probability = probability, unit.own_cause = name;
+      double best = 0.0;
+      for (std::size_t f = 0; f < result_.families.size(); ++f) {
+        const double own = found.units[i].at(result_.families[f].cause);
+        if (own > best && own > 0.5) best = own, unit.family = static_cast<int>(f), unit.member = true;
+      }
+      if (!unit.member) unit.family = nearest_family(unit);
+    }
+  }
+
+  /// The family whose cause does most for a unit that has another one of its own.
+  int nearest_family(const UnitVerdict& unit) const {
+    int best = -1;
+    double most = 0.0;
+    for (std::size_t f = 0; f < result_.families.size(); ++f) {
+      double gain = 0.0;
+      bool whole = true;
+      for (const std::size_t log : unit.logs) {
+        const FittedExplanation* one = logs_[log].find(result_.families[f].cause);
+        whole = whole && one != nullptr && std::isfinite(one->held_out_gain);
+        if (whole) gain += one->train_gain + one->held_out_gain - 2.0 * one->own_parameters();
+      }
+      if (whole && (best < 0 || gain > most)) best = static_cast<int>(f), most = gain;
+    }
+    return best;
+  }
+
+  static bool usable(const FittedExplanation* one) {
+    return one != nullptr && one->fit.covariance.rows() == one->fit.at.size() && one->fit.at.size() > 0 &&
+           one->fit.at.allFinite() && one->fit.covariance.allFinite();
+  }
+
+  std::vector<std::size_t> held_against(std::size_t family) const {
+    std::vector<std::size_t> units;
+    for (std::size_t i = 0; i < result_.units.size(); ++i)
+      if (result_.units[i].family == static_cast<int>(family)) units.push_back(i);
+    return units;
+  }
+
+  /// Coordinates that are free in most members' fits: what is on a bound, or fixed, tells nothing.
+  void choose_coordinates(Family& family, const std::vector<std::size_t>& units) {
+    std::map<std::string, std::pair<double, double>> seen;  // free, all
+    std::vector<std::string> order;
+    std::map<std::string, bool> logarithmic;
+    for (const std::size_t i : units) {
+      if (!result_.units[i].member) continue;
+      for (const std::size_t log : result_.units[i].logs) {
+        const FittedExplanation* one = logs_[log].find(family.cause);
+        if (!usable(one)) continue;
+        for (std::size_t c = 0; c < one->names.size(); ++c) {
+          if (seen.count(one->names[c]) == 0) order.push_back(one->names[c]);
+          const auto at = static_cast<Eigen::Index>(c);
+          auto& [free, all] = seen[one->names[c]];
+          free += !one->at_bound[c] && one->fit.covariance(at, at) > 0.0 ? 1.0 : 0.0;
+          all += 1.0;
+          logarithmic[one->names[c]] = one->logarithmic[c];
+        }
+      }
+    }
+    constexpr double mostly = 0.8;
+    for (const std::string& name : order)
+      if (seen[name].first >= mostly * seen[name].second) {
+        family.coordinates.push_back(name);
+        family.logarithmic.push_back(logarithmic[name]);
+      }
+  }
+
+  /// A log's estimate in a family's coordinates; none where it lacks one.
+  std::optional<Estimate> estimate_of(const Family& family, std::size_t log) const {
+    const FittedExplanation* one = logs_[log].find(family.cause);
+    if (!usable(one) || family.coordinates.empty()) return std::nullopt;
+    std::vector<Eigen::Index> places;
+    for (const std::string& name : family.coordinates) {
+      const auto found = std::find(one->names.begin(), one->names.end(), name);
+      if (found == one->names.end()) return std::nullopt;
+      places.push_back(found - one->names.begin());
+    }
+    const auto k = static_cast<Eigen::Index>(places.size());
+    Estimate result{Eigen::VectorXd(k), Eigen::MatrixXd(k, k)};
+    for (Eigen::Index a = 0; a < k; ++a) {
+      result.at[a] = one->fit.at[places[static_cast<std::size_t>(a)]];
+      for (Eigen::Index b = 0; b < k; ++b)
+        result.covariance(a, b) =
+            one->fit.covariance(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]);
+    }
+    return result;
+  }
+
+  TimeSeries series_of(const UnitVerdict& unit, const Family& family, Eigen::Index coordinate) const {
+    TimeSeries series;
+    for (const std::size_t log : unit.logs)
+      if (const std::optional<Estimate> one = estimate_of(family, log)) {
+        series.time.push_back(logs_[log].time);
+        series.at.push_back(one->at[coordinate]);
+        series.variance.push_back(one->covariance(coordinate, coordinate));
+      }
+    return series;
+  }
+
+  /// All logs of a unit in one estimate: weighted by their errors and the scatter between logs. Where this unit's logs
+  /// differ by more than that, a coordinate's error is widened by as much (Birge's ratio).
+  std::optional<Estimate> together(const UnitVerdict& unit, const Family& family) const {
+    const auto k = static_cast<Eigen::Index>(family.coordinates.size());
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(k, k), sum = scatter;
+    for (Eigen::Index c = 0; c < k; ++c) scatter(c, c) = family.scatter[static_cast<std::size_t>(c)].variance;
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(k);
+    std::vector<Estimate> used;
+    for (const std::size_t log : unit.logs)
+      if (std::optional<Estimate> one = estimate_of(family, log)) {
+        one->covariance += scatter;
+        const Eigen::MatrixXd weight = one->covariance.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+        if (!weight.allFinite()) continue;
+        sum += weight;
+        right += weight * one->at;
+        used.push_back(std::move(*one));
+      }
+    if (used.empty()) return std::nullopt;
+    Estimate result;
+    result.covariance = sum.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    result.at = result.covariance * right;
+    if (!result.at.allFinite() || !result.covariance.allFinite()) return std::nullopt;
+    if (used.size() < 2) return result;
+    Eigen::VectorXd widened = Eigen::VectorXd::Zero(k);
+    for (Eigen::Index c = 0; c < k; ++c) {
+      for (const Estimate& one : used) {
+        const double away = one.at[c] - result.at[c];
+        widened[c] += away * away / (one.covariance(c, c) * static_cast<double>(used.size() - 1));
+      }
+      widened[c] = std::sqrt(std::max(widened[c], 1.0));
+    }
+    result.covariance = (widened.asDiagonal() * result.covariance * widened.asDiagonal()).eval();
+    return result;
+  }
+
+  void judge(std::size_t f) {
+    Family& family = result_.families[f];
+    const std::vector<std::size_t> units = held_against(f);
+    choose_coordinates(family, units);
+    const auto k = static_cast<Eigen::Index>(family.coordinates.size());
+    for (Eigen::Index c = 0; c < k; ++c) {
+      std::vector<TimeSeries> all;
+      for (const std::size_t i : units) all.push_back(series_of(result_.units[i], family, c));
+      family.scatter.push_back(log_scatter(all));
+    }
+    // Both ways of being odd share what a false one may cost, and so do the families.
+    const double level = 0.5 * options_.false_odd * static_cast<double>(units.size()) /
+                         static_cast<double>(std::max<std::size_t>(result_.units.size(), 1));
+    std::vector<Estimate> estimates, misfits;
+    std::vector<std::size_t> compared, fitted;
+    for (const std::size_t i : units) {
+      UnitVerdict& unit = result_.units[i];
+      unit.estimate = together(unit, family);
+      if (unit.estimate) {
+        estimates.push_back(*unit.estimate);
+        compared.push_back(i);
+      }
+      double sum = 0.0, count = 0.0;
+      for (const std::size_t log : unit.logs)
+        if (const FittedExplanation* one = logs_[log].find(family.cause); one != nullptr && one->misfit > 0.0)
+          sum += 0.5 * std::log(one->misfit), count += 1.0;
+      if (count == 0.0) continue;
+      misfits.push_back({Eigen::VectorXd::Constant(1, sum / count), Eigen::MatrixXd::Zero(1, 1)});
+      fitted.push_back(i);
+    }
+    const OddUnits by_misfit = find_odd_units(misfits, level);
+    std::vector<double> usual;
+    for (const Estimate& one : misfits) usual.push_back(one.at[0]);
+    const double middle = usual.empty() ? 0.0 : median(usual);
+    family.usual_misfit = std::exp(2.0 * middle);
+    for (std::size_t place = 0; place < fitted.size(); ++place) {
+      UnitVerdict& unit = result_.units[fitted[place]];
+      unit.misfit = std::exp(misfits[place].at[0] - middle);
+      if (by_misfit.units[place].odd && unit.misfit > options_.misfit_matters) unit.oddity = Oddity::misfit;
+    }
+    if (k == 0) return;
+    const OddUnits by_parameter = find_odd_units(estimates, level);
+    family.spread = by_parameter.sound;
+    for (std::size_t place = 0; place < compared.size(); ++place) {
+      UnitVerdict& unit = result_.units[compared[place]];
+      unit.standing = by_parameter.units[place];
+      if (family.spread.size() > 0) unit.shrunken = shrink(family.spread, *unit.estimate);
+      if (unit.standing.odd) unit.oddity = Oddity::parameter;
+    }
+    for (Eigen::Index c = 0; c < k; ++c)
+      family.differs.push_back(family.spread.size() > 0 &&
+                               family.spread.heterogeneity_p[c] < options_.differs / static_cast<double>(k));
+  }
+
+  void judge_drifts() {
+    std::vector<double> p;
+    std::vector<std::pair<std::size_t, UnitDrift>> found;
+    for (std::size_t i = 0; i < result_.units.size(); ++i) {
+      const UnitVerdict& unit = result_.units[i];
+      if (unit.family < 0) continue;
+      const Family& family = result_.families[static_cast<std::size_t>(unit.family)];
+      for (std::size_t c = 0; c < family.coordinates.size(); ++c) {
+        const TimeSeries series = series_of(unit, family, static_cast<Eigen::Index>(c));
+        bool dated = series.time.size() > 1;
+        for (const double time : series.time) dated = dated && std::isfinite(time);
+        if (!dated || !(series.time.back() > series.time.front())) continue;
+        found.push_back({i, {family.coordinates[c], find_drift(series, family.scatter[c])}});
+        p.push_back(found.back().second.drift.p);
+      }
+    }
+    const std::vector<bool> stands = holm(p, options_.false_drift);
+    for (std::size_t place = 0; place < found.size(); ++place)
+      if (stands[place]) result_.units[found[place].first].drifts.push_back(found[place].second);
+  }
+
+  void find_weak_effects() {
+    std::vector<std::map<std::string, Gain>> units;
+    for (const UnitVerdict& unit : result_.units) {
+      if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) continue;
+      if (unit.oddity != Oddity::none || !unit.drifts.empty()) continue;  // what they lack is no weak effect
+      std::map<std::string, Gain> gains;
+      std::map<std::string, std::size_t> seen;
+      for (const std::size_t log : unit.logs)
+        for (const FittedExplanation& one : logs_[log].ranking) {
+          // Where a hidden start was fitted to the held-out data, their gain is no test.
+          if (one.effects != 1 || one.hidden_starts > 0 || !std::isfinite(one.held_out_gain)) continue;
+          Gain& gain = gains[one.name];
+          gain.parameters = (seen[one.name]++ == 0 ? 0 : gain.parameters) + one.own_parameters();
+          gain.train += one.train_gain;
+          gain.held_out += one.held_out_gain;
+        }
+      for (const auto& [name, count] : seen)
+        if (count < unit.logs.size()) gains.erase(name);
+      units.push_back(std::move(gains));
+    }
+    result_.weak = weak_effects(units, options_.false_weak);
+  }
+
+  const std::vector<LogResult>& logs_;
+  const FleetOptions options_;
+  FleetVerdict result_;
+};
+
+}  // namespace detail
+
+/// What many logs say together: which cause is common, how parameters spread, which units are odd, which logs are bad,
+/// what drifts, and which effect is too weak for any single log.
+inline FleetVerdict judge_fleet(const std::vector<LogResult>& logs, const FleetOptions& options = {}) {
+  return detail::FleetJudge(logs, options).run();
+}
+
+}  // namespace thermopower::gap::pool

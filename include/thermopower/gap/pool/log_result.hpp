@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/pool/mixed_effects.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace thermopower::gap::pool {
+
+/// Where the fit of one explanation to one log ended; as a report's `ranking` has it.
+struct FittedExplanation {
+  std::string name;          ///< ids of its effects, " + " between them; empty: nothing is missing
+  std::size_t effects = 0;   ///< how many those are
+  double probability = 0.0;  ///< as the report has it
+  double misfit = 1.0;       ///< reduced chi^2 of the training data
+  double train_gain =
+      0.0;  ///< twice the log likelihood ratio of the training data against the empty explanation
+  double held_out_gain =
+      std::numeric_limits<double>::quiet_NaN();  ///< the same of held-out data; NaN: not looked at
+  int hidden_starts = 0;           ///< that the held-out gain fitted: then it is no prediction alone
+  bool on_bounds = false;          ///< it ended on the bounds of its range, and is none
+  std::vector<std::string> names;  ///< of the coordinates: constants first, then the effects' parameters
+  std::vector<bool> logarithmic;   ///< whether a coordinate is the logarithm of its value
+  std::vector<bool> at_bound;      ///< whether it ended on a bound
+  Estimate fit;                    ///< its covariance is 0 by 0 where nobody looked at the curvature
+
+  /// How many coordinates are its effects' own.
+  int own_parameters() const {
+    int count = 0;
+    for (const std::string& one : names) count += one.rfind("calibration.", 0) == 0 ? 0 : 1;
+    // A constant that was released is one, too.
+    for (std::size_t at = 0; at < name.size();) {
+      const std::size_t end = name.find(" + ", at);
+      count += name.compare(at, 12, "calibration.") == 0 ? 1 : 0;
+      if (end == std::string::npos) break;
+      at = end + 3;
+    }
+    return count;
+  }
+};
+
+/// What the diagnosis of one log leaves for the fleet.
+struct LogResult {
+  std::string log;   ///< its name
+  std::string unit;  ///< the actuator that was recorded; empty: the log's own
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< when, in days; NaN: nobody says
+  std::string verdict;                     ///< as the report spells it; empty: there is no report
+  std::string reason;                      ///< of the verdict, or why there is no report
+  std::size_t chosen_effects = 0;          ///< how many causes it names
+  std::vector<FittedExplanation> ranking;  ///< everything weighed
+
+  /// The explanation of a name, or none.
+  const FittedExplanation* find(const std::string& name) const {
+    for (const FittedExplanation& one : ranking)
+      if (one.name == name) return &one;
+    return nullptr;
+  }
+};
+
+}  // namespace thermopower::gap::pool

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/pool/mixed_effects.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace thermopower::gap::pool {
+
+/// How a unit stands among the others.
+struct Standing {
+  double distance = 0.0;           ///< Mahalanobis distance from the others' mean
+  double p = 1.0;                  ///< probability of such a distance for a sound unit
+  bool odd = false;                ///< beyond what sound units would show
+  Eigen::Index coordinate = 0;     ///< in which it is furthest off
+  double standard_deviations = 0;  ///< by how much, of the spread and the estimate's error together, signed
+};
+
+/// Which units of a fleet are odd, and how the others spread.
+struct OddUnits {
+  std::vector<Standing> units;  ///< as given
+  MixedEffects sound;           ///< of the units that are not odd
+};
+
+namespace detail {
+
+/// The middle of a sample that is not empty.
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The units nearest to the coordinates' medians: a core that up to two fifths of odd units cannot pull away.
+inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
+  const Eigen::Index k = units.front().at.size();
+  std::vector<double> far(units.size(), 0.0);
+  for (Eigen::Index c = 0; c < k; ++c) {
+    std::vector<double> values, errors;
+    for (const Estimate& one : units) {
+      values.push_back(one.at[c]);
+      errors.push_back(one.covariance(c, c));
+    }
+    const double middle = median(values), error = median(errors);
+    for (double& one : values) one = std::abs(one - middle);
+    constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
+    const double scale = std::max(normal * median(values), 1e-12 * (1.0 + std::abs(middle)));
+    const double between = std::max(scale * scale - error, 0.0);
+    for (std::size_t i = 0; i < units.size(); ++i)
+      far[i] =
+          std::max(far[i], std::abs(units[i].at[c] - middle) / std::sqrt(between + units[i].covariance(c, c) +
+                                                                         1e-24 * (1.0 + middle * middle)));
+  }
+  const std::size_t least =
+      std::max<std::size_t>((units.size() * 3) / 5, std::min<std::size_t>(units.size(), 4));
+  std::vector<double> sorted = far;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(least - 1), sorted.end());
+  constexpr double plain =
+      3.5;  // median absolute deviations' worth: nobody doubts these (Iglewicz & Hoaglin 1993)
+  const double limit = std::max(sorted[least - 1], plain);
+  std::vector<bool> core(units.size());
+  for (std::size_t i = 0; i < units.size(); ++i) core[i] = far[i] <= limit;
+  return core;
+}
+
+}  // namespace detail
+
+/// Finds the odd units of a fleet so that a sound fleet has one with a probability of at most `false_odd`.
+///
+/// Each unit is held against the others without it: its distance from their mean, in their spread and its own error,
+/// follows Hotelling's T^2, with as many degrees of freedom as their spread is known to. A core around the medians
+/// decides first who the others are; then those who are within the limit, until nothing changes. The limit is
+/// Bonferroni's: the probability over the number of units. What is tested is the departure from a normal spread in the
+/// coordinates given; a spread with heavier tails has more odd units.
+/// @param units      estimates of one size; with fewer than size + 4 nobody is odd
+/// @param false_odd  0..1
+inline OddUnits find_odd_units(const std::vector<Estimate>& units, double false_odd = 0.01) {
+  OddUnits result;
+  result.units.resize(units.size());
+  if (units.empty()) return result;
+  const Eigen::Index k = units.front().at.size();
+  if (units.size() < static_cast<std::size_t>(k) + 4) {
+    result.sound = fit_mixed_effects(units);
+    return result;
+  }
+  const double limit = false_odd / static_cast<double>(units.size());
+  std::vector<bool> kept = detail::core_of(units);
+  constexpr int rounds = 12;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Estimate> others;
+    for (std::size_t i = 0; i < units.size(); ++i)
+      if (kept[i]) others.push_back(units[i]);
+    const MixedEffects& fleet = result.sound = fit_mixed_effects(others);
+    const double count = static_cast<double>(others.size());
+    const Eigen::MatrixXd& between = fleet.between;
+    const auto weight_of = [&](const Estimate& one) -> Eigen::MatrixXd {
+      return (one.covariance + between).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    };
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(k);
+    for (const Estimate& one : others)
+      for (Eigen::Index c = 0; c < k; ++c)
+        diagonal[c] +=
+            1.0 / ((one.covariance(c, c) + between(c, c)) * (one.covariance(c, c) + between(c, c)));
+    std::vector<bool> next(units.size());
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const Estimate& one = units[i];
+      Eigen::VectorXd mean = fleet.mean;
+      Eigen::MatrixXd error = fleet.mean_covariance, spread = between;
+      Eigen::VectorXd information = diagonal;
+      if (kept[i]) {
+        // Without itself: its part of the mean, and of the last iteration of the spread, is taken out.
+        const Eigen::MatrixXd weight = weight_of(one);
+        const Eigen::VectorXd pull = between * weight * (one.at - fleet.mean);
+        const Eigen::MatrixXd own = between -
+                                    between * (weight - weight * fleet.mean_covariance * weight) * between +
+                                    pull * pull.transpose();
+        spread = (count * between - own) / (count - 1.0);
+        const Eigen::MatrixXd rest = fleet.mean_covariance.inverse() - weight;
+        error = rest.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+        mean = error * (fleet.mean_covariance.ldlt().solve(fleet.mean) - weight * one.at);
+        for (Eigen::Index c = 0; c < k; ++c) {
+          const double whole = one.covariance(c, c) + between(c, c);
+          information[c] -= 1.0 / (whole * whole);
+        }
+      }
+      const Eigen::VectorXd away = one.at - mean;
+      const Eigen::MatrixXd whole = one.covariance + spread + error;
+      Standing& standing = result.units[i];
+      const double square = std::max(0.0, away.dot(whole.ldlt().solve(away)));
+      standing.distance = std::sqrt(square);
+      // Satterthwaite's degrees of freedom of the variance it is held against.
+      double degrees = 0.0;
+      for (Eigen::Index c = 0; c < k; ++c) {
+        const double own = one.covariance(c, c) + spread(c, c);
+        degrees += own * own * information[c] / static_cast<double>(k);
+      }
+      degrees -= 1.0;
+      const double within = std::max(degrees - static_cast<double>(k) + 1.0, 0.5);
+      standing.p = f_tail(square * within / (static_cast<double>(k) * std::max(degrees, 1.0)),
+                          static_cast<double>(k), within);
+      standing.odd = standing.p < limit;
+      standing.standard_deviations = 0.0;
+      for (Eigen::Index c = 0; c < k; ++c) {
+        const double own = away[c] / std::sqrt(whole(c, c));
+        if (std::abs(own) > std::abs(standing.standard_deviations)) {
+          standing.standard_deviations = own;
+          standing.coordinate = c;
+        }
+      }
+      next[i] = !standing.odd;
+    }
+    const auto sound = static_cast<std::size_t>(std::count(next.begin(), next.end(), true));
+    if (next == kept || sound < static_cast<std::size_t>(k) + 4) break;
+    kept = std::move(next);
+  }
+  return result;
+}
+
+}  // namespace thermopower::gap::pool
