@@ -488,13 +488,15 @@ int run(int count, char** values) {
       "fleet", "diagnose every log of a table, one process each; the same command resumes");
   many->add_option(
           "manifest", fleet.manifest,
-          "the logs (CSV): log, model, and where needed unit, heldout, map; paths from its folder on")
+          "the logs (CSV): log, model, and where needed unit, time, heldout, map; paths from its folder on")
       ->required();
-  many->add_option("--out", fleet.out, "folder of the results: reports/ and logs.csv")->required();
+  many->add_option("--out", fleet.out, "folder of the results: reports/, fleet.html, logs.csv and others")
+      ->required();
   many->add_option("--workers", fleet.workers,
                    "processes at a time; 0: one per core. The results do not depend on it")
       ->check(CLI::Range(0u, 1024u))
       ->capture_default_str();
+  many->add_flag("!--no-pages", fleet.pages, "write no page (HTML) for each log");
   many->add_option("--column", arguments.columns, "as for diagnose, of every log");
   many->add_option("--without", arguments.without, "as for diagnose");
   CLI::Option* const horizon =
