@@ -52,5 +52,5 @@ TEST_CASE("what holds a value per signal has as many as the plant has signals") 
   CHECK(own.count() == 2);
   CHECK(own[static_cast<Signal>(0)] == 1.5);
   CHECK(own[static_cast<Signal>(1)] == 3.0);
-  CHECK(PerSignal<int>().count() == signal_count);
+  CHECK(PerSignal<int>().count() == actuator_signal_count);
 }

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/open_name.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -22,10 +23,22 @@ enum class Signal : int {
 };
 
 /// Number of signals of our own plants.
-inline constexpr int signal_count = 4;
+inline constexpr int actuator_signal_count = 4;
+
+/// Most signals that a plant may have, a user's own included: three joints have six. Arrays by signal are this long;
+/// the places that a plant does not use stay empty.
+inline constexpr int signal_count = 8;
+
+/// A value for each place of an array by signal, all alike.
+template <class T>
+std::array<T, signal_count> for_each_signal(T value) {
+  std::array<T, signal_count> all;
+  all.fill(value);
+  return all;
+}
 
 /// Number of signals in the closed set.
-inline constexpr int count_of(Signal) { return signal_count; }
+inline constexpr int count_of(Signal) { return actuator_signal_count; }
 
 /// Column name of a signal of our own plants.
 inline const char* to_string(Signal signal) {
@@ -47,7 +60,8 @@ template <class T>
 class PerSignal {
 public:
   /// For the signals of our own plants, all values alike.
-  PerSignal(const T& value = T()) : PerSignal(signal_count, value) {}  // NOLINT(google-explicit-constructor)
+  PerSignal(const T& value = T())
+      : PerSignal(actuator_signal_count, value) {}  // NOLINT(google-explicit-constructor)
   /// For a plant of `count` signals, >= 0, all values alike.
   PerSignal(int count, const T& value) : values_(static_cast<std::size_t>(count), value) {}
 

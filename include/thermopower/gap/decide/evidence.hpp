@@ -16,9 +16,11 @@ namespace thermopower::gap {
 
 /// How much the samples of each signal count.
 struct Weight {
-  std::array<double, signal_count> correlation{1, 1, 1, 1};  ///< training samples that count as one
-  std::array<double, signal_count> held_out{1, 1, 1, 1};     ///< held-out samples that count as one
-  double travel_rad = 1e300;                                 ///< range of the angle in the training data
+  std::array<double, signal_count> correlation =
+      plant::for_each_signal(1.0);  ///< training samples that count as one
+  std::array<double, signal_count> held_out =
+      plant::for_each_signal(1.0);  ///< held-out samples that count as one
+  double travel_rad = 1e300;        ///< range of the angle in the training data
 };
 
 /// How many residuals of a candidate count as one, signal by signal, in the data it was fitted to.

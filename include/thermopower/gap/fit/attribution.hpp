@@ -142,7 +142,7 @@ public:
     std::array<std::vector<double>, signal_count> result;
     problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, starts, false,
                      [&](std::size_t, const FitProblem::Residuals& one) {
-                       std::array<bool, signal_count> first{true, true, true, true};
+                       std::array<bool, signal_count> first = plant::for_each_signal(true);
                        for (Eigen::Index i = 0; i < one.value.size(); ++i) {
                          const auto at = static_cast<std::size_t>(one.signal[static_cast<std::size_t>(i)]);
                          result[at].push_back(one.value[i]);

@@ -18,11 +18,11 @@ namespace thermopower::gap {
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
 struct FitProblem {
-  const Model* model = nullptr;                        ///< the baseline, not owned
-  const Catalogue* catalogue = nullptr;                ///< that knows the model's own effects, not owned
-  std::vector<Segment> segments;                       ///< simulated one after the other
-  std::array<double, signal_count> sigma{1, 1, 1, 1};  ///< noise of each signal
-  double correlation = 1.0;                            ///< samples that count as one, 1 or more
+  const Model* model = nullptr;          ///< the baseline, not owned
+  const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
+  std::vector<Segment> segments;         ///< simulated one after the other
+  std::array<double, signal_count> sigma = plant::for_each_signal(1.0);  ///< noise of each signal
+  double correlation = 1.0;  ///< samples that count as one, 1 or more
 
   /// Residuals of one segment in units of the noise, with their derivatives.
   struct Residuals {

@@ -143,7 +143,7 @@ private:
 inline Localisation localise(const Model& model, const std::vector<Recording>& recordings,
                              const LocalisationOptions& options, const Catalogue& catalogue) {
   const RecordedBalances balances(model, recordings, catalogue);
-  return localise_balances(balances.sources(), signal_count, options);
+  return localise_balances(balances.sources(), actuator_signal_count, options);
 }
 
 /// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented
@@ -153,7 +153,7 @@ inline Localisation localise(const Model& model, const std::vector<Recording>& r
 inline void draw_effect(const Model& baseline, const std::vector<Recording>& simulated,
                         const Catalogue& catalogue, std::vector<MissingQuantity>& quantities) {
   const RecordedBalances balances(baseline, simulated, catalogue);
-  draw_supplied(balances.sources(), signal_count, quantities);
+  draw_supplied(balances.sources(), actuator_signal_count, quantities);
 }
 
 }  // namespace thermopower::gap::engine

@@ -148,8 +148,8 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
     const RecordedBalances balances(model, {part.recording}, catalogue);
     std::vector<detail::Holding> list;
     for (const plant::BalanceSource& source : balances.sources()) {
-      detail::Holding one =
-          detail::holding_of(source.make(plant::ReadingOffsets(signal_count, 0.0)), options.slack, limit);
+      detail::Holding one = detail::holding_of(
+          source.make(plant::ReadingOffsets(plant::actuator_signal_count, 0.0)), options.slack, limit);
       const auto same = std::find_if(list.begin(), list.end(), [&](const detail::Holding& other) {
         return other.quantity == one.quantity;
       });
