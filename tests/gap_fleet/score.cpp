@@ -60,8 +60,12 @@ int main(int argc, char** argv) {
   int false_odd = 0, false_drift = 0, false_broken = 0, sound = 0, steady_units = 0;
   std::map<std::string, int> confused;
   std::set<std::string> seen;
+  std::set<std::string> broken;
+  for (const Json& one : labels.value("broken", Json::array())) broken.insert(one.get<std::string>());
   for (const Json& unit : fleet.at("units")) {
     const std::string name = unit.at("unit");
+    // Only units with a single log have a broken one: what is left of such a unit is neither sound nor odd.
+    if (broken.count("logs/" + name + "_1.csv") > 0) continue;
     const Json& label = labels.at("units").at(name);
     seen.insert(name);
     const bool odd = label.at("odd"), drifts = label.at("drift").get<double>() != 0.0;
@@ -125,8 +129,6 @@ int main(int argc, char** argv) {
   }
   std::set<std::string> bad;
   for (const Json& one : fleet.at("bad_logs")) bad.insert(one.at("log").get<std::string>());
-  std::set<std::string> broken;
-  for (const Json& one : labels.value("broken", Json::array())) broken.insert(one.get<std::string>());
   for (const std::string& one : broken)
     broken_found.all += 1.0, broken_found.right += bad.count(one) > 0 ? 1.0 : 0.0;
   for (const std::string& one : bad) false_broken += broken.count(one) == 0;
