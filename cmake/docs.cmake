@@ -9,9 +9,9 @@ find_program(THERMOPOWER_NODE NAMES node nodejs)
 find_path(THERMOPOWER_KATEX katex.min.css PATHS /usr/share/javascript/katex)
 mark_as_advanced(THERMOPOWER_DOXYGEN_AWESOME THERMOPOWER_NODE THERMOPOWER_KATEX)
 
-set(doxygen_css)
+set(doxygen_css "${PROJECT_SOURCE_DIR}/docs/pages.css")
 if(THERMOPOWER_DOXYGEN_AWESOME)
-  set(doxygen_css "${THERMOPOWER_DOXYGEN_AWESOME}/doxygen-awesome.css ${THERMOPOWER_DOXYGEN_AWESOME}/doxygen-awesome-sidebar-only.css")
+  set(doxygen_css "${THERMOPOWER_DOXYGEN_AWESOME}/doxygen-awesome.css ${THERMOPOWER_DOXYGEN_AWESOME}/doxygen-awesome-sidebar-only.css ${doxygen_css}")
 endif()
 set(typeset)
 if(THERMOPOWER_NODE AND THERMOPOWER_KATEX)
@@ -24,16 +24,44 @@ file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
 execute_process(COMMAND ${DOXYGEN_EXECUTABLE} -w html header.html footer.html style.css WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/docs
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(READ ${PROJECT_BINARY_DIR}/docs/header.html header)
-string(REPLACE "$mathjax" "" header "${header}")
+set(into_head "")
+set(full_text)
+if(THERMOPOWER_NODE)
+  file(READ ${PROJECT_SOURCE_DIR}/cmake/search_header.html into_head)
+  set(full_text COMMAND ${THERMOPOWER_NODE} ${PROJECT_SOURCE_DIR}/cmake/full_text.cjs ${PROJECT_BINARY_DIR}/docs/html)
+endif()
+string(REPLACE "$mathjax" "${into_head}" header "${header}")
 file(WRITE ${PROJECT_BINARY_DIR}/docs/header.html "${header}")
 if(DOXYGEN_DOT_FOUND)
   set(doxygen_dot YES)
 else()
   set(doxygen_dot NO)
 endif()
+# The page "Try it here": its program is optional, the page says so where it is missing.
+include(cmake/web.cmake)
+set(web_files)
+if(thermopower_web_script)
+  set(web_files COMMAND ${CMAKE_COMMAND} -E copy ${thermopower_web_script} ${PROJECT_BINARY_DIR}/docs/html)
+endif()
 configure_file(${PROJECT_SOURCE_DIR}/docs/Doxyfile.in ${PROJECT_BINARY_DIR}/docs/Doxyfile @ONLY)
 
 add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/docs/html
                        COMMAND Doxygen::doxygen ${PROJECT_BINARY_DIR}/docs/Doxyfile ${typeset}
+                       COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/tools/web/try_it_here.js
+                               ${PROJECT_SOURCE_DIR}/tools/docs-search/find.js ${PROJECT_BINARY_DIR}/docs/html
+                       ${full_text}
+                       ${web_files}
                        COMMAND ${CMAKE_COMMAND} -DPAGES=${PROJECT_BINARY_DIR}/docs/html -P ${PROJECT_SOURCE_DIR}/cmake/docs_requests.cmake
                        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMENT "Documentation in ${PROJECT_BINARY_DIR}/docs/html" VERBATIM)
+if(thermopower_web_script)
+  add_dependencies(docs web)
+endif()
+
+# cmake --build <build> --target docs_in_browser: the pages on a telephone and on a desk, and "Try it here" tried.
+find_program(THERMOPOWER_CHROMIUM NAMES chromium chromium-browser google-chrome)
+mark_as_advanced(THERMOPOWER_CHROMIUM)
+if(THERMOPOWER_CHROMIUM AND THERMOPOWER_NODE)
+  add_custom_target(docs_in_browser COMMAND ${THERMOPOWER_NODE} ${PROJECT_SOURCE_DIR}/tests/docs/in_browser.cjs ${THERMOPOWER_CHROMIUM}
+                                            ${PROJECT_BINARY_DIR}/docs/html VERBATIM USES_TERMINAL)
+  add_dependencies(docs_in_browser docs)
+endif()

@@ -9,10 +9,7 @@ const fs = require('fs'), path = require('path');
 const [pages, from] = process.argv.slice(2);
 const katex = require(path.resolve(from, 'katex.js'));
 
-const style = `<link href="katex/katex.min.css" rel="stylesheet" type="text/css"/>
-<style>.katex{font-size:1.08em}.katex-display{margin:.6em 0;padding:.2em 0;overflow-x:auto;overflow-y:hidden}
-.formulaDsp{text-align:left;margin:.2em 0}td .katex{white-space:nowrap}</style>
-`;
+const style = '<link href="katex/katex.min.css" rel="stylesheet" type="text/css"/>\n';
 const plain = text => text.replace(/<br ?\/?>/g, '\n').replace(/&lt;/g, '<').replace(/&gt;/g, '>').replace(/&quot;/g, '"')
   .replace(/&#39;/g, "'").replace(/&#160;|&nbsp;/g, ' ').replace(/&amp;/g, '&');
 let formulas = 0, wrong = 0;

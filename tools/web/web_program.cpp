@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The diagnosis for a page: files stand in the memory of the program, the answer is JSON. The page's script is
+// try_it_here.js, which runs this in a worker; neither asks for anything from elsewhere.
+#include <thermopower/thermopower.hpp>
+
+#include <thermopower/gap/diagnose.hpp>
+#include <thermopower/io/model_file.hpp>
+#include <thermopower/io/recording_file.hpp>
+#include <thermopower/io/report_html.hpp>
+#include <thermopower/io/report_json.hpp>
+#include <thermopower/io/summary.hpp>
+#include <thermopower/gap/data/splitting.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace tp = thermopower;
+namespace gap = thermopower::gap;
+namespace io = thermopower::io;
+
+// A motor on the bench, as in examples/11_known_gap: its winding is copper.
+std::string example_csv(int rows, double tempco_per_K, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> level(0, 12), length(4, 24);
+  std::normal_distribution<double> thermometer_K(0.0, 0.1), ammeter_A(0.0, 0.004);
+  const tp::CurrentModel<tp::OhmicCurrent<double>> winding({12.0, tempco_per_K, 25.0});
+  tp::ThermalModel<tp::HeatCapacityHeating<double>, tp::NewtonCooling<double>, tp::ExactStep> motor(
+      {{60.0}, {0.11}}, 24.0);
+  std::string csv = "t_s,power_param,supply_V,ambient_C,current_A,motor_C\n";
+  int power_param = 0, left = 2;
+  for (int row = 0; row < rows; ++row) {
+    if (left-- == 0) {
+      power_param = 20 * level(random);
+      left = length(random);
+    }
+    const auto drawn = winding.at_power(power_param, 12.0, motor.hottest_C());
+    char line[96];
+    std::snprintf(line, sizeof line, "%d,%d,12,24,%.4f,%.2f\n", 5 * row, power_param,
+                  drawn.current_A + ammeter_A(random), motor.hottest_C() + thermometer_K(random));
+    csv += line;
+    motor.step({drawn.winding_power_W, drawn.v_rms_V, {24.0, 0.0}}, 5.0);
+  }
+  return csv;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> list;
+  for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
+    end = std::min(text.find('\n', at), text.size());
+    if (end > at) list.push_back(text.substr(at, end - at));
+  }
+  return list;
+}
+
+nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vector<std::string>& training,
+                                 const std::vector<std::string>& held_out_paths) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  const gap::Model model = io::read_model(model_path, catalogue);
+  std::vector<gap::Finding> findings;
+  std::size_t rows = 0;
+  const auto read_all = [&](const std::vector<std::string>& paths) {
+    std::vector<gap::Recording> all;
+    for (const std::string& path : paths) {
+      io::RecordingFile file = io::read_recording(path);
+      findings.insert(findings.end(), file.findings.begin(), file.findings.end());
+      rows += static_cast<std::size_t>(file.recording.t_s.size());
+      all.push_back(std::move(file.recording));
+    }
+    return all;
+  };
+  std::vector<gap::Recording> recordings = read_all(training), held_out = read_all(held_out_paths);
+  gap::Options options;  // one thread: what runs in a page has no other
+  if (held_out.empty())
+    for (gap::Recording& one : recordings) {
+      auto [first, last] = gap::split(one, options.held_out_fraction);
+      one = std::move(first);
+      held_out.push_back(std::move(last));
+    }
+  const auto since = std::chrono::steady_clock::now();
+  gap::Diagnosis diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+  diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
+  return {{"verdict", to_string(diagnosis.verdict)},
+          {"rows", rows},
+          {"seconds", seconds},
+          {"summary", io::summary(diagnosis)},
+          {"report", io::report_json(diagnosis)},
+          {"html", io::report_html(diagnosis, model.name, catalogue.list(), held_out)}};
+}
+
+std::string answer;
+
+}  // namespace
+
+extern "C" {
+
+/// The example's recording as CSV.
+const char* thermopower_example(int rows, double tempco_per_K, unsigned seed) {
+  answer = example_csv(rows, tempco_per_K, seed);
+  return answer.c_str();
+}
+
+/// @param training, held_out  paths, one a line; without held-out ones the last 30 % of each recording are
+/// @return JSON: `verdict`, `rows`, `seconds`, `summary`, `report` and `html`, or `error`
+const char* thermopower_diagnose(const char* model, const char* training, const char* held_out) {
+  nlohmann::ordered_json result;
+  try {
+    result = diagnosed(model, lines(training), lines(held_out));
+  } catch (const std::exception& problem) {
+    result = {{"error", problem.what()}};
+  }
+  answer = result.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return answer.c_str();
+}
+
+}  // extern "C"
