@@ -75,7 +75,13 @@ void receive() {
     const uint32_t now_us = micros();
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), now_us); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
-      if (telemetry == nullptr) continue;  // a CONFIRM; whether it obeyed is in the next telemetry
+      if (telemetry == nullptr) {
+        // Asked of a board that reports no power; whether another obeyed is in the next telemetry.
+        const uint8_t id = codec.frame().id;
+        if (id == sbgc::command::confirm) gimbal.confirmed();
+        else if (id == sbgc::command::error) gimbal.refused();
+        continue;
+      }
       const fixed::Ticks ticks = step_clock.elapsed(now_us);
       gimbal.step(*telemetry, ticks);
       send_command();

@@ -247,3 +247,35 @@ TEST_CASE("the answer comes in time in the cycle in which all three axes turn ou
   CHECK(surprises > 10);  // or the test asks for nothing
   CHECK(slowest <= 4500);
 }
+
+TEST_CASE(
+    "a board that reports no power is believed when it confirms, and not when it answers ERROR or nothing") {
+  const std::string program = GENERATE("nano_gimbal.elf", "gimbal_controller.elf");
+  const bool says_error = GENERATE(true, false);
+  INFO(program << (says_error ? ", ERROR" : ", no answer"));
+  Rig rig = make_rig(program);
+  rig.board().faults.hides_power = true;
+  rig.run_until(10);
+  REQUIRE(is_demand(rig.updates().back().power));
+  REQUIRE(rig.board().counters().confirmations > 100);
+
+  auto& fault = says_error ? rig.board().faults.refuses_with_error : rig.board().faults.ignores_commands;
+  fault = true;
+  rig.run_until(10.45);
+  CHECK(!is_least(rig.updates().back().power));  // half a second of it is tolerated
+  rig.run_until(11);
+  CHECK(is_least(rig.updates().back().power));
+  CHECK((rig.board().counters().errors > 0) == says_error);
+  REQUIRE(rig.board().power(0) == 250);
+  // All the while the board holds 250 on roll, which takes it above 60 degC: a program that believed the 1 it
+  // sent would take roll for cool, and give it the power back within seconds.
+  rig.run_until(130);
+  CHECK(is_least(rig.updates().back().power));
+  fault = false;
+  const std::size_t before = rig.updates().size();
+  rig.run_until(140);
+  const auto& updates = rig.updates();
+  REQUIRE(updates.size() > before + 250);
+  for (std::size_t index = before + 2; index < updates.size(); ++index) REQUIRE(updates[index].power[0] == 1);
+  CHECK(updates.back().power[1] == 75);  // pitch was held at 75, which it bears
+}

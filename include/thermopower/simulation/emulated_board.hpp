@@ -34,6 +34,7 @@ struct BoardCounters {
   std::uint64_t telemetry_sent = 0;        ///< REALTIME_DATA answers, asked for or streamed.
   std::uint64_t variables_set = 0;         ///< SET_ADJ_VARS_VAL commands obeyed.
   std::uint64_t confirmations = 0;         ///< CONFIRM answers.
+  std::uint64_t errors = 0;                ///< ERROR answers.
   std::uint64_t other_frames = 0;          ///< Frames it has no answer for.
   std::uint64_t refused_variables = 0;     ///< Adjustable variables that do not exist, or out of 0 .. 255.
   double shortest_request_gap_us = 1e300;  ///< Between the ends of two requests for telemetry.
@@ -165,7 +166,8 @@ private:
     last_telemetry_ = measured(truth_, faults);
     last_telemetry_.extended = id == sbgc::command::realtime_data_4;
     last_telemetry_.flags = motors_on_ ? 1 : 0;
-    for (int axis = 0; axis < 3; ++axis) last_telemetry_.motor_power[axis] = power(axis);
+    for (int axis = 0; axis < 3; ++axis)
+      last_telemetry_.motor_power[axis] = faults.hides_power ? 0 : power(axis);
     ++counters_.telemetry_sent;
     send(last_telemetry_, now_us, true);
   }
@@ -173,6 +175,11 @@ private:
   void set_variables(const sbgc::Frame& frame, double now_us) {
     sbgc::AdjVarsView vars;
     if (!vars.read(frame)) return static_cast<void>(++counters_.other_frames);
+    if (faults.ignores_commands) return;
+    if (faults.refuses_with_error) {
+      ++counters_.errors;
+      return send(sbgc::Error(), now_us, false);
+    }
     for (std::uint8_t index = 0; index < vars.count(); ++index) {
       const sbgc::AdjVar var = vars[index];
       if (faults.refuses_power && var.id >= sbgc::variable::power_roll) continue;

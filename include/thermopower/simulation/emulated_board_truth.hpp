@@ -31,9 +31,12 @@ struct BoardFaults {
   bool is_frame_imu_missing = false;  ///< No frame IMU: its temperature and angles read 0, as on the real
                                       ///< board.
   bool refuses_power = false;         ///< It answers CONFIRM to SET_ADJ_VARS_VAL and leaves POWER as it is.
-  double lost_byte_rate = 0;          ///< Probability that a sent byte vanishes, 0 .. 1.
-  double changed_byte_rate = 0;       ///< Probability that a sent byte arrives with one bit flipped, 0 .. 1.
-  double noise_byte_rate = 0;         ///< Probability that a random byte follows a sent one, 0 .. 1.
+  bool refuses_with_error = false;  ///< It answers ERROR to SET_ADJ_VARS_VAL and leaves everything as it is.
+  bool ignores_commands = false;  ///< It answers nothing to SET_ADJ_VARS_VAL and leaves everything as it is.
+  bool hides_power = false;       ///< Its telemetry reads 0 where POWER would be.
+  double lost_byte_rate = 0;      ///< Probability that a sent byte vanishes, 0 .. 1.
+  double changed_byte_rate = 0;   ///< Probability that a sent byte arrives with one bit flipped, 0 .. 1.
+  double noise_byte_rate = 0;     ///< Probability that a random byte follows a sent one, 0 .. 1.
   double angle_scale = 1;    ///< Reported angles are the true ones times this (a wrong setting on the board).
   double battery_scale = 1;  ///< Reported battery voltage is the true one times this.
   double temperature_offset_K = 0;  ///< Added to both reported temperatures.
