@@ -6,7 +6,6 @@
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
-#include <limits>
 
 // Bodies of more nodes than their simulation knows, stepped here apart from the library's equations.
 
@@ -70,13 +69,6 @@ Diagnosis diagnosed(const Model& model, const Body& body, int effects_at_once = 
   return diagnose(model, {record(body, 2400, 3)}, {record(body, 1500, 8)}, options);
 }
 
-double parameter_of(const Diagnosis& diagnosis, const std::string& name) {
-  for (const Cause& cause : diagnosis.cause)
-    for (const ParameterEstimate& one : cause.parameters)
-      if (one.name == name) return one.value;
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 TEST_CASE("behind a winding and a surface that the simulation knows, the third mass is found too") {
@@ -93,7 +85,7 @@ TEST_CASE("behind a winding and a surface that the simulation knows, the third m
   INFO(diagnosis.reason);
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause.front().effect == "third_thermal_mass");
-  CHECK(parameter_of(diagnosis, "coupling") == Approx(0.08).epsilon(0.1));
+  CHECK(test::parameter_of(diagnosis, "coupling") == Approx(0.08).epsilon(0.1));
 }
 
 TEST_CASE("air that warms up around the body is found") {
@@ -105,7 +97,7 @@ TEST_CASE("air that warms up around the body is found") {
   // A box and a mount differ in where the heat goes in the end; here both are told apart by their times.
   REQUIRE_FALSE(diagnosis.cause.empty());
   CHECK(diagnosis.cause.front().effect == "enclosure");
-  CHECK(parameter_of(diagnosis, "W_per_K") == Approx(0.2).epsilon(0.1));
+  CHECK(test::parameter_of(diagnosis, "W_per_K") == Approx(0.2).epsilon(0.1));
 }
 
 TEST_CASE("two nodes are not taken for three") {

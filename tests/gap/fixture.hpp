@@ -229,4 +229,14 @@ inline Recording recorded(const Trial& trial, std::uint64_t seed) {
   return recording;
 }
 
+/// What is fitted to these recordings: windows of a second, and the noise that they were given.
+inline FitProblem problem_of(const Model& model, const std::vector<Inputs>& inputs) {
+  FitProblem problem;
+  problem.model = &model;
+  problem.catalogue = &standard_catalogue();
+  problem.segments = cut(inputs, 1.0, plant_of(model));
+  problem.sigma = {0.002, 0.05, 0.02, 0.15};
+  return problem;
+}
+
 }  // namespace engine_fixture

@@ -6,7 +6,6 @@
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
-#include <limits>
 
 // Bristles, the rise of friction near standstill and gears with play, stepped here apart from the library's equations: each is found, and
 // none is taken for its neighbour.
@@ -79,13 +78,6 @@ Diagnosis diagnosed(const Joint& joint) {
   return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
 }
 
-double parameter_of(const Diagnosis& diagnosis, const std::string& name) {
-  for (const Cause& cause : diagnosis.cause)
-    for (const ParameterEstimate& one : cause.parameters)
-      if (one.name == name) return one.value;
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 TEST_CASE("friction that bends before it slides is told from friction that does not") {
@@ -96,8 +88,8 @@ TEST_CASE("friction that bends before it slides is told from friction that does 
   INFO(bent.reason);
   REQUIRE(bent.cause.size() == 1);
   CHECK(bent.cause.front().effect == "presliding_friction");
-  CHECK(parameter_of(bent, "Nm") == Approx(0.006).epsilon(0.03));
-  CHECK(parameter_of(bent, "bend_rad") == Approx(0.05).epsilon(0.05));
+  CHECK(test::parameter_of(bent, "Nm") == Approx(0.006).epsilon(0.03));
+  CHECK(test::parameter_of(bent, "bend_rad") == Approx(0.05).epsilon(0.05));
 
   Joint dry;
   dry.coulomb_Nm = 0.006;
@@ -118,7 +110,7 @@ TEST_CASE("the rise of friction near standstill is found with its exponent") {
     INFO(exponent << ": " << diagnosis.reason);
     REQUIRE(diagnosis.cause.size() == 1);
     CHECK(diagnosis.cause.front().effect == "stribeck_friction");
-    CHECK(parameter_of(diagnosis, "exponent") == Approx(exponent).epsilon(0.15));
+    CHECK(test::parameter_of(diagnosis, "exponent") == Approx(exponent).epsilon(0.15));
   }
 }
 
@@ -130,8 +122,8 @@ TEST_CASE("play between motor and load is told from a spring between them") {
   INFO(diagnosis.reason);
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause.front().effect == "backlash");
-  CHECK(parameter_of(diagnosis, "gap_rad") == Approx(0.03).epsilon(0.1));
-  CHECK(parameter_of(diagnosis, "far_share") == Approx(0.6).epsilon(0.1));
+  CHECK(test::parameter_of(diagnosis, "gap_rad") == Approx(0.03).epsilon(0.1));
+  CHECK(test::parameter_of(diagnosis, "far_share") == Approx(0.6).epsilon(0.1));
 
   joint.gap_rad = 0.0;
   const Diagnosis sprung = diagnosed(joint);

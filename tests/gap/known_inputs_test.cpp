@@ -150,13 +150,6 @@ bool names_or_lists(const Diagnosis& diagnosis, const std::string& id) {
   return names(diagnosis, id);
 }
 
-double parameter_of(const Diagnosis& diagnosis, const std::string& name) {
-  for (const Cause& cause : diagnosis.cause)
-    for (const ParameterEstimate& one : cause.parameters)
-      if (one.name == name) return one.value;
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 TEST_CASE("an axis at a voltage follows its law, back-EMF included") {
@@ -173,7 +166,7 @@ TEST_CASE("what an axis at a voltage lacks is found") {
   INFO(friction.reason);
   REQUIRE(friction.cause.size() == 1);
   CHECK(friction.cause.front().effect == "coulomb_friction");
-  CHECK(parameter_of(friction, "Nm") == Approx(0.002).epsilon(0.05));
+  CHECK(test::parameter_of(friction, "Nm") == Approx(0.002).epsilon(0.05));
   REQUIRE_FALSE(friction.where.empty());
   CHECK(friction.where.front().submodel == Submodel::mechanical_friction);
 
@@ -183,7 +176,7 @@ TEST_CASE("what an axis at a voltage lacks is found") {
   const Diagnosis lag = diagnosed(brushed_model(), record(inductive, 1500, 3), record(inductive, 900, 5));
   INFO(lag.reason);
   CHECK(names(lag, "drive_lag"));
-  CHECK(parameter_of(lag, "lag_s") == Approx(0.03).epsilon(0.05));
+  CHECK(test::parameter_of(lag, "lag_s") == Approx(0.03).epsilon(0.05));
 }
 
 TEST_CASE("a motor's wrong constant is told from the others as far as its equation allows") {
@@ -243,7 +236,7 @@ TEST_CASE("a recorded heat stands in the place of the winding's") {
   INFO(two.reason);
   REQUIRE(two.cause.size() == 1);
   CHECK(two.cause.front().effect == "second_thermal_mass");
-  CHECK(parameter_of(two, "winding_share") == Approx(0.25).epsilon(0.05));
+  CHECK(test::parameter_of(two, "winding_share") == Approx(0.25).epsilon(0.05));
   REQUIRE_FALSE(two.where.empty());
   CHECK(two.where.front().submodel == Submodel::thermal_storage);
 }

@@ -2,11 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace test {
@@ -28,6 +30,14 @@ public:
 private:
   std::uint64_t state_;
 };
+
+/// What a diagnosis made of a parameter of the causes it names; NaN where none of them has it.
+inline double parameter_of(const thermopower::gap::Diagnosis& diagnosis, const std::string& name) {
+  for (const thermopower::gap::Cause& cause : diagnosis.cause)
+    for (const thermopower::gap::ParameterEstimate& one : cause.parameters)
+      if (one.name == name) return one.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 inline thermopower::gap::Model bench_model() {
   thermopower::gap::Model model;

@@ -18,15 +18,6 @@ using namespace engine_fixture;
 
 namespace {
 
-FitProblem problem_of(const Model& model, const std::vector<Inputs>& inputs) {
-  FitProblem problem;
-  problem.model = &model;
-  problem.catalogue = &standard_catalogue();
-  problem.segments = cut(inputs, 1.0, plant_of(model));
-  problem.sigma = {0.002, 0.05, 0.02, 0.15};
-  return problem;
-}
-
 Eigen::VectorXd coordinates_of(const Trial& trial, const std::vector<Coordinate>& list) {
   Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
   for (std::size_t i = 0; i < list.size(); ++i) {

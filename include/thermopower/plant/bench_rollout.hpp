@@ -391,19 +391,34 @@ private:
       settle(state, moved(state, middle, dt_s), dt_s);
       return;
     }
-    const int steps = static_cast<int>(std::ceil(stiffness / 0.6));
+    classical_steps(row, t_s, dt_s, static_cast<int>(std::ceil(stiffness / 0.6)), state);
+  }
+
+  /// An interval in so many steps of the classical Runge-Kutta rule.
+  void classical_steps(Eigen::Index row, double t_s, double dt_s, int steps,
+                       BenchState<Scalar>& state) const {
     const double h_s = dt_s / steps;
+    const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
+      return Scalar((a + 2.0 * (b + c) + d) * (1.0 / 6.0));
+    };
     for (int i = 0; i < steps; ++i) {
       const double now_s = t_s + i * h_s;
       const Slope k1 = slope(row, now_s, state);
       const Slope k2 = slope(row, now_s + 0.5 * h_s, moved(state, k1, 0.5 * h_s));
       const Slope k3 = slope(row, now_s + 0.5 * h_s, moved(state, k2, 0.5 * h_s));
       const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
-      const Slope mean{(k1.winding + 2.0 * (k2.winding + k3.winding) + k4.winding) * (1.0 / 6.0),
-                       (k1.surface + 2.0 * (k2.surface + k3.surface) + k4.surface) * (1.0 / 6.0),
-                       (k1.charge + 2.0 * (k2.charge + k3.charge) + k4.charge) * (1.0 / 6.0),
-                       {}};
-      settle(state, moved(state, mean, h_s), h_s);
+      Slope all{mean(k1.winding, k2.winding, k3.winding, k4.winding),
+                mean(k1.surface, k2.surface, k3.surface, k4.surface),
+                mean(k1.charge, k2.charge, k3.charge, k4.charge),
+                {}};
+      all.further.any = k1.further.any;
+      if (all.further.any) {
+        all.further.soaking_C =
+            mean(k1.further.soaking_C, k2.further.soaking_C, k3.further.soaking_C, k4.further.soaking_C);
+        all.further.enclosed_C =
+            mean(k1.further.enclosed_C, k2.further.enclosed_C, k3.further.enclosed_C, k4.further.enclosed_C);
+      }
+      settle(state, moved(state, all, h_s), h_s);
     }
   }
 
@@ -411,28 +426,8 @@ private:
   void further_steps(Eigen::Index row, double t_s, double dt_s, double stiffness,
                      BenchState<Scalar>& state) const {
     constexpr double most_steps = 200.0;  // an exchange that is faster still looks like none
-    const int steps = static_cast<int>(std::ceil(std::clamp(stiffness / 1.2, 1.0, most_steps)));
-    const double h_s = dt_s / steps;
-    for (int i = 0; i < steps; ++i) {
-      const double now_s = t_s + i * h_s;
-      const Slope k1 = slope(row, now_s, state);
-      const Slope k2 = slope(row, now_s + 0.5 * h_s, moved(state, k1, 0.5 * h_s));
-      const Slope k3 = slope(row, now_s + 0.5 * h_s, moved(state, k2, 0.5 * h_s));
-      const Slope k4 = slope(row, now_s + h_s, moved(state, k3, h_s));
-      const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
-        return Scalar((a + 2.0 * (b + c) + d) * (1.0 / 6.0));
-      };
-      Slope all{mean(k1.winding, k2.winding, k3.winding, k4.winding),
-                mean(k1.surface, k2.surface, k3.surface, k4.surface),
-                mean(k1.charge, k2.charge, k3.charge, k4.charge),
-                {}};
-      all.further.any = true;
-      all.further.soaking_C =
-          mean(k1.further.soaking_C, k2.further.soaking_C, k3.further.soaking_C, k4.further.soaking_C);
-      all.further.enclosed_C =
-          mean(k1.further.enclosed_C, k2.further.enclosed_C, k3.further.enclosed_C, k4.further.enclosed_C);
-      settle(state, moved(state, all, h_s), h_s);
-    }
+    classical_steps(row, t_s, dt_s, static_cast<int>(std::ceil(std::clamp(stiffness / 1.2, 1.0, most_steps))),
+                    state);
   }
 
   /// An interval of two nodes with a fast exchange, in steps that are cut until what the linear part does not

@@ -43,15 +43,6 @@ Recording creeping(Film film, double friction_Nm, std::uint64_t seed) {
   return recording;
 }
 
-FitProblem problem_of(const Model& model, const std::vector<Inputs>& inputs) {
-  FitProblem problem;
-  problem.model = &model;
-  problem.catalogue = &standard_catalogue();
-  problem.segments = cut(inputs, 1.0, plant_of(model));
-  problem.sigma = {1.0, 1.0, 0.02, 0.15};
-  return problem;
-}
-
 double by_root(double w) { return w / std::sqrt(w * w + 0.03 * 0.03); }
 double by_arc_tangent(double w) { return std::atan(w / 0.01) * 0.6366197723675814; }
 double by_fraction(double w) { return w / (std::abs(w) + 0.008); }

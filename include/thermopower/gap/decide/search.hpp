@@ -45,10 +45,7 @@ public:
   void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
                 double enough) const {
     for (int size = 2; size <= largest; ++size) {
-      const Candidate& leader = best(candidates);
-      bool satisfied = true;
-      for (std::size_t i = 0; i < signal_count; ++i) satisfied = satisfied && leader.train.mean(i) <= enough;
-      if (satisfied) break;
+      if (best(candidates).train.within(enough)) break;
       join(candidates, singles, size);
       exchange(candidates, singles);
     }

@@ -279,8 +279,7 @@ private:
     const Candidate& best = Search::best(attempt.candidates);
     // Where even the windows that were fitted are far above the noise, others tell no more.
     constexpr double fitted = 3.0;  // times the noise
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (best.train.mean(i) > fitted * fitted) return {};
+    if (!best.train.within(fitted * fitted)) return {};
     return overlooked(attempt.problem, attempt.all, best, options_.horizon_s);
   }
 
@@ -316,11 +315,8 @@ private:
       searching.renew(candidates);
     };
     renew();
-    const Candidate& cheapest = Search::best(candidates);
-    bool at_noise = true;
-    for (std::size_t i = 0; i < signal_count; ++i)
-      at_noise = at_noise && cheapest.train.mean(i) <= decision.room_for_costly * decision.room_for_costly;
-    if (!costly.empty() && !at_noise) {
+    constexpr double room = decision.room_for_costly;
+    if (!costly.empty() && !Search::best(candidates).train.within(room * room)) {
       searching.add_singles(candidates, costly);
       causes.insert(causes.end(), costly.begin(), costly.end());
       renew();

@@ -35,6 +35,13 @@ struct SignalSums {
     return false;
   }
 
+  /// Whether no signal's mean square is above this.
+  bool within(double mean_square) const {
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (!(mean(i) <= mean_square)) return false;
+    return true;
+  }
+
   /// Sets a signal's sums. @param unit  residuals are divided by it, > 0
   void set(std::size_t signal, const std::vector<double>& residuals, double unit) {
     squares[signal] = samples[signal] = 0.0;
