@@ -199,6 +199,8 @@ private:
   }
 
   void roll_axis(const Segment& segment, const std::array<Scalar, 2>& start, Readings& out) {
+    // Without a state that nobody measures there is nothing to bring about.
+    if (segment.warm_up && !instance_.axis_structure.compliant && instance_.own_states == 0) return;
     const Inputs& inputs = *segment.inputs;
     const AxisRollout<Scalar> rollout(instance_, inputs);
     AxisState<Scalar> state = measured_start(rollout, inputs, segment.run, segment.begin);

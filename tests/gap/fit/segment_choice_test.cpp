@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#include "../../catch.hpp"
+
+#include <thermopower/gap/fit/segment_choice.hpp>
+
+#include <cstddef>
+#include <vector>
+
+using namespace thermopower::gap;
+
+namespace {
+
+/// Windows of an axis one after the other, each carrying the states of the one before on.
+std::vector<Segment> windows(std::size_t count, Eigen::Index rows) {
+  std::vector<Segment> list(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    list[i].axis = true;
+    list[i].begin = static_cast<Eigen::Index>(i) * rows;
+    list[i].end = list[i].begin + rows;
+    list[i].carries_on = i > 0;
+  }
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("of a motion that repeats every part is among the windows that are kept, whatever its period") {
+  const std::vector<Segment> all = windows(60, 100);
+  for (std::size_t period = 2; period <= 60; ++period) {
+    int out = 0, back = 0;
+    for (const Segment& one : thinned_axis(all, 1500))
+      if (!one.warm_up)
+        ++(static_cast<std::size_t>(one.begin / 100) % period < (period + 1) / 2 ? out : back);
+    INFO("there and back every " << period << " windows: " << out << " out, " << back << " back");
+    CHECK(out >= 3);
+    CHECK(back >= 3);
+  }
+}
+
+TEST_CASE(
+    "a window that is kept carries on from the one before it, which counts only where it is kept, too") {
+  const std::vector<Segment> all = windows(60, 100);
+  const std::vector<std::size_t> also{7, 33};
+  const std::vector<Segment> kept = thinned_axis(all, 1500, also);
+  Eigen::Index rows = 0;
+  std::size_t asked_for = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const bool follows = i > 0 && kept[i - 1].end == kept[i].begin;
+    CHECK(kept[i].carries_on == follows);
+    if (kept[i].warm_up) continue;
+    CHECK((follows || kept[i].begin == 0));
+    rows += kept[i].end - kept[i].begin;
+    for (std::size_t place : also) asked_for += kept[i].begin == all[place].begin ? 1 : 0;
+  }
+  CHECK(asked_for == also.size());
+  CHECK(rows >= 1400);
+  CHECK(rows <= 1900);
+}
+
+TEST_CASE("short recordings are kept whole") {
+  CHECK(thinned_axis(windows(60, 10), 1500).size() == 60);
+  CHECK(thinned_axis(windows(3, 1000), 1500).size() == 3);
+}
