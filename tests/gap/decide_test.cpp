@@ -4,6 +4,9 @@
 #include "fixture.hpp"
 
 #include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/gap/report/parts.hpp>
+
+#include <utility>
 
 using namespace engine_fixture;
 
@@ -101,4 +104,62 @@ TEST_CASE("what only some blocks prefer is weighed by how much the blocks differ
   all[2] = candidate("cable_spring", 85.0, 85.0);
   weigh(all, Weight(), model);
   CHECK(all[2].probability > 0.99);
+}
+
+TEST_CASE("where the axis rests and both are at the noise, a second cause need not help") {
+  Candidate without, with;
+  // One block in three moves; there the second cause halves the error, elsewhere noise decides.
+  std::vector<double> left, better;
+  for (std::size_t i = 0; i < SignalSums::block_count; ++i) {
+    left.push_back(i % 3 == 0 ? 16.0 : 1.0);
+    better.push_back(i % 3 == 0 ? 4.0 : 1.02);
+  }
+  without.held_out = sums_of(left);
+  with.held_out = sums_of(better);
+  CHECK(share_of_blocks(with, without) == 1.0);
+  // A cause that helps in every other block of those that move does not hold.
+  for (std::size_t i = 0; i < SignalSums::block_count; ++i)
+    if (i % 6 == 0) better[i] = 20.0;
+  with.held_out = sums_of(better);
+  CHECK(share_of_blocks(with, without) == 0.5);
+}
+
+TEST_CASE("a second cause beside a rest is named only where the rows blame its submodel") {
+  const CatalogueEntry* friction = standard_catalogue().find("coulomb_friction");
+  const CatalogueEntry* spring = standard_catalogue().find("cable_spring");
+  const auto candidate = [](std::vector<const CatalogueEntry*> effects, double mean_square, double deviance) {
+    Candidate one;
+    one.explanation.effects = std::move(effects);
+    one.held_out = sums_of(blocks(mean_square, mean_square));
+    one.deviance = deviance;
+    return one;
+  };
+  const Blames all = [](const Candidate&, const thermopower::plant::SubmodelName&) { return true; };
+  const Blames only_friction = [](const Candidate&, const thermopower::plant::SubmodelName& name) {
+    return name == thermopower::plant::SubmodelName(Submodel::mechanical_friction);
+  };
+  std::vector<Candidate> candidates{candidate({}, 900.0, 3000.0), candidate({friction}, 100.0, 2000.0),
+                                    candidate({friction, spring}, 25.0, 1000.0)};
+  CHECK(parsimonious(candidates, 2, all) == 2);
+  CHECK(parsimonious(candidates, 2, only_friction) == 1);
+  // What leaves nothing but noise needs no other witness.
+  candidates[2].held_out = sums_of(blocks(1.1, 1.1));
+  CHECK(parsimonious(candidates, 2, only_friction) == 2);
+}
+
+TEST_CASE("what the printed table contradicts is not called explained") {
+  Diagnosis result;
+  result.verdict = Verdict::explained;
+  result.cause.push_back({});
+  result.cause.back().effect = "coulomb_friction";
+  GapScore gap;
+  gap.before = 9.0;
+  gap.after = 1.4;
+  gap.noise_floor = 1.0;
+  result.gap.push_back(gap);
+  CHECK_FALSE(admit_a_rest(result));
+  CHECK(result.verdict == Verdict::explained);
+  result.gap.back().after = 1.7;
+  CHECK(admit_a_rest(result));
+  CHECK(result.verdict == Verdict::partial);
 }

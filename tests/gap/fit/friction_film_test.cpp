@@ -58,7 +58,7 @@ TEST_CASE("friction is found at its size whatever the shape of the film it creep
     const std::vector<Inputs> inputs{prepare(model, creeping(film, friction_Nm, 7))};
     const FitProblem problem = problem_of(model, inputs);
     const Candidate fitted =
-        Attribution(problem, 1).fit({{standard_catalogue().find("coulomb_friction")}, {}}, {});
+        Attribution(problem).fit({{standard_catalogue().find("coulomb_friction")}, {}}, {});
     const double level = std::sqrt(fitted.fit.chi2 / static_cast<double>(fitted.fit.samples));
     const std::size_t size = model.calibrated().size();
     INFO("film(0.01 rad/s) = " << film(0.01) << ": " << level << " times the noise, "

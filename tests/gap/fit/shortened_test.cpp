@@ -68,7 +68,7 @@ Candidate fitted(const Model& model, const std::string& id, const Inputs& inputs
   problem.catalogue = &standard_catalogue();
   problem.plant().cut(inputs, 0.5, problem.segments);
   problem.sigma = {0.002, 0.05, 0.02, 0.15};
-  return Attribution(problem, 1).fit({{standard_catalogue().find(id)}, {}}, {});
+  return Attribution(problem).fit({{standard_catalogue().find(id)}, {}}, {});
 }
 
 }  // namespace

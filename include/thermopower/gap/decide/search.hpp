@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/in_parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,21 +16,24 @@ namespace thermopower::gap {
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
-/// Everything is first tried on a small part of the data (`coarse`); what does well there is fitted to more
-/// of it (`fine`). Every candidate it returns has its residuals on the fine data.
+/// Everything is first tried on a small part of the data (`coarse`), of a moving axis in windows so short that even
+/// friction that holds and lets go is nearly linear in its parameters; effects with states that nobody measures, which
+/// such windows do not tell, then in longer ones (`longer`). What does well there is fitted to more of the data
+/// (`fine`). Every candidate it returns has its residuals on the fine data.
 class Search {
 public:
-  /// Both attributions must pose the same question to different amounts of data, and outlive this object.
+  /// The attributions must pose the same question to different parts of the data, and outlive this object.
+  /// @param threads   1 or more; the result does not depend on it
   /// @param suspects  submodels in which the measured rows themselves say that something is missing
-  Search(const Attribution& coarse, const Attribution& fine, unsigned threads,
+  Search(const Attribution& coarse, const Attribution& longer, const Attribution& fine, unsigned threads,
          std::vector<plant::SubmodelName> suspects = {})
-      : coarse_(coarse), fine_(fine), threads_(threads), suspects_(std::move(suspects)) {}
+      : coarse_(coarse), longer_(longer), fine_(fine), threads_(threads), suspects_(std::move(suspects)) {}
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
     std::vector<Explanation> all{Explanation{}};
     all.insert(all.end(), singles.begin(), singles.end());
-    std::vector<Candidate> candidates = coarse_.fit_all(all, quick());
+    std::vector<Candidate> candidates = fit_all(all, quick());
     refine(candidates, 0, 7);
     return candidates;
   }
@@ -37,7 +41,7 @@ public:
   /// Adds further single explanations, fitted.
   void add_singles(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const std::size_t first = candidates.size();
-    for (Candidate& one : coarse_.fit_all(singles, quick())) candidates.push_back(std::move(one));
+    for (Candidate& one : fit_all(singles, quick())) candidates.push_back(std::move(one));
     refine(candidates, first, 7);
   }
 
@@ -110,6 +114,24 @@ private:
     options.iterations = 10;
     options.relative_decrease = 1e-3;
     return options;
+  }
+
+  /// A first fit, away from the fine data.
+  Candidate fit(const Explanation& explanation, const FitOptions& options,
+                const Candidate* near = nullptr) const {
+    Candidate found = coarse_.fit(explanation, options, near);
+    for (const CatalogueEntry* entry : explanation.effects)
+      if (&longer_ != &coarse_ && remembers(*entry))
+        return longer_.fit(explanation, options, near, &found.fit.at);
+    return found;
+  }
+
+  std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
+                                 const FitOptions& options) const {
+    std::vector<Candidate> candidates(explanations.size());
+    in_parallel(explanations.size(), threads_,
+                [&](std::size_t i) { candidates[i] = fit(explanations[i], options); });
+    return candidates;
   }
 
   /// Whether each of a few causes is of a submodel that the other explanation blames, too.
@@ -230,7 +252,7 @@ private:
     options.iterations = 12;
     options.relative_decrease = 1e-3;
     in_parallel(sets.size(), threads_,
-                [&](std::size_t i) { found[i] = coarse_.fit(sets[i].together, options, sets[i].near); });
+                [&](std::size_t i) { found[i] = fit(sets[i].together, options, sets[i].near); });
     const std::size_t first = candidates.size();
     for (Candidate& one : found) candidates.push_back(std::move(one));
     refine(candidates, first, 5);
@@ -259,6 +281,7 @@ private:
   }
 
   const Attribution& coarse_;
+  const Attribution& longer_;
   const Attribution& fine_;
   unsigned threads_;
   std::vector<plant::SubmodelName> suspects_;

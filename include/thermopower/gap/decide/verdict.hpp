@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -96,25 +97,47 @@ inline double excess(const Candidate& candidate) {
   return sum;
 }
 
-/// Share of the blocks of held-out data in which one candidate is better than another.
+/// Share of the blocks of held-out data in which one candidate is better than another, of those in which either is
+/// above the noise: where the axis rests, or nothing heats, both are right.
 inline double share_of_blocks(const Candidate& better, const Candidate& than) {
   double blocks = 0.0, won = 0.0;
   for (std::size_t k = 0; k < SignalSums::block_count; ++k) {
     double difference = 0.0;
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (than.held_out.squares[i] > 0.0)
-        difference += (than.held_out.block_squares[i][k] - better.held_out.block_squares[i][k]) /
-                      than.held_out.squares[i];
-    if (difference != 0.0) blocks += 1.0;
-    if (difference > 0.0) won += 1.0;
+    bool above = false;
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      if (!(than.held_out.squares[i] > 0.0)) continue;
+      const double ours = better.held_out.block_squares[i][k], theirs = than.held_out.block_squares[i][k];
+      above = above ||
+              std::max(ours, theirs) > decision.no_gap * decision.no_gap * than.held_out.block_samples[i][k];
+      difference += (theirs - ours) / than.held_out.squares[i];
+    }
+    if (above && difference != 0.0) blocks += 1.0;
+    if (above && difference > 0.0) won += 1.0;
   }
   return blocks > 0.0 ? won / blocks : 0.0;
 }
 
+/// Whether the measured rows blame a submodel, as they are or once the causes of a candidate are in the model.
+using Blames = std::function<bool(const Candidate& known, const plant::SubmodelName& submodel)>;
+
+/// Whether the rows blame what a set of causes has beyond a part of it, or need not: a set that leaves only noise has
+/// the data themselves for a witness.
+inline bool is_localised(const Candidate& set, const Candidate& part, const Blames& blames) {
+  if (!blames || worst_level(set.held_out) <= decision.near_floor) return true;
+  for (const CatalogueEntry* entry : set.explanation.effects) {
+    const std::vector<const CatalogueEntry*>& known = part.explanation.effects;
+    if (std::find(known.begin(), known.end(), entry) == known.end() && !blames(part, entry->info.submodel))
+      return false;
+  }
+  return true;
+}
+
 /// The smallest part of a set of causes that does its work: a further cause is only named where the set without
 /// it stays clearly above the noise and the further one takes away at least half of what is left, in nearly every
-/// part of the held-out data. Otherwise it mends small errors of the others' equations.
-inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen) {
+/// part of the held-out data, and where the rows blame its submodel, too, or nothing but noise is left. Otherwise it mends small errors of the
+/// others' equations.
+inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
+                                const Blames& blames = {}) {
   for (bool smaller = true; smaller;) {
     smaller = false;
     std::size_t part = 0;
@@ -128,7 +151,8 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
     if (part != 0 && !candidates[chosen].explanation.effects.empty() &&
         (worst_level(candidates[part].held_out) < decision.room_for_second ||
          excess(candidates[chosen]) > decision.second_takes * excess(candidates[part]) ||
-         share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds)) {
+         share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds ||
+         !is_localised(candidates[chosen], candidates[part], blames))) {
       chosen = part;
       smaller = true;
     }
@@ -144,6 +168,10 @@ inline double likeliest_of(const std::vector<Candidate>& candidates, const Candi
     if (one.explanation.size() <= chosen.explanation.size()) largest = std::max(largest, one.probability);
   return largest;
 }
+
+/// What is said beside a rest.
+inline constexpr const char* partly_explained =
+    "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
 
 /// The conclusion that the simulation holds.
 inline Conclusion nothing_missing() {
@@ -175,13 +203,15 @@ inline bool has_readings_enough(const Candidate& candidate, const Model& model) 
 }
 
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
+/// @param blames  what the measured rows say; where not given, they blame whatever is asked
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Reference& reference,
-                           const Weight& weight, const Options& options, const Model& model) {
+                           const Weight& weight, const Options& options, const Model& model,
+                           const Blames& blames = {}) {
   Conclusion result;
   const Candidate& empty = candidates.front();
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
-  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen);
+  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen, blames);
   const Candidate& best = candidates[result.chosen];
   const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
   // Several constants, each within what is known of it, can stand for one that is further off: where that one is the
@@ -239,8 +269,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
         "several explanations take a proven part of the gap away, and what remains of it does not tell which";
   } else {
     result.verdict = Verdict::partial;
-    result.reason =
-        "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
+    result.reason = partly_explained;
   }
   return result;
 }

@@ -58,7 +58,11 @@ public:
       if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
     }
     stage("which");
-    Conclusion conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_);
+    const Blames blames = [this](const Candidate& known, const plant::SubmodelName& submodel) {
+      return is_blamed(known, submodel);
+    };
+    Conclusion conclusion =
+        conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, blames);
     if (conclusion.second_is_open) {
       // What is left looks a little like several effects: it is named as a rest.
       std::vector<Candidate>& all = attempt.candidates;
@@ -66,7 +70,7 @@ public:
                                [](const Candidate& one) { return one.explanation.effects.size() > 1; }),
                 all.end());
       weigh(all, attempt.weight, model_);
-      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_);
+      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_, blames);
     }
     if (conclusion.verdict != Verdict::no_gap && holds(attempt, conclusion)) conclusion = nothing_missing();
     report(attempt, conclusion);
@@ -103,7 +107,7 @@ private:
     FitProblem together = problem_of(all, 2500, 4000, fit_horizon_s());
     together.sigma = attempt.problem.sigma;
     together.correlation = attempt.problem.correlation;
-    const Candidate fitted = Attribution(together, options_.threads).fit({}, {}, &empty);
+    const Candidate fitted = Attribution(together).fit({}, {}, &empty);
     const Model calibrated = augmented(model_, fitted.explanation, fitted.list, fitted.fit.at);
     return holds(calibrated, held_out_inputs_, attempt.problem) &&
            holds(calibrated, train_inputs_, attempt.problem);
@@ -213,6 +217,22 @@ private:
     return rows;
   }
 
+  /// Windows so short that a simulation hardly leaves what was measured; `short_s` where the model itself has states
+  /// that nobody measures, or there is no axis.
+  double shortest_window_s(double short_s) const {
+    constexpr double share = 0.2, rows = 16.0;
+    bool remembering = model_.own.has_value();
+    for (const auto& effect : model_.effects) {
+      const CatalogueEntry* entry = catalogue_.find(effect.first);
+      remembering = remembering || entry == nullptr || remembers(*entry);
+    }
+    double interval_s = 0.0;
+    for (const Inputs& one : train_inputs_)
+      if (one.axis()) interval_s = std::max(interval_s, plant::median_interval_s(one.t_s, one.runs));
+    if (remembering || interval_s == 0.0) return short_s;
+    return std::min(std::max(share * short_s, rows * interval_s), short_s);
+  }
+
   /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
   double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
 
@@ -292,14 +312,19 @@ private:
     FitProblem& problem = attempt.problem =
         problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
     const double short_s = std::min(0.5, options_.horizon_s);
-    FitProblem coarse_problem = problem_of(train_inputs_, 900, 1600, short_s,
+    FitProblem longer_problem = problem_of(train_inputs_, 900, 1600, short_s,
                                            short_s == horizon_s ? also : std::vector<std::size_t>());
-    coarse_problem.segments = thinned_runs(coarse_problem.segments, 900);
+    longer_problem.segments = thinned_runs(longer_problem.segments, 900);
+    FitProblem coarse_problem = longer_problem;
+    const double shortest_s = shortest_window_s(short_s);
+    if (shortest_s < short_s)
+      coarse_problem.segments = thinned_runs(problem_of(train_inputs_, 900, 2000, shortest_s).segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
-    const Attribution coarse(coarse_problem, options_.threads), fine(problem, options_.threads);
-    for (int round = 0; round < 2; ++round) measure_noise(coarse_problem, coarse.fit({}, {}));
-    problem.sigma = coarse_problem.sigma;
-    const Search searching(coarse, fine, options_.threads, suspects());
+    const Attribution coarse(coarse_problem), longer(longer_problem), fine(problem);
+    for (int round = 0; round < 2; ++round) measure_noise(longer_problem, longer.fit({}, {}));
+    problem.sigma = coarse_problem.sigma = longer_problem.sigma;
+    const Search searching(coarse, shortest_s < short_s ? longer : coarse, fine, options_.threads,
+                           suspects());
     std::vector<Explanation> causes = singles();
     const auto is_cheap = [](const Explanation& one) {
       return one.effects.empty() || !one.effects.front()->info.costly;
@@ -310,7 +335,7 @@ private:
     candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
-      coarse_problem.sigma = problem.sigma;
+      coarse_problem.sigma = longer_problem.sigma = problem.sigma;
       problem.correlation = mean_correlation(correlation_of(Search::best(candidates), problem));
       searching.renew(candidates);
     };
@@ -338,6 +363,18 @@ private:
     judge(attempt, fine);
     weigh(candidates, attempt.weight, model_);
     return attempt;
+  }
+
+  /// Whether the measured rows say that something is missing in a submodel, as they are or beside known causes. A plant
+  /// of one's own need not say where.
+  bool is_blamed(const Candidate& known, const plant::SubmodelName& submodel) const {
+    const auto among = [&](const std::vector<Location>& where) {
+      return std::any_of(where.begin(), where.end(),
+                         [&](const Location& one) { return one.submodel == submodel; });
+    };
+    if (model_.own || among(result_.where)) return true;
+    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.at);
+    return among(engine::localise(with_known, train_recordings_, {}, catalogue_).where);
   }
 
   /// The submodels in which the measured rows say that something is missing, where there are several: then two causes
@@ -455,7 +492,8 @@ private:
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
     note_recalibration(result_);
-    if (named && conclusion.leaves_a_rest)
+    const bool leaves_a_rest = admit_a_rest(result_) || conclusion.leaves_a_rest;
+    if (named && leaves_a_rest)
       result_.remaining = remaining(
           result_, model_.own ? engine::Localisation()
                               : engine::localise(result_.augmented, train_recordings_, {}, catalogue_));

@@ -5,7 +5,6 @@
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 #include <thermopower/gap/data/noise.hpp>
-#include <thermopower/gap/fit/in_parallel.hpp>
 
 #include <algorithm>
 #include <array>
@@ -50,12 +49,12 @@ inline std::vector<int> moved_constants(const Candidate& candidate, const Model&
 class Attribution {
 public:
   /// @param problem  the training data and the model; must outlive this object
-  /// @param threads  for `fit_all`, 1 or more; the result does not depend on it
-  Attribution(const FitProblem& problem, unsigned threads) : problem_(problem), threads_(threads) {}
+  explicit Attribution(const FitProblem& problem) : problem_(problem) {}
 
   /// Fits one explanation from all its starts; `near` is a fit of part of it to begin from.
-  Candidate fit(const Explanation& explanation, const FitOptions& options,
-                const Candidate* near = nullptr) const {
+  /// @param further  where given, one more start: coordinates in the order of coordinates()
+  Candidate fit(const Explanation& explanation, const FitOptions& options, const Candidate* near = nullptr,
+                const Eigen::VectorXd* further = nullptr) const {
     Candidate candidate;
     candidate.explanation = explanation;
     candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
@@ -63,14 +62,21 @@ public:
     std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
     if (starts.size() > 1) {
       // The linear guess of every start, then a few steps from the best five, then the best of them.
+      constexpr std::size_t tried = 5;
       std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({fitter.scan(starts[i]), i});
       std::sort(order.begin(), order.end());
+      std::vector<Eigen::VectorXd> best;
+      for (std::size_t i = 0; i < std::min(tried, order.size()); ++i) best.push_back(starts[order[i].second]);
+      starts = std::move(best);
+    }
+    if (further != nullptr) starts.push_back(*further);
+    if (starts.size() > 1) {
       FitOptions few = options;
       few.iterations = std::min(4, options.iterations);
       FitResult best;
-      for (std::size_t i = 0; i < std::min<std::size_t>(5, order.size()); ++i) {
-        FitResult trial = fitter.minimise(starts[order[i].second], few);
+      for (const Eigen::VectorXd& start : starts) {
+        FitResult trial = fitter.minimise(start, few);
         if (trial.cost < best.cost) best = std::move(trial);
       }
       candidate.fit = fitter.minimise(best.at, options, &best.starts);
@@ -104,15 +110,6 @@ public:
 
   /// What is fitted to.
   const FitProblem& problem() const { return problem_; }
-
-  /// Fits many explanations.
-  std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
-                                 const FitOptions& options) const {
-    std::vector<Candidate> candidates(explanations.size());
-    in_parallel(explanations.size(), threads_,
-                [&](std::size_t i) { candidates[i] = fit(explanations[i], options); });
-    return candidates;
-  }
 
   /// How far one linear step from `near` lowers the cost when `added` joins it: the promise of a pair.
   double promise(const Candidate& near, const Explanation& together) const {
@@ -281,8 +278,12 @@ private:
   }
 
   const FitProblem& problem_;
-  unsigned threads_;
 };
+
+/// Whether an effect brings states of a moving axis that nobody measures: the far side of a spring, a bristle.
+inline bool remembers(const CatalogueEntry& entry) {
+  return !entry.info.states.empty() || entry.hooks.axis_structure;
+}
 
 /// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,

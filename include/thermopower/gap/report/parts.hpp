@@ -249,6 +249,22 @@ inline void note_recalibration(Diagnosis& result) {
     result.recalibration += ": they made up for something on the training data that is not a constant";
 }
 
+/// Takes "explained" back where the printed table shows a signal above the noise: the decision is drawn on a part of the
+/// held-out data, and what is said must hold on all of it. @return whether it did
+inline bool admit_a_rest(Diagnosis& result) {
+  if (result.verdict != Verdict::explained) return false;
+  const bool above = std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
+    return gap.noise_floor > 0.0 && gap.after > decision.near_floor * gap.noise_floor;
+  });
+  const bool only_constants = std::all_of(result.cause.begin(), result.cause.end(), [](const Cause& one) {
+    return one.effect.rfind("calibration.", 0) == 0;
+  });
+  if (!above || only_constants) return false;
+  result.verdict = Verdict::partial;
+  result.reason = partly_explained;
+  return true;
+}
+
 /// What the named causes leave. @param left  of training data, by the augmented model
 inline Remaining remaining(const Diagnosis& result, const engine::Localisation& left) {
   Remaining rest;
