@@ -132,10 +132,10 @@ inline bool is_localised(const Candidate& set, const Candidate& part, const Blam
   return true;
 }
 
-/// The smallest part of a set of causes that does its work: a further cause is only named where the set without
-/// it stays clearly above the noise and the further one takes away at least half of what is left, in nearly every
-/// part of the held-out data, and where the rows blame its submodel, too, or nothing but noise is left. Otherwise it mends small errors of the
-/// others' equations.
+/// The smallest part of a set of causes that does its work: a further cause is only named where the set without it
+/// stays clearly above the noise and the further one takes away at least half of what is left, in nearly every part of
+/// the held-out data, and where the rows blame its submodel, too, or nothing but noise is left. Otherwise it mends
+/// small errors of the others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
                                 const Blames& blames = {}) {
   for (bool smaller = true; smaller;) {
