@@ -30,7 +30,15 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   constexpr int fewest_blocks = 12;      // below, the blocks themselves say little
   constexpr double block_samples = 120;  // of a long run, as the fitter cuts it
   if (candidate.fit.information.size() == 0) return {};
-  const Eigen::MatrixXd inverse = candidate.fit.information.completeOrthogonalDecomposition().pseudoInverse();
+  // Each coordinate in the unit that the data resolve it in: beside a parameter that is known to a millionth of its
+  // unit, what only the prior knows would be taken for rounding, and its share of the intervals would be lost.
+  const Eigen::VectorXd unit = candidate.fit.information.diagonal().unaryExpr(
+      [](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 1.0; });
+  const Eigen::MatrixXd inverse = unit.asDiagonal() *
+                                  (unit.asDiagonal() * candidate.fit.information * unit.asDiagonal())
+                                      .completeOrthogonalDecomposition()
+                                      .pseudoInverse() *
+                                  unit.asDiagonal();
   double inflation = 1.0, longest = 1.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     if (candidate.train.samples[i] > 0.0) {
