@@ -89,7 +89,7 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
     const Model model = baseline_of(trial);
     const std::vector<Inputs> inputs{prepare(model, recorded(trial, 21))};
     const FitProblem problem = problem_of(model, inputs);
-    const Attribution attribution(problem, 1);
+    const Attribution attribution(problem);
     INFO(trial.id);
     const Candidate empty = attribution.fit({}, {});
     Candidate fitted = attribution.fit({{standard_catalogue().find(trial.id)}, {}}, {});

@@ -51,7 +51,12 @@ Diagnosis example() {
                        false,
                        false,
                        d.cause[0].parameters,
-                       {{{"natural_convection"}, 0.97}}});
+                       {{{"natural_convection"}, 0.97}},
+                       0.0,
+                       0.0,
+                       0,
+                       {},
+                       {}});
   d.constants.push_back({"conductance", 0.11, 0.112});
   SignalSeries series;
   series.signal = Signal::motor_C;
@@ -92,7 +97,8 @@ std::pair<Diagnosis, std::vector<Recording>> four_runs() {
   d.series.push_back({Signal::motor_C, "degC", recording.name, recording.t_s, measured, measured + error,
                       measured + 0.5 * error, measured});
   d.series[0].rivals.push_back({{"natural_convection"}, measured + 0.25 * error});
-  d.ranking.push_back({{"natural_convection"}, 0.3, 1.0, 2.0, 0.2, false, false, false, {}, {}});
+  d.ranking.push_back(
+      {{"natural_convection"}, 0.3, 1.0, 2.0, 0.2, false, false, false, {}, {}, 0.0, 0.0, 0, {}, {}});
   d.gap.resize(1);
   d.correlation.names = {"conductance.scale", "radiation.emissive_area_m2", "heat_capacity.scale"};
   d.correlation.of.resize(3, 3);
