@@ -32,6 +32,14 @@ inline Weight correlation_of(const Candidate& candidate, const FitProblem& probl
   return weight;
 }
 
+/// Geometric mean over the signals that have a correlation: residuals that count as one, 1 or more.
+inline double mean_correlation(const Weight& weight) {
+  double product = 1.0, signals = 0.0;
+  for (double one : weight.correlation)
+    if (one > 1.0) product *= one, signals += 1.0;
+  return signals > 0.0 ? std::pow(product, 1.0 / signals) : 1.0;
+}
+
 /// Whether a parameter ended where a recording can show it.
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,

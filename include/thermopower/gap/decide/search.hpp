@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
+#include <thermopower/gap/fit/short_windows.hpp>
 
 #include <algorithm>
 #include <cmath>

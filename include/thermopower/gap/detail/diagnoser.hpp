@@ -12,6 +12,7 @@
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/fit/short_windows.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/gap/fit/thinning.hpp>
@@ -217,22 +218,6 @@ private:
     return rows;
   }
 
-  /// Windows so short that a simulation hardly leaves what was measured; `short_s` where the model itself has states
-  /// that nobody measures, or there is no axis.
-  double shortest_window_s(double short_s) const {
-    constexpr double share = 0.2, rows = 16.0;
-    bool remembering = model_.own.has_value();
-    for (const auto& effect : model_.effects) {
-      const CatalogueEntry* entry = catalogue_.find(effect.first);
-      remembering = remembering || entry == nullptr || remembers(*entry);
-    }
-    double interval_s = 0.0;
-    for (const Inputs& one : train_inputs_)
-      if (one.axis()) interval_s = std::max(interval_s, plant::median_interval_s(one.t_s, one.runs));
-    if (remembering || interval_s == 0.0) return short_s;
-    return std::min(std::max(share * short_s, rows * interval_s), short_s);
-  }
-
   /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
   double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
 
@@ -316,7 +301,7 @@ private:
                                            short_s == horizon_s ? also : std::vector<std::size_t>());
     longer_problem.segments = thinned_runs(longer_problem.segments, 900);
     FitProblem coarse_problem = longer_problem;
-    const double shortest_s = shortest_window_s(short_s);
+    const double shortest_s = shortest_window_s(model_, catalogue_, train_inputs_, short_s);
     if (shortest_s < short_s)
       coarse_problem.segments = thinned_runs(problem_of(train_inputs_, 900, 2000, shortest_s).segments, 900);
     std::vector<Candidate>& candidates = attempt.candidates;
@@ -394,13 +379,6 @@ private:
         for (double angle : one.of(Signal::angle_deg))
           if (std::isfinite(angle)) low = std::min(low, angle), high = std::max(high, angle);
     return high > low ? (high - low) * rad_per_deg : 1e300;
-  }
-
-  static double mean_correlation(const Weight& weight) {
-    double product = 1.0, signals = 0.0;
-    for (double one : weight.correlation)
-      if (one > 1.0) product *= one, signals += 1.0;
-    return signals > 0.0 ? std::pow(product, 1.0 / signals) : 1.0;
   }
 
   /// The model with its constants refitted: the best explanation by constants alone, or as configured where that

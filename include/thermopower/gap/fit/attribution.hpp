@@ -280,11 +280,6 @@ private:
   const FitProblem& problem_;
 };
 
-/// Whether an effect brings states of a moving axis that nobody measures: the far side of a spring, a bristle.
-inline bool remembers(const CatalogueEntry& entry) {
-  return !entry.info.states.empty() || entry.hooks.axis_structure;
-}
-
 /// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
                           const std::vector<Inputs>& recordings) {
