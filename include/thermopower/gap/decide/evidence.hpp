@@ -186,9 +186,9 @@ inline bool in_the_running(const Candidate& candidate) {
 ///
 /// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
 /// of the best candidate's residuals; training and held-out data together, the parameters from training alone;
-/// a Bayesian information penalty for every parameter of an effect and every start that nobody measures, the price of the constants that moved, and a
-/// penalty for every effect beyond the first. What scores like the best is given its fit: then only the
-/// penalties differ.
+/// a Bayesian information penalty for every parameter and own state of an effect and every start that nobody measures,
+/// the price of the constants that moved, and a penalty for every effect beyond the first. What scores like the best is
+/// given its fit: then only the penalties differ.
 ///
 /// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are
 /// at most those of a difference as many standard errors large (Vuong 1989), the standard error from leaving out
@@ -202,8 +202,9 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   const auto penalty = [&](const Candidate& one) {
     const std::size_t effects = one.explanation.effects.size();
     const double further = effects > 1 ? static_cast<double>(effects - 1) : 0.0;
-    const int parameters =
-        one.explanation.parameter_count() - static_cast<int>(one.explanation.released.size());
+    int parameters = one.explanation.parameter_count() - static_cast<int>(one.explanation.released.size());
+    for (const CatalogueEntry* entry : one.explanation.effects)
+      parameters += static_cast<int>(entry->info.states.size());
     return (parameters + one.hidden_starts) * std::log(std::max(samples, 2.0)) + decision.rarity * further +
            price_of_constants(one, model);
   };

@@ -194,7 +194,7 @@ private:
   /// The thinned data of a fit. @param all  receives what it is a part of
   FitProblem problem_of(const std::vector<Inputs>& inputs, Eigen::Index bench_rows, Eigen::Index axis_rows,
                         double horizon_s, const std::vector<std::size_t>& also = {},
-                        std::vector<Segment>* all = nullptr) {
+                        std::vector<Segment>* all = nullptr, Eigen::Index together = 1) {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
@@ -206,7 +206,7 @@ private:
     problem.model = &model_;
     problem.catalogue = &catalogue_;
     std::vector<Segment> segments = cut(*thin, horizon_s, plant_of(model_));
-    problem.segments = thinned_axis(segments, axis_rows, also);
+    problem.segments = thinned_axis(segments, axis_rows, also, together);
     if (all != nullptr) *all = std::move(segments);
     kept_.push_back(std::move(thin));
     return problem;
@@ -294,11 +294,13 @@ private:
   Attempt search(double horizon_s, const std::vector<std::size_t>& also = {},
                  std::vector<std::size_t>* worst = nullptr) {
     Attempt attempt;
+    constexpr Eigen::Index together = 4;  // windows: what remembers needs some time
     FitProblem& problem = attempt.problem =
-        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all);
+        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all, together);
     const double short_s = std::min(0.5, options_.horizon_s);
-    FitProblem longer_problem = problem_of(train_inputs_, 900, 1600, short_s,
-                                           short_s == horizon_s ? also : std::vector<std::size_t>());
+    FitProblem longer_problem =
+        problem_of(train_inputs_, 900, 1600, short_s,
+                   short_s == horizon_s ? also : std::vector<std::size_t>(), nullptr, together);
     longer_problem.segments = thinned_runs(longer_problem.segments, 900);
     FitProblem coarse_problem = longer_problem;
     const double shortest_s = shortest_window_s(model_, catalogue_, train_inputs_, short_s);

@@ -49,9 +49,11 @@ inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, E
 
 /// Keeps some of the windows of a moving axis, spread over all of the recording, with about `rows` rows in total; each
 /// with the one before it where it carries that one's states on. Segments on the bench are all kept.
-/// @param also  places of further segments to keep, in order
+/// @param also      places of further segments to keep, in order
+/// @param together  so many windows in a row are kept or left out, > 0: states that nobody measures need some time
 inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, Eigen::Index rows,
-                                         const std::vector<std::size_t>& also = {}) {
+                                         const std::vector<std::size_t>& also = {},
+                                         Eigen::Index together = 1) {
   Eigen::Index total = 0, windows = 0;
   for (const Segment& segment : segments)
     if (segment.axis) total += segment.end - segment.begin, ++windows;
@@ -61,9 +63,13 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
   // A few long stretches would all show the same part of a motion that repeats, or one direction of it.
   GoldenSpread spread(static_cast<double>(wanted) / static_cast<double>(windows));
   std::vector<bool> chosen;
-  for (std::size_t place = 0; place < segments.size(); ++place)
-    chosen.push_back(!segments[place].axis || spread.next() ||
+  bool in_group = false;
+  Eigen::Index window = 0;
+  for (std::size_t place = 0; place < segments.size(); ++place) {
+    if (segments[place].axis && window++ % together == 0) in_group = spread.next();
+    chosen.push_back(!segments[place].axis || in_group ||
                      std::binary_search(also.begin(), also.end(), place));
+  }
   std::vector<Segment> kept;
   for (std::size_t place = 0; place < segments.size(); ++place) {
     const bool leads = place + 1 < segments.size() && chosen[place + 1] && segments[place + 1].carries_on;
