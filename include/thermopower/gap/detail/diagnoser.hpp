@@ -114,6 +114,21 @@ private:
            holds(calibrated, train_inputs_, attempt.problem);
   }
 
+  /// Whether an explanation leaves no more than noise in the windows of its fit and, as a gap is judged, lowers it on
+  /// the data it was fitted to. Rough motion that no window follows looks like noise in the first.
+  bool does_for_now(const Candidate& one) const {
+    constexpr double room = decision.room_for_costly, lowered = decision.lowered_without_costly;
+    if (!one.train.within(room * room)) return false;
+    if (one.explanation.effects.empty()) return true;
+    const std::vector<Segment> segments = judged_segments(train_inputs_);
+    const Errors before = errors_of(model_, segments, catalogue_),
+                 after = errors_of(augmented(model_, one.explanation, one.list, one.fit.at), segments,
+                                   catalogue_);
+    for (int i = 0; i < signal_count; ++i)
+      if (after.rms(static_cast<Signal>(i)) < lowered * before.rms(static_cast<Signal>(i))) return true;
+    return false;
+  }
+
   /// Whether a model scores what the noise allows on some data.
   bool holds(const Model& calibrated, const std::vector<Inputs>& inputs, const FitProblem& problem) const {
     constexpr double relevant = 1.2;
@@ -327,8 +342,7 @@ private:
       searching.renew(candidates);
     };
     renew();
-    constexpr double room = decision.room_for_costly;
-    if (!costly.empty() && !Search::best(candidates).train.within(room * room)) {
+    if (!costly.empty() && !does_for_now(Search::best(candidates))) {
       searching.add_singles(candidates, costly);
       causes.insert(causes.end(), costly.begin(), costly.end());
       renew();
