@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include <thermopower/actuator/power_up.hpp>
@@ -229,6 +230,23 @@ TEST_CASE("what is not known counts as hot: no record, no clock, no air") {
   // An unknown time keeps the value: it does not cool.
   CHECK(AsCooled::start(facts(detail::not_a_number()), motor()).winding_C == warm().winding_C);
   CHECK(AsCooled::start(facts(-5.0f), motor()).winding_C == warm().winding_C);
+  CHECK(AsCooled::start(facts(std::numeric_limits<float>::infinity()), motor()).winding_C ==
+        warm().winding_C);
+  // Nor does an unknown heat or setting: each alone makes the start the worst case.
+  for (const float unknown : {detail::not_a_number(), std::numeric_limits<float>::infinity()}) {
+    PowerUpFacts no_heat = facts(100.0f);
+    no_heat.heat_now_W = unknown;
+    CHECK(AsNewLoad::start(no_heat, motor()).winding_C == 110.0f);
+    CHECK_FALSE(AsNewLoad::start(no_heat, motor()).rests_on_record);
+    CHECK(AsCooled::start(no_heat, motor()).rests_on_record);  // which does not ask for it
+    PowerUpFacts no_setting = facts(100.0f);
+    no_setting.preset_C = unknown;
+    CHECK(AsPreset::start(no_setting, motor()).winding_C == 110.0f);
+    PowerUpFacts set_in_unknown_air = facts(100.0f);
+    set_in_unknown_air.air_C = unknown;
+    CHECK(AsPreset::start(set_in_unknown_air, motor()).winding_C == 110.0f);
+    CHECK(AsPreset::start(set_in_unknown_air, motor()).body_C == 60.0f);
+  }
   // A clock that was set back says nothing.
   CHECK(std::isnan(PowerUpFacts::off_s_from(warm(), 999999UL, {60.0f, 2.0f, 600.0f})));
   CHECK(std::isnan(PowerUpFacts::off_s_from(warm(), StoredState::no_clock(), {60.0f, 2.0f, 600.0f})));

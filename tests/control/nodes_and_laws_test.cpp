@@ -129,7 +129,7 @@ TEST_CASE("the holding law learns the lowest power that holds each pose") {
   AdaptiveHoldingLaw<8> law;
   REQUIRE(law.validate() == ConfigError::none);
   const Joint joint;
-  double error_sum = 0.0, power_sum = 0.0;
+  double error_sum = 0.0;
   int late = 0;
   for (int i = 0; i < 400000; ++i) {
     const double pose_deg = -78.75 + 22.5 * ((i / 2000) % 8);
@@ -139,7 +139,6 @@ TEST_CASE("the holding law learns the lowest power that holds each pose") {
     if (i > 300000) {
       ++late;
       error_sum += error_deg > 0.12 ? 1.0 : 0.0;
-      power_sum += power;
     }
   }
   CHECK(error_sum / late < 0.02);  // within a fifth above the tolerance, nearly always

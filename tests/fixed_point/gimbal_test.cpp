@@ -144,3 +144,16 @@ TEST_CASE("the same power and reason for every fault, from the first call on") {
   CHECK(pair.same_reasons());
   CHECK(pair.agreeing == pair.steps);
 }
+
+TEST_CASE(
+    "a gimbal that goes on beside a running board counts the heat up to its first message, a new one none") {
+  WholeGimbal fresh, restored;
+  restored.restore(26 * 128, 26 * 128);
+  REQUIRE(restored.is_restored());
+  REQUIRE_FALSE(fresh.is_restored());
+  const Telemetry telemetry;
+  fresh.step(telemetry, 60000);  // 15 s in which the board may have driven the motors with anything
+  restored.step(telemetry, 60000);
+  CHECK(fresh.hottest_C() == 27);  // 26 and its fraction, rounded up
+  CHECK(restored.hottest_C() > 28);
+}

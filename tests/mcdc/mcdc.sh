@@ -1,0 +1,47 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# sh tests/mcdc/mcdc.sh [DIR]   builds the tests of limiters, power-up, faults and codec for MC/DC in DIR (build/mcdc), runs them,
+#                               and prints which decisions they have covered. cmake --build <build> --target mcdc does the same.
+# Fails when a condition is not covered that docs/reference/mcdc.md does not explain, or explains one that is.
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1:-$root/build/mcdc}
+for tool in clang++-19 llvm-profdata-19 llvm-cov-19 python3 ninja; do
+  command -v $tool > /dev/null || { echo "SKIPPED: no $tool (Debian: clang-19 llvm-19 libclang-rt-19-dev python3 ninja-build)"; exit 0; }
+done
+flags="-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc"
+mkdir -p "$build"
+build=$(cd "$build" && pwd)
+echo "int main() { return 0; }" > "$build/probe.cpp"
+# shellcheck disable=SC2086
+clang++-19 $flags "$build/probe.cpp" -o "$build/probe" 2> /dev/null || { echo "SKIPPED: clang++-19 does not link for coverage (Debian: libclang-rt-19-dev)"; exit 0; }
+
+tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements
+  control_air_temperature control_axis_controller control_config_record control_failures_of_others control_gimbal_controller control_limiter_chain
+  control_nodes_and_laws control_position_error control_power_law control_protection control_safety_limiter control_sensor_limiter control_utilisation control_decisions actuator_start_decisions
+  fixed_point fixed_point_loop"
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 \
+  "-DCMAKE_CXX_FLAGS=$flags" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF > "$build/configure.log"
+# shellcheck disable=SC2086
+cmake --build "$build" --target $tests > "$build/build.log" 2>&1 || { tail -40 "$build/build.log"; exit 1; }
+rm -rf "$build/profiles"
+objects=""
+for test in $tests; do
+  LLVM_PROFILE_FILE="$build/profiles/$test.profraw" "$build/bin/$test" > "$build/$test.log" 2>&1 || { tail -40 "$build/$test.log"; exit 1; }
+  objects="$objects -object $build/bin/$test"
+done
+llvm-profdata-19 merge -sparse -o "$build/all.profdata" "$build"/profiles/*.profraw
+# shellcheck disable=SC2086
+llvm-cov-19 export $objects -instr-profile "$build/all.profdata" > "$build/coverage.json" 2> "$build/export.log"
+cd "$root/include/thermopower"
+echo "Not held to it, but proved by machine (docs/explain/machine-proofs.md):"
+python3 -B "$root/tests/mcdc/table.py" "$build/coverage.json" . - control/certified/*.hpp
+echo "Limiters, power-up, faults and codec:"
+python3 -B "$root/tests/mcdc/table.py" "$build/coverage.json" . "$root/docs/reference/mcdc.md" \
+  control/*limiter*.hpp control/fixed_point/*limiter*.hpp control/power_in_force.hpp \
+  actuator/power_up.hpp actuator/start_bounds.hpp actuator/stored_state.hpp actuator/record_ring.hpp actuator/hottest_journal.hpp \
+  control/air_temperature.hpp control/fixed_point/air_temperature.hpp control/position_error.hpp control/utilisation.hpp \
+  control/axis_controller.hpp control/gimbal_controller.hpp control/fixed_point/gimbal_controller.hpp detail/check.hpp \
+  sbgc/*.hpp sbgc/detail/*.hpp detail/crc16.hpp
