@@ -6,6 +6,7 @@
 /// Model: heated_tank.hpp states its two balances once; the diagnosis needs no more.
 /// Here the "real" tank seeps, which the diagnosis is to find out from a recording with sensor noise.
 
+#include "../print_diagnosis.hpp"
 #include "heated_tank.hpp"
 
 #include <thermopower/gap.hpp>
@@ -21,7 +22,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 namespace tp = thermopower;
@@ -79,19 +79,7 @@ int main(int count, char** values) {
       tp::gap::diagnose(simulation, {recorded(truth, 1)}, {recorded(truth, 40)});
   //! [diagnosing an own plant]
 
-  std::printf("verdict    %s: %s\n", to_string(diagnosis.verdict), diagnosis.reason.c_str());
-  for (const auto& one : diagnosis.where)
-    std::printf("where      %s %.0f %%: %s\n", to_string(one.submodel).c_str(), 100.0 * one.share,
-                one.evidence.c_str());
-  for (const auto& one : diagnosis.cause) {
-    std::printf("which      %s (%.0f %%):", one.effect.c_str(), 100.0 * one.probability);
-    for (const auto& p : one.parameters)
-      std::printf(" %s %.3g [%.3g, %.3g]", p.name.c_str(), p.value, p.ci95.low, p.ci95.high);
-    std::printf("\n");
-  }
-  for (const auto& one : diagnosis.gap)
-    std::printf("how far    %s: %.3g -> %.3g %s, noise %.3g\n", to_string(one.signal).c_str(), one.before,
-                one.after, one.unit.c_str(), one.noise_floor);
+  print(diagnosis);
 #ifdef OWN_PLANT_WRITES_FILES
   if (count > 1) {
     namespace io = tp::io;

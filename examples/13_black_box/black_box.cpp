@@ -6,12 +6,13 @@
 /// Model: what it is called with, and what it answers. The diagnosis takes differences of its answers.
 /// Here the "real" oven loses heat through a draught while its fan runs.
 
+#include "../print_diagnosis.hpp"
+
 #include <thermopower/gap.hpp>
 #include <thermopower/plant/function_plant.hpp>
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 namespace tp = thermopower;
 
@@ -123,18 +124,6 @@ int main() {
   truth.effects["draught"] = {{"W_per_K", 1.5}};
   const tp::gap::Diagnosis diagnosis =
       tp::gap::diagnose(simulation, {recorded(truth, 1)}, {recorded(truth, 60)});
-  std::printf("verdict    %s: %s\n", to_string(diagnosis.verdict), diagnosis.reason.c_str());
-  for (const auto& one : diagnosis.where)
-    std::printf("where      %s %.0f %%: %s\n", to_string(one.submodel).c_str(), 100.0 * one.share,
-                one.evidence.c_str());
-  for (const auto& one : diagnosis.cause) {
-    std::printf("which      %s (%.0f %%):", one.effect.c_str(), 100.0 * one.probability);
-    for (const auto& p : one.parameters)
-      std::printf(" %s %.3g [%.3g, %.3g]", p.name.c_str(), p.value, p.ci95.low, p.ci95.high);
-    std::printf("\n");
-  }
-  for (const auto& one : diagnosis.gap)
-    std::printf("how far    %s: %.3g -> %.3g %s, noise %.3g\n", to_string(one.signal).c_str(), one.before,
-                one.after, one.unit.c_str(), one.noise_floor);
+  print(diagnosis);
   return diagnosis.verdict == tp::gap::Verdict::explained ? 0 : 1;
 }

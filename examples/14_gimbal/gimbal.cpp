@@ -7,13 +7,13 @@
 /// Here the "real" gimbal is point_masses.hpp, which shares no equation with the model. First its joints carry each
 /// other, which the simulation leaves out; then the simulation knows that, and the camera is mounted off its balance.
 
+#include "../print_diagnosis.hpp"
 #include "point_masses.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/plant/gimbal_joints.hpp>
 
 #include <cstdio>
-#include <string>
 
 namespace tp = thermopower;
 
@@ -36,23 +36,6 @@ tp::gap::Model joints_apart() {
 }
 //! [gimbal model]
 
-void print(const char* title, const tp::gap::Diagnosis& diagnosis) {
-  std::printf("%s\n", title);
-  std::printf("verdict    %s: %s\n", to_string(diagnosis.verdict), diagnosis.reason.c_str());
-  for (const auto& one : diagnosis.where)
-    std::printf("where      %s, %s %.0f %%\n", to_string(one.signal).c_str(), to_string(one.submodel).c_str(),
-                100.0 * one.share);
-  for (const auto& one : diagnosis.cause) {
-    std::printf("which      %s (%.0f %%):", one.effect.c_str(), 100.0 * one.probability);
-    for (const auto& p : one.parameters)
-      std::printf(" %s %.3g [%.3g, %.3g]", p.name.c_str(), p.value, p.ci95.low, p.ci95.high);
-    std::printf("\n");
-  }
-  for (const auto& one : diagnosis.gap)
-    std::printf("how far    %s: %.3g -> %.3g %s, noise %.3g\n", to_string(one.signal).c_str(), one.before,
-                one.after, one.unit.c_str(), one.noise_floor);
-}
-
 }  // namespace
 
 int main() {
@@ -60,7 +43,8 @@ int main() {
   const PointMassGimbal gimbal;
   const tp::gap::Diagnosis first =
       tp::gap::diagnose(apart, {gimbal.recorded(800, 1)}, {gimbal.recorded(500, 7)});
-  print("joints simulated apart", first);
+  std::puts("joints simulated apart");
+  print(first);
 
   //! [coupled]
   tp::gap::Model coupled = apart;
@@ -70,7 +54,8 @@ int main() {
   unbalanced.masses.push_back({2, 0.02, {0.03, 0.0, 0.0}});  // a filter on the lens
   const tp::gap::Diagnosis second =
       tp::gap::diagnose(coupled, {unbalanced.recorded(800, 1)}, {unbalanced.recorded(500, 7)});
-  print("coupled, a filter on the lens", second);
+  std::puts("coupled, a filter on the lens");
+  print(second);
   return first.verdict == tp::gap::Verdict::explained && second.verdict == tp::gap::Verdict::explained ? 0
                                                                                                        : 1;
 }

@@ -23,9 +23,25 @@ constexpr double deg = 57.29577951308232;
 /// Dry friction stops a joint at most: the rate after it.
 double rubbed(double rate, double by) { return rate > by ? rate - by : rate < -by ? rate + by : 0.0; }
 
+// A joint with dry friction, in steps of 0.1 ms.
+struct Joint {
+  double inertia_kgm2, angle = 0.0, rate = 0.0;
+  explicit Joint(double inertia) : inertia_kgm2(inertia) {}
+  void step(double torque_Nm, double friction_Nm) {
+    rate = rubbed(rate + 1e-4 * torque_Nm / inertia_kgm2, 1e-4 * friction_Nm / inertia_kgm2);
+    angle += 1e-4 * rate;
+  }
+};
+
+// A recording, and what makes it one: noise.
 class Log {
 public:
-  Log(const std::string& path, const char* header) : csv_(path) { csv_ << header << "\n"; }
+  std::mt19937 random;
+
+  Log(const std::string& path, unsigned seed, const char* header) : random(seed), csv_(path) {
+    csv_ << header << "\n";
+  }
+  double noise() { return normal_(random); }
   template <class... Values>
   void row(const char* format, Values... values) {
     char line[160];
@@ -36,30 +52,29 @@ public:
 
 private:
   std::ofstream csv_;
+  std::normal_distribution<double> normal_;
 };
 
 // A position servo (a brushed motor behind gears, sampled every 5 ms) that holds a pendulum. The model knows the
 // gears' dry friction from a recording without load. What it lacks: the pendulum's weight, m g l = 0.15 N m at 90
 // degrees. No current is logged.
 bool pendulum(const std::string& path, int seconds, unsigned seed) {
-  Log log(path, "t_s,target_deg,angle_deg");
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, 1.0);
-  double angle = 0.0, rate = 0.0, level = 0.0;
-  constexpr double inertia = 4e-3, viscous = 4e-3, torque_constant = 0.9, ohm = 5.0;
+  Log log(path, seed, "t_s,target_deg,angle_deg");
+  Joint joint(4e-3);
+  double level = 0.0;
+  constexpr double viscous = 4e-3, torque_constant = 0.9, ohm = 5.0;
   for (int row = 0; row < 100 * seconds; ++row) {
     const double t = 0.01 * row;
-    if (row % 90 == 0) level = 35.0 * noise(random);
+    if (row % 90 == 0) level = 35.0 * log.noise();
     const double target = std::max(-80.0, std::min(80.0, level)) + 15.0 * std::sin(3.1 * t);
-    log.row("%.2f,%.3f,%.3f", t, target, angle * deg + 0.05 * noise(random));
+    log.row("%.2f,%.3f,%.3f", t, target, joint.angle * deg + 0.05 * log.noise());
     for (int sample = 0; sample < 2; ++sample) {
-      const double amps = 0.05 * (target - angle * deg) - 0.0015 * rate * deg;
+      const double amps = 0.05 * (target - joint.angle * deg) - 0.0015 * joint.rate * deg;
       const double volts = ohm * std::max(-1.2, std::min(1.2, amps));
       for (int i = 0; i < 50; ++i) {
-        const double torque = torque_constant * (volts - torque_constant * rate) / ohm - viscous * rate -
-                              0.15 * std::sin(angle);
-        rate = rubbed(rate + 1e-4 * torque / inertia, 1e-4 * 0.04 / inertia);
-        angle += 1e-4 * rate;
+        const double torque = torque_constant * (volts - torque_constant * joint.rate) / ohm -
+                              viscous * joint.rate - 0.15 * std::sin(joint.angle);
+        joint.step(torque, 0.04);
       }
     }
   }
@@ -69,24 +84,22 @@ bool pendulum(const std::string& path, int seconds, unsigned seed) {
 // A joint behind a gear that loses a quarter of what its teeth transmit, with a known load on it. What the model
 // lacks: that loss.
 bool gear(const std::string& path, int seconds, unsigned seed) {
-  Log log(path, "t_s,drive_A,torque_Nm,angle_deg,rate_dps");
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, 1.0);
+  Log log(path, seed, "t_s,drive_A,torque_Nm,angle_deg,rate_dps");
+  Joint joint(2e-3);
   const double phase = seed;
-  double angle = 0.0, rate = 0.0, load = 0.0;
-  constexpr double inertia = 2e-3, viscous = 2e-3, torque_constant = 0.5;
+  double load = 0.0;
+  constexpr double viscous = 2e-3, torque_constant = 0.5;
   for (int row = 0; row < 100 * seconds; ++row) {
     const double t = 0.01 * row;
-    if (row % 130 == 0) load = 0.04 * noise(random);
+    if (row % 130 == 0) load = 0.04 * log.noise();
     const double drive =
         0.2 * std::sin(1.9 * t + phase) + 0.15 * std::sin(4.7 * t) + 0.08 * std::sin(10.3 * t);
-    log.row("%.2f,%.4f,%.4f,%.3f,%.2f", t, drive, load, angle * deg + 0.02 * noise(random),
-            rate * deg + 0.2 * noise(random));
+    log.row("%.2f,%.4f,%.4f,%.3f,%.2f", t, drive, load, joint.angle * deg + 0.02 * log.noise(),
+            joint.rate * deg + 0.2 * log.noise());
     for (int i = 0; i < 100; ++i) {
       const double transmitted = std::fabs(torque_constant * drive - load);
-      const double torque = torque_constant * drive + load - viscous * rate;
-      rate = rubbed(rate + 1e-4 * torque / inertia, 1e-4 * 0.25 * transmitted / inertia);
-      angle += 1e-4 * rate;
+      const double torque = torque_constant * drive + load - viscous * joint.rate;
+      joint.step(torque, 0.25 * transmitted);
     }
   }
   return log.good();
@@ -95,18 +108,16 @@ bool gear(const std::string& path, int seconds, unsigned seed) {
 // A motor whose model was made on the bench: winding and housing. Now it is bolted to a frame of 80 J/K through
 // 0.1 W/K, which the model lacks.
 bool frame(const std::string& path, int minutes, unsigned seed) {
-  Log log(path, "t_s,power_param,supply_V,ambient_C,current_A,motor_C");
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, 1.0);
+  Log log(path, seed, "t_s,power_param,supply_V,ambient_C,current_A,motor_C");
   std::uniform_int_distribution<int> levels(0, 10), lasts(60, 240);
   double winding = 22.0, housing = 22.0, bolted = 22.0;
   int level = 8, left = 120;
   for (int t = 0; t < 60 * minutes; t += 2) {
-    if (left-- == 0) level = levels(random), left = lasts(random);
+    if (left-- == 0) level = levels(log.random), left = lasts(log.random);
     const double volts = 12.0 * std::sqrt(25.0 * level / 255.0);
     const auto ohm = [&] { return 8.0 * (1.0 + 0.00393 * (winding - 25.0)); };
-    log.row("%d,%d,12,22,%.4f,%.3f", t, 25 * level, volts / ohm() + 0.003 * noise(random),
-            winding + 0.05 * noise(random));
+    log.row("%d,%d,12,22,%.4f,%.3f", t, 25 * level, volts / ohm() + 0.003 * log.noise(),
+            winding + 0.05 * log.noise());
     for (int i = 0; i < 100; ++i) {
       const double into_housing = 0.8 * (winding - housing), into_frame = 0.1 * (housing - bolted);
       winding += 0.02 * (volts * volts / ohm() - into_housing) / 15.0;
