@@ -4,6 +4,7 @@
 // Rules for the headers, those that run in firmware above all, which no compiler enforces.
 
 #include "../catch.hpp"
+#include "../text_file.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -17,13 +18,6 @@
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// The text without comments and with empty string literals; line breaks stay.
 std::string code_of(const std::string& text) {
@@ -69,7 +63,7 @@ const std::map<std::string, Header>& every_header() {
       if (entry.path().extension() != ".hpp") continue;
       Header header;
       header.name = fs::relative(entry.path(), root).generic_string();
-      header.text = read(entry.path());
+      header.text = read_text(entry.path());
       header.code = code_of(header.text);
       static const std::regex include(R"re(#include\s*([<"])([^>"]+)[>"])re"), word("[A-Za-z0-9_]+");
       for (std::sregex_iterator i(header.code.begin(), header.code.end(), include), end; i != end; ++i)

@@ -5,6 +5,7 @@
 // anew.
 
 #include "../catch.hpp"
+#include "../text_file.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -65,9 +66,7 @@ std::string menus() {
 void check_page(const std::string& page, const std::string& expected) {
   const std::string begin = "<!-- from the headers: begin -->\n", end = "<!-- from the headers: end -->";
   const fs::path path = fs::path(THERMOPOWER_DOCS_DIR) / "reference" / page;
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  const std::string whole = text.str();
+  const std::string whole = read_text(path);
   const size_t from = whole.find(begin), to = whole.find(end);
   REQUIRE(from != std::string::npos);
   REQUIRE(to != std::string::npos);

@@ -4,6 +4,7 @@
 // MCAP files as the writers of others leave them (tests/data/mcap), and files that are damaged.
 
 #include "../catch.hpp"
+#include "../text_file.hpp"
 
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/mcap_file.hpp>
@@ -13,9 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 using namespace thermopower::gap;
 namespace io = thermopower::io;
@@ -63,13 +62,6 @@ void check_same(const Recording& a, const Recording& b) {
     for (Eigen::Index i = 0; i < a.rows(); ++i) differing += same_bits(column.values[i], other[i]) ? 0 : 1;
     CHECK(differing == 0);
   }
-}
-
-std::string read_bytes(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 std::string error_of(const std::function<void()>& act) {
@@ -356,7 +348,7 @@ TEST_CASE("JSON as others write it") {
 }
 
 TEST_CASE("a wish that cannot be granted is answered with file, topic, field and what there is") {
-  const std::string bytes = read_bytes(folder + "cdr_plain.mcap");
+  const std::string bytes = read_text(folder + "cdr_plain.mcap");
   const auto error = [&](const char* choice) { return error_of_bytes(bytes, {choice}); };
   CHECK(
       error("motor_C=/nowhere.x") ==
@@ -409,7 +401,7 @@ TEST_CASE("a definition that cannot be understood is answered with its line") {
 }
 
 TEST_CASE("a file that is cut off anywhere is refused, with the byte, or has all its data") {
-  const std::string whole = read_bytes(folder + "json_plain.mcap");
+  const std::string whole = read_text(folder + "json_plain.mcap");
   const std::vector<std::string> columns = {"angle_deg=/joint_states.position[elbow]:rad"};
   const Recording expected = read(whole, columns);
   std::size_t complete = 0, refused = 0;
@@ -435,7 +427,7 @@ TEST_CASE("a changed byte is refused or changes nothing, where check sums are") 
     if (!has(name, "chunks")) continue;
 #endif
     CAPTURE(name);
-    const std::string whole = read_bytes(folder + name);
+    const std::string whole = read_text(folder + name);
     const Recording expected = read(whole, of_mcap);
     std::size_t refused = 0, tried = 0;
     for (std::size_t at = 8; at < whole.size() / 2; at += 997) {

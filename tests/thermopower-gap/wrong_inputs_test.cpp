@@ -4,6 +4,7 @@
 // Wrong inputs of the program, and the answer each should get: the table is wrong_inputs.txt.
 
 #include "../catch.hpp"
+#include "../text_file.hpp"
 
 #include <sys/wait.h>
 
@@ -78,13 +79,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 TEST_CASE("every wrong input gets the answer that the table says, and leaves no output behind") {
@@ -117,7 +111,7 @@ TEST_CASE("every wrong input gets the answer that the table says, and leaves no 
                                 replaced(arguments, "> ", ">") + " 2>error.txt" +
                                 (arguments.find('>') == std::string::npos ? " >said.txt" : "");
     const int result = std::system(command.c_str());
-    const std::string error = read(work / "error.txt");
+    const std::string error = read_text(work / "error.txt");
     CAPTURE(row.line, row.input, error);
     REQUIRE(WIFEXITED(result));
     CHECK(WEXITSTATUS(result) == row.status);
@@ -137,17 +131,17 @@ TEST_CASE("what the table spoils is in order before") {
                               "' && '" THERMOPOWER_GAP_PROGRAM
                               "' predict --model model.json --recording recording.csv --predictions out.csv";
   REQUIRE(std::system(predict.c_str()) == 0);
-  CHECK(read(work / "out.csv").rfind("t_s,", 0) == 0);
+  CHECK(read_text(work / "out.csv").rfind("t_s,", 0) == 0);
 
   // Inputs alone are enough: the motor starts at the air's temperature, or where one says.
   write(work / "recording.csv", "t_s,power_param,ambient_C\n0,100,21.5\n1,100,21.5\n2,100,21.5\n");
   REQUIRE(std::system(predict.c_str()) == 0);
-  std::istringstream lines(read(work / "out.csv"));
+  std::istringstream lines(read_text(work / "out.csv"));
   std::string header, first;
   std::getline(lines, header);
   std::getline(lines, first);
   CHECK(header.find("motor_C_augmented") != std::string::npos);
   CHECK(first.find("21.5") != std::string::npos);
   REQUIRE(std::system((predict + " --start motor_C=40.25").c_str()) == 0);
-  CHECK(read(work / "out.csv").find("40.25") != std::string::npos);
+  CHECK(read_text(work / "out.csv").find("40.25") != std::string::npos);
 }

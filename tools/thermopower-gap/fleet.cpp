@@ -5,6 +5,7 @@
 
 #include "fleet_results.hpp"
 #include "manifest.hpp"
+#include "text_file.hpp"
 
 #include <thermopower/io/output_files.hpp>
 
@@ -25,7 +26,6 @@
 #include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -38,13 +38,6 @@ namespace io = thermopower::io;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// A log under work.
 struct Task {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "fleet_results.hpp"
+#include "text_file.hpp"
 
 #include <thermopower/io/output_files.hpp>
 
@@ -13,11 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 namespace io = thermopower::io;
 namespace pool = thermopower::gap::pool;
@@ -231,10 +230,7 @@ std::string fleet_database(const FleetResults& fleet, const std::string& folder)
     Database database(path);
     fill(database, fleet);
   }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
+  return read_text(path);
 }
 
 #else

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "manifest.hpp"
+#include "text_file.hpp"
 
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/text_table.hpp>
@@ -12,21 +13,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 namespace fs = std::filesystem;
 namespace io = thermopower::io;
 
 namespace {
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 std::string hash_of(const std::string& text) {  // FNV-1a
   std::uint64_t hash = 14695981039346656037ull;
