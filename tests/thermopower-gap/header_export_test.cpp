@@ -12,6 +12,7 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/derivative.hpp>
 
 #include <cstdlib>
 #include <filesystem>

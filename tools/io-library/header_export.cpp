@@ -8,6 +8,7 @@
 #include <thermopower/actuator/ohmic_current.hpp>
 #include <thermopower/actuator/thesis_current.hpp>
 
+#include <thermopower/plant/derivative.hpp>
 #include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/own_plant.hpp>
 #include <thermopower/plant/terms.hpp>

@@ -11,7 +11,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace thermopower::plant {
@@ -55,110 +55,16 @@ public:
 
   /// See above.
   Expression operator-() const;
-  Expression& operator+=(const Expression& b) { return *this = *this + b; }
-  Expression& operator-=(const Expression& b) { return *this = *this - b; }
-  Expression& operator*=(const Expression& b) { return *this = *this * b; }
-  Expression& operator/=(const Expression& b) { return *this = *this / b; }
-  friend Expression operator+(const Expression& a, const Expression& b);
-  friend Expression operator-(const Expression& a, const Expression& b);
-  friend Expression operator*(const Expression& a, const Expression& b);
-  friend Expression operator/(const Expression& a, const Expression& b);
-  // With plain numbers, too: a recorded value that turns into one must not be preferred.
-  friend Expression operator+(const Expression& a, double b) { return a + Expression(b); }
-  friend Expression operator-(const Expression& a, double b) { return a - Expression(b); }
-  friend Expression operator*(const Expression& a, double b) { return a * Expression(b); }
-  friend Expression operator/(const Expression& a, double b) { return a / Expression(b); }
-  friend Expression operator+(double a, const Expression& b) { return Expression(a) + b; }
-  friend Expression operator-(double a, const Expression& b) { return Expression(a) - b; }
-  friend Expression operator*(double a, const Expression& b) { return Expression(a) * b; }
-  friend Expression operator/(double a, const Expression& b) { return Expression(a) / b; }
-  friend Condition operator<(const Expression& a, const Expression& b);
-  friend Condition operator>(const Expression& a, const Expression& b);
-  friend Condition operator<=(const Expression& a, const Expression& b);
-  friend Condition operator>=(const Expression& a, const Expression& b);
-  friend Condition operator==(const Expression& a, const Expression& b);
-  friend Condition operator!=(const Expression& a, const Expression& b);
-  friend Condition operator<(const Expression& a, double b);
-  friend Condition operator>(const Expression& a, double b);
-  friend Condition operator<=(const Expression& a, double b);
-  friend Condition operator>=(const Expression& a, double b);
-  friend Condition operator==(const Expression& a, double b);
-  friend Condition operator!=(const Expression& a, double b);
-  friend Expression exp(const Expression& x);
-  friend Expression log(const Expression& x);
-  friend Expression sin(const Expression& x);
-  friend Expression cos(const Expression& x);
-  friend Expression tanh(const Expression& x);
-  friend Expression sqrt(const Expression& x);
-  friend Expression abs(const Expression& x);
-  friend Expression pow(const Expression& x, const Expression& y);
+  Expression& operator+=(const Expression& b);
+  Expression& operator-=(const Expression& b);
+  Expression& operator*=(const Expression& b);
+  Expression& operator/=(const Expression& b);
   /// @}
 
 private:
   Trace* trace_ = nullptr;
   int node_ = -1;
   double value_ = 0.0;
-};
-
-/// The value of a recorded column, or the plain value of an expression: still an expression. Only where code
-/// insists on a plain number it throws NotTraceable.
-class GivenExpression : public Expression {
-public:
-  GivenExpression() = default;
-  /// A constant.
-  GivenExpression(double value) : Expression(value) {}  // NOLINT: as with plain numbers
-  /// Any expression.
-  explicit GivenExpression(const Expression& one) : Expression(one) {}
-  /// The number, where it is one. @throws NotTraceable where it is none
-  operator double() const {  // NOLINT: effects may treat what was recorded as a plain number
-    if (!is_constant()) throw NotTraceable("its code turns a value into a plain number");
-    return constant_value();
-  }
-
-  /// @name Arithmetic among such values yields such a value
-  /// @{
-
-  /// See above.
-  friend GivenExpression operator+(const GivenExpression& a, const GivenExpression& b) {
-    return GivenExpression(a.expression() + b.expression());
-  }
-  friend GivenExpression operator+(const GivenExpression& a, double b) {
-    return GivenExpression(a.expression() + b);
-  }
-  friend GivenExpression operator+(double a, const GivenExpression& b) {
-    return GivenExpression(a + b.expression());
-  }
-  friend GivenExpression operator-(const GivenExpression& a, const GivenExpression& b) {
-    return GivenExpression(a.expression() - b.expression());
-  }
-  friend GivenExpression operator-(const GivenExpression& a, double b) {
-    return GivenExpression(a.expression() - b);
-  }
-  friend GivenExpression operator-(double a, const GivenExpression& b) {
-    return GivenExpression(a - b.expression());
-  }
-  friend GivenExpression operator*(const GivenExpression& a, const GivenExpression& b) {
-    return GivenExpression(a.expression() * b.expression());
-  }
-  friend GivenExpression operator*(const GivenExpression& a, double b) {
-    return GivenExpression(a.expression() * b);
-  }
-  friend GivenExpression operator*(double a, const GivenExpression& b) {
-    return GivenExpression(a * b.expression());
-  }
-  friend GivenExpression operator/(const GivenExpression& a, const GivenExpression& b) {
-    return GivenExpression(a.expression() / b.expression());
-  }
-  friend GivenExpression operator/(const GivenExpression& a, double b) {
-    return GivenExpression(a.expression() / b);
-  }
-  friend GivenExpression operator/(double a, const GivenExpression& b) {
-    return GivenExpression(a / b.expression());
-  }
-  /// @}
-
-private:
-  const Expression& expression() const { return *this; }
 };
 
 /// A comparison of expressions. As a bool it asks its trace which way to take.
@@ -299,16 +205,14 @@ private:
   }
 
   int intern(const Node& node) {
-    const auto key =
-        std::make_pair(std::make_pair(static_cast<int>(node.kind), node.name),
-                       std::make_pair(node.value, std::make_pair(node.a, std::make_pair(node.b, node.c))));
+    const Key key(node.kind, node.name, node.value, node.a, node.b, node.c);
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
     nodes_.push_back(node);
     return known_[key] = static_cast<int>(nodes_.size()) - 1;
   }
 
-  using Key = std::pair<std::pair<int, std::string>, std::pair<double, std::pair<int, std::pair<int, int>>>>;
+  using Key = std::tuple<Kind, std::string, double, int, int, int>;
   std::vector<Node> nodes_;
   std::map<Key, int> known_;
   std::vector<Decision> path_;
@@ -351,22 +255,22 @@ inline Expression Expression::operator-() const {
 
 /// See above.
 inline Expression operator+(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.value_ + b.value_;
+  if (a.is_constant() && b.is_constant()) return a.constant_value() + b.constant_value();
   if (detail::is(a, 0.0)) return b;
   if (detail::is(b, 0.0)) return a;
   return detail::trace_of(a, b)->make(Trace::Kind::sum, a, b);
 }
 
 inline Expression operator-(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.value_ - b.value_;
+  if (a.is_constant() && b.is_constant()) return a.constant_value() - b.constant_value();
   if (detail::is(a, 0.0)) return -b;
   if (detail::is(b, 0.0)) return a;
-  if (a.trace_ == b.trace_ && a.node_ == b.node_) return 0.0;
+  if (a.trace() == b.trace() && a.node() == b.node()) return 0.0;
   return detail::trace_of(a, b)->make(Trace::Kind::difference, a, b);
 }
 
 inline Expression operator*(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.value_ * b.value_;
+  if (a.is_constant() && b.is_constant()) return a.constant_value() * b.constant_value();
   if (detail::is(a, 1.0)) return b;
   if (detail::is(b, 1.0)) return a;
   if (detail::is(a, 0.0) || detail::is(b, 0.0)) return 0.0;
@@ -374,26 +278,38 @@ inline Expression operator*(const Expression& a, const Expression& b) {
 }
 
 inline Expression operator/(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.value_ / b.value_;
+  if (a.is_constant() && b.is_constant()) return a.constant_value() / b.constant_value();
   if (detail::is(b, 1.0)) return a;
   if (!a.is_constant() && !b.is_constant()) {  // (x b) / b
-    const Trace::Node product = a.trace_->nodes()[static_cast<std::size_t>(a.node_)];
-    if (product.kind == Trace::Kind::product && product.b == b.node_) return a.trace_->at(product.a);
-    if (product.kind == Trace::Kind::product && product.a == b.node_) return a.trace_->at(product.b);
+    const Trace::Node product = a.trace()->nodes()[static_cast<std::size_t>(a.node())];
+    if (product.kind == Trace::Kind::product && product.b == b.node()) return a.trace()->at(product.a);
+    if (product.kind == Trace::Kind::product && product.a == b.node()) return a.trace()->at(product.b);
   }
   return detail::trace_of(a, b)->make(Trace::Kind::quotient, a, b);
 }
 
+// With plain numbers, too: a recorded value that turns into one must not be preferred.
+inline Expression operator+(const Expression& a, double b) { return a + Expression(b); }
+inline Expression operator-(const Expression& a, double b) { return a - Expression(b); }
+inline Expression operator*(const Expression& a, double b) { return a * Expression(b); }
+inline Expression operator/(const Expression& a, double b) { return a / Expression(b); }
+inline Expression operator+(double a, const Expression& b) { return Expression(a) + b; }
+inline Expression operator-(double a, const Expression& b) { return Expression(a) - b; }
+inline Expression operator*(double a, const Expression& b) { return Expression(a) * b; }
+inline Expression operator/(double a, const Expression& b) { return Expression(a) / b; }
+
 inline Condition operator<(const Expression& a, const Expression& b) {
-  return detail::compare(Trace::Kind::less, a, b, a.value_ < b.value_);
+  return detail::compare(Trace::Kind::less, a, b, a.constant_value() < b.constant_value());
 }
 inline Condition operator>(const Expression& a, const Expression& b) { return b < a; }
 inline Condition operator<=(const Expression& a, const Expression& b) {
-  return detail::compare(Trace::Kind::less_or_equal, a, b, a.value_ <= b.value_);
+  return detail::compare(Trace::Kind::less_or_equal, a, b, a.constant_value() <= b.constant_value());
 }
 inline Condition operator>=(const Expression& a, const Expression& b) { return b <= a; }
 inline Condition operator==(const Expression& a, const Expression& b) {
-  return detail::compare(Trace::Kind::equal, a, b, !(a.value_ < b.value_) && !(b.value_ < a.value_));
+  return detail::compare(
+      Trace::Kind::equal, a, b,
+      !(a.constant_value() < b.constant_value()) && !(b.constant_value() < a.constant_value()));
 }
 inline Condition operator!=(const Expression& a, const Expression& b) {
   return Condition(!static_cast<bool>(a == b));
@@ -405,18 +321,23 @@ inline Condition operator>=(const Expression& a, double b) { return a >= Express
 inline Condition operator==(const Expression& a, double b) { return a == Expression(b); }
 inline Condition operator!=(const Expression& a, double b) { return a != Expression(b); }
 
-inline Expression exp(const Expression& x) { return detail::call("exp", x, std::exp(x.value_)); }
-inline Expression log(const Expression& x) { return detail::call("log", x, std::log(x.value_)); }
-inline Expression sin(const Expression& x) { return detail::call("sin", x, std::sin(x.value_)); }
-inline Expression cos(const Expression& x) { return detail::call("cos", x, std::cos(x.value_)); }
-inline Expression tanh(const Expression& x) { return detail::call("tanh", x, std::tanh(x.value_)); }
-inline Expression sqrt(const Expression& x) { return detail::call("sqrt", x, std::sqrt(x.value_)); }
-inline Expression abs(const Expression& x) { return detail::call("abs", x, std::abs(x.value_)); }
+inline Expression exp(const Expression& x) { return detail::call("exp", x, std::exp(x.constant_value())); }
+inline Expression log(const Expression& x) { return detail::call("log", x, std::log(x.constant_value())); }
+inline Expression sin(const Expression& x) { return detail::call("sin", x, std::sin(x.constant_value())); }
+inline Expression cos(const Expression& x) { return detail::call("cos", x, std::cos(x.constant_value())); }
+inline Expression tanh(const Expression& x) { return detail::call("tanh", x, std::tanh(x.constant_value())); }
+inline Expression sqrt(const Expression& x) { return detail::call("sqrt", x, std::sqrt(x.constant_value())); }
+inline Expression abs(const Expression& x) { return detail::call("abs", x, std::abs(x.constant_value())); }
 inline Expression pow(const Expression& x, const Expression& y) {
-  if (x.is_constant() && y.is_constant()) return std::pow(x.value_, y.value_);
+  if (x.is_constant() && y.is_constant()) return std::pow(x.constant_value(), y.constant_value());
   return detail::trace_of(x, y)->make(Trace::Kind::power, x, y);
 }
 /// @}
+
+inline Expression& Expression::operator+=(const Expression& b) { return *this = *this + b; }
+inline Expression& Expression::operator-=(const Expression& b) { return *this = *this - b; }
+inline Expression& Expression::operator*=(const Expression& b) { return *this = *this * b; }
+inline Expression& Expression::operator/=(const Expression& b) { return *this = *this / b; }
 
 inline Expression Trace::replaced(const Expression& in, const Expression& part, const Expression& by) {
   if (in.is_constant() || part.is_constant()) return in;
@@ -434,70 +355,66 @@ inline Expression Trace::replaced(const Expression& in, const Expression& part, 
   return copy(copy, in.node());
 }
 
-/// Derivative of an expression by a symbol: as long as the expression, and written down like it. Of a choice
-/// it is the derivative of what is chosen.
-inline Expression derivative(const Expression& of, const Expression& by) {
-  if (of.is_constant()) return 0.0;
-  Trace& trace = *of.trace();
-  std::map<int, Expression> known;
-  const auto node_of = [&](int place) { return trace.nodes()[static_cast<std::size_t>(place)]; };
-  const auto expression = [&](int place) { return trace.at(place); };
-  const auto slope = [&](const auto& self, int place) -> Expression {
-    const auto found = known.find(place);
-    if (found != known.end()) return found->second;
-    const Trace::Node node = node_of(place);
-    const Expression here = expression(place), a = node.a < 0 ? Expression() : expression(node.a),
-                     b = node.b < 0 ? Expression() : expression(node.b);
-    Expression result = 0.0;
-    switch (node.kind) {
-      case Trace::Kind::symbol:
-        result = place == by.node() ? 1.0 : 0.0;
-        break;
-      case Trace::Kind::negative:
-        result = -self(self, node.a);
-        break;
-      case Trace::Kind::sum:
-        result = self(self, node.a) + self(self, node.b);
-        break;
-      case Trace::Kind::difference:
-        result = self(self, node.a) - self(self, node.b);
-        break;
-      case Trace::Kind::product:
-        result = self(self, node.a) * b + a * self(self, node.b);
-        break;
-      case Trace::Kind::quotient:
-        result = (self(self, node.a) - here * self(self, node.b)) / b;
-        break;
-      case Trace::Kind::power: {
-        const Expression exponent = self(self, node.b);
-        result = b * here / a * self(self, node.a);
-        if (!detail::is(exponent, 0.0)) result += here * log(a) * exponent;
-        break;
-      }
-      case Trace::Kind::choice:
-        result = Trace::choice(Condition(&trace, node.a), self(self, node.b), self(self, node.c));
-        break;
-      case Trace::Kind::function: {
-        const Expression inner = self(self, node.a);
-        if (node.name == "exp") result = here * inner;
-        else if (node.name == "log") result = inner / a;
-        else if (node.name == "sin") result = cos(a) * inner;
-        else if (node.name == "cos") result = -sin(a) * inner;
-        else if (node.name == "tanh") result = (1.0 - here * here) * inner;
-        else if (node.name == "sqrt") result = 0.5 / here * inner;
-        else result = Trace::choice(a < 0.0, -inner, inner);
-        break;
-      }
-      case Trace::Kind::constant:
-      case Trace::Kind::less:
-      case Trace::Kind::less_or_equal:
-      case Trace::Kind::equal:
-        break;
-    }
-    return known[place] = result;
-  };
-  return slope(slope, of.node());
-}
+/// The value of a recorded column, or the plain value of an expression: still an expression. Only where code
+/// insists on a plain number it throws NotTraceable.
+class GivenExpression : public Expression {
+public:
+  GivenExpression() = default;
+  /// A constant.
+  GivenExpression(double value) : Expression(value) {}  // NOLINT: as with plain numbers
+  /// Any expression.
+  explicit GivenExpression(const Expression& one) : Expression(one) {}
+  /// The number, where it is one. @throws NotTraceable where it is none
+  operator double() const {  // NOLINT: effects may treat what was recorded as a plain number
+    if (!is_constant()) throw NotTraceable("its code turns a value into a plain number");
+    return constant_value();
+  }
+
+  /// @name Arithmetic among such values yields such a value
+  /// @{
+
+  /// See above.
+  friend GivenExpression operator+(const GivenExpression& a, const GivenExpression& b) {
+    return GivenExpression(a.expression() + b.expression());
+  }
+  friend GivenExpression operator+(const GivenExpression& a, double b) {
+    return GivenExpression(a.expression() + b);
+  }
+  friend GivenExpression operator+(double a, const GivenExpression& b) {
+    return GivenExpression(a + b.expression());
+  }
+  friend GivenExpression operator-(const GivenExpression& a, const GivenExpression& b) {
+    return GivenExpression(a.expression() - b.expression());
+  }
+  friend GivenExpression operator-(const GivenExpression& a, double b) {
+    return GivenExpression(a.expression() - b);
+  }
+  friend GivenExpression operator-(double a, const GivenExpression& b) {
+    return GivenExpression(a - b.expression());
+  }
+  friend GivenExpression operator*(const GivenExpression& a, const GivenExpression& b) {
+    return GivenExpression(a.expression() * b.expression());
+  }
+  friend GivenExpression operator*(const GivenExpression& a, double b) {
+    return GivenExpression(a.expression() * b);
+  }
+  friend GivenExpression operator*(double a, const GivenExpression& b) {
+    return GivenExpression(a * b.expression());
+  }
+  friend GivenExpression operator/(const GivenExpression& a, const GivenExpression& b) {
+    return GivenExpression(a.expression() / b.expression());
+  }
+  friend GivenExpression operator/(const GivenExpression& a, double b) {
+    return GivenExpression(a.expression() / b);
+  }
+  friend GivenExpression operator/(double a, const GivenExpression& b) {
+    return GivenExpression(a / b.expression());
+  }
+  /// @}
+
+private:
+  const Expression& expression() const { return *this; }
+};
 
 /// What a recorded column is in a trace.
 template <>

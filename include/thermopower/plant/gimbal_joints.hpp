@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace thermopower::plant {
 
@@ -288,22 +290,33 @@ struct GimbalProducts {
   }
 };
 
+namespace detail {
+
+// Mass times the lever along one axis of a body.
+inline Parameter lever(int index, const char* name) {
+  return parameter(index, name).unit("kg m").within(-10.0, 10.0).starts({0.0});
+}
+
+// A body whose centre of mass is off a joint's axis.
+inline EffectInfo imbalance(const char* name, const char* equation, const char* meaning,
+                            std::vector<Parameter> levers, const char* experiment) {
+  return {name, SubmodelName("gimbal.gravity"), equation, meaning, std::move(levers), {}, experiment};
+}
+
+}  // namespace detail
+
 /// A camera whose centre of mass is not where the axes meet.
 struct CameraImbalance {
   /// Its parameters, in this order: mass times the lever along the camera's x, y and z.
   enum Parameters { ahead_kgm, right_kgm, below_kgm };
   /// What it is.
   static EffectInfo info() {
-    const auto lever = [](int index, const char* name) {
-      return parameter(index, name).unit("kg m").within(-10.0, 10.0).starts({0.0});
-    };
-    return {"camera_imbalance",
-            SubmodelName("gimbal.gravity"),
-            "torque += (m r x g) about each joint's axis",
-            "The camera is not balanced: gravity turns pitch and roll, and yaw where the frame is askew.",
-            {lever(ahead_kgm, "ahead_kgm"), lever(right_kgm, "right_kgm"), lever(below_kgm, "below_kgm")},
-            {},
-            "turn pitch and roll slowly through all of their range"};
+    return detail::imbalance(
+        "camera_imbalance", "torque += (m r x g) about each joint's axis",
+        "The camera is not balanced: gravity turns pitch and roll, and yaw where the frame is askew.",
+        {detail::lever(ahead_kgm, "ahead_kgm"), detail::lever(right_kgm, "right_kgm"),
+         detail::lever(below_kgm, "below_kgm")},
+        "turn pitch and roll slowly through all of their range");
   }
   /// Adds gravity's torques.
   template <class Scalar>
@@ -327,16 +340,10 @@ struct ArmImbalance {
   enum Parameters { right_kgm, below_kgm };
   /// What it is.
   static EffectInfo info() {
-    const auto lever = [](int index, const char* name) {
-      return parameter(index, name).unit("kg m").within(-10.0, 10.0).starts({0.0});
-    };
-    return {"arm_imbalance",
-            SubmodelName("gimbal.gravity"),
-            "torque += (m r x g) about roll and yaw",
-            "The roll arm is not balanced: gravity turns roll, whatever the pitch.",
-            {lever(right_kgm, "right_kgm"), lever(below_kgm, "below_kgm")},
-            {},
-            "turn roll slowly through all of its range, at several pitches"};
+    return detail::imbalance("arm_imbalance", "torque += (m r x g) about roll and yaw",
+                             "The roll arm is not balanced: gravity turns roll, whatever the pitch.",
+                             {detail::lever(right_kgm, "right_kgm"), detail::lever(below_kgm, "below_kgm")},
+                             "turn roll slowly through all of its range, at several pitches");
   }
   /// Adds gravity's torques.
   template <class Scalar>
@@ -354,16 +361,11 @@ struct YawImbalance {
   enum Parameters { ahead_kgm, right_kgm };
   /// What it is.
   static EffectInfo info() {
-    const auto lever = [](int index, const char* name) {
-      return parameter(index, name).unit("kg m").within(-10.0, 10.0).starts({0.0});
-    };
-    return {"yaw_imbalance",
-            SubmodelName("gimbal.gravity"),
-            "torque += (m r x g) about yaw",
-            "What yaw turns is not balanced: where the frame is askew or accelerates, gravity turns yaw.",
-            {lever(ahead_kgm, "ahead_kgm"), lever(right_kgm, "right_kgm")},
-            {},
-            "turn yaw with the frame askew, and record gravity_x_mps2 and gravity_y_mps2"};
+    return detail::imbalance(
+        "yaw_imbalance", "torque += (m r x g) about yaw",
+        "What yaw turns is not balanced: where the frame is askew or accelerates, gravity turns yaw.",
+        {detail::lever(ahead_kgm, "ahead_kgm"), detail::lever(right_kgm, "right_kgm")},
+        "turn yaw with the frame askew, and record gravity_x_mps2 and gravity_y_mps2");
   }
   /// Adds gravity's torque.
   template <class Scalar>
