@@ -41,17 +41,14 @@ struct Drift {
   double until = 0.0;  ///< and before the log of this one; a slope's last log
 };
 
-/// Variance that the logs of one unit differ by beyond their errors, over all units of a fleet, and the degrees of
-/// freedom that it is known to.
-///
-/// From the differences of neighbouring logs, so that slow drifts hardly count, and by their median, so that jumps of a
-/// few units do not.
+/// Variance that the logs of one unit differ by beyond their errors, over all units of a fleet.
 struct LogScatter {
   double variance = 0.0;  ///< beyond the errors, of one log, in the coordinate's square
   double degrees = 1.0;   ///< degrees of freedom it is known to
 };
 
-/// The scatter between the logs of one unit, from all series of one coordinate.
+/// The scatter between the logs of one unit, from all series of one coordinate: from the differences of neighbouring
+/// logs, so that slow drifts hardly count, and by their median, so that jumps of a few units do not.
 inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
   std::vector<double> squares, errors;
   for (const TimeSeries& one : fleet)

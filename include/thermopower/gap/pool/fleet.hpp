@@ -302,7 +302,7 @@ private:
     for (const std::size_t log : unit.logs)
       if (std::optional<Estimate> one = estimate_of(family, log)) {
         one->covariance += scatter;
-        const Eigen::MatrixXd weight = one->covariance.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+        const Eigen::MatrixXd weight = inverse_of(one->covariance);
         if (!weight.allFinite()) continue;
         sum += weight;
         right += weight * one->at;
@@ -310,7 +310,7 @@ private:
       }
     if (used.empty()) return std::nullopt;
     Estimate result;
-    result.covariance = sum.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    result.covariance = inverse_of(sum);
     result.at = result.covariance * right;
     if (!result.at.allFinite() || !result.covariance.allFinite()) return std::nullopt;
     if (used.size() < 2) return result;
@@ -359,7 +359,7 @@ private:
     const OddUnits by_misfit = find_odd_units(misfits, level);
     std::vector<double> usual;
     for (const Estimate& one : misfits) usual.push_back(one.at[0]);
-    const double middle = usual.empty() ? 0.0 : median(usual);
+    const double middle = engine::median_of(usual);
     family.usual_misfit = std::exp(2.0 * middle);
     for (std::size_t place = 0; place < fitted.size(); ++place) {
       UnitVerdict& unit = result_.units[fitted[place]];

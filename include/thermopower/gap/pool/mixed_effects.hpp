@@ -6,7 +6,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <cmath>
 #include <cstddef>
@@ -19,6 +18,11 @@ struct Estimate {
   Eigen::VectorXd at;          ///< the estimate; k coordinates
   Eigen::MatrixXd covariance;  ///< of its error, k by k, positive semidefinite
 };
+
+/// Inverse of a symmetric positive definite matrix: information of a covariance, and back. @param matrix  k by k
+inline Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+  return matrix.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+}
 
 /// How units spread: y_i ~ N(mean, between + V_i), V_i the covariance of unit i's estimate.
 ///
@@ -63,17 +67,19 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
   for (const Estimate& one : units) between += (one.at - mean) * (one.at - mean).transpose() / (count - 1.0);
   // Where all are equal there is nothing to iterate on, and nothing to divide by.
   for (Eigen::Index i = 0; i < k; ++i) between(i, i) += 1e-12 * (1.0 + mean[i] * mean[i]);
+  // Nor does a spread fall below what numbers of that size resolve.
+  const Eigen::VectorXd rounding = (1e-24 * (1.0 + mean.array().square())).matrix();
   std::vector<Eigen::MatrixXd> weights(units.size());
   Eigen::MatrixXd error;
   const auto weigh = [&] {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k);
     for (std::size_t i = 0; i < units.size(); ++i) {
-      weights[i] = (units[i].covariance + between).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+      weights[i] = inverse_of(units[i].covariance + between);
       sum += weights[i];
       right += weights[i] * units[i].at;
     }
-    error = sum.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    error = inverse_of(sum);
     mean = error * right;
   };
   for (int iteration = 0; iteration < most; ++iteration) {
@@ -86,6 +92,7 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
     const Eigen::MatrixXd step = between * push * between / count;
     between += step;
     between = 0.5 * (between + between.transpose()).eval();
+    between.diagonal() = between.diagonal().cwiseMax(rounding).eval();
     double change = 0.0;
     for (Eigen::Index i = 0; i < k; ++i)
       change = std::max(change, std::abs(step(i, i)) / std::max(between(i, i), 1e-300));
@@ -124,8 +131,7 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
 /// errors (Morris 1983; here coordinate by coordinate).
 inline Shrunken shrink(const MixedEffects& fleet, const Estimate& unit) {
   const Eigen::Index k = fleet.size();
-  const Eigen::MatrixXd gain =
-      (unit.covariance + fleet.between).ldlt().solve(fleet.between).transpose();  // T (V + T)^-1
+  const Eigen::MatrixXd gain = fleet.between * inverse_of(unit.covariance + fleet.between);
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(k, k) - gain;
   Shrunken result;
   result.at = fleet.mean + gain * (unit.at - fleet.mean);

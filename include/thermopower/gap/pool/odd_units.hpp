@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -31,13 +31,6 @@ struct OddUnits {
 
 namespace detail {
 
-/// The middle of a sample that is not empty.
-inline double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The units nearest to the coordinates' medians: a core that up to two fifths of odd units cannot pull away.
 inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   const Eigen::Index k = units.front().at.size();
@@ -48,10 +41,10 @@ inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
       values.push_back(one.at[c]);
       errors.push_back(one.covariance(c, c));
     }
-    const double middle = median(values), error = median(errors);
+    const double middle = engine::median_of(values), error = engine::median_of(errors);
     for (double& one : values) one = std::abs(one - middle);
     constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
-    const double scale = std::max(normal * median(values), 1e-12 * (1.0 + std::abs(middle)));
+    const double scale = std::max(normal * engine::median_of(values), 1e-12 * (1.0 + std::abs(middle)));
     const double between = std::max(scale * scale - error, 0.0);
     for (std::size_t i = 0; i < units.size(); ++i)
       far[i] =
@@ -68,6 +61,63 @@ inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   std::vector<bool> core(units.size());
   for (std::size_t i = 0; i < units.size(); ++i) core[i] = far[i] <= limit;
   return core;
+}
+
+/// What one unit is held against: the others' mean, its error and their spread, and how well that is known.
+struct Others {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd error, spread;
+  Eigen::VectorXd information;  ///< by coordinate, that the units have on the spread
+};
+
+/// A fleet without one of its units: its part of the mean, and of the last iteration of the spread, is taken out.
+inline Others without(const Estimate& one, const MixedEffects& fleet, const Eigen::VectorXd& information) {
+  const double count = static_cast<double>(fleet.units);
+  const Eigen::MatrixXd& between = fleet.between;
+  const Eigen::MatrixXd weight = inverse_of(one.covariance + between),
+                        known = inverse_of(fleet.mean_covariance);
+  const Eigen::VectorXd pull = between * weight * (one.at - fleet.mean);
+  const Eigen::MatrixXd own = between -
+                              between * (weight - weight * fleet.mean_covariance * weight) * between +
+                              pull * pull.transpose();
+  Others others;
+  others.spread = (count * between - own) / (count - 1.0);
+  others.error = inverse_of(known - weight);
+  others.mean = others.error * (known * fleet.mean - weight * one.at);
+  others.information = information;
+  for (Eigen::Index c = 0; c < fleet.size(); ++c) {
+    const double whole = one.covariance(c, c) + between(c, c);
+    others.information[c] -= 1.0 / (whole * whole);
+  }
+  return others;
+}
+
+/// Hotelling's T^2 of one unit, with Satterthwaite's degrees of freedom of the variance it is held against.
+/// @param limit  probability below which it is odd
+inline Standing standing_of(const Estimate& one, const Others& others, double limit) {
+  const Eigen::Index k = one.at.size();
+  const Eigen::VectorXd away = one.at - others.mean;
+  const Eigen::MatrixXd whole = one.covariance + others.spread + others.error;
+  const double square = std::max(0.0, away.dot(inverse_of(whole) * away));
+  double degrees = -1.0;
+  for (Eigen::Index c = 0; c < k; ++c) {
+    const double own = one.covariance(c, c) + others.spread(c, c);
+    degrees += own * own * others.information[c] / static_cast<double>(k);
+  }
+  const double within = std::max(degrees - static_cast<double>(k) + 1.0, 0.5);
+  Standing standing;
+  standing.distance = std::sqrt(square);
+  standing.p = f_tail(square * within / (static_cast<double>(k) * std::max(degrees, 1.0)),
+                      static_cast<double>(k), within);
+  standing.odd = standing.p < limit;
+  for (Eigen::Index c = 0; c < k; ++c) {
+    const double own = away[c] / std::sqrt(whole(c, c));
+    if (std::abs(own) > std::abs(standing.standard_deviations)) {
+      standing.standard_deviations = own;
+      standing.coordinate = c;
+    }
+  }
+  return standing;
 }
 
 }  // namespace detail
@@ -98,63 +148,18 @@ inline OddUnits find_odd_units(const std::vector<Estimate>& units, double false_
     for (std::size_t i = 0; i < units.size(); ++i)
       if (kept[i]) others.push_back(units[i]);
     const MixedEffects& fleet = result.sound = fit_mixed_effects(others);
-    const double count = static_cast<double>(others.size());
-    const Eigen::MatrixXd& between = fleet.between;
-    const auto weight_of = [&](const Estimate& one) -> Eigen::MatrixXd {
-      return (one.covariance + between).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
-    };
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(k);
+    Eigen::VectorXd information = Eigen::VectorXd::Zero(k);
     for (const Estimate& one : others)
-      for (Eigen::Index c = 0; c < k; ++c)
-        diagonal[c] +=
-            1.0 / ((one.covariance(c, c) + between(c, c)) * (one.covariance(c, c) + between(c, c)));
+      for (Eigen::Index c = 0; c < k; ++c) {
+        const double whole = one.covariance(c, c) + fleet.between(c, c);
+        information[c] += 1.0 / (whole * whole);
+      }
+    const detail::Others all{fleet.mean, fleet.mean_covariance, fleet.between, information};
     std::vector<bool> next(units.size());
     for (std::size_t i = 0; i < units.size(); ++i) {
-      const Estimate& one = units[i];
-      Eigen::VectorXd mean = fleet.mean;
-      Eigen::MatrixXd error = fleet.mean_covariance, spread = between;
-      Eigen::VectorXd information = diagonal;
-      if (kept[i]) {
-        // Without itself: its part of the mean, and of the last iteration of the spread, is taken out.
-        const Eigen::MatrixXd weight = weight_of(one);
-        const Eigen::VectorXd pull = between * weight * (one.at - fleet.mean);
-        const Eigen::MatrixXd own = between -
-                                    between * (weight - weight * fleet.mean_covariance * weight) * between +
-                                    pull * pull.transpose();
-        spread = (count * between - own) / (count - 1.0);
-        const Eigen::MatrixXd rest = fleet.mean_covariance.inverse() - weight;
-        error = rest.ldlt().solve(Eigen::MatrixXd::Identity(k, k));
-        mean = error * (fleet.mean_covariance.ldlt().solve(fleet.mean) - weight * one.at);
-        for (Eigen::Index c = 0; c < k; ++c) {
-          const double whole = one.covariance(c, c) + between(c, c);
-          information[c] -= 1.0 / (whole * whole);
-        }
-      }
-      const Eigen::VectorXd away = one.at - mean;
-      const Eigen::MatrixXd whole = one.covariance + spread + error;
-      Standing& standing = result.units[i];
-      const double square = std::max(0.0, away.dot(whole.ldlt().solve(away)));
-      standing.distance = std::sqrt(square);
-      // Satterthwaite's degrees of freedom of the variance it is held against.
-      double degrees = 0.0;
-      for (Eigen::Index c = 0; c < k; ++c) {
-        const double own = one.covariance(c, c) + spread(c, c);
-        degrees += own * own * information[c] / static_cast<double>(k);
-      }
-      degrees -= 1.0;
-      const double within = std::max(degrees - static_cast<double>(k) + 1.0, 0.5);
-      standing.p = f_tail(square * within / (static_cast<double>(k) * std::max(degrees, 1.0)),
-                          static_cast<double>(k), within);
-      standing.odd = standing.p < limit;
-      standing.standard_deviations = 0.0;
-      for (Eigen::Index c = 0; c < k; ++c) {
-        const double own = away[c] / std::sqrt(whole(c, c));
-        if (std::abs(own) > std::abs(standing.standard_deviations)) {
-          standing.standard_deviations = own;
-          standing.coordinate = c;
-        }
-      }
-      next[i] = !standing.odd;
+      result.units[i] =
+          detail::standing_of(units[i], kept[i] ? detail::without(units[i], fleet, information) : all, limit);
+      next[i] = !result.units[i].odd;
     }
     const auto sound = static_cast<std::size_t>(std::count(next.begin(), next.end(), true));
     if (next == kept || sound < static_cast<std::size_t>(k) + 4) break;
