@@ -142,10 +142,15 @@ inline std::vector<RunSpan> PreparedRecording::steady_runs(const Eigen::VectorXd
   return cut_at(believed_.runs, starts);
 }
 
-/// The current without what the voltage at the motor does to it at once: the steps of the power are gone.
+/// The current without what the voltage at the motor does to it at once: the steps of the power are gone. What flows at
+/// a voltage is told by the rows before and after whose voltage is nearest, whatever the law between the two; missing where no
+/// rows are near.
 inline Eigen::VectorXd PreparedRecording::detrended_current(const Eigen::VectorXd& current_A) const {
-  constexpr Eigen::Index around = 15;  // rows of one ratio
-  constexpr double least_share = 0.1;  // of the largest voltage: below it a ratio is mostly noise
+  constexpr Eigen::Index around = 40;    // rows before and after
+  constexpr std::ptrdiff_t nearest = 7;  // rows: three bad ones do no harm
+  constexpr double near_share = 0.08,
+                   least_share = 0.1;  // of the largest voltage: beyond the one a row tells nothing of
+                                       // another's, below the other a ratio is mostly noise
   const Eigen::VectorXd* power = believed_.find("power_param");
   if (power == nullptr) return current_A;
   const Eigen::VectorXd* supply = believed_.find("supply_V");
@@ -155,17 +160,29 @@ inline Eigen::VectorXd PreparedRecording::detrended_current(const Eigen::VectorX
     const double open_V = supply != nullptr && std::isfinite((*supply)[i]) ? (*supply)[i] : 1.0;
     volts[i] = on > 0.0 ? v_rms_from_duty<double>(open_V, duty_from_power(on)) : 0.0;
   }
-  const double least = least_share * volts.maxCoeff();
+  const double near = near_share * volts.maxCoeff(), least = least_share * volts.maxCoeff();
   Eigen::VectorXd result = current_A;
-  std::vector<double> ratios;
+  std::vector<std::pair<double, Eigen::Index>> rows;  // by distance in volts
+  std::vector<double> list;
   for (const RunSpan& run : believed_.runs)
-    for (Eigen::Index block = run.begin; block < run.end; block += around) {
-      const Eigen::Index end = std::min(run.end, block + around);
-      ratios.clear();
-      for (Eigen::Index i = std::max(run.begin, block - around); i < std::min(run.end, end + around); ++i)
-        if (volts[i] > least && std::isfinite(current_A[i])) ratios.push_back(current_A[i] / volts[i]);
-      const double ratio = median_of(ratios);
-      for (Eigen::Index i = block; i < end; ++i) result[i] -= ratio * volts[i];
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      rows.clear();
+      list.clear();
+      for (Eigen::Index k = std::max(run.begin, i - around); k < std::min(run.end, i + around + 1); ++k) {
+        if (k == i || !std::isfinite(current_A[k])) continue;
+        if (volts[k] > least) list.push_back(current_A[k] / volts[k]);
+        if (std::abs(volts[k] - volts[i]) <= near) rows.push_back({std::abs(volts[k] - volts[i]), k});
+      }
+      if (static_cast<std::ptrdiff_t>(rows.size()) < nearest) {
+        result[i] = missing;
+        continue;
+      }
+      const double conductance = median_of(list);
+      std::nth_element(rows.begin(), rows.begin() + nearest - 1, rows.end());
+      list.clear();
+      for (auto row = rows.begin(); row != rows.begin() + nearest; ++row)
+        list.push_back(current_A[row->second] + conductance * (volts[i] - volts[row->second]));
+      result[i] -= median_of(list);
     }
   return result;
 }
@@ -254,10 +271,15 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
       for (Eigen::Index i = run.begin; run.size() < shortest_steady && i < run.end; ++i)
         spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
   }
+  const RowMask bursts = masks.bursts();
+  if (std::find(bursts.begin(), bursts.end(), 1) != bursts.end()) {
+    // Next to a burst a spike does not stand out.
+    const RowMask hidden = masks.spikes();
+    for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];
+  }
   take(spikes);
   list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
                 "lie far from all around them");
-  const RowMask bursts = masks.bursts();
   take(bursts);
   list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
