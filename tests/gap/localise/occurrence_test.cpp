@@ -60,6 +60,11 @@ TEST_CASE("a fault that begins in the middle of a run is said with its time") {
     values.tail(2000) = after.column(name).tail(2000);
     joined.set(name, values);
   }
+  SECTION("in one piece") {}
+  SECTION("in a run that was cut") {
+    const std::string label = "a";
+    joined.runs = {{0, 2700, label}, {2700, 3300, label}, {3300, 4000, label}};
+  }
   const Localisation half =
       found(test::axis_model(), {named(joined, "one")}, {named(test::axis_recording({}, 3000, 4), "two")});
   REQUIRE_FALSE(half.where.empty());

@@ -235,7 +235,11 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     // Half way between "at the noise" and "clearly not", or a share of the gap that small.
     const double doubt = std::min(4.0 * (level_left - decision.near_floor), 30.0 * (share_left - 0.15));
     result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
-  } else if (only_constants || !proven) {
+  } else if (only_constants) {
+    return nothing_known(
+        "there is a gap; other constants take the most of it away, and no effect of the catalogue explains what they "
+        "leave above the noise");
+  } else if (!proven) {
     return nothing_known("there is a gap, and no effect of the catalogue takes a proven part of it away");
   } else {
     const double rest = std::max(share_left, left_over(best.held_out, reference.recalibrated));

@@ -227,12 +227,6 @@ private:
     return problem;
   }
 
-  static Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
-    Eigen::Index rows = 0;
-    for (const Inputs& one : inputs) rows += one.rows();
-    return rows;
-  }
-
   /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
   double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
 
@@ -248,17 +242,6 @@ private:
     for (std::size_t i = 0; i < constants.size(); ++i)
       if (constants[i].may_be_cause && !removed("calibration." + constants[i].id) && acts(constants[i]))
         list.push_back({{}, {static_cast<int>(i)}});
-    return list;
-  }
-
-  /// The same, and every two constants: two that are off need not be reached from one that is.
-  static std::vector<Explanation> with_pairs_of_constants(std::vector<Explanation> list) {
-    std::vector<int> constants;
-    for (const Explanation& one : list)
-      if (one.effects.empty()) constants.push_back(one.released.front());
-    for (std::size_t i = 0; i < constants.size(); ++i)
-      for (std::size_t k = i + 1; k < constants.size(); ++k)
-        list.push_back({{}, {constants[i], constants[k]}});
     return list;
   }
 

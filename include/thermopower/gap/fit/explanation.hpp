@@ -170,4 +170,14 @@ inline Model augmented(const Model& model, const Explanation& explanation,
   return result;
 }
 
+/// Single explanations, and every two of their constants: two that are off need not be reached from one that is.
+inline std::vector<Explanation> with_pairs_of_constants(std::vector<Explanation> list) {
+  std::vector<int> constants;
+  for (const Explanation& one : list)
+    if (one.effects.empty()) constants.push_back(one.released.front());
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    for (std::size_t k = i + 1; k < constants.size(); ++k) list.push_back({{}, {constants[i], constants[k]}});
+  return list;
+}
+
 }  // namespace thermopower::gap

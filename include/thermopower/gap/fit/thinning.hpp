@@ -13,6 +13,13 @@
 
 namespace thermopower::gap {
 
+/// Rows of several recordings together.
+inline Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
+  Eigen::Index rows = 0;
+  for (const Inputs& one : inputs) rows += one.rows();
+  return rows;
+}
+
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its

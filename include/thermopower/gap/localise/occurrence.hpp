@@ -158,17 +158,27 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
     }
     holdings.push_back(std::move(list));
   }
+  const auto of_one_run = [](const auto& a, const auto& b) {
+    return a.recording == b.recording && a.run == b.run && a.held_out == b.held_out;
+  };
+  std::vector<Occurrence> runs;  // a run that was cut is one all the same
+  for (const RunPart& part : parts) {
+    const Occurrence whole{part.name, part.run, part.held_out, {}};
+    if (runs.empty() || !of_one_run(runs.back(), whole)) runs.push_back(whole);
+  }
   const auto occurrences = [&](const plant::SignalName& signal) {
     std::vector<Occurrence> list;
-    std::size_t throughout = 0;
     for (std::size_t i = 0; i < parts.size(); ++i)
       for (const detail::Holding& one : holdings[i]) {
         if (one.signal != signal || one.level < limit.clearly) continue;
-        list.push_back({parts[i].name, parts[i].run, parts[i].held_out, one.from_s});
-        throughout += one.from_s ? 0 : 1;
+        const Occurrence here{parts[i].name, parts[i].run, parts[i].held_out, one.from_s};
+        if (list.empty() || !of_one_run(list.back(), here)) list.push_back(here);
         break;
       }
-    if (throughout == parts.size()) list.clear();
+    const bool everywhere =
+        list.size() == runs.size() &&
+        std::none_of(list.begin(), list.end(), [](const Occurrence& one) { return one.from_s.has_value(); });
+    if (everywhere) list.clear();
     return list;
   };
   const auto held_anywhere = [&](const plant::SignalName& signal) {
