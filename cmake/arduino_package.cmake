@@ -2,7 +2,7 @@
 # Copyright (c) 2026 the thermopower authors
 
 # cmake -DOUT=<directory> -P cmake/arduino_package.cmake: the Arduino library <directory>/thermopower, ready to be copied into a
-# sketchbook's libraries directory. It holds the firmware headers and the two sketches for the Nano, and nothing for the desktop.
+# sketchbook's libraries directory. It holds the firmware headers and the sketches for the Nano, and nothing for the desktop.
 if(NOT OUT)
   message(FATAL_ERROR "Say where to: cmake -DOUT=<directory> -P cmake/arduino_package.cmake")
 endif()
@@ -20,7 +20,7 @@ foreach(part actuator control detail fixed_point motors sbgc)
 endforeach()
 # The Arduino builder finds a library by a header in the root of its sources.
 file(WRITE ${package}/src/thermopower.h "#pragma once\n#include \"thermopower/thermopower.hpp\"\n")
-foreach(sketch nano_gimbal gimbal_controller)
+foreach(sketch nano_gimbal gimbal_controller pwm_motor)
   file(GLOB parts ${root}/examples/${sketch}/*.ino ${root}/examples/${sketch}/*.h)
   file(COPY ${parts} DESTINATION ${package}/examples/${sketch})
 endforeach()

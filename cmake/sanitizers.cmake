@@ -31,13 +31,13 @@ macro(thermopower_sanitize)
   endif()
 endmacro()
 
-# thermopower_numerical_directory(): this directory is under the sanitizers only if everything is, and optimised where they
-# are for programs only: it takes longer to run than to compile. What it links may need their libraries all the same.
+# thermopower_numerical_directory(): this directory is under the sanitizers only if everything is. What it links may need
+# their libraries all the same.
 macro(thermopower_numerical_directory)
   if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS")
     get_directory_property(thermopower_options COMPILE_OPTIONS)
     list(REMOVE_ITEM thermopower_options ${thermopower_sanitizers})
-    set_directory_properties(PROPERTIES COMPILE_OPTIONS "${thermopower_options};-O2")
+    set_directory_properties(PROPERTIES COMPILE_OPTIONS "${thermopower_options}")
   endif()
 endmacro()
 

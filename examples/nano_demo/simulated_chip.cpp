@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #include "simulated_chip.hpp"
 
+#include <avr_adc.h>
 #include <avr_eeprom.h>
 #include <avr_uart.h>
 #include <sim_avr.h>
@@ -93,6 +94,7 @@ SimulatedChip::SimulatedChip(const std::string& elf_path) : simulation_(std::mak
   if (self.avr == nullptr) throw std::runtime_error("this libsimavr knows no atmega328p");
   avr_init(self.avr);
   self.avr->frequency = 16000000;
+  self.avr->vcc = self.avr->avcc = self.avr->aref = 5000;
   self.avr->log = LOG_NONE;
   self.avr->sleep = [](avr_t*, avr_cycle_count_t) {};
   avr_load_firmware(self.avr, &firmware);
@@ -168,6 +170,9 @@ void SimulatedChip::set_data(std::uint16_t address, std::uint8_t value) {
 void SimulatedChip::set_eeprom(std::uint16_t address, std::uint8_t value) {
   avr_eeprom_desc_t byte = {&value, address, 1};
   avr_ioctl(simulation_->avr, AVR_IOCTL_EEPROM_SET, &byte);
+}
+void SimulatedChip::set_analog(int channel, std::uint32_t mV) {
+  avr_raise_irq(avr_io_getirq(simulation_->avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel), mV);
 }
 void SimulatedChip::reset(bool is_power_lost) {
   Simulation& self = *simulation_;

@@ -39,6 +39,8 @@ public:
 
   /// A byte whose stop bit ends at a cycle; bytes must be given in order.
   void receive(std::uint64_t end_cycle, std::uint8_t byte);
+  /// The voltage at an analog pin from now on. @param channel  0..7  @param mV  0..5000, of a supply of 5000
+  void set_analog(int channel, std::uint32_t mV);
   /// Called when the program hands a byte to the transmitter.
   std::function<void(std::uint64_t cycle, std::uint8_t byte)> on_transmit;
   /// Called when a received byte becomes visible to the program.

@@ -12,7 +12,7 @@ if(NOT version)
   message(FATAL_ERROR "${libraries}/thermopower/library.properties: no version=<major>.<minor>.<patch>")
 endif()
 
-foreach(sketch nano_gimbal gimbal_controller)
+foreach(sketch nano_gimbal gimbal_controller pwm_motor)
   set(build ${WORK}/${sketch})
   file(MAKE_DIRECTORY ${build})
   # The define mends a name that Debian's avr-libc lacks and the core's Print wants; an IDE with its own tools needs none.

@@ -249,8 +249,11 @@ private:
     FitResult to;
     to.at = from.at + change;
     to.starts = from.starts;
-    for (std::size_t i = 0; i < to.starts.size(); ++i)
-      to.starts[i] -= eliminated_[i].inverse * (eliminated_[i].gradient + eliminated_[i].coupling * change);
+    for (std::size_t i = 0; i < to.starts.size(); ++i) {
+      Start slope = eliminated_[i].gradient;
+      slope.noalias() += eliminated_[i].coupling * change;
+      to.starts[i].noalias() -= eliminated_[i].inverse * slope;
+    }
     // A start that nobody measures stays among those that a body can have.
     for (std::size_t i = 0; i < to.starts.size(); ++i)
       for (const HiddenStart& one : hidden_[i])
