@@ -162,18 +162,39 @@ TEST_CASE("a rate cut off at the end of its range is masked there") {
   CHECK(static_cast<double>(out) < 1.1 * static_cast<double>(cut) + 3.0);
 }
 
-TEST_CASE("frames that repeat the one before them are masked") {
+TEST_CASE(
+    "a coarse thermometer cut off between two of its steps is masked there, and one that stands on a step is not") {
+  Recording r = bench();
+  const double quantum = 0.0625;
+  change(r, "motor_C", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("motor_C");
+  const double steps = std::floor((whole.minCoeff() + 0.8 * (whole.maxCoeff() - whole.minCoeff())) / quantum);
+  for (const bool between : {true, false}) {
+    const double limit = quantum * (steps + (between ? 0.6 : 0.0));
+    std::size_t cut = 0;
+    change(r, "motor_C", [&](double, Eigen::Index i) {
+      cut += whole[i] > limit ? 1 : 0;
+      return std::min(whole[i], limit);
+    });
+    REQUIRE(cut > 100);
+    const PreparedRecording prepared(test::bench_model(), r);
+    CHECK(found(prepared, FindingKind::clipped_samples, "motor_C", FindingAction::masked) == between);
+    if (between) CHECK(taken(r, prepared, "motor_C").size() == cut);
+  }
+}
+
+TEST_CASE("frames that repeat the one before them are masked, one or many in a row") {
   Recording r = axis();
+  const Eigen::Index repeats = GENERATE(2, 6, 10);
   std::set<Eigen::Index> bad;
   for (int k = 0; k < places; ++k) {
     const Eigen::Index row = place(r, k);
     for (const char* column : {"angle_deg", "rate_dps"}) {
       Eigen::VectorXd values = r.column(column);
-      values[row] = values[row + 1] = values[row - 1];
+      for (Eigen::Index i = 0; i < repeats; ++i) values[row + i] = values[row - 1];
       r.set(column, values);
     }
-    bad.insert(row);
-    bad.insert(row + 1);
+    for (Eigen::Index i = 0; i < repeats; ++i) bad.insert(row + i);
   }
   const PreparedRecording prepared(test::axis_model(), r);
   CHECK(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked));

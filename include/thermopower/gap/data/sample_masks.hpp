@@ -27,7 +27,7 @@ struct MaskThresholds {
   double stayed_away = 0.5;   ///< of the jump: what lies farther is still away
   Eigen::Index longest_burst = 20;   ///< rows of a stretch elsewhere
   Eigen::Index longest_stuck = 400;  ///< rows, where all of them have the same value
-  Eigen::Index longest_repeat = 5;   ///< frames in a row that repeat another
+  Eigen::Index longest_repeat = 12;  ///< frames in a row that repeat another
   double by_chance = 0.1;            ///< share of the repeated frames that chance may make
   double rarely_equal = 0.5;         ///< share of equal neighbours below which the noise shows at every row
   double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
@@ -144,10 +144,10 @@ public:
   /// Samples at the largest or the least value, where far more stand there than next to it.
   RowMask clipped() {
     RowMask mask = empty();
-    if (!(equal_share_ < limit_.hardly_equal)) return mask;
     std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
     std::sort(list.begin(), list.end());
+    const bool may_stand_still = !(equal_share_ < limit_.hardly_equal);
     for (const bool top : {true, false}) {
       const double extreme = top ? list.back() : list.front();
       const auto at_extreme = std::count(list.begin(), list.end(), extreme);
@@ -160,6 +160,8 @@ public:
       if (at_extreme < limit_.least_clipped || extreme == 0.0 ||
           static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
         continue;
+      // A slow signal in coarse steps stands still by itself; but not between two of its steps.
+      if (may_stand_still && !is_between_steps(extreme, next)) continue;
       // One sample tells little: just at the end of its range a sensor is still right.
       std::ptrdiff_t wrong = 0;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
@@ -209,6 +211,27 @@ private:
         if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
       if (off > limit_.spike_bends * median_of(bends)) mask[static_cast<std::size_t>(rows[i])] = 1;
     }
+  }
+
+  /// Whether a value is none of those that the other samples, in steps of a quantum, take.
+  bool is_between_steps(double value, double neighbour) const {
+    constexpr double on = 0.05, off = 0.1, nearly_all = 0.95;  // of a step; of the samples
+    Eigen::VectorXd others = values_;
+    for (double& one : others)
+      if (one == value) one = missing;
+    const double quantum = quantum_of(others);
+    if (!(quantum > 0.0)) return false;
+    const auto off_step = [&](double one) {
+      const double steps = (one - neighbour) / quantum;
+      return std::abs(steps - std::round(steps));
+    };
+    double known = 0.0, stepped = 0.0;
+    for (const double one : others) {
+      if (!std::isfinite(one)) continue;
+      known += 1.0;
+      stepped += off_step(one) < on ? 1.0 : 0.0;
+    }
+    return off_step(value) > off && stepped >= nearly_all * known;
   }
 
   bool resting(Eigen::Index row) const {
