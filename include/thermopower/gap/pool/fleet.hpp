@@ -359,7 +359,7 @@ private:
     const OddUnits by_misfit = find_odd_units(misfits, level);
     std::vector<double> usual;
     for (const Estimate& one : misfits) usual.push_back(one.at[0]);
-    const double middle = engine::median_of(usual);
+    const double middle = median(usual);
     family.usual_misfit = std::exp(2.0 * middle);
     for (std::size_t place = 0; place < fitted.size(); ++place) {
       UnitVerdict& unit = result_.units[fitted[place]];

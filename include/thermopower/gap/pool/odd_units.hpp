@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
 
 #include <Eigen/Core>
@@ -31,6 +30,14 @@ struct OddUnits {
 
 namespace detail {
 
+/// The middle of a sample, 0 of none.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// The units nearest to the coordinates' medians: a core that up to two fifths of odd units cannot pull away.
 inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   const Eigen::Index k = units.front().at.size();
@@ -41,10 +48,10 @@ inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
       values.push_back(one.at[c]);
       errors.push_back(one.covariance(c, c));
     }
-    const double middle = engine::median_of(values), error = engine::median_of(errors);
+    const double middle = median(values), error = median(errors);
     for (double& one : values) one = std::abs(one - middle);
     constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
-    const double scale = std::max(normal * engine::median_of(values), 1e-12 * (1.0 + std::abs(middle)));
+    const double scale = std::max(normal * median(values), 1e-12 * (1.0 + std::abs(middle)));
     const double between = std::max(scale * scale - error, 0.0);
     for (std::size_t i = 0; i < units.size(); ++i)
       far[i] =
