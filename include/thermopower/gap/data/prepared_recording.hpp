@@ -113,8 +113,15 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
     return name == "current_A" || name == "motor_C" ||
            (moves_ && (name == "angle_deg" || name == "rate_dps"));
   };
+  // A slow column in coarse steps repeats by itself, and tells of no frame.
+  const auto shows_frames = [&](const Eigen::VectorXd& values) {
+    const std::vector<double> steps = step_sizes(values, believed_.runs);
+    const auto equal = std::count(steps.begin(), steps.end(), 0.0);
+    return static_cast<double>(equal) < MaskThresholds().rarely_equal * static_cast<double>(steps.size());
+  };
   for (const Column& column : recorded.columns)
-    if (recorded.has(column.name) && is_output(column.name)) outputs.push_back(&column.values);
+    if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values))
+      outputs.push_back(&column.values);
   const RowMask repeated = repeated_frames(outputs, believed_.runs);
   list.add_rows(FindingKind::repeated_frames, Severity::warning, "", repeated, FindingAction::masked,
                 "of every output repeat the row before them", "log each frame once");
