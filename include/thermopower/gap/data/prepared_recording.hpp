@@ -117,7 +117,7 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   const auto shows_frames = [&](const Eigen::VectorXd& values) {
     const std::vector<double> steps = step_sizes(values, believed_.runs);
     const auto equal = std::count(steps.begin(), steps.end(), 0.0);
-    return static_cast<double>(equal) < MaskThresholds().rarely_equal * static_cast<double>(steps.size());
+    return static_cast<double>(equal) < MaskThresholds().hardly_equal * static_cast<double>(steps.size());
   };
   for (const Column& column : recorded.columns)
     if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values))
