@@ -52,7 +52,6 @@ public:
     return at == std::string::npos ? std::nan("") : std::atof(last_line_.c_str() + at + field.size() + 1);
   }
   double hottest_C() const { return hottest_C_; }
-  void warm_to(double celsius) { winding_C_ = hottest_C_ = celsius; }
   double winding_C() const { return winding_C_; }
 
 private:

@@ -4,7 +4,7 @@
 // Rules for the headers, those that run in firmware above all, which no compiler enforces.
 
 #include "../catch.hpp"
-#include "../text_file.hpp"
+#include "../../tools/thermopower-gap/text_file.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -5,7 +5,7 @@
 // anew.
 
 #include "../catch.hpp"
-#include "../text_file.hpp"
+#include "../../tools/thermopower-gap/text_file.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -4,7 +4,7 @@
 // MCAP files as the writers of others leave them (tests/data/mcap), and files that are damaged.
 
 #include "../catch.hpp"
-#include "../text_file.hpp"
+#include "../../tools/thermopower-gap/text_file.hpp"
 
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/mcap_file.hpp>

@@ -4,7 +4,7 @@
 // Wrong inputs of the program, and the answer each should get: the table is wrong_inputs.txt.
 
 #include "../catch.hpp"
-#include "../text_file.hpp"
+#include "../../tools/thermopower-gap/text_file.hpp"
 
 #include <sys/wait.h>
 

@@ -115,9 +115,7 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   };
   // A slow column in coarse steps repeats by itself, and tells of no frame.
   const auto shows_frames = [&](const Eigen::VectorXd& values) {
-    const std::vector<double> steps = step_sizes(values, believed_.runs);
-    const auto equal = std::count(steps.begin(), steps.end(), 0.0);
-    return static_cast<double>(equal) < MaskThresholds().hardly_equal * static_cast<double>(steps.size());
+    return equal_share_of(step_sizes(values, believed_.runs)) < MaskThresholds().hardly_equal;
   };
   for (const Column& column : recorded.columns)
     if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values))
@@ -272,10 +270,12 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                   "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
   }
   RowMask spikes = masks.spikes();
-  if (power != nullptr) {  // where the power steps too often to be looked at in between: what it leaves
+  // Where the power steps too often to be looked at in between: what it leaves.
+  const auto is_short = [](const RunSpan& run) { return run.size() < shortest_steady; };
+  if (power != nullptr && std::any_of(steady.begin(), steady.end(), is_short)) {
     const RowMask others = SampleMasks(detrended_current(masks.values()), runs, traits).spikes();
     for (const RunSpan& run : steady)
-      for (Eigen::Index i = run.begin; run.size() < shortest_steady && i < run.end; ++i)
+      for (Eigen::Index i = run.begin; is_short(run) && i < run.end; ++i)
         spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
   }
   const RowMask bursts = masks.bursts();

@@ -44,6 +44,12 @@ inline std::vector<double> step_sizes(const Eigen::VectorXd& values, const std::
   return list;
 }
 
+/// Share of steps of 0, 1 of none.
+inline double equal_share_of(const std::vector<double>& steps) {
+  const auto equal = std::count(steps.begin(), steps.end(), 0.0);
+  return steps.empty() ? 1.0 : static_cast<double>(equal) / static_cast<double>(steps.size());
+}
+
 /// Scale of the noise on a smooth signal, as a standard deviation: the median second difference. No estimate of
 /// the noise for a score (coloured noise is larger), but what an isolated bad sample is measured against.
 inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {

@@ -58,9 +58,7 @@ public:
               const ColumnTraits& traits = {})
       : values_(values), runs_(runs), traits_(traits), quantum_(quantum_of(values)) {
     std::vector<double> steps = step_sizes(values, runs);
-    Eigen::Index equal = 0;
-    for (const double step : steps) equal += step == 0.0 ? 1 : 0;
-    equal_share_ = steps.empty() ? 1.0 : static_cast<double>(equal) / static_cast<double>(steps.size());
+    equal_share_ = equal_share_of(steps);
     scale_ = white_scale(values, runs);
     usual_step_ = quantile_of(steps, 0.75);
   }

@@ -49,7 +49,7 @@ struct DecisionThresholds {
   double pair_for_unknown = 0.15;
   /// Multiple of the noise above which causes that cost much to simulate are looked for.
   double room_for_costly = 1.1;
-  /// Share of the error as judged below which a cheap cause must bring a signal for the costly ones not to be tried
+  /// Share of the error as judged below which a cheap cause must bring a signal for the costly ones not to be tried.
   double lowered_without_costly = 0.8;
   /// Multiple of the noise above which a second cause is looked for.
   double room_for_second = 1.4;
