@@ -8,6 +8,7 @@
 //           a gain to the nearest count. Supply 13 V.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <avr/eeprom.h>
+#include <avr/sleep.h>
 #include <avr/wdt.h>
 #include <thermopower.h>
 
@@ -95,8 +96,22 @@ void miss_answer() {
   send_command();
 }
 
+// Until a byte or the clock's next interrupt, at most 1.024 ms away, there is nothing to do. Interrupts are allowed only by the
+// instruction before the sleep: a byte that comes in between wakes the chip, and is not slept over.
+void rest() {
+  cli();
+  if (Serial.available() == 0) {
+    sleep_enable();
+    sei();
+    sleep_cpu();
+    sleep_disable();
+  }
+  sei();
+}
+
 void loop() {
   wdt_reset();
+  rest();
   journal.work();
   receive();
   switch (poller.turn(micros())) {

@@ -9,6 +9,7 @@
 //           whole numbers: tables instead of a float library.
 // Notation: axes roll, pitch, yaw; time in microseconds from a clock that may wrap.
 #include <avr/eeprom.h>
+#include <avr/sleep.h>
 #include <avr/wdt.h>
 #include <thermopower.h>
 
@@ -107,8 +108,22 @@ void miss_answer(uint32_t now_us) {
   send_command();
 }
 
+// Until a byte or the clock's next interrupt, at most 1.024 ms away, there is nothing to do. Interrupts are allowed only by the
+// instruction before the sleep: a byte that comes in between wakes the chip, and is not slept over.
+void rest() {
+  cli();
+  if (Serial.available() == 0) {
+    sleep_enable();
+    sei();
+    sleep_cpu();
+    sleep_disable();
+  }
+  sei();
+}
+
 void loop() {
   wdt_reset();
+  rest();
   journal.work();
   receive();
   const uint32_t now_us = micros();

@@ -72,7 +72,7 @@ TEST_CASE("what is wrong with a coupled gimbal is named by its joint and effect"
   faults.push_back({"arm_imbalance", "right_kgm", 0.0012, {}});
   faults.back().real.masses.push_back({1, 0.03, {0.0, 0.04, 0.0}});
   for (const Fault& fault : faults) {
-    const gap::Diagnosis diagnosis = diagnosed({}, fault.real, true, 800, 500);
+    const gap::Diagnosis diagnosis = diagnosed({}, fault.real, true, 400, 300);
     INFO(fault.effect << ": " << diagnosis.reason);
     REQUIRE(diagnosis.cause.size() == 1);
     CHECK(diagnosis.cause.front().effect == fault.effect);
