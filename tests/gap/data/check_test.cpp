@@ -205,6 +205,69 @@ TEST_CASE("frames that repeat the one before them are masked, one or many in a r
   CHECK(taken(r, prepared, "rate_dps") == bad);
 }
 
+TEST_CASE("spikes a few rows apart do not hide each other") {
+  const Eigen::Index apart = GENERATE(2, 3, 4);
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (int k = 0; k < places; ++k) bad.insert({place(r, k), place(r, k) + apart});
+  change(r, "angle_deg", [&](double x, Eigen::Index i) { return bad.count(i) != 0 ? x - 25.0 : x; });
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  for (const Eigen::Index row : bad) CHECK(out.count(row) == 1);
+  CHECK(out.size() <= bad.size() + 2);
+}
+
+TEST_CASE(
+    "a frame whose sensors say nothing is lost in every column, also where 0 looks right in one of them") {
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = 50; i + 50 < r.rows(); i += 61) bad.insert(i);
+  // Where the axis turns round and where it passes 0, one of the two zeros is nothing special.
+  const Eigen::VectorXd rate = r.column("rate_dps"), angle = r.column("angle_deg");
+  for (Eigen::Index i = 60; i + 60 < r.rows() && bad.size() < 60; ++i)
+    if ((std::abs(rate[i]) < 1.0 && std::abs(angle[i]) > 5.0) ||
+        (std::abs(angle[i]) < 0.1 && std::abs(rate[i]) > 20.0))
+      if (bad.lower_bound(i - 20) == bad.upper_bound(i + 20)) bad.insert(i);
+  for (const char* column : {"angle_deg", "rate_dps"})
+    change(r, column, [&](double x, Eigen::Index i) { return bad.count(i) != 0 ? 0.0 : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::glitched_samples, "", FindingAction::masked));
+  CHECK(taken(r, prepared, "angle_deg") == bad);
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+}
+
+TEST_CASE("an axis that rests at 0 has lost no frame") {
+  Recording r = axis();
+  for (const char* column : {"angle_deg", "rate_dps"})
+    change(r, column, [](double x, Eigen::Index i) { return i < 400 ? 0.0 : i % 301 == 0 ? 0.0 : x; });
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  CHECK(out.lower_bound(400) == out.begin());
+  CHECK(out.size() == 8);
+}
+
+TEST_CASE(
+    "a repeated frame catches up at once, also where a coarse column stands still by itself now and then") {
+  Recording r = axis();
+  change(r, "angle_deg", [](double x, Eigen::Index) { return 0.1 * std::round(10.0 * x); });
+  change(r, "rate_dps", [](double x, Eigen::Index) { return std::round(x); });
+  const PreparedRecording sound(test::axis_model(), r);
+  REQUIRE(taken(r, sound, "rate_dps").empty());
+  std::set<Eigen::Index> bad;
+  const Eigen::VectorXd rate = r.column("rate_dps");
+  for (int k = 0; k < places; ++k) {
+    // Where the axis moves: a frame that repeats a rest is none.
+    Eigen::Index row = place(r, k);
+    while (std::abs(rate[row]) < 20.0 || std::abs(rate[row + 4]) < 20.0) ++row;
+    for (const char* column : {"angle_deg", "rate_dps"})
+      change(r, column, [&, before = r.column(column)[row - 1]](double x, Eigen::Index i) {
+        return i >= row && i < row + 4 ? before : x;
+      });
+    for (Eigen::Index i = 0; i < 4; ++i) bad.insert(row + i);
+  }
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+  CHECK(taken(r, prepared, "angle_deg") == bad);
+}
+
 TEST_CASE("a coarse thermometer that stands still is nothing to talk about") {
   Recording r = bench();
   change(r, "motor_C", [](double x, Eigen::Index) { return std::round(x); });

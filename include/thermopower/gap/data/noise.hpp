@@ -144,10 +144,12 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
       if (since_gap[i] > 0) steps.push_back(std::abs(sequence[i] - sequence[i - 1]));
     scales[b] = median_of(steps);
   }
+  // In coarse steps most neighbours read nearly the same and some a step more: the median tells nothing of those, and no block
+  // has a smaller scale than a step.
   std::vector<double> typical = scales;
   const double usual = engine::quantile_of(typical, 0.5);
   for (std::size_t b = 0; b < blocks; ++b) {
-    const double scale = scales[b] > 0.0 ? scales[b] : usual;
+    const double scale = std::max(scales[b] > 0.0 ? scales[b] : usual, quantum);
     if (!(scale > 0.0)) continue;
     const std::size_t from = b * count / blocks, to = (b + 1) * count / blocks;
     for (std::size_t i = from; i < to; ++i) scaled[i] = sequence[i] / scale;

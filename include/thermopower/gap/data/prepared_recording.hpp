@@ -134,6 +134,31 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
       mask_slow_input(column.name, column.values, list);
     }
   }
+  // A frame whose sensors said nothing may look right in one of them.
+  std::vector<const Eigen::VectorXd*> lost_in;
+  std::vector<Column*> lossy;
+  std::vector<double> defaults;
+  for (Column& column : believed_.columns) {
+    if (!is_output(column.name)) continue;
+    const Eigen::VectorXd& as_it_was = *recorded.find(column.name);
+    const double value = default_reading(as_it_was, column.values);
+    if (!std::isfinite(value)) continue;
+    lost_in.push_back(&as_it_was);
+    lossy.push_back(&column);
+    defaults.push_back(value);
+  }
+  RowMask lost = lost_frames(lost_in, defaults, believed_.runs);
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const auto is_taken = [&](const Column* one) {
+      return !std::isfinite(one->values[static_cast<Eigen::Index>(i)]);
+    };
+    if (std::all_of(lossy.begin(), lossy.end(), is_taken)) lost[i] = 0;
+  }
+  list.add_rows(FindingKind::glitched_samples, Severity::warning, "", lost, FindingAction::masked,
+                "read what the sensors read when they say nothing", "look at what reads the sensors");
+  for (Column* column : lossy)
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      if (lost[i] != 0) column->values[static_cast<Eigen::Index>(i)] = missing;
 }
 
 /// Rows of a constant power that a spike can be told in.
@@ -257,8 +282,9 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   ColumnTraits traits;
   traits.cannot_jump = name == "motor_C";
   traits.zero_is_rest = name == "rate_dps" || name == "current_A" || name == "angle_deg";
+  traits.t_s = &believed_.t_s;
   if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
-  if (name == "rate_dps") traits.integral = believed_.find("angle_deg"), traits.t_s = &believed_.t_s;
+  if (name == "rate_dps") traits.integral = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power) : runs;
   SampleMasks masks(values, steady, traits);

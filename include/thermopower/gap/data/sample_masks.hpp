@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
 #include <vector>
 
 /// @file sample_masks.hpp
@@ -20,15 +23,23 @@ namespace thermopower::gap::engine {
 struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
-  double jump_scales = 12.0;  ///< noise scales of a step that may begin a stretch elsewhere
-  double jump_steps = 6.0;    ///< of the 75th percentile of the steps
-  double quanta = 4.0;        ///< quanta that any of them must be, too
-  double came_back = 0.25;    ///< of the jump: what lies nearer to where it came from has come back
-  double stayed_away = 0.5;   ///< of the jump: what lies farther is still away
+  std::size_t bends_around = 5;      ///< second differences before and after
+  std::size_t drawn_along = 3;       ///< rows before and after a spike that seem to lie far because of it
+  double as_far = 0.6;               ///< of the farthest among them: what is a spike of its own
+  double confirmed = 0.35;           ///< of how far a sample lies: what a rate and its angle may differ by
+  double jump_scales = 12.0;         ///< noise scales of a step that may begin a stretch elsewhere
+  double jump_steps = 6.0;           ///< of the 75th percentile of the steps
+  double quanta = 4.0;               ///< quanta that any of them must be, too
+  double came_back = 0.25;           ///< of the jump: what lies nearer to where it came from has come back
+  double stayed_away = 0.5;          ///< of the jump: what lies farther is still away
   Eigen::Index longest_burst = 20;   ///< rows of a stretch elsewhere
   Eigen::Index longest_stuck = 400;  ///< rows, where all of them have the same value
+  Eigen::Index least_defaults =
+      3;  ///< masked samples of one value that make it what a sensor reads by default
   Eigen::Index longest_repeat = 12;  ///< frames in a row that repeat another
   double by_chance = 0.1;            ///< share of the repeated frames that chance may make
+  double never_by_chance = 0.01;     ///< repeats of a length that chance may make in a recording
+  double caught_up = 0.6;            ///< of what was missed while a frame was repeated: the step after it
   double rarely_equal = 0.5;         ///< share of equal neighbours below which the noise shows at every row
   double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
   double log_chance = 20.7;        ///< -ln(1e-9): how improbable a frozen stretch must be
@@ -45,7 +56,7 @@ struct ColumnTraits {
   const Eigen::VectorXd* at_rest =
       nullptr;  ///< a column that is 0 while this one may stand still (the rate of an angle)
   const Eigen::VectorXd* integral = nullptr;  ///< a column that moves on by this one (the angle of a rate)
-  const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` is given
+  const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` or `at_rest` is given
 };
 
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
@@ -79,9 +90,13 @@ public:
   /// Isolated samples (one, or two of five) far from the median of five around them.
   RowMask spikes() {
     RowMask mask = empty();
-    for (int pass = 0; pass < 2; ++pass) {  // a tenth of bad rows puts three of five together now and then
-      for (const RunSpan& run : runs_) spikes_of(run, mask);
-      take(mask);
+    confirm();
+    for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
+      RowMask found = empty();
+      for (const RunSpan& run : runs_) spikes_of(run, found);
+      if (std::find(found.begin(), found.end(), 1) == found.end()) break;
+      take(found);
+      for (std::size_t i = 0; i < mask.size(); ++i) mask[i] |= found[i];
     }
     return mask;
   }
@@ -195,6 +210,7 @@ private:
     const auto at = [&](std::size_t k) { return values_[rows[k]]; };
     const double least = std::max(limit_.spike_scales * scale_, limit_.quanta * quantum_);
     if (!(least > 0.0)) return;
+    std::vector<double> far(count, 0.0);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t from = i < 2 ? 0 : std::min(i - 2, count - 5);
       double off =
@@ -203,12 +219,52 @@ private:
       // What continues either side in a straight line is the corner of a motion and no spike.
       if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
       if (i + 2 < count) off = std::min(off, std::abs(at(i) - 2.0 * at(i + 1) + at(i + 2)));
-      if (!(off > least)) continue;
+      if (!(off > least) || confirmed_[static_cast<std::size_t>(rows[i])] != 0 ||
+          is_motion(run, rows[i], off))
+        continue;
+      // So many that another spike among them does not move the median.
       std::vector<double> bends;
-      for (std::size_t k = i < 5 ? 1 : i - 4; k < std::min(count - 1, i + 5); ++k)
+      for (std::size_t k = i < limit_.bends_around + 1 ? 1 : i - limit_.bends_around;
+           k < std::min(count - 1, i + limit_.bends_around + 1); ++k)
         if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
-      if (off > limit_.spike_bends * median_of(bends)) mask[static_cast<std::size_t>(rows[i])] = 1;
+      if (off > limit_.spike_bends * median_of(bends)) far[i] = off;
     }
+    // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(far[i] > 0.0)) continue;
+      double farthest = 0.0;
+      for (std::size_t k = i < limit_.drawn_along ? 0 : i - limit_.drawn_along;
+           k < std::min(count, i + limit_.drawn_along + 1); ++k)
+        farthest = std::max(farthest, far[k]);
+      if (far[i] >= limit_.as_far * farthest) mask[static_cast<std::size_t>(rows[i])] = 1;
+    }
+  }
+
+  /// Remembers what is confirmed as motion while its neighbours are still there: without them it would look like a spike, too.
+  void confirm() {
+    if (!confirmed_.empty()) return;
+    confirmed_ = empty();
+    for (const RunSpan& run : runs_)
+      for (Eigen::Index i = run.begin; i < run.end; ++i)
+        confirmed_[static_cast<std::size_t>(i)] = is_motion(run, i, limit_.spike_scales * scale_) ? 1 : 0;
+  }
+
+  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by.
+  bool is_motion(const RunSpan& run, Eigen::Index row, double off) const {
+    if (traits_.t_s == nullptr || row == run.begin || row + 1 == run.end) return false;
+    const Eigen::VectorXd& t_s = *traits_.t_s;
+    if (traits_.integral != nullptr) {
+      const Eigen::VectorXd& position = *traits_.integral;
+      const double moved = (position[row + 1] - position[row - 1]) / (t_s[row + 1] - t_s[row - 1]);
+      // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
+      const double mean = (values_[row - 1] + 4.0 * values_[row] + values_[row + 1]) / 6.0;
+      return 1.5 * std::abs(mean - moved) < limit_.confirmed * off;
+    }
+    if (traits_.at_rest == nullptr) return false;
+    const Eigen::VectorXd& rate = *traits_.at_rest;
+    const auto step = [&](Eigen::Index k) { return 0.5 * (rate[k] + rate[k + 1]) * (t_s[k + 1] - t_s[k]); };
+    return std::abs(values_[row] - values_[row - 1] - step(row - 1)) < limit_.confirmed * off &&
+           std::abs(values_[row + 1] - values_[row] - step(row)) < limit_.confirmed * off;
   }
 
   /// Whether a value is none of those that the other samples, in steps of a quantum, take.
@@ -297,12 +353,13 @@ private:
   Eigen::VectorXd values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
+  RowMask confirmed_;  // rows that a rate and its angle agree about
   double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
   mutable double rest_rate_ = -1.0, position_quantum_ = -1.0;
 };
 
 /// Rows that repeat all outputs of the row before them (at most a few in a row), where the outputs change at every
-/// other row around them.
+/// other row around them, or catch up at once with what they missed.
 inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& outputs,
                                const std::vector<RunSpan>& runs) {
   constexpr MaskThresholds limit;
@@ -333,7 +390,36 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     chance *= 0.5 * static_cast<double>(single) / std::max(1.0, static_cast<double>(steps.size()));
   }
   for (const char one : same) repeats += one == 2 ? 1.0 : 0.0;
-  if (!(chance * static_cast<double>(rows) < limit.by_chance * repeats)) return mask;
+  const bool is_rare = chance * static_cast<double>(rows) < limit.by_chance * repeats;
+  const auto around_of = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
+    return std::pair{std::max(run.begin + 1, begin - around), std::min(run.end, end + around)};
+  };
+  // Nothing around is the same, but for other repeats.
+  const auto is_alone = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
+    const auto [from, to] = around_of(run, begin, end);
+    for (Eigen::Index k = from; k < to; ++k) {
+      if (k >= begin && k < end) continue;
+      const char one = same[static_cast<std::size_t>(k)];
+      if (one != 0 && !(outputs.size() > 1 && one == 2 && (k < begin - 1 || k > end))) return false;
+    }
+    return to - from - (end - begin) >= 2 * around;
+  };
+  // What stood catches up: a step as large as all that were missed.
+  const auto catches_up = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
+    if (end >= run.end) return false;
+    const auto [from, to] = around_of(run, begin, end);
+    for (const Eigen::VectorXd* one : outputs) {
+      std::vector<double> steps;
+      for (Eigen::Index k = from; k < to; ++k)
+        if ((k < begin || k > end) && std::isfinite((*one)[k] - (*one)[k - 1]))
+          steps.push_back(std::abs((*one)[k] - (*one)[k - 1]));
+      const double missed = static_cast<double>(end - begin + 1) * median_of(steps);
+      const double step = std::abs((*one)[end] - (*one)[end - 1]);
+      if (!steps.empty() && step > limit.caught_up * missed && step > limit.quanta * quantum_of(*one))
+        return true;
+    }
+    return false;
+  };
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin + 1; i < run.end;) {
       if (same[static_cast<std::size_t>(i)] != 2) {
@@ -342,17 +428,62 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       Eigen::Index end = i;
       while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
-      bool alone = end - i <= limit.longest_repeat;
-      Eigen::Index seen = 0;
-      for (Eigen::Index k = std::max(run.begin + 1, i - around); alone && k < std::min(run.end, end + around);
-           ++k) {
-        if (k >= i && k < end) continue;
-        ++seen;
-        alone = same[static_cast<std::size_t>(k)] == 0 ||
-                (outputs.size() > 1 && same[static_cast<std::size_t>(k)] == 2 && (k < i - 1 || k > end));
+      const double by_chance = static_cast<double>(rows) * std::pow(chance, static_cast<double>(end - i));
+      if (end - i <= limit.longest_repeat && ((is_rare && is_alone(run, i, end)) ||
+                                              (by_chance < limit.never_by_chance && catches_up(run, i, end))))
+        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
+      i = end;
+    }
+  return mask;
+}
+
+/// What a column reads when its sensor says nothing: the value that most of its masked samples share; NaN where there is
+/// none.
+/// @param recorded  the column as it was
+/// @param believed  the same, NaN where masked
+inline double default_reading(const Eigen::VectorXd& recorded, const Eigen::VectorXd& believed) {
+  constexpr MaskThresholds limit;
+  std::map<double, Eigen::Index> counts;
+  Eigen::Index masked = 0;
+  for (Eigen::Index i = 0; i < recorded.size(); ++i)
+    if (std::isfinite(recorded[i]) && !std::isfinite(believed[i])) ++masked, ++counts[recorded[i]];
+  for (const auto& [value, count] : counts)
+    if (count >= limit.least_defaults && 2 * count > masked) return value;
+  return missing;
+}
+
+/// Rows in which every column reads its default and one of them, at least, lies far from the rows around: what stands out in one
+/// column is lost in all.
+/// @param recorded  columns as they were
+/// @param defaults  what each of them reads when its sensor says nothing
+inline RowMask lost_frames(const std::vector<const Eigen::VectorXd*>& recorded,
+                           const std::vector<double>& defaults, const std::vector<RunSpan>& runs) {
+  constexpr MaskThresholds limit;
+  RowMask mask;
+  if (recorded.size() < 2) return mask;
+  const Eigen::Index rows = recorded.front()->size();
+  mask.assign(static_cast<std::size_t>(rows), 0);
+  std::vector<double> least;
+  for (const Eigen::VectorXd* one : recorded)
+    least.push_back(std::max(limit.spike_scales * white_scale(*one, runs), limit.quanta * quantum_of(*one)));
+  const auto is_default = [&](Eigen::Index row) {
+    for (std::size_t c = 0; c < recorded.size(); ++c)
+      if ((*recorded[c])[row] != defaults[c]) return false;
+    return true;
+  };
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      if (!is_default(i)) continue;
+      Eigen::Index end = i;
+      while (end < run.end && is_default(end)) ++end;
+      const bool is_inside = i > run.begin && end < run.end && end - i <= limit.longest_burst;
+      for (std::size_t c = 0; is_inside && c < recorded.size(); ++c) {
+        const double before = (*recorded[c])[i - 1], after = (*recorded[c])[end];
+        // Farther from both ends than they from each other: no motion passes there in between.
+        const double off = std::min(std::abs(defaults[c] - before), std::abs(defaults[c] - after));
+        if (!(off > least[c] && off > std::abs(after - before))) continue;
+        for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
       }
-      for (Eigen::Index k = i; alone && seen >= 2 * around && k < end; ++k)
-        mask[static_cast<std::size_t>(k)] = 1;
       i = end;
     }
   return mask;

@@ -27,7 +27,9 @@ struct UnitThresholds {
       0.2;  ///< misfit below which the simulation follows the data as they are, and nothing is asked
   double far_better =
       3.0;  ///< times by which another unit must lower the misfit: no effect of a real motor does that
-  double believable = 0.7;     ///< misfit that the data must have in the other unit
+  double believable = 0.7;  ///< misfit that the data must have in the other unit
+  double off_by_factor =
+      0.1;  ///< of the factor by which an output is said to be too small: what the misfit must be as it is
   double kelvin_C = 200.0;     ///< air is never so hot: kelvin
   double fahrenheit_C = 45.0;  ///< air hardly ever is: degrees Fahrenheit are asked about
   double warmer_than_air_K =
@@ -46,6 +48,7 @@ struct Reading {
   std::string words;                           ///< "is in kelvin where degrees Celsius are expected"
   std::string mend;                            ///< options of the program
   std::function<void(Recording&)> apply;       ///< turns the recording into what it should be
+  double least_misfit = 0.0;                   ///< misfit as recorded below which it cannot be that
 };
 
 /// How far a simulation is from a recording, as UnitThresholds says; NaN where nothing can be compared.
@@ -256,10 +259,12 @@ private:
     if (rate && angle)
       list_.push_back({FindingKind::wrong_unit, "rate_dps",
                        "and angle_deg are in radians where degrees are expected",
-                       option("rate_dps", "rad/s") + " " + option("angle_deg", "rad"), [deg](Recording& r) {
+                       option("rate_dps", "rad/s") + " " + option("angle_deg", "rad"),
+                       [deg](Recording& r) {
                          scale(r, "rate_dps", deg);
                          scale(r, "angle_deg", deg);
-                       }});
+                       },
+                       UnitThresholds().off_by_factor * deg});
     scaled("rate_dps", "rad/s", deg, "is in radians per second where degrees per second are expected");
     scaled("rate_dps", "rpm", rpm, "is in turns per minute where degrees per second are expected");
     // With a rate beside it, an angle that is off by a factor is a cause (angle_scale) and no finding.
@@ -394,6 +399,7 @@ inline std::vector<Finding> check_units(const Model& model, const Recording& rec
     const Reading* best = nullptr;
     double least = now;
     for (const Reading& one : readings) {
+      if (now < one.least_misfit) continue;
       Recording other = sample;
       one.apply(other);
       const double left = misfit(model, other, catalogue);
