@@ -135,15 +135,6 @@ inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
   return true;
 }
 
-/// What the constants of a candidate paid for having moved, a released one included: twice a log odds.
-inline double price_of_constants(const Candidate& candidate, const Model& model) {
-  double price = 0.0;
-  Eigen::Index at = 0;
-  for (const CalibratedConstant& constant : model.calibrated())
-    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.at[at++]);
-  return price;
-}
-
 /// Log odds that go with a difference of so many standard errors, by the normal distribution (Page 1977).
 inline double log_odds_of(double standard_errors) {
   const double z = std::min(standard_errors, 40.0);

@@ -109,6 +109,26 @@ public:
     return sum;
   }
 
+  /// Of the candidates that fit nearly as well as the best, those whose constants moved least: constants that ran far off
+  /// together in the place of what is missing, and any effect beside them, fit a little better than it.
+  static std::vector<std::size_t> modest(const std::vector<Candidate>& candidates, const Model& model) {
+    constexpr double nearly = 0.02;  // of what the best gains
+    constexpr std::size_t some = 4;
+    double best = fitness(candidates.front()), worst = best;
+    for (const Candidate& one : candidates) {
+      best = std::min(best, fitness(one));
+      worst = std::max(worst, fitness(one));
+    }
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (fitness(candidates[i]) - best <= nearly * (worst - best)) list.push_back(i);
+    std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) {
+      return price_of_constants(candidates[a], model) < price_of_constants(candidates[b], model);
+    });
+    list.resize(std::min(list.size(), some));
+    return list;
+  }
+
 private:
   static FitOptions quick() {
     FitOptions options;

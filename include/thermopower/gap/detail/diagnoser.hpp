@@ -433,10 +433,12 @@ private:
     });
     std::vector<std::size_t> looked_at;
     std::size_t single = 0;
+    const std::vector<std::size_t> modest = Search::modest(candidates, model_);
     for (std::size_t place = 0; place < order.size(); ++place) {
       const Explanation& one = candidates[order[place]].explanation;
       const bool among_singles = one.size() == 1 && single++ < 7;
-      if (place < 14 || among_singles || one.effects.empty()) looked_at.push_back(order[place]);
+      const bool is_modest = std::find(modest.begin(), modest.end(), order[place]) != modest.end();
+      if (place < 14 || among_singles || is_modest || one.effects.empty()) looked_at.push_back(order[place]);
     }
     in_parallel(looked_at.size(), options_.threads, [&](std::size_t i) {
       Candidate& one = candidates[looked_at[i]];

@@ -45,6 +45,15 @@ inline std::vector<int> moved_constants(const Candidate& candidate, const Model&
   return moved;
 }
 
+/// What the constants of a candidate paid for having moved, a released one included: twice a log odds.
+inline double price_of_constants(const Candidate& candidate, const Model& model) {
+  double price = 0.0;
+  Eigen::Index at = 0;
+  for (const CalibratedConstant& constant : model.calibrated())
+    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.at[at++]);
+  return price;
+}
+
 /// Fits explanations to training data.
 class Attribution {
 public:
