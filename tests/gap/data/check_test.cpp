@@ -216,6 +216,24 @@ TEST_CASE("spikes a few rows apart do not hide each other") {
   CHECK(out.size() <= bad.size() + 2);
 }
 
+TEST_CASE("a run that begins with a push keeps its first row: it says where it starts") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Recording r = test::axis_recording({}, 2000, seed);
+    test::Noise noise(seed);
+    Eigen::VectorXd angle(r.rows()), rate(r.rows());
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      const double since_s = r.t_s[i % 200], gone = std::exp(-since_s / 0.05);
+      const double pushes = static_cast<double>(i / 200);
+      angle[i] = 8.0 * (pushes + 1.0 - gone * (1.0 + since_s / 0.05)) + 0.04 * noise();
+      rate[i] = 3200.0 * since_s * gone + 0.1 * noise();
+    }
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    const PreparedRecording prepared(test::axis_model(), r);
+    for (const char* column : {"angle_deg", "rate_dps"}) CHECK(taken(r, prepared, column).count(0) == 0);
+  }
+}
+
 TEST_CASE(
     "a frame whose sensors say nothing is lost in every column, also where 0 looks right in one of them") {
   Recording r = axis();

@@ -249,22 +249,29 @@ private:
         confirmed_[static_cast<std::size_t>(i)] = is_motion(run, i, limit_.spike_scales * scale_) ? 1 : 0;
   }
 
-  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by.
+  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a
+  /// run seen from one side.
   bool is_motion(const RunSpan& run, Eigen::Index row, double off) const {
-    if (traits_.t_s == nullptr || row == run.begin || row + 1 == run.end) return false;
+    if (traits_.t_s == nullptr || run.size() < 3) return false;
     const Eigen::VectorXd& t_s = *traits_.t_s;
+    const Eigen::Index from = std::max(run.begin, row - 1), to = std::min(run.end - 1, row + 1);
     if (traits_.integral != nullptr) {
       const Eigen::VectorXd& position = *traits_.integral;
-      const double moved = (position[row + 1] - position[row - 1]) / (t_s[row + 1] - t_s[row - 1]);
+      const double moved = (position[to] - position[from]) / (t_s[to] - t_s[from]);
       // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
-      const double mean = (values_[row - 1] + 4.0 * values_[row] + values_[row + 1]) / 6.0;
-      return 1.5 * std::abs(mean - moved) < limit_.confirmed * off;
+      const bool is_inside = to - from == 2;
+      const double share = is_inside ? 2.0 / 3.0 : 0.5;
+      const double mean = share * values_[row] + (is_inside ? (values_[from] + values_[to]) / 6.0
+                                                            : 0.5 * values_[from == row ? to : from]);
+      return std::abs(mean - moved) < share * limit_.confirmed * off;
     }
     if (traits_.at_rest == nullptr) return false;
     const Eigen::VectorXd& rate = *traits_.at_rest;
-    const auto step = [&](Eigen::Index k) { return 0.5 * (rate[k] + rate[k + 1]) * (t_s[k + 1] - t_s[k]); };
-    return std::abs(values_[row] - values_[row - 1] - step(row - 1)) < limit_.confirmed * off &&
-           std::abs(values_[row + 1] - values_[row] - step(row)) < limit_.confirmed * off;
+    for (Eigen::Index k = from; k < to; ++k) {
+      const double step = 0.5 * (rate[k] + rate[k + 1]) * (t_s[k + 1] - t_s[k]);
+      if (!(std::abs(values_[k + 1] - values_[k] - step) < limit_.confirmed * off)) return false;
+    }
+    return true;
   }
 
   /// Whether a value is none of those that the other samples, in steps of a quantum, take.
@@ -381,8 +388,10 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
   // How often all would be equal by chance: a column steps by none half as often as by one quantum either way.
   double chance = 1.0, repeats = 0.0;
+  std::vector<double> quanta;
   for (const Eigen::VectorXd* one : outputs) {
     const double quantum = quantum_of(*one);
+    quanta.push_back(quantum);
     const std::vector<double> steps = step_sizes(*one, runs);
     const auto single = std::count_if(steps.begin(), steps.end(), [&](double step) {
       return step > 0.5 * quantum && step < 1.5 * quantum;
@@ -408,15 +417,15 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
   const auto catches_up = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     if (end >= run.end) return false;
     const auto [from, to] = around_of(run, begin, end);
-    for (const Eigen::VectorXd* one : outputs) {
+    for (std::size_t c = 0; c < outputs.size(); ++c) {
+      const Eigen::VectorXd& one = *outputs[c];
       std::vector<double> steps;
       for (Eigen::Index k = from; k < to; ++k)
-        if ((k < begin || k > end) && std::isfinite((*one)[k] - (*one)[k - 1]))
-          steps.push_back(std::abs((*one)[k] - (*one)[k - 1]));
+        if ((k < begin || k > end) && std::isfinite(one[k] - one[k - 1]))
+          steps.push_back(std::abs(one[k] - one[k - 1]));
       const double missed = static_cast<double>(end - begin + 1) * median_of(steps);
-      const double step = std::abs((*one)[end] - (*one)[end - 1]);
-      if (!steps.empty() && step > limit.caught_up * missed && step > limit.quanta * quantum_of(*one))
-        return true;
+      const double step = std::abs(one[end] - one[end - 1]);
+      if (!steps.empty() && step > limit.caught_up * missed && step > limit.quanta * quanta[c]) return true;
     }
     return false;
   };
