@@ -3,6 +3,7 @@
 #include "../catch.hpp"
 #include "plants.hpp"
 
+#include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
@@ -189,6 +190,26 @@ TEST_CASE("gains that are not those of the file, a delay and a limit are causes"
   const Cause* saturated = named(limit, "torque_saturation");
   REQUIRE(saturated != nullptr);
   CHECK(saturated->parameters.front().value == Approx(0.15).epsilon(0.05));
+}
+
+TEST_CASE("a joint too weak to follow its target is not said to be in radians") {
+  Gains file;
+  file.kp = 0.07;
+  file.kd = 0.009;
+  file.limit = 0.46;
+  Joint heavy;
+  heavy.inertia = 3.8e-3;
+  heavy.viscous = 5.9e-3;
+  Model model = model_with(file);
+  model.axis = RigidAxisModel{heavy.inertia, heavy.viscous, heavy.torque_constant};
+  for (const double limit_A : {0.01, 0.02, 0.03, 0.04, 0.05, 0.07}) {
+    Gains weak = file;
+    weak.limit = limit_A;
+    INFO(limit_A << " A");
+    const DataReport report =
+        check_data(model, {record(heavy, weak, 1000, 3)}, {record(heavy, weak, 600, 8)});
+    CHECK(deciding(report.findings) == nullptr);
+  }
 }
 
 TEST_CASE("where the current is recorded it is the input, whatever the gains are") {

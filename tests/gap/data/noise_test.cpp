@@ -107,11 +107,12 @@ TEST_CASE("runs may differ in their noise, and readings in coarse steps have the
           }
           return x;
         }) == Approx(1.0).epsilon(0.2));
-  // A thermometer whose noise is a third of its steps, read so often that most neighbours read the same.
-  CHECK(ratio(count, count, std::hypot(0.03, 0.1 / std::sqrt(12.0)), 0.1, [&](Random& random) {
+  // A thermometer whose noise is a third of its steps, read so often that it flickers for minutes and then stands still for some.
+  constexpr int often = 12000;
+  CHECK(ratio(often, often, std::hypot(0.03, 0.1 / std::sqrt(12.0)), 0.1, [&](Random& random) {
           std::vector<double> x;
-          for (int i = 0; i < count; ++i) {
-            const double truth = 50.0 + 3.0 * std::sin(0.002 * i);
+          for (int i = 0; i < often; ++i) {
+            const double truth = 50.0 + std::sin(0.0004 * i);
             x.push_back(0.1 * std::round((truth + 0.03 * heavy_tailed(random)) / 0.1) - truth);
           }
           return x;
