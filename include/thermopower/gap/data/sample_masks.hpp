@@ -219,6 +219,10 @@ private:
       // What continues either side in a straight line is the corner of a motion and no spike.
       if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
       if (i + 2 < count) off = std::min(off, std::abs(at(i) - 2.0 * at(i + 1) + at(i + 2)));
+      // Nothing lies beyond an end, where motions begin: there a parabola counts, too.
+      if (i < 2) off = std::min(off, std::abs(at(i) - 3.0 * at(i + 1) + 3.0 * at(i + 2) - at(i + 3)));
+      if (i + 2 >= count)
+        off = std::min(off, std::abs(at(i) - 3.0 * at(i - 1) + 3.0 * at(i - 2) - at(i - 3)));
       if (!(off > least) || confirmed_[static_cast<std::size_t>(rows[i])] != 0 ||
           is_motion(run, rows[i], off))
         continue;
