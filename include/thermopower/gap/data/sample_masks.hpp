@@ -265,6 +265,9 @@ private:
       // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
       const bool is_inside = to - from == 2;
       const double share = is_inside ? 2.0 / 3.0 : 0.5;
+      // An angle whose own noise is a rate of that size confirms nothing.
+      const double noise = std::sqrt(2.0) * position_step() / (t_s[to] - t_s[from]);
+      if (noise > share * limit_.confirmed * off / 3.0) return false;
       const double mean = share * values_[row] + (is_inside ? (values_[from] + values_[to]) / 6.0
                                                             : 0.5 * values_[from == row ? to : from]);
       return std::abs(mean - moved) < share * limit_.confirmed * off;
@@ -312,6 +315,13 @@ private:
     return rest_rate_ = rest_share * quantile_of(list, 0.9);
   }
 
+  /// A quantum and the noise of the column that this one is the rate of.
+  double position_step() const {
+    if (position_quantum_ < 0.0)
+      position_quantum_ = quantum_of(*traits_.integral) + white_scale(*traits_.integral, runs_);
+    return position_quantum_;
+  }
+
   /// Whether the column that this one is the rate of moves on by `rate` between two rows: then the rate is right.
   bool moves_on(Eigen::Index from, Eigen::Index to, double rate) const {
     constexpr double off_share = 0.02, quanta = 4.0;
@@ -320,12 +330,11 @@ private:
     const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
     const double moved = position[to] - position[from];
     if (!std::isfinite(moved)) return false;
-    if (position_quantum_ < 0.0) position_quantum_ = quantum_of(position) + white_scale(position, runs_);
     // The way as a whole, and half of it: a motion there and back ends where it began.
     const Eigen::Index middle = from + (to - from) / 2;
     const double halfway = position[middle] - position[from];
     const double half_s = (*traits_.t_s)[middle] - (*traits_.t_s)[from];
-    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_quantum_;
+    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_step();
     return std::abs(moved - rate * lasts_s) <= allowed &&
            (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
   }
