@@ -14,6 +14,7 @@ namespace thermopower::gap {
 enum class FindingKind {
   // Stamps.
   irregular_stamps,  ///< intervals vary more than by rounding
+  jittering_stamps,  ///< stamps stray around a clock by which the outputs were read; its ticks are used
   gap_in_stamps,     ///< rows are missing: what the inputs did meanwhile is unknown
   // One column.
   empty_column,        ///< a column without a sample; it counts as absent
@@ -49,6 +50,8 @@ inline const char* to_string(FindingKind kind) {
   switch (kind) {
     case FindingKind::irregular_stamps:
       return "irregular_stamps";
+    case FindingKind::jittering_stamps:
+      return "jittering_stamps";
     case FindingKind::gap_in_stamps:
       return "gap_in_stamps";
     case FindingKind::empty_column:

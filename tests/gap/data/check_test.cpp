@@ -183,6 +183,79 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a current in coarse steps that stands at its end while the power moves is cut off there") {
+  Recording r = bench();
+  const double quantum = r.column("current_A").maxCoeff() / 150.0;
+  change(r, "current_A", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("current_A");
+  const double limit = quantum * std::round(0.6 * whole.maxCoeff() / quantum);
+  std::size_t cut = 0;
+  change(r, "current_A", [&](double x, Eigen::Index) {
+    cut += x > limit ? 1 : 0;
+    return std::min(x, limit);
+  });
+  REQUIRE(cut > 100);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));
+  CHECK(taken(r, prepared, "current_A").size() >= cut);
+  // The same current without an end: under one power it stands still for longer than that.
+  Recording still = bench();
+  still.set("current_A", whole);
+  const PreparedRecording sound(test::bench_model(), still);
+  CHECK_FALSE(found(sound, FindingKind::clipped_samples, "current_A", FindingAction::masked));
+}
+
+TEST_CASE("stamps that stray around a clock are the clock's again, where the readings were taken by it") {
+  const Recording by_the_clock = axis();
+  const double period_s = by_the_clock.t_s[1] - by_the_clock.t_s[0];
+  test::Noise noise(11);
+  Eigen::VectorXd strayed = by_the_clock.t_s;
+  for (double& t_s : strayed) t_s += 0.06 * period_s * std::clamp(noise(), -2.5, 2.5);
+  Recording r = by_the_clock;
+  r.t_s = strayed;
+  const bool lossy = GENERATE(false, true);  // a lost row leaves a tick out
+  if (lossy) {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < r.rows(); ++i)
+      if (i % 97 != 50) kept.push_back(i);
+    Recording fewer = r;
+    fewer.t_s = r.t_s(kept);
+    for (Column& column : fewer.columns) column.values = Eigen::VectorXd(column.values(kept));
+    r = fewer;
+  }
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::jittering_stamps, "t_s", FindingAction::none));
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < prepared.recording().rows(); ++i) {
+    const double ticks = (prepared.recording().t_s[i] - by_the_clock.t_s[0]) / period_s;
+    worst = std::max(worst, std::abs(ticks - std::round(ticks)));
+  }
+  CHECK(worst < 0.02);
+  const PreparedRecording untouched(test::axis_model(), r, true);
+  CHECK(untouched.recording().t_s == r.t_s);
+}
+
+TEST_CASE("stamps that stray because the readings were taken then are believed") {
+  Recording r = axis();
+  const double period_s = r.t_s[1] - r.t_s[0];
+  test::Noise noise(12);
+  // The readings at other instants than the grid's: between two of the simulated rows, in a straight line.
+  const Recording on_the_grid = r;
+  Recording late = r;
+  for (Eigen::Index i = 1; i + 1 < r.rows(); ++i) {
+    const double part = 0.1 + 0.05 * std::clamp(noise(), -2.0, 2.0);
+    late.t_s[i] += part * period_s;
+    for (Column& column : late.columns)
+      if (column.name != "drive_A") {
+        const Eigen::VectorXd& whole = on_the_grid.column(column.name);
+        column.values[i] = whole[i] + part * (whole[i + 1] - whole[i]);
+      }
+  }
+  const PreparedRecording prepared(test::axis_model(), late);
+  CHECK_FALSE(found(prepared, FindingKind::jittering_stamps, "t_s", FindingAction::none));
+  CHECK(prepared.recording().t_s == late.t_s);
+}
+
 TEST_CASE("frames that repeat the one before them are masked, one or many in a row") {
   Recording r = axis();
   const Eigen::Index repeats = GENERATE(2, 6, 10);

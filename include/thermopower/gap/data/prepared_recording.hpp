@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/actuator/duty.hpp>
+#include <thermopower/gap/data/clock.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
@@ -41,6 +42,8 @@ public:
   Eigen::Index recorded_rows() const { return recorded_rows_; }
 
 private:
+  bool is_output(const std::string& name) const;
+  void read_the_clock(FindingList& list);
   void mask_outputs(const Recording& recorded, FindingList& list);
   void mask_output(const Recording& recorded, const std::string& name, Eigen::VectorXd& values,
                    FindingList& list);
@@ -88,6 +91,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   check_stamps(list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts);
   moves_ = model.has_axis();
+  read_the_clock(list);
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
                        model.has_thermal();
@@ -107,12 +111,27 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   inputs_ = prepare(model, believed_);
 }
 
+/// Whether a column is measured of what the model simulates.
+inline bool PreparedRecording::is_output(const std::string& name) const {
+  return name == "current_A" || name == "motor_C" || (moves_ && (name == "angle_deg" || name == "rate_dps"));
+}
+
+/// Takes the stamps of the clock that the recorded ones jitter around, where the outputs were read by it.
+inline void PreparedRecording::read_the_clock(FindingList& list) {
+  std::vector<const Eigen::VectorXd*> outputs;
+  for (const Column& column : believed_.columns)
+    if (is_output(column.name)) outputs.push_back(&column.values);
+  std::optional<ClockStamps> clock = clock_behind(believed_.t_s, believed_.runs, outputs);
+  if (!clock) return;
+  list.add(FindingKind::jittering_stamps, Severity::note, "t_s",
+           "stray by " + short_number(clock->jitter_s) + " s around a clock of " +
+               short_number(clock->period_s) + " s, and the outputs were read at its ticks: those are used",
+           "stamp a reading where it is taken");
+  believed_.t_s = std::move(clock->t_s);
+}
+
 inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
   std::vector<const Eigen::VectorXd*> outputs;
-  const auto is_output = [&](const std::string& name) {
-    return name == "current_A" || name == "motor_C" ||
-           (moves_ && (name == "angle_deg" || name == "rate_dps"));
-  };
   // A slow column in coarse steps repeats by itself, and tells of no frame.
   const auto shows_frames = [&](const Eigen::VectorXd& values) {
     return equal_share_of(step_sizes(values, believed_.runs)) < MaskThresholds().hardly_equal;
@@ -316,6 +335,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   take(bursts);
   list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
+  traits.driver = power;
   {
     SampleMasks still(values, runs, traits);
     // First: all but the first sample of a clipped stretch look frozen.

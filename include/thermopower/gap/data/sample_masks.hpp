@@ -57,6 +57,7 @@ struct ColumnTraits {
       nullptr;  ///< a column that is 0 while this one may stand still (the rate of an angle)
   const Eigen::VectorXd* integral = nullptr;  ///< a column that moves on by this one (the angle of a rate)
   const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` or `at_rest` is given
+  const Eigen::VectorXd* driver = nullptr;    ///< a column that this one rises with (the power of a current)
 };
 
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
@@ -174,7 +175,8 @@ public:
           static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
         continue;
       // A slow signal in coarse steps stands still by itself; but not between two of its steps.
-      if (may_stand_still && !is_between_steps(extreme, next)) continue;
+      // Nor does it where what drives it moves.
+      if (may_stand_still && !is_between_steps(extreme, next) && !is_driven_at(extreme)) continue;
       // One sample tells little: just at the end of its range a sensor is still right.
       std::ptrdiff_t wrong = 0;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
@@ -300,6 +302,18 @@ private:
       stepped += off_step(one) < on ? 1.0 : 0.0;
     }
     return off_step(value) > off && stepped >= nearly_all * known;
+  }
+
+  /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.
+  bool is_driven_at(double value) const {
+    if (traits_.driver == nullptr) return false;
+    std::vector<double> all = finite_samples(values_), driver = finite_samples(*traits_.driver), here;
+    for (Eigen::Index i = 0; i < values_.size(); ++i)
+      if (values_[i] == value && std::isfinite((*traits_.driver)[i])) here.push_back((*traits_.driver)[i]);
+    if (here.empty()) return false;
+    const auto range = [](std::vector<double>& of) { return quantile_of(of, 0.95) - quantile_of(of, 0.05); };
+    const double whole = range(driver);
+    return whole > 0.0 && range(here) / whole * range(all) > limit_.quanta * quantum_;
   }
 
   bool resting(Eigen::Index row) const {
