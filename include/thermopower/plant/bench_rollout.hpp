@@ -3,6 +3,8 @@
 #pragma once
 
 #include <thermopower/actuator/duty.hpp>
+#include <thermopower/plant/bench_state.hpp>
+#include <thermopower/plant/body_network.hpp>
 #include <thermopower/plant/exchange_step.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/instance.hpp>
@@ -11,34 +13,6 @@
 #include <cmath>
 
 namespace thermopower::plant {
-
-/// Nodes of the bench besides winding and surface. Copies nothing where there are none.
-template <class Scalar>
-struct FurtherNodes {
-  bool any = false;   ///< they are in use, and set
-  Scalar soaking_C;   ///< node behind the surface
-  Scalar enclosed_C;  ///< air around the body
-
-  FurtherNodes() {}  // NOLINT: what is not in use stays unset
-  /// Copies what is set.
-  FurtherNodes(const FurtherNodes& other) { *this = other; }
-  /// Copies what is set.
-  FurtherNodes& operator=(const FurtherNodes& other) {
-    any = other.any;
-    if (any) soaking_C = other.soaking_C, enclosed_C = other.enclosed_C;
-    return *this;
-  }
-};
-
-/// Everything that the motor on the bench remembers.
-template <class Scalar>
-struct BenchState {
-  Scalar winding_C;      ///< node that the heat enters
-  Scalar surface_C;      ///< node that the air cools; follows the winding where there is one node
-  Scalar thermometer_C;  ///< what a lagging thermometer has come to; follows the winding without lag
-  Scalar charge_Ah;      ///< drawn since the start of the run, discharges the battery
-  FurtherNodes<Scalar> further = {};  ///< where the body's structure has more of them
-};
 
 /// Simulates current and temperature of one motor, run by run.
 ///
@@ -239,10 +213,9 @@ public:
   }
 
 private:
-  struct Slope {
-    Scalar winding, surface, charge;
-    FurtherNodes<Scalar> further = {};  ///< K/s
-  };
+  using Slope = BenchSlope<Scalar>;
+  using Places = BodyPlaces;
+  using Network = BodyNetwork<Scalar>;
 
   static double at(const Eigen::VectorXd& values, Eigen::Index row) {
     return values.size() > 0 ? values[row] : missing;
@@ -356,17 +329,6 @@ private:
     return fastest;
   }
 
-  static BenchState<Scalar> moved(const BenchState<Scalar>& from, const Slope& rate, double h_s) {
-    BenchState<Scalar> to{from.winding_C + rate.winding * h_s, from.surface_C + rate.surface * h_s,
-                          from.thermometer_C, from.charge_Ah + rate.charge * h_s};
-    if (rate.further.any) {
-      to.further.any = true;
-      to.further.soaking_C = from.further.soaking_C + rate.further.soaking_C * h_s;
-      to.further.enclosed_C = from.further.enclosed_C + rate.further.enclosed_C * h_s;
-    }
-    return to;
-  }
-
   void step(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
     const auto& shape = instance_.thermal_structure;
     coupling_W_per_K_ = shape.coupling_W_per_K;
@@ -422,12 +384,51 @@ private:
     }
   }
 
-  /// An interval of more nodes than two, in steps of the classical Runge-Kutta rule that the fastest exchange allows.
+  Network network(const Places& at, const BenchState<Scalar>& state) const {
+    const Scalar rise_K_per_J = storage_K_per_J(state);
+    const Scalar loss_per_s =
+        instance_.lumped ? Scalar(instance_.conductance_W_per_K * rise_K_per_J) : instance_.cooling_per_s;
+    return body_network(instance_.thermal_structure, at, coupling_W_per_K_, rise_K_per_J, loss_per_s);
+  }
+
+  /// An interval of more nodes than two: one step of the classical Runge-Kutta rule where that is stable, else steps of
+  /// NetworkStep that are cut until its second stage moves the nodes little.
   void further_steps(Eigen::Index row, double t_s, double dt_s, double stiffness,
                      BenchState<Scalar>& state) const {
-    constexpr double most_steps = 200.0;  // an exchange that is faster still looks like none
-    classical_steps(row, t_s, dt_s, static_cast<int>(std::ceil(std::clamp(stiffness / 1.2, 1.0, most_steps))),
-                    state);
+    constexpr double one_step = 1.2, enough_K = 0.05;
+    if (stiffness < one_step) {
+      classical_steps(row, t_s, dt_s, 1, state);
+      return;
+    }
+    const double shortest_s = dt_s / 1024.0;
+    const Places at(instance_.thermal_structure);
+    double done_s = 0.0, h_s = dt_s;
+    Slope first = slope(row, t_s, state);
+    Network linear = network(at, state);
+    linear.set_length(h_s);
+    for (;;) {
+      const typename Network::Nodes one = linear.solved(nodes_of(at, first));
+      const Slope last = slope(row, t_s + done_s + h_s, moved(state, slope_of(at, one, first.charge), h_s));
+      typename Network::Nodes two = nodes_of(at, last);
+      for (std::size_t i = 0; i < at.count; ++i) two[i] -= 2.0 * one[i];
+      two = linear.solved(two);
+      double moved_K = 0.0;
+      typename Network::Nodes all = one;
+      for (std::size_t i = 0; i < at.count; ++i) {
+        moved_K = std::max(moved_K, 0.5 * h_s * std::abs(value_of(one[i]) + value_of(two[i])));
+        all[i] = 1.5 * one[i] + 0.5 * two[i];
+      }
+      if (moved_K > enough_K && h_s > shortest_s) {
+        linear.set_length(h_s *= 0.5);
+        continue;
+      }
+      settle(state, moved(state, slope_of(at, all, 0.5 * (first.charge + last.charge)), h_s), h_s);
+      done_s += h_s;
+      if (!(done_s < dt_s)) return;
+      const double next_s = std::min(moved_K < 0.25 * enough_K ? 2.0 * h_s : h_s, dt_s - done_s);
+      if (next_s != h_s) linear.set_length(h_s = next_s);
+      first = slope(row, t_s + done_s, state);
+    }
   }
 
   /// An interval of two nodes with a fast exchange, in steps that are cut until what the linear part does not
