@@ -169,6 +169,13 @@ inline double likeliest_of(const std::vector<Candidate>& candidates, const Candi
   return largest;
 }
 
+/// What is said where nothing above the noise is left.
+inline constexpr const char* wholly_explained =
+    "the named cause brings held-out data near the noise, and nothing else does";
+
+/// The same where several explanations do.
+inline constexpr const char* several_explain = "several explanations bring held-out data near the noise";
+
 /// What is said beside a rest.
 inline constexpr const char* partly_explained =
     "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
@@ -263,9 +270,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   result.leaves_a_rest = !near;
   if (near) {
     result.verdict = order.empty() ? Verdict::explained : Verdict::ambiguous;
-    result.reason = order.empty()
-                        ? "the named cause brings held-out data near the noise, and nothing else does"
-                        : "several explanations bring held-out data near the noise";
+    result.reason = order.empty() ? wholly_explained : several_explain;
   } else if (best.probability < decision.likelier_than_all * together) {
     result.second_is_open = best.explanation.effects.size() > 1;
     result.verdict = Verdict::ambiguous;

@@ -416,12 +416,14 @@ private:
     };
     const Model best = model_of(Search::best(candidates));
     const Errors errors = errors_of(best, segments, catalogue_);
-    const std::array<double, signal_count> floor =
-        noise_floor(best, segments, noise_of(errors, segments, held_out_inputs_), catalogue_);
+    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_inputs_),
+                                           floor = noise_floor(best, segments, sigma, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
+    // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its
+    // noise, or a wrong first reading speaks for hidden nodes.
     const auto scored = [&](const Model& model) {
-      const Errors own = errors_of(model, segments, catalogue_);
+      const Errors own = errors_of(model, segments, catalogue_, &sigma);
       SignalSums sums;
       for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
       return sums;
@@ -471,7 +473,7 @@ private:
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
     note_recalibration(result_);
-    const bool leaves_a_rest = admit_a_rest(result_) || conclusion.leaves_a_rest;
+    const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     if (named && leaves_a_rest)
       result_.remaining = remaining(
           result_, model_.own ? engine::Localisation()

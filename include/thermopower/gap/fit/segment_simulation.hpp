@@ -5,49 +5,101 @@
 #include <thermopower/plant/actuator_plant.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 namespace thermopower::gap::detail {
 
-/// Where a segment starts relative to the measured start. What nobody measures is what fits the segment's data
-/// best (linear least squares); 0 for the rest.
-inline Start unmeasured_start(const Plant& plant, Rollout& rollout, const Segment& segment) {
-  Start start = Start::Zero(plant.start_size(segment));
+/// The step of one coordinate of a start, in multiples of `trial`, that fits the samples of a segment best (linear least
+/// squares about 0).
+/// @param start  to step from
+/// @param held   weight of the step itself, in units of the samples: how strongly it stays at 0
+/// @param unit   of each place among the plant's signals: residuals are divided by it; 0 leaves a signal out
+inline double best_step(const Plant& plant, Rollout& rollout, const Segment& segment, const Start& start,
+                        int coordinate, double trial, double held, const std::vector<double>& unit) {
   const std::vector<Signal>& signals = plant.signals(segment);
-  for (const HiddenStart& hidden : rollout.hidden_starts(segment)) {
-    const auto found = std::find(signals.begin(), signals.end(), hidden.shows_in);
-    if (found == signals.end() || !segment.inputs->judged(hidden.shows_in)) continue;
-    const int place = static_cast<int>(found - signals.begin());
-    const Eigen::VectorXd& measured = segment.inputs->of(hidden.shows_in);
-    Readings without, with;
-    rollout.roll(segment, start, without);
-    Start moved = start;
-    moved[hidden.coordinate] += hidden.trial;
-    rollout.roll(segment, moved, with);
-    double product = 0.0, square = hidden.noise_per_spread * hidden.noise_per_spread;
+  Readings without, with;
+  rollout.roll(segment, start, without);
+  Start moved = start;
+  moved[coordinate] += trial;
+  rollout.roll(segment, moved, with);
+  double product = 0.0, square = held;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (!(unit[k] > 0.0) || !segment.inputs->judged(signals[k])) continue;
+    const Eigen::VectorXd& measured = segment.inputs->of(signals[k]);
     for (Eigen::Index row = segment.begin; row < segment.end; ++row) {
-      const double at_0 = without.value(row, place);
-      const double effect = with.value(row, place) - at_0, left = measured[row] - at_0;
+      const double at_0 = without.value(row, static_cast<int>(k));
+      const double effect = (with.value(row, static_cast<int>(k)) - at_0) / unit[k],
+                   left = (measured[row] - at_0) / unit[k];
       if (!std::isfinite(left) || !std::isfinite(effect)) continue;
       product += effect * left;
       square += effect * effect;
     }
-    start[hidden.coordinate] = std::clamp(product / square * hidden.trial, -hidden.farthest, hidden.farthest);
   }
+  return square > 0.0 ? product / square : 0.0;
+}
+
+/// Moves the starts of a segment that nobody measures to where they fit its samples best, within their bounds.
+inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment& segment, Start& start) {
+  const std::vector<Signal>& signals = plant.signals(segment);
+  for (const HiddenStart& hidden : rollout.hidden_starts(segment)) {
+    const auto found = std::find(signals.begin(), signals.end(), hidden.shows_in);
+    if (found == signals.end() || !segment.inputs->judged(hidden.shows_in)) continue;
+    std::vector<double> unit(signals.size(), 0.0);
+    unit[static_cast<std::size_t>(found - signals.begin())] = 1.0;
+    Start from = start;
+    from[hidden.coordinate] = 0.0;
+    const double step = best_step(plant, rollout, segment, from, hidden.coordinate, hidden.trial,
+                                  hidden.noise_per_spread * hidden.noise_per_spread, unit);
+    start[hidden.coordinate] = std::clamp(step * hidden.trial, -hidden.farthest, hidden.farthest);
+  }
+}
+
+/// Moves the measured starts of a segment to where they fit its samples best, within their noise: a single reading is
+/// off by that much, and what it is off stays for as long as the body remembers.
+/// @param sigma  noise of each signal
+inline void fit_measured_start(const Plant& plant, Rollout& rollout, const Segment& segment,
+                               const std::array<double, signal_count>& sigma, Start& start) {
+  constexpr double farthest_sd = 2.0, prior = 1.0;
+  const std::vector<Signal>& signals = plant.signals(segment);
+  std::vector<double> unit;
+  for (const Signal signal : signals) unit.push_back(sigma[static_cast<std::size_t>(signal)]);
+  const Start sd = rollout.measured_start_sd(segment, sigma);
+  for (int i = 0; i < sd.size(); ++i) {
+    if (!(sd[i] > 0.0)) continue;
+    Start from = start;
+    from[i] = 0.0;
+    const double step = best_step(plant, rollout, segment, from, i, sd[i], prior, unit);
+    start[i] = std::clamp(step, -farthest_sd, farthest_sd) * sd[i];
+  }
+}
+
+/// Where a segment starts relative to the measured start: what nobody measures is what fits the segment's samples best.
+/// @param sigma  where given, what is measured is fitted too, within this noise. Not for windows of an axis, whose noise
+///               at each restart is part of what a perfect model scores.
+inline Start start_of(const Plant& plant, Rollout& rollout, const Segment& segment,
+                      const std::array<double, signal_count>* sigma) {
+  Start start = Start::Zero(plant.start_size(segment));
+  fit_hidden_start(plant, rollout, segment, start);
+  if (sigma == nullptr || segment.axis) return start;
+  fit_measured_start(plant, rollout, segment, *sigma, start);
+  fit_hidden_start(plant, rollout, segment, start);
   return start;
 }
 
 /// Simulates segments from their measured starts and hands each one's readings to `use(segment index, readings)`.
+/// @param sigma  as start_of() takes it
 template <class Use>
 void simulate_segments(const Model& model, const Catalogue& catalogue, const std::vector<Segment>& segments,
-                       SimulationMode mode, Use&& use) {
+                       SimulationMode mode, Use&& use,
+                       const std::array<double, signal_count>* sigma = nullptr) {
   const Plant& plant = plant_of(model);
   const auto rollout = plant.rollout(model, catalogue, {}, {}, mode);
   Readings readings;
   for (std::size_t index = 0; index < segments.size(); ++index) {
     const Segment& segment = segments[index];
-    const Start start = unmeasured_start(plant, *rollout, segment);
+    const Start start = start_of(plant, *rollout, segment, sigma);
     rollout->roll(segment, start, readings);
     use(index, readings);
   }

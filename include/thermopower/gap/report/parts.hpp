@@ -273,6 +273,17 @@ inline bool admit_a_rest(Diagnosis& result) {
   return true;
 }
 
+/// Takes "partly explained" back where the printed table shows every signal near the noise. @return whether it did
+inline bool deny_a_rest(Diagnosis& result) {
+  if (result.verdict != Verdict::partial) return false;
+  for (const GapScore& gap : result.gap)
+    if (!(gap.noise_floor > 0.0) || gap.after > decision.near_floor * gap.noise_floor) return false;
+  const bool alone = result.alternatives.empty();
+  result.verdict = alone ? Verdict::explained : Verdict::ambiguous;
+  result.reason = alone ? wholly_explained : several_explain;
+  return true;
+}
+
 /// What the named causes leave. @param left  of training data, by the augmented model
 inline Remaining remaining(const Diagnosis& result, const engine::Localisation& left) {
   Remaining rest;

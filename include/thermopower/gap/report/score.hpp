@@ -31,8 +31,10 @@ struct Errors {
 
 /// Simulates a model as a gap is judged and subtracts what was measured. The rows where the axis restarts
 /// from the measured state say nothing and are left out.
-inline Errors errors_of(const Model& model, const std::vector<Segment>& segments,
-                        const Catalogue& catalogue) {
+/// @param sigma  noise of each signal within which the measured starts of whole runs are fitted; none: they are taken
+///               as they are
+inline Errors errors_of(const Model& model, const std::vector<Segment>& segments, const Catalogue& catalogue,
+                        const std::array<double, signal_count>* sigma = nullptr) {
   Errors errors;
   const Plant& plant = plant_of(model);
   for (std::size_t i = 0; i < signal_count; ++i) {
@@ -61,7 +63,7 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
       }
     }
   };
-  detail::simulate_segments(model, catalogue, segments, SimulationMode::free_running, take);
+  detail::simulate_segments(model, catalogue, segments, SimulationMode::free_running, take, sigma);
   return errors;
 }
 
