@@ -183,6 +183,44 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a rate in coarse steps is cut off where the angle sees it go faster") {
+  Recording r = axis();
+  const double most = r.column("rate_dps").cwiseAbs().maxCoeff(), quantum = most / 60.0,
+               limit = quantum * std::round(0.7 * most / quantum);
+  std::size_t cut = 0;
+  change(r, "rate_dps", [&](double x, Eigen::Index) {
+    const double coarse = quantum * std::round(x / quantum);
+    cut += std::abs(coarse) > limit ? 1 : 0;
+    return std::clamp(coarse, -limit, limit);
+  });
+  REQUIRE(cut > 50);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "rate_dps", FindingAction::masked));
+  CHECK(taken(r, prepared, "rate_dps").size() >= cut);
+}
+
+TEST_CASE(
+    "a noisy current that stands at its end is cut off there, under one power too, from its first sample on") {
+  // A winding that warms draws less and less; the first third of it is beyond the sensor.
+  Recording r = bench();
+  const double rows = static_cast<double>(r.rows()), limit = 0.45;
+  test::Noise noise(4);
+  Eigen::VectorXd current(r.rows());
+  std::set<Eigen::Index> beyond;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double whole = 0.5 - 0.15 * static_cast<double>(i) / rows + 0.003 * noise();
+    if (whole >= limit) beyond.insert(i);
+    current[i] = std::min(whole, limit);
+  }
+  REQUIRE(beyond.size() > 400);
+  r.set("current_A", current);
+  r.set("power_param", Eigen::VectorXd::Constant(r.rows(), 200.0));
+  const PreparedRecording prepared(test::bench_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "current_A");
+  CHECK(std::includes(out.begin(), out.end(), beyond.begin(), beyond.end()));
+  CHECK(out.size() < beyond.size() + 10);
+}
+
 TEST_CASE("a current in coarse steps that stands at its end while the power moves is cut off there") {
   Recording r = bench();
   const double quantum = r.column("current_A").maxCoeff() / 150.0;

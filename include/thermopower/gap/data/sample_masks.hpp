@@ -161,7 +161,7 @@ public:
     std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
     std::sort(list.begin(), list.end());
-    const bool may_stand_still = !(equal_share_ < limit_.hardly_equal);
+    const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
     for (const bool top : {true, false}) {
       const double extreme = top ? list.back() : list.front();
       const auto at_extreme = std::count(list.begin(), list.end(), extreme);
@@ -174,9 +174,11 @@ public:
       if (at_extreme < limit_.least_clipped || extreme == 0.0 ||
           static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
         continue;
-      // A slow signal in coarse steps stands still by itself; but not between two of its steps.
-      // Nor does it where what drives it moves.
-      if (may_stand_still && !is_between_steps(extreme, next) && !is_driven_at(extreme)) continue;
+      // A slow signal in coarse steps stands still by itself; but not between two of its steps, nor where what drives
+      // it moves, nor where another column sees it move.
+      if (!is_witnessed && stands_still_besides(extreme) && !is_between_steps(extreme, next) &&
+          !is_driven_at(extreme))
+        continue;
       // One sample tells little: just at the end of its range a sensor is still right.
       std::ptrdiff_t wrong = 0;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
@@ -302,6 +304,16 @@ private:
       stepped += off_step(one) < on ? 1.0 : 0.0;
     }
     return off_step(value) > off && stepped >= nearly_all * known;
+  }
+
+  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest
+  /// there: of it all neighbours count.
+  bool stands_still_besides(double value) const {
+    if (traits_.cannot_jump) return !(equal_share_ < limit_.hardly_equal);
+    Eigen::VectorXd others = values_;
+    for (double& one : others)
+      if (one == value) one = missing;
+    return !(equal_share_of(step_sizes(others, runs_)) < limit_.hardly_equal);
   }
 
   /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.
