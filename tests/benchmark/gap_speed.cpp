@@ -31,6 +31,7 @@
 #include <random>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 namespace io = thermopower::io;
 
 namespace {

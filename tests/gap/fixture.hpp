@@ -15,6 +15,7 @@
 namespace engine_fixture {
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 
 /// The same numbers with every standard library.
 class Noise {

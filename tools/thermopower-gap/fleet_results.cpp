@@ -364,7 +364,7 @@ std::size_t write_fleet_results(std::vector<FleetLog>& logs, const std::string& 
   fleet.results.resize(logs.size());
   fleet.causes.resize(logs.size());
   fleet.probability.assign(logs.size(), missing);
-  thermopower::gap::in_parallel(
+  thermopower::gap::engine::in_parallel(
       logs.size(), std::max(1u, std::thread::hardware_concurrency()), [&](std::size_t i) {
         read_report(logs[i], fleet.results[i], fleet.causes[i], fleet.probability[i]);
         fleet.results[i].log = logs[i].manifest->cell("log");

@@ -15,6 +15,7 @@
 #include <set>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 using engine::PreparedRecording;
 
 namespace {

@@ -13,6 +13,7 @@
 #include <vector>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include <functional>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 
 namespace {
 

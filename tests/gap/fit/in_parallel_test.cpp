@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-using thermopower::gap::in_parallel;
+using thermopower::gap::engine::in_parallel;
 
 TEST_CASE("every piece of work is done once, by any number of threads") {
   for (unsigned threads : {0u, 1u, 2u, 7u, 200u}) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
 
 namespace {
 

@@ -15,9 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap {
-
-namespace detail {
+namespace thermopower::gap::engine {
 
 /// Fills holes with the value before them (after them at a run's start).
 inline Eigen::VectorXd held(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
@@ -79,24 +77,21 @@ inline void close_loop(const Model& model, Inputs& inputs) {
   replay_servo(model, inputs);
 }
 
-}  // namespace detail
-
 /// Takes from a recording what the model needs, and notes what cannot be judged and why.
 /// @throws InvalidInput where the recording is invalid
 inline Inputs prepare(const Model& model, const Recording& recording) {
   if (const auto problem = recording.validate())
     throw InvalidInput("recording '" + recording.name + "': " + *problem);
   if (model.own)
-    return detail::prepare_own(*model.own->equations->info(), recording,
-                               [](const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
-                                 return detail::held(values, runs);
-                               });
+    return prepare_own(
+        *model.own->equations->info(), recording,
+        [](const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) { return held(values, runs); });
   Inputs inputs;
   inputs.name = recording.name;
   inputs.t_s = recording.t_s;
   inputs.runs = recording.spans();
   const auto take = [&](const char* column) {
-    return recording.has(column) ? detail::held(recording.column(column), inputs.runs) : Eigen::VectorXd();
+    return recording.has(column) ? held(recording.column(column), inputs.runs) : Eigen::VectorXd();
   };
   const auto measure = [&](Signal signal) {
     inputs.measured[static_cast<std::size_t>(signal)] = recording.column(to_string(signal));
@@ -171,14 +166,14 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       else lack("rate_dps", "rate_dps");
       if (recording.has("angle_deg"))
         inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
-            detail::unwrapped(recording.column("angle_deg"), inputs.runs);
+            unwrapped(recording.column("angle_deg"), inputs.runs);
       else lack("angle_deg", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
-      if (!commanded) detail::close_loop(model, inputs);
+      if (!commanded) close_loop(model, inputs);
     }
   }
   if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
   return inputs;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// How the noise of a residual is told from the error of a model, by the variogram: half the mean square of the
 /// differences over a lag. Noise loses its memory fast (white noise at once, an AR(1) of 0.95 within some 20 samples)
@@ -40,8 +40,6 @@ struct NoiseThresholds {
 /// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
 double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0);
-
-namespace engine {
 
 /// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
 inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
@@ -120,10 +118,7 @@ inline double half_mean_square(const std::vector<double>& scaled, const std::vec
   return pairs > 0 ? 0.5 * sum / static_cast<double>(pairs) : 0.0;
 }
 
-}  // namespace engine
-
 inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum) {
-  using engine::median_of;
   constexpr NoiseThresholds limit;
   const std::size_t count = sequence.size();
   if (count < limit.least_pairs) return 0.0;
@@ -147,7 +142,7 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
   // In coarse steps most neighbours read nearly the same and some a step more: the median tells nothing of those, and no block
   // has a smaller scale than a step.
   std::vector<double> typical = scales;
-  const double usual = engine::quantile_of(typical, 0.5);
+  const double usual = quantile_of(typical, 0.5);
   for (std::size_t b = 0; b < blocks; ++b) {
     const double scale = std::max(scales[b] > 0.0 ? scales[b] : usual, quantum);
     if (!(scale > 0.0)) continue;
@@ -168,7 +163,7 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
     if (lag > std::max(longest / 2, 1) || lag > limit.longest_lag) break;
     std::size_t pairs = 0;
     const double value =
-        engine::half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs);
+        half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs);
     if (pairs < limit.least_pairs) break;
     lags.push_back(lag);
     variogram.push_back(std::max(value, 1e-300));
@@ -176,7 +171,7 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
     weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 * lag / static_cast<double>(count)));
   }
   if (lags.empty()) return std::sqrt(mean_square);
-  const double variance = engine::noise_of_variogram(lags, variogram, weights) * squares;
+  const double variance = noise_of_variogram(lags, variogram, weights) * squares;
   return std::max(std::sqrt(std::min(variance, mean_square)), rounding);
 }
 
@@ -204,4 +199,4 @@ inline double correlation_samples(const std::vector<double>& sequence) {
   return std::min(total, static_cast<double>(count) / 4.0);
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

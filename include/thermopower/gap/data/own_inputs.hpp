@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace thermopower::gap::detail {
+namespace thermopower::gap::engine {
 
 /// Takes from a recording what a plant of one's own needs, by the names of its columns.
 /// @param held  fills holes of a column over the runs: `held(values, runs)`
@@ -39,4 +39,4 @@ Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording, con
   return inputs;
 }
 
-}  // namespace thermopower::gap::detail
+}  // namespace thermopower::gap::engine

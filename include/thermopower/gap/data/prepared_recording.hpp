@@ -288,7 +288,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
                   "are no temperature of a motor", "look at the thermometer's wiring");
   }
   if (name == "angle_deg") {
-    Eigen::VectorXd whole = thermopower::gap::detail::unwrapped(values, runs);
+    Eigen::VectorXd whole = unwrapped(values, runs);
     Eigen::Index turned = 0;
     for (Eigen::Index i = 0; i < values.size(); ++i)
       turned += std::isfinite(values[i]) && whole[i] != values[i] ? 1 : 0;

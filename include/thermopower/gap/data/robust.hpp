@@ -72,10 +72,6 @@ inline double median_interval_s(const Recording& recording) {
   return median_of(steps);
 }
 
-}  // namespace thermopower::gap::engine
-
-namespace thermopower::gap {
-
 /// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a
 /// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
 /// ever differ by the same amount.
@@ -107,4 +103,4 @@ inline double quantum_of(const Eigen::VectorXd& values) {
   return 0.0;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// A statistic of the data's blocks with its standard error.
 struct Jackknifed {
@@ -111,4 +111,4 @@ inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::
   return result;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

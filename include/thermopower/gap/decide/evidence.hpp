@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// How much the samples of each signal count.
 struct Weight {
@@ -314,4 +314,4 @@ inline double likeness(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return norm > 0.0 ? a.dot(b) / norm : 0.0;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

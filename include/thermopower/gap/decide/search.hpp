@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
@@ -308,4 +308,4 @@ private:
   std::vector<plant::SubmodelName> suspects_;
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

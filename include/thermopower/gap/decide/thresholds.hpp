@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// The thresholds of the decision, each with its unit and its reason.
 struct DecisionThresholds {
@@ -62,4 +62,4 @@ struct DecisionThresholds {
 /// The values in force.
 inline constexpr DecisionThresholds decision{};
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// What the weighing of the candidates amounts to.
 struct Conclusion {
@@ -283,4 +283,4 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   return result;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -42,8 +42,7 @@ public:
       : model_(model), sample_(sample), catalogue_(catalogue) {
     options_.horizon_s = horizon_s;
     for (const SimulatedSignal& signal : simulate(model, sample, options_, catalogue)) {
-      const Eigen::VectorXd measured =
-          thermopower::gap::detail::unwrapped(sample.column(to_string(signal.signal)), sample.spans());
+      const Eigen::VectorXd measured = unwrapped(sample.column(to_string(signal.signal)), sample.spans());
       SignalReport report;
       report.signal = to_string(signal.signal);
       const auto known = signal.signal.known();

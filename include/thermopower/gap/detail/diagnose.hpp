@@ -12,7 +12,7 @@ namespace thermopower::gap {
 THERMOPOWER_GAP_INLINE Diagnosis diagnose(const Model& model, const std::vector<Recording>& train,
                                           const std::vector<Recording>& held_out, const Options& options,
                                           const Catalogue& catalogue) {
-  return detail::Diagnoser(model, options, catalogue).run(train, held_out);
+  return engine::Diagnoser(model, options, catalogue).run(train, held_out);
 }
 
 }  // namespace thermopower::gap

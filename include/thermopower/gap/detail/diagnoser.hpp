@@ -24,9 +24,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap {
-
-namespace detail {
+namespace thermopower::gap::engine {
 
 /// One diagnosis under way.
 class Diagnoser {
@@ -41,11 +39,10 @@ public:
     gather(train, held_out);
     stage("data gate");
     if (!enough()) return std::move(result_);
-    engine::Localisation found;
+    Localisation found;
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
-    else found = engine::localise(model_, train_recordings_, {}, catalogue_);
-    if (!model_.own)
-      engine::add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
+    else found = localise(model_, train_recordings_, {}, catalogue_);
+    if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
@@ -156,14 +153,14 @@ private:
         one = std::move(parts.first);
         last.push_back(std::move(parts.second));
       }
-    engine::CheckedRecordings checked =
-        engine::check(model_, first, last, {options_.horizon_s, options_.as_recorded}, catalogue_);
+    CheckedRecordings checked =
+        check(model_, first, last, {options_.horizon_s, options_.as_recorded}, catalogue_);
     result_.findings = std::move(checked.findings);
-    for (const engine::PreparedRecording& one : checked.train) {
+    for (const PreparedRecording& one : checked.train) {
       train_recordings_.push_back(one.recording());
       train_inputs_.push_back(one.inputs());
     }
-    for (const engine::PreparedRecording& one : checked.held_out) {
+    for (const PreparedRecording& one : checked.held_out) {
       held_out_recordings_.push_back(one.recording());
       held_out_inputs_.push_back(one.inputs());
     }
@@ -358,7 +355,7 @@ private:
     };
     if (model_.own || among(result_.where)) return true;
     const Model with_known = augmented(model_, known.explanation, known.list, known.fit.at);
-    return among(engine::localise(with_known, train_recordings_, {}, catalogue_).where);
+    return among(localise(with_known, train_recordings_, {}, catalogue_).where);
   }
 
   /// The submodels in which the measured rows say that something is missing, where there are several: then two causes
@@ -475,9 +472,9 @@ private:
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     if (named && leaves_a_rest)
-      result_.remaining = remaining(
-          result_, model_.own ? engine::Localisation()
-                              : engine::localise(result_.augmented, train_recordings_, {}, catalogue_));
+      result_.remaining =
+          remaining(result_, model_.own ? Localisation()
+                                        : localise(result_.augmented, train_recordings_, {}, catalogue_));
     if (named) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)
@@ -490,7 +487,7 @@ private:
         for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
         draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
       } else {
-        engine::draw_effect(model_, simulated, catalogue_, result_.missing_quantities);
+        draw_effect(model_, simulated, catalogue_, result_.missing_quantities);
       }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
@@ -512,6 +509,4 @@ private:
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace detail
-
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

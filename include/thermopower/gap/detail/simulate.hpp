@@ -16,7 +16,7 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
                                                              const SimulationOptions& options,
                                                              const Catalogue& given) {
   const Catalogue& catalogue = catalogue_of(model, given);
-  const std::vector<Inputs> inputs{prepare(model, recording)};
+  const std::vector<Inputs> inputs{engine::prepare(model, recording)};
   std::vector<SimulatedSignal> results;
   std::array<int, signal_count> column;
   column.fill(-1);
@@ -27,8 +27,8 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
           {signal_name(model, static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
   const Plant& plant = plant_of(model);
-  const std::vector<Segment> segments = cut(inputs, options.horizon_s, plant);
-  detail::simulate_segments(
+  const std::vector<Segment> segments = engine::cut(inputs, options.horizon_s, plant);
+  engine::simulate_segments(
       model, catalogue, segments, options.mode, [&](std::size_t index, const Readings& readings) {
         const std::vector<Signal>& signals = plant.signals(segments[index]);
         for (std::size_t k = 0; k < signals.size(); ++k) {

@@ -60,8 +60,7 @@ inline double misfit(const Model& model, const Recording& recording, const Catal
   double sum = 0.0;
   int count = 0;
   for (const SimulatedSignal& signal : simulate(model, recording, options, catalogue)) {
-    const Eigen::VectorXd measured =
-        thermopower::gap::detail::unwrapped(recording.column(to_string(signal.signal)), recording.spans());
+    const Eigen::VectorXd measured = unwrapped(recording.column(to_string(signal.signal)), recording.spans());
     double errors = 0.0, moved = 0.0, reference = 0.0;
     for (Eigen::Index i = 0; i < measured.size(); ++i) {
       const double error = signal.values[i] - measured[i];

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// An explanation with its fit and what speaks for it.
 struct Candidate {
@@ -360,4 +360,4 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
   return true;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

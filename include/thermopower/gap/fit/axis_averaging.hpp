@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// When a recording of a moving axis is averaged down.
 struct AveragingThresholds {
@@ -39,7 +39,7 @@ public:
     std::vector<double> steps;
     for (const RunSpan& run : full_.runs)
       for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(full_.t_s[i] - full_.t_s[i - 1]);
-    const double interval_s = engine::median_of(steps);
+    const double interval_s = median_of(steps);
     if (!(interval_s > 0.0)) return full_;
     if (full_.closed_loop) return full_;  // a servo answers each sample
     auto rows = static_cast<Eigen::Index>(horizon_s / (AveragingThresholds().rows_per_horizon * interval_s));
@@ -82,7 +82,7 @@ private:
     for (const Signal signal : {Signal::angle_deg, Signal::rate_dps}) {
       if (!full_.judged(signal)) continue;
       const Eigen::VectorXd& values = full_.of(signal);
-      const double scale = engine::white_scale(values, full_.runs) + quantum_of(values) / std::sqrt(12.0);
+      const double scale = white_scale(values, full_.runs) + quantum_of(values) / std::sqrt(12.0);
       std::vector<double> left;
       const Eigen::Index stride = std::max(rows, full_.rows() / looked_at);
       for (const RunSpan& run : full_.runs)
@@ -93,8 +93,7 @@ private:
           if (std::isfinite(off)) left.push_back(std::abs(off));
         }
       std::vector<double> again = left;
-      if (engine::median_of(left) > limit.smooth * 0.6745 * scale ||
-          engine::quantile_of(again, 0.95) > limit.kinks * scale)
+      if (median_of(left) > limit.smooth * 0.6745 * scale || quantile_of(again, 0.95) > limit.kinks * scale)
         return false;
     }
     return true;
@@ -174,4 +173,4 @@ private:
   const Inputs& full_;
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// One coordinate of a fit.
 struct Coordinate {
@@ -180,4 +180,4 @@ inline std::vector<Explanation> with_pairs_of_constants(std::vector<Explanation>
   return list;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

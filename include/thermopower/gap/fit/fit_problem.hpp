@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
@@ -134,4 +134,4 @@ inline std::vector<Segment> cut(const std::vector<Inputs>& recordings, double ho
   return segments;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// When a fit stops.
 struct FitOptions {
@@ -289,4 +289,4 @@ private:
   int blocks_ = 0;
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Threads that one piece of work is spread over at most: beyond, starting them costs more than they do.
 inline constexpr std::size_t most_threads = 1024;
@@ -55,4 +55,4 @@ void in_parallel(std::size_t count, unsigned threads, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Places of the windows of an axis that an explanation fits worst, as many as were looked at, in order; none
 /// where those that were looked at speak for all. Something may happen outside of them: a limit that is reached
@@ -64,4 +64,4 @@ inline std::vector<std::size_t> overlooked(const FitProblem& part, const std::ve
   return order;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

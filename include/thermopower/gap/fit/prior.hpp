@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// What is taken to be known of a model's constants.
 struct KnownConstants {
@@ -57,4 +57,4 @@ struct Prior {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

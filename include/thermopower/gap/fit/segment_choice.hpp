@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Says of one after another whether it is kept, so that a share is, by multiples of the golden ratio: no period of an
 /// experiment falls in step with what is kept.
@@ -81,4 +81,4 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
   return kept;
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace thermopower::gap::detail {
+namespace thermopower::gap::engine {
 
 /// The step of one coordinate of a start, in multiples of `trial`, that fits the samples of a segment best (linear least
 /// squares about 0).
@@ -105,4 +105,4 @@ void simulate_segments(const Model& model, const Catalogue& catalogue, const std
   }
 }
 
-}  // namespace thermopower::gap::detail
+}  // namespace thermopower::gap::engine

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Whether an effect brings states of a moving axis that nobody measures: the far side of a spring, a bristle.
 inline bool remembers(const CatalogueEntry& entry) {
@@ -33,4 +33,4 @@ inline double shortest_window_s(const Model& model, const Catalogue& catalogue,
   return std::min(std::max(share * short_s, rows * interval_s), short_s);
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

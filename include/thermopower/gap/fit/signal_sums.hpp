@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Squared residuals by signal, in units of the noise, in total and in contiguous blocks of equal length: how
 /// much the blocks differ tells how sure a difference of two totals is.
@@ -58,4 +58,4 @@ struct SignalSums {
   }
 };
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Rows of several recordings together.
 inline Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
@@ -293,14 +293,14 @@ private:
     std::vector<Segment> segments;
     const Plant& plant = plant_of(baseline_);
     plant.cut(inputs, 0.0, segments);
-    detail::simulate_segments(
-        baseline_, catalogue_, segments, SimulationMode::free_running,
-        [&](std::size_t index, const Readings& readings) {
-          const std::vector<Signal>& signals = plant.signals(segments[index]);
-          for (std::size_t k = 0; k < signals.size(); ++k)
-            for (Eigen::Index row = segments[index].begin; row < segments[index].end; ++row)
-              result[static_cast<std::size_t>(signals[k])][row] = readings.value(row, static_cast<int>(k));
-        });
+    simulate_segments(baseline_, catalogue_, segments, SimulationMode::free_running,
+                      [&](std::size_t index, const Readings& readings) {
+                        const std::vector<Signal>& signals = plant.signals(segments[index]);
+                        for (std::size_t k = 0; k < signals.size(); ++k)
+                          for (Eigen::Index row = segments[index].begin; row < segments[index].end; ++row)
+                            result[static_cast<std::size_t>(signals[k])][row] =
+                                readings.value(row, static_cast<int>(k));
+                      });
     return result;
   }
 
@@ -333,4 +333,4 @@ inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& 
   return BenchThinning(full, rows, 0.02 * tau_s, model, catalogue).run();
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

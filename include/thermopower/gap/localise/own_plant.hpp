@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace thermopower::gap::detail {
+namespace thermopower::gap::engine {
 
 /// How a plant of one's own is localised.
 struct OwnPlantThresholds {
@@ -259,4 +259,4 @@ inline void draw_own_effect(const Model& baseline, const Catalogue& catalogue,
   }
 }
 
-}  // namespace thermopower::gap::detail
+}  // namespace thermopower::gap::engine

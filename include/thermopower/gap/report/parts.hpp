@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Covariance of a fit's coordinates, and the quantile that makes 95 % intervals of it.
 struct Covariance {
@@ -285,7 +285,7 @@ inline bool deny_a_rest(Diagnosis& result) {
 }
 
 /// What the named causes leave. @param left  of training data, by the augmented model
-inline Remaining remaining(const Diagnosis& result, const engine::Localisation& left) {
+inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
   Remaining rest;
   double worst = 0.0;
   for (const GapScore& gap : result.gap) {
@@ -452,4 +452,4 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
   return "None needed: the simulation holds over the range that was recorded.";
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace thermopower::gap {
+namespace thermopower::gap::engine {
 
 /// Errors of a free-running simulation against recordings, signal by signal, in the order of the rows.
 struct Errors {
@@ -63,7 +63,7 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
       }
     }
   };
-  detail::simulate_segments(model, catalogue, segments, SimulationMode::free_running, take, sigma);
+  simulate_segments(model, catalogue, segments, SimulationMode::free_running, take, sigma);
   return errors;
 }
 
@@ -172,4 +172,4 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
   return {1.0 - std::exp(widened(0.975)), 1.0 - std::exp(widened(0.025))};
 }
 
-}  // namespace thermopower::gap
+}  // namespace thermopower::gap::engine
