@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// Problem:  how fast are batches of simulated axes, against the usual ODE libraries at equal accuracy,
-// against a plain loop over one
-//           axis after another, and against what the machine could do?
+// Problem:  how fast are batches of simulated axes, against the usual ODE libraries at equal accuracy, against a
+//           plain loop over one axis after another, and against what the machine could do?
 // Model:    first the rig's axis as it is (board, mechanics, temperatures). Then, for the libraries, the same
-// mechanics under a
-//           continuous loop: nothing jumps, so that they may take the steps they like.
-// Notation: an axis-step is one cycle of the board of one axis (0.8 ms). Each figure is the best of several
-// runs.
+//           mechanics under a continuous loop: nothing jumps, so that they may take the steps they like. Then a
+//           hinge beside MuJoCo's (speed_hinge.cpp), and the ensemble of others' benchmarks (speed_lorenz.cpp).
+// Notation: an axis-step is one cycle of the board of one axis (0.8 ms). What is compared takes turns, nine times;
+//           each figure is a median.
+#include "speed_timing.hpp"
+
 #include <thermopower/simulation/axis_batch.hpp>
 #include <thermopower/simulation/random.hpp>
 #include <thermopower/simulation/thesis_gimbal.hpp>
@@ -17,9 +18,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <ctime>
 #include <functional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -39,16 +39,10 @@ namespace {
 
 using namespace thermopower::simulation;
 
-// What one thread needs, in processor time: a busy machine must not count. Best of several.
-double best_s(int repeats, const std::function<void()>& work) {
-  double best = 1e300;
-  for (int i = 0; i < repeats; ++i) {
-    const std::clock_t begin = std::clock();
-    work();
-    best = std::fmin(best, static_cast<double>(std::clock() - begin) / static_cast<double>(CLOCKS_PER_SEC));
-  }
-  return best;
-}
+using speed::Counted;
+using speed::in_turns;
+using speed::median;
+using speed::median_ratio;
 
 // What several threads need, by the wall's clock: only an idle machine gives a fair figure.
 double best_wall_s(int repeats, const std::function<void()>& work) {
@@ -81,67 +75,65 @@ std::vector<AxisCase<Real>> draw_cases(std::size_t count) {
   return cases;
 }
 
-// A number that counts what is done with it.
-struct Counted {
-  using Scalar = double;
-  double value = 0.0;
-  static inline long simple = 0, dear = 0;  // additions and multiplications; divisions, roots and functions
-  Counted() = default;
-  Counted(double number) : value(number) {}  // NOLINT: numbers convert
-  Counted& operator+=(Counted other) { return ++simple, value += other.value, *this; }
-};
-Counted operator+(Counted a, Counted b) { return ++Counted::simple, Counted(a.value + b.value); }
-Counted operator-(Counted a, Counted b) { return ++Counted::simple, Counted(a.value - b.value); }
-Counted operator-(Counted a) { return ++Counted::simple, Counted(-a.value); }
-Counted operator*(Counted a, Counted b) { return ++Counted::simple, Counted(a.value * b.value); }
-Counted operator/(Counted a, Counted b) { return ++Counted::dear, Counted(a.value / b.value); }
-bool operator>(Counted a, Counted b) { return ++Counted::simple, a.value > b.value; }
-Counted sqrt(Counted a) { return ++Counted::dear, Counted(std::sqrt(a.value)); }
-Counted exp(Counted a) { return ++Counted::dear, Counted(std::exp(a.value)); }
-Counted log(Counted a) { return ++Counted::dear, Counted(std::log(a.value)); }
+// Axes of the rig, and how many steps they make in one run.
+template <class Real>
+struct RigRun {
+  std::vector<AxisCase<Real>> cases;
+  double duration_s;
 
-// Multiply-adds per second that one core really does, on registers only.
-template <class Real, int width>
-double peak_flops() {
-  typedef Real Vector __attribute__((vector_size(width * sizeof(Real))));
-  const long rounds = 20000000;
-  volatile Real keep = Real(0);
-  const double seconds = best_s(3, [&keep] {
-    // Twelve independent chains cover the latency of two units.
-    const Vector factor = Vector{} + static_cast<Real>(0.999);
-    Vector a = factor, b = a + a, c = b + a, d = c + a, e = d + a, f = e + a, g = f + a, h = g + a, i = h + a,
-           j = i + a, k = j + a, l = k + a;
-    for (long round = 0; round < rounds; ++round) {
-      a = a * factor + factor, b = b * factor + factor, c = c * factor + factor, d = d * factor + factor;
-      e = e * factor + factor, f = f * factor + factor, g = g * factor + factor, h = h * factor + factor;
-      i = i * factor + factor, j = j * factor + factor, k = k * factor + factor, l = l * factor + factor;
-    }
-    keep = (a + b + c + d + e + f + g + h + i + j + k + l)[0];
-  });
-  return 2.0 * 12 * width * static_cast<double>(rounds) / seconds;
+  RigRun(std::size_t count, double duration) : cases(draw_cases<Real>(count)), duration_s(duration) {}
+  double steps() const { return static_cast<double>(cases.size()) * duration_s / AxisClock().board_cycle_s; }
+  template <int lane_count>
+  void on_lanes(unsigned threads) const {
+    const auto outcome = run_batch<Real, lane_count>(cases, duration_s, threads);
+    if (!(outcome.front().error_rms_deg > Real(0))) std::printf("nothing moved\n");
+  }
+  void plainly() const {
+    Real sum = Real(0);
+    for (const auto& one : cases) sum += run_case(one, duration_s).error_rms_deg;
+    if (!(sum > Real(0))) std::printf("nothing moved\n");
+  }
+};
+
+// What one axis-step is: its temperatures share a slow step with a hundred others.
+template <class Real>
+speed::Operations axis_step_operations() {
+  AxisCase<Counted<Real>> counted;
+  thermopower::simulation::detail::for_each_number(counted, draw_cases<Real>(1).front(),
+                                                   [](Counted<Real>& to, Real from) { to = from; });
+  Counted<Real>::done = {};
+  run_case(counted, 0.8);
+  speed::Operations each = Counted<Real>::done;
+  each.sums /= 1000.0, each.products /= 1000.0, each.sums_of_products /= 1000.0,
+      each.divisions_and_roots /= 1000.0;
+  return each;
 }
 
 template <class Real, int lane_count>
-double batch_rate(std::size_t count, double duration_s, unsigned threads) {
-  const auto cases = draw_cases<Real>(count);
-  const double steps = static_cast<double>(count) * duration_s / AxisClock().board_cycle_s;
-  const auto work = [&] {
-    const auto outcome = run_batch<Real, lane_count>(cases, duration_s, threads);
-    if (!(outcome.front().error_rms_deg > Real(0))) std::printf("nothing moved\n");
-  };
-  return steps / (threads == 1 ? best_s(5, work) : best_wall_s(5, work));
+void rig_axis(const char* name) {
+  const RigRun<Real> batch(static_cast<std::size_t>(lane_count) * 8, 4.0), one_by_one(12, 4.0);
+  const auto needed_s =
+      in_turns(9, {[] { speed::multiply_adds<Real>(); }, [&] { batch.template on_lanes<lane_count>(1); },
+                   [&] { one_by_one.plainly(); }});
+  const double both_s = best_wall_s(5, [&] { batch.template on_lanes<lane_count>(2); });
+  const double per_step = batch.steps() / one_by_one.steps();
+  const speed::Operations each = axis_step_operations<Real>();
+  const double operations = each.total() * batch.steps(), peak = speed::multiply_adds_operations<Real>();
+  std::printf("  %-8s %12.2f %12.2f %12.2f %15.1fx %14.1f %14.1f %8.0f %%\n", name,
+              one_by_one.steps() / median(needed_s[2]) * 1e-6, batch.steps() / median(needed_s[1]) * 1e-6,
+              batch.steps() / both_s * 1e-6, median_ratio(needed_s[2], needed_s[1]) * per_step,
+              operations / median(needed_s[1]) * 1e-9, peak / median(needed_s[0]) * 1e-9,
+              100.0 * median_ratio(needed_s[0], needed_s[1]) * operations / peak);
 }
 
 template <class Real>
-double plain_rate(std::size_t count, double duration_s) {
-  const auto cases = draw_cases<Real>(count);
-  const double steps = static_cast<double>(count) * duration_s / AxisClock().board_cycle_s;
-  Real sum = Real(0);
-  const double seconds = best_s(3, [&] {
-    for (const auto& one : cases) sum += run_case(one, duration_s).error_rms_deg;
-  });
-  if (!(sum > Real(0))) std::printf("nothing moved\n");
-  return steps / seconds;
+void print_operations(const char* name) {
+  const speed::Operations each = axis_step_operations<Real>();
+  std::printf(
+      "  In %s an axis-step is %.0f sums, %.0f products and %.1f divisions and roots; %.0f sums are of products. "
+      "Multiply-add units alone could reach %.0f %%.\n",
+      name, each.sums, each.products, each.divisions_and_roots, each.sums_of_products,
+      100.0 * each.ceiling());
 }
 
 // The mechanics under a continuous loop: angle, rate, and the integral of the error.
@@ -380,35 +372,18 @@ std::vector<Case> first(const std::vector<Case>& all, std::size_t count) {
 }  // namespace
 
 int main() {
-  const unsigned both = 2;
   std::printf("The rig's axis: board, mechanics and temperatures (million axis-steps per second)\n");
-  const double lanes_f1 = batch_rate<float, 64>(512, 2.0, 1),
-               lanes_f2 = batch_rate<float, 64>(1024, 4.0, both);
-  const double lanes_d1 = batch_rate<double, 32>(256, 2.0, 1),
-               lanes_d2 = batch_rate<double, 32>(512, 4.0, both);
-  const double plain_f = plain_rate<float>(48, 4.0), plain_d = plain_rate<double>(48, 4.0);
-  std::printf("  %-8s %12s %12s %12s %16s\n", "", "plain loop", "1 thread", "2 threads", "1 thread/plain");
-  std::printf("  %-8s %12.2f %12.2f %12.2f %15.1fx\n", "float", plain_f * 1e-6, lanes_f1 * 1e-6,
-              lanes_f2 * 1e-6, lanes_f1 / plain_f);
-  std::printf("  %-8s %12.2f %12.2f %12.2f %15.1fx\n", "double", plain_d * 1e-6, lanes_d1 * 1e-6,
-              lanes_d2 * 1e-6, lanes_d1 / plain_d);
-
-  AxisCase<Counted> counted;
-  detail::for_each_number(counted, draw_cases<double>(1).front(),
-                          [](Counted& to, double from) { to = from; });
-  Counted::simple = Counted::dear = 0;
-  run_case(counted, 0.8);
-  const double simple = static_cast<double>(Counted::simple) / 1000.0,
-               dear = static_cast<double>(Counted::dear) / 1000.0;
-  const double peak_d = peak_flops<double, 8>(), peak_f = peak_flops<float, 16>();
-  std::printf("  One axis-step is %.0f additions and multiplications and %.1f divisions and roots.\n", simple,
-              dear);
-  std::printf(
-      "  That is %.1f Gflop/s of the %.1f that one core does in multiply-adds alone: %.0f %% (float: %.1f of "
-      "%.1f, %.0f %%).\n",
-      lanes_d1 * (simple + dear) * 1e-9, peak_d * 1e-9, 100.0 * lanes_d1 * (simple + dear) / peak_d,
-      lanes_f1 * (simple + dear) * 1e-9, peak_f * 1e-9, 100.0 * lanes_f1 * (simple + dear) / peak_f);
+  std::printf("  %-8s %12s %12s %12s %16s %14s %14s %10s\n", "", "plain loop", "1 thread", "2 threads",
+              "1 thread/plain", "Gflop/s", "peak Gflop/s", "of it");
+  rig_axis<float, 64>("float");
+  rig_axis<double, 32>("double");
+  std::printf("  The peak is what one core does in multiply-adds on registers alone, in the same turns.\n");
+  print_operations<float>("float");
+  print_operations<double>("double");
   std::printf("  A block's state lies in the first cache: memory is no limit.\n");
+
+  const bool hinges_agree = speed::hinge();
+  const bool lorenz_agrees = speed::lorenz();
 
   // Sorted by kind: roll needs steps a third as long as pitch, and a block of lanes goes at the pace of its
   // slowest. Every contender may choose its step or tolerance for each kind.
@@ -471,28 +446,46 @@ int main() {
       duration_s, wanted_rad);
   std::printf("  %-28s %26s %12s %16s %16s\n", "integrator", "step or tolerance", "error/rad",
               "axis-seconds/s", "ours, double, is");
-  double ours = 0.0;
-  for (const Contender& one : contenders) {
-    double largest = 0.0, needed_s = 0.0;
-    char settings[64] = "";
+  // The coarsest settings that are accurate enough, and then all in turns.
+  std::vector<std::string> settings;
+  std::vector<double> errors;
+  std::vector<std::function<void()>> works;
+  std::vector<std::size_t> accurate;
+  for (std::size_t at = 0; at < contenders.size(); ++at) {
+    const Contender& one = contenders[at];
+    double largest = 0.0;
+    std::string used;
+    std::array<double, 3> chosen = {};
     for (std::size_t kind = 0; kind < kinds; ++kind) {
-      double setting = 0.0, error = 1e300;
+      double error = 1e300;
       for (const double each : one.ladder) {
-        setting = each;
+        chosen[kind] = each;
         error = worst(one.run(kind, checked, each), exact[kind]);
         if (error < wanted_rad) break;
       }
       largest = std::fmax(largest, error < wanted_rad ? error : 1e300);
-      needed_s += best_s(5, [&] { one.run(kind, one.count, setting); });
-      const std::size_t used = std::strlen(settings);
-      std::snprintf(settings + used, sizeof settings - used, "%s%g", kind == 0 ? "" : " ", setting);
+      char text[32];
+      std::snprintf(text, sizeof text, "%s%g", kind == 0 ? "" : " ", chosen[kind]);
+      used += text;
     }
     if (!(largest < wanted_rad)) {
       std::printf("  %-28s never that accurate\n", one.name);
       continue;
     }
-    const double rate = static_cast<double>(kinds * one.count) * duration_s / needed_s;
-    if (ours <= 0.0) ours = rate;
-    std::printf("  %-28s %26s %12.1e %16.0f %15.1fx\n", one.name, settings, largest, rate, ours / rate);
+    accurate.push_back(at);
+    settings.push_back(used);
+    errors.push_back(largest);
+    works.push_back([&one, chosen] {
+      for (std::size_t kind = 0; kind < kinds; ++kind) one.run(kind, one.count, chosen[kind]);
+    });
   }
+  const auto needed_s = in_turns(9, works);
+  for (std::size_t i = 0; i < works.size(); ++i) {
+    const Contender& one = contenders[accurate[i]];
+    const double share = static_cast<double>(contenders[accurate[0]].count) / static_cast<double>(one.count);
+    std::printf("  %-28s %26s %12.1e %16.0f %15.1fx\n", one.name, settings[i].c_str(), errors[i],
+                static_cast<double>(kinds * one.count) * duration_s / median(needed_s[i]),
+                median_ratio(needed_s[i], needed_s[0]) * share);
+  }
+  return hinges_agree && lorenz_agrees ? 0 : 1;
 }
