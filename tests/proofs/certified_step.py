@@ -160,7 +160,8 @@ def acting_at_most(facts, granted):
 
 
 TWO_NODE = [("carry", r"Hull carry\(", ["self", "count", "step"]), ("room", r"Room room\(", ["self"]),
-            ("largest", r"CertifiedCount largest\(", ["self"]), ("take", r"void take\(", ["self", "winding", "body"])]
+            ("largest", r"CertifiedCount largest\(", ["self"]), ("take", r"void take\(", ["self", "winding", "body"]),
+            ("settled", r"KelvinUnits settled\(", ["self"]), ("sizes", r"Sizes sizes\(", ["self"])]
 ONE_NODE = [("carry", r"KelvinUnits carry\(", ["self", "count", "step"]),
             ("room", r"KelvinUnits room\(", ["self"]), ("largest", r"CertifiedCount largest\(", ["self"])]
 
@@ -175,7 +176,6 @@ def two_node(text):
         facts.add(getattr(net, name) >= 0)
     for name in ["weight_", "hold_winding_", "hold_body_", "horizon_winding_", "horizon_body_"]:
         setattr(net, name, facts.fraction(name))
-    net.sizes_ = Record()
     hottest = facts.variable("base in the hottest air")
     facts.add(net.base_ <= hottest)
     # What set_limits() compares before it accepts a declaration; certified_limits() pins its text.
@@ -217,7 +217,9 @@ def granted(net):
     facts.add(count >= 1, count <= 254)
     net.unit = count
     net.take(facts.fraction("winding relief"), facts.fraction("mean relief"))
-    fed_and_heated = net.sizes_.fed - facts.variable("up_%d" % facts.made)
+    sizes = net.sizes()
+    net.sizes = lambda: sizes
+    fed_and_heated = sizes.fed - facts.variable("up_%d" % facts.made)
     net.unit = 1
     decision = net.largest()
     facts.add(*[size <= room for room, size in decision.conditions])
@@ -232,7 +234,7 @@ def two_node_granted_power(text):
     fed = granted(net)
     net.winding_, net.mean_ = start
     room = net.rooms[0]
-    rise, jump = net.across_now_ + net.soak_now_, net.sizes_.jump
+    rise, jump = net.across_now_ + net.soak_now_, net.sizes().jump
     acting = acting_at_most(facts, [x.single() for x in (net.across_now_, net.soak_now_, net.to_air_now_)])
     # Products that the solver compares others with.
     for argument, fraction in [
@@ -268,9 +270,10 @@ def two_node_hotter(text):
         setattr(net, name, net.facts.variable(name))
     for name in ["weight_", "hold_winding_", "hold_body_", "horizon_winding_", "horizon_body_"]:
         setattr(net, name, net.facts.fraction(name))
-    net.sizes_ = Record()
+    sizes = Record()
     for name in ["slow", "slow_winding", "held_winding", "jump", "held_body", "fed"]:
-        setattr(net.sizes_, name, Linear())
+        setattr(sizes, name, Linear())
+    net.sizes = lambda: sizes
     net.winding_, net.mean_ = Bound(net.facts, "winding"), Bound(net.facts, "mean")
     return no_room_grows(net, ["winding_", "mean_"])
 

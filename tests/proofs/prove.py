@@ -96,18 +96,18 @@ CLAIMS = [
 
 # Each breaks one formula. What must find it out: a claim whose counterexample z3 then has.
 MUTANTS = [
-    ("the count forgets what soaks in", (TWO, "sizes_.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);",
-                                         "sizes_.jump = detail::part_up(across_now_, hold_winding_);")),
-    ("the winding's condition is left out", (TWO, "largest.fit(room.winding_left + room.apart, sizes_.jump, "
+    ("the count forgets what soaks in", (TWO, "size.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);",
+                                         "size.jump = detail::part_up(across_now_, hold_winding_);")),
+    ("the winding's condition is left out", (TWO, "largest.fit(room.winding_left + room.apart, size.jump, "
                                                   "CertifiedNode::winding);", "")),
-    ("the winding's hold is left out", (TWO, "sizes_.held_winding = detail::part_up(rise, hold_winding_);",
-                                        "sizes_.held_winding = 0;")),
-    ("the body's hold is left out", (TWO, "sizes_.held_body = detail::part_up(fed + to_air_now_, hold_body_);",
-                                     "sizes_.held_body = 0;")),
-    ("the body is not fed by the winding", (TWO, "sizes_.fed = fed + detail::part_up(to_air_now_, hold_body_);",
-                                            "sizes_.fed = detail::part_up(to_air_now_, hold_body_);")),
-    ("a spare counted twice", (TWO, "largest.fit(room.mean_left + spare, sizes_.fed, CertifiedNode::body);",
-                               "largest.fit(room.mean_left + spare + spare, sizes_.fed, CertifiedNode::body);")),
+    ("the winding's hold is left out", (TWO, "size.held_winding = detail::part_up(rise, hold_winding_);",
+                                        "size.held_winding = 0;")),
+    ("the body's hold is left out", (TWO, "size.held_body = detail::part_up(fed + to_air_now_, hold_body_);",
+                                     "size.held_body = 0;")),
+    ("the body is not fed by the winding", (TWO, "size.fed = fed + detail::part_up(to_air_now_, hold_body_);",
+                                            "size.fed = detail::part_up(to_air_now_, hold_body_);")),
+    ("a spare counted twice", (TWO, "largest.fit(room.mean_left + spare, size.fed, CertifiedNode::body);",
+                               "largest.fit(room.mean_left + spare + spare, size.fed, CertifiedNode::body);")),
     ("heating goes the cooling's way", (TWO, "winding_way > 0 ? step.winding.heating : step.winding.cooling",
                                         "winding_way > 0 ? step.winding.cooling : step.winding.heating")),
     ("no raise by (13)", (TWO, "if (room.mean < room.weighted) room.mean = room.weighted;", "")),

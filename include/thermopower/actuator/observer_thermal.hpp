@@ -51,7 +51,6 @@ public:
       : observer_(config.observer, config.maximum_C, 0.0f),
         maximum_C_(config.maximum_C),
         per_capacity_(1.0f / config.observer.thermal.winding_heat_capacity_J_per_K),
-        coupling_W_per_K_(config.observer.thermal.coupling_W_per_K),
         per_turn_(1.0f / static_cast<float>(config.every < 1 ? 1 : config.every)),
         every_(config.every),
         turn_(config.phase) {
@@ -96,7 +95,8 @@ public:
       count_ = 0;
     }
     const TemperatureObserver::State& state = observer_.state();
-    const float across_W = coupling_W_per_K_ * (state.winding_C - state.body_C);
+    const float coupling_W_per_K = observer_.config().thermal.coupling_W_per_K;
+    const float across_W = coupling_W_per_K * (state.winding_C - state.body_C);
     winding_rate_K_per_s_ = (power_W - across_W) * per_capacity_;
     observer_.step(power_W, inputs.around.air_C, dt_s);
     return this->state();
@@ -125,7 +125,7 @@ private:
   }
 
   TemperatureObserver observer_;
-  float maximum_C_, per_capacity_, coupling_W_per_K_, per_turn_;
+  float maximum_C_, per_capacity_, per_turn_;
   float winding_rate_K_per_s_ = 0.0f;
   float each_s_ = 0.0f, sum_W_ = 0.0f;         // steps of one length
   float pending_s_ = 0.0f, pending_J_ = 0.0f;  // and of other lengths before them

@@ -273,6 +273,7 @@ private:
   // number.
   void pass(float dt_s) noexcept {
     if (!detail::is_same(dt_s, each_s_) || steps_ == 255u) {
+      travelled_ = 0;
       pending_s_ = pending();
       each_s_ = dt_s;
       steps_ = 0;
@@ -288,7 +289,6 @@ private:
     // The same number of steps of the same length as last time: the travel is known.
     if (!is_travel_known()) {
       const float passed_s = pending();
-      travelled_s_ = each_s_;
       travelled_ = detail::is_same(pending_s_, 0.0f) ? steps_ : 0;
       travel_ = network_.travel(passed_s);
     }
@@ -299,10 +299,8 @@ private:
     steps_ = 0;
     acted_ = 0;
   }
-  bool is_travel_known() const noexcept {
-    return steps_ != 0 && steps_ == travelled_ && detail::is_same(each_s_, travelled_s_) &&
-           detail::is_same(pending_s_, 0.0f);
-  }
+  // Whoever advances has passed a step at least.
+  bool is_travel_known() const noexcept { return steps_ == travelled_; }
 
   void plan(const Inputs& inputs, uint8_t wanted) noexcept {
     advance();
@@ -351,14 +349,14 @@ private:
   Network network_;
   typename Network::Travel travel_;
   float highest_air_C_, air_error_K_, per_supply_V_, count_W_;
-  float travelled_s_ = 0.0f;  // length of each of the `travelled_` steps that `travel_` is for
   float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number();
   detail::UnitFraction supply_squared_ = detail::whole_fraction();
   uint16_t late_steps_ = 0;
   float each_s_ = 0.0f, pending_s_ = 0.0f;  // `steps_` of the one, after the other
-  uint8_t steps_ = 0, travelled_ = 0;
-  uint8_t acting_ = 0;  // count that acts since the last step
-  uint8_t acted_ = 0;   // largest count that acted since the last plan
+  uint8_t steps_ = 0;
+  uint8_t travelled_ = 0;  // steps of this length that `travel_` is for; 0: for others
+  uint8_t acting_ = 0;     // count that acts since the last step
+  uint8_t acted_ = 0;      // largest count that acted since the last plan
   uint8_t ceiling_ = 0;
   ConfigError config_error_;
   uint8_t every_, turn_;

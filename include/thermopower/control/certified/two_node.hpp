@@ -216,21 +216,22 @@ public:
 
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
   CertifiedCount largest() const noexcept {
+    const Sizes size = sizes();
     const Room room = this->room();
     CertifiedCount largest = {254, CertifiedNode::none, room.apart};
     // Horizon: how authority falls. Not needed for safety.
     const detail::KelvinUnits lost =
         detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
-    largest.fit(room.mean_left + lost, sizes_.slow, CertifiedNode::body);
-    largest.fit(room.winding_left + detail::part_down(room.apart + lost, horizon_winding_),
-                sizes_.slow_winding, CertifiedNode::winding);
-    // One hold: what the proof rests on.
-    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), sizes_.held_winding,
+    largest.fit(room.mean_left + lost, size.slow, CertifiedNode::body);
+    largest.fit(room.winding_left + detail::part_down(room.apart + lost, horizon_winding_), size.slow_winding,
                 CertifiedNode::winding);
-    largest.fit(room.winding_left + room.apart, sizes_.jump, CertifiedNode::winding);
+    // One hold: what the proof rests on.
+    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), size.held_winding,
+                CertifiedNode::winding);
+    largest.fit(room.winding_left + room.apart, size.jump, CertifiedNode::winding);
     const detail::KelvinUnits spare = room.mean - room.weighted;
-    largest.fit(room.mean_left + detail::part_down(spare, hold_body_), sizes_.held_body, CertifiedNode::body);
-    largest.fit(room.mean_left + spare, sizes_.fed, CertifiedNode::body);
+    largest.fit(room.mean_left + detail::part_down(spare, hold_body_), size.held_body, CertifiedNode::body);
+    largest.fit(room.mean_left + spare, size.fed, CertifiedNode::body);
     return largest;
   }
 
@@ -238,8 +239,8 @@ public:
   uint8_t sustainable() const noexcept {
     const detail::KelvinUnits mean = mean_limit_ - base_, winding = winding_limit_ - base_;
     CertifiedCount count = {254, CertifiedNode::none, 0};
-    count.fit(mean - detail::part_up(mean + gap_, weight_), sizes_.settled, CertifiedNode::body);
-    count.fit(winding - detail::part_up(winding, weight_) - gap_, sizes_.settled + across_now_ + soak_now_,
+    count.fit(mean - detail::part_up(mean + gap_, weight_), settled(), CertifiedNode::body);
+    count.fit(winding - detail::part_up(winding, weight_) - gap_, settled() + across_now_ + soak_now_,
               CertifiedNode::winding);
     return count.count;
   }
@@ -364,10 +365,26 @@ private:
     detail::KelvinUnits winding, mean, weighted, apart, winding_left, mean_left;
   };
 
-  // Kelvin per count in the conditions of largest(); they change only when the heat per count does.
+  // Kelvin per count in the conditions of largest(). Taken anew in every plan: 28 bytes of each axis are dearer.
   struct Sizes {
-    detail::KelvinUnits settled, slow, slow_winding, held_winding, jump, held_body, fed;
+    detail::KelvinUnits slow, slow_winding, held_winding, jump, held_body, fed;
   };
+
+  detail::KelvinUnits settled() const noexcept {
+    return to_air_now_ + detail::part_up(across_now_ + soak_now_, weight_);
+  }
+  Sizes sizes() const noexcept {
+    Sizes size;
+    const detail::KelvinUnits rise = across_now_ + soak_now_;
+    size.slow = detail::part_up(settled(), horizon_body_);
+    size.slow_winding = detail::part_up(size.slow + rise, horizon_winding_);
+    size.held_winding = detail::part_up(rise, hold_winding_);
+    size.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
+    const detail::KelvinUnits fed = detail::part_up(size.jump, weight_);
+    size.held_body = detail::part_up(fed + to_air_now_, hold_body_);
+    size.fed = fed + detail::part_up(to_air_now_, hold_body_);
+    return size;
+  }
 
   Room room() const noexcept {
     Room room;
@@ -422,15 +439,6 @@ private:
     across_now_ = detail::part_up(across_, winding);
     soak_now_ = detail::part_up(soak_, body);
     to_air_now_ = detail::part_up(to_air_, body);
-    const detail::KelvinUnits rise = across_now_ + soak_now_;
-    sizes_.settled = to_air_now_ + detail::part_up(rise, weight_);
-    sizes_.slow = detail::part_up(sizes_.settled, horizon_body_);
-    sizes_.slow_winding = detail::part_up(sizes_.slow + rise, horizon_winding_);
-    sizes_.held_winding = detail::part_up(rise, hold_winding_);
-    sizes_.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
-    const detail::KelvinUnits fed = detail::part_up(sizes_.jump, weight_);
-    sizes_.held_body = detail::part_up(fed + to_air_now_, hold_body_);
-    sizes_.fed = fed + detail::part_up(to_air_now_, hold_body_);
   }
 
   float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
@@ -439,7 +447,6 @@ private:
   detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, winding_limit_, mean_limit_;
   detail::UnitFraction weight_, hold_winding_, hold_body_, horizon_winding_, horizon_body_;
   CertifiedRelief winding_relief_, mean_relief_;
-  Sizes sizes_;
   detail::KelvinUnits taken_winding_ = -1000L * 262144L, taken_mean_ = 0;
   detail::UnitFraction taken_supply_ = 0;
   detail::UpperBound winding_, mean_;
