@@ -164,6 +164,13 @@ public:
   /// Says how warm the actuator is, when that is known better than "at its limits".
   /// @param winding_C, body_C  never below the truth. NaN: at the limits. Below the air counts as the air.
   void start(float winding_C, float body_C) noexcept { network_.start(winding_C, body_C); }
+  /// The same, with the air measured now: as in a step it may be warmer by `air_error_K`, until the first plan.
+  /// Without it the air counts as its highest until then, and a cold actuator as warm as that would have made it.
+  /// @param air_C  measured air; NaN: its highest
+  void start(float winding_C, float body_C, float air_C) noexcept {
+    start(winding_C, body_C);
+    observe_air(air_C);
+  }
   /// Says how hot the actuator can be at most after a loss of power or a reset.
   /// @param bounds  has `winding_upper_C` and `body_upper_C`, such as StartBounds
   template <class Bounds>
@@ -319,13 +326,15 @@ private:
     node_ = largest.node;
   }
 
+  // Only what changed: floats are dear on a small chip, comparing bits is not.
+  void observe_air(float air_C) noexcept {
+    if (detail::is_same(air_C, read_air_C_)) return;
+    read_air_C_ = air_C;
+    const float warmest_C = air_C + air_error_K_;
+    network_.set_air(warmest_C < highest_air_C_ ? warmest_C : highest_air_C_);
+  }
   void observe(float air_C, float supply_V) noexcept {
-    // Only when it changed: floats are dear on a small chip, comparing bits is not.
-    if (!detail::is_same(air_C, read_air_C_)) {
-      read_air_C_ = air_C;
-      const float warmest_C = air_C + air_error_K_;
-      network_.set_air(warmest_C < highest_air_C_ ? warmest_C : highest_air_C_);
-    }
+    observe_air(air_C);
     if (!detail::is_same(supply_V, read_supply_V_)) {
       read_supply_V_ = supply_V;
       const float ratio = supply_V * per_supply_V_;
