@@ -187,3 +187,26 @@ TEST_CASE("a motor at rest has finite derivatives: no infinity from the roots an
       Dual(-0.0134), Dual(0.0156), Dual(0.0167), Dual(0.1551), Dual(3.4591), Dual(1.0));
   CHECK(finite(law.current_A(Dual(0.0, 2, 0), motor_C)));
 }
+
+TEST_CASE("a power of lanes is that of the numbers in them, at zero, infinity and NaN, too") {
+  const auto same = [](auto real, double digits) {
+    using Real = decltype(real);
+    using Lanes = tp::Lanes<Real, 8>;
+    const Real infinity = std::numeric_limits<Real>::infinity(), nan = std::numeric_limits<Real>::quiet_NaN();
+    Lanes base, exponent;
+    base << Real(0), Real(2), nan, infinity, Real(1e-30), Real(-1), Real(40), Real(1);
+    exponent << Real(0.6), Real(0.5), Real(0.5), Real(0.6), Real(0.6), Real(0.5), Real(0.25), Real(3);
+    const Lanes lanes = tp::detail::Numeric<Lanes>::power(base, exponent);
+    for (Eigen::Index i = 0; i < 8; ++i) {
+      const Real plain = tp::detail::Numeric<Real>::power(base[i], exponent[i]);
+      CAPTURE(base[i], exponent[i], lanes[i], plain);
+      if (std::isnan(plain)) CHECK(std::isnan(lanes[i]));
+      else if (std::isinf(plain)) CHECK(lanes[i] == plain);
+      else if (!(plain > Real(0)))
+        CHECK((lanes[i] >= Real(0) && lanes[i] < std::numeric_limits<Real>::min()));
+      else CHECK(std::fabs(static_cast<double>(lanes[i] / plain) - 1.0) < digits);
+    }
+  };
+  same(1.0f, 2e-6);
+  same(1.0, 4e-15);
+}
