@@ -127,6 +127,62 @@ std::set<std::string> macros_in(const std::string& path) {
   return macros;
 }
 
+/// Enumerators that a user can name and that no comment explains, neither behind them nor in the line before.
+std::vector<std::string> unexplained_enumerators(const std::string& text) {
+  static const std::regex type(
+      "\\b(class|struct|union|namespace)\\s+([\\w:]*)(?:<.*>)?\\s*(?:final\\s*)?(?::[^()]*)?$"),
+      enumeration("\\benum\\b[^()]*$"), access("\\b(public|private|protected)$"),
+      name("^([A-Za-z]\\w*)\\s*(=|$)");
+  std::vector<std::string> lines = {""}, unexplained;
+  for (const char c : text) {
+    if (c == '\n') lines.emplace_back();
+    else lines.back() += c;
+  }
+  struct Scope {
+    bool reached, open, is_enum;
+    size_t line;
+  };
+  std::vector<Scope> scopes = {{true, true, false, 0}};
+  const auto is_public = [&] { return scopes.back().reached && scopes.back().open; };
+  std::string head;  // since the last brace, comma or semicolon
+  size_t line = 0, head_line = 0;
+  const auto end_of_enumerator = [&] {
+    std::smatch found;
+    if (!scopes.back().is_enum || !is_public() || !std::regex_search(head, found, name)) return;
+    const std::string& own = lines[head_line];
+    const std::string above = head_line == scopes.back().line ? "" : lines[head_line - 1];
+    const bool is_explained = own.find("///<") != std::string::npos ||
+                              own.find("/**<") != std::string::npos ||
+                              std::regex_search(above, std::regex("^ *///(?!<)"));
+    if (!is_explained) unexplained.push_back(found[1]);
+  };
+  for (const char c : code_of(text)) {
+    if (c == '\n') ++line;
+    if (c == '{') {
+      std::smatch found;
+      const bool is_enum = std::regex_search(head, enumeration),
+                 is_type = std::regex_search(head, found, type);
+      const bool is_open = is_enum || (is_type && found[1] != "class" && found[2] != "detail");
+      scopes.push_back({is_public() && (is_enum || is_type), is_open, is_enum, line});
+    } else if (c == '}') {
+      end_of_enumerator();
+      if (scopes.size() > 1) scopes.pop_back();
+    } else if (c == ',') {
+      end_of_enumerator();
+    } else if (c == ':' && !scopes.back().is_enum && std::regex_search(head, access)) {
+      scopes.back().open = head == "public";
+    } else if (c != ';') {
+      if (head.empty() && std::isspace(static_cast<unsigned char>(c))) continue;
+      if (head.empty()) head_line = line;
+      head += c == '\n' ? ' ' : c;
+      continue;
+    }
+    if (c != ',' || scopes.back().is_enum) head.clear();
+    else head += c;
+  }
+  return unexplained;
+}
+
 }  // namespace
 
 TEST_CASE("there are firmware headers to check") { CHECK(headers().size() > 40); }
@@ -308,7 +364,27 @@ TEST_CASE("a header has one idea: at most 450 lines of code") {
   }
 }
 
+TEST_CASE("a comment says what each public enumerator means") {
+  // Doxygen, which holds every other public name to it, lets an enumerator without words pass.
+  for (const auto& [name, header] : every_header()) {
+    if (name.find("detail/") != std::string::npos) continue;
+    for (const std::string& enumerator : unexplained_enumerators(header.text)) {
+      CAPTURE(name, enumerator);
+      CHECK(false);
+    }
+  }
+}
+
 TEST_CASE("the checks themselves see what they look for") {
+  const std::vector<std::string> b = {"b"}, none;
+  CHECK(unexplained_enumerators("enum A {\n  a,  ///< x\n  b\n};") == b);
+  CHECK(unexplained_enumerators("template <class T, class U>\nstruct S : T {\n  enum { b = 1 };\n};") == b);
+  CHECK(unexplained_enumerators("class S {\npublic:\n  enum class A : int { b };\n};") == b);
+  CHECK(unexplained_enumerators("enum A {\n  /// x\n  a,\n  b,\n};") == b);
+  CHECK(unexplained_enumerators(
+            "class S {\n  enum A { b };\npublic:\n  int f(int, int) { return {}; }\n};") == none);
+  CHECK(unexplained_enumerators("namespace detail {\nenum A { b };\n}\nvoid f() {\n  enum { c };\n}") ==
+        none);
   CHECK(code_of("int a; // new\nint b;") == "int a; \nint b;");
   CHECK(code_of("x /* throw\n */ y") == "x \n y");
   CHECK(code_lines(code_of("int a;  // b\n\n// c\n/* d\n */\nint e;\n")) == 2);

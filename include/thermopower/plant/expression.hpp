@@ -94,19 +94,19 @@ class Trace {
 public:
   /// What a node does with its arguments.
   enum class Kind {
-    constant,
-    symbol,
-    negative,
-    sum,
-    difference,
-    product,
-    quotient,
-    function,
-    power,
-    less,
-    less_or_equal,
-    equal,
-    choice  ///< third argument where the first (a comparison) does not hold, else the second
+    constant,       ///< a number
+    symbol,         ///< an input by its name
+    negative,       ///< the first argument with the other sign
+    sum,            ///< first plus second
+    difference,     ///< first less second
+    product,        ///< first times second
+    quotient,       ///< first by second
+    function,       ///< a function of the first by its name
+    power,          ///< first to the power of the second
+    less,           ///< is the first less than the second?
+    less_or_equal,  ///< is the first not more than the second?
+    equal,          ///< are both equal?
+    choice          ///< third argument where the first (a comparison) does not hold, else the second
   };
 
   /// One step of a computation. Arguments are nodes made before it.

@@ -93,12 +93,16 @@ class FunctionRollout : public Rollout {
 public:
   /// One number that a direction moves.
   struct Moved {
-    enum class Kind { constant, effect, start } kind = Kind::constant;  ///< what it is
-    std::size_t which = 0;                                              ///< constant, effect or state
-    std::size_t part = 0;                                               ///< parameter of the effect
-    double speed = 1.0;                                                 ///< of the number by the direction
-    double scale = 1.0;                                                 ///< what it is typically as large as
-    double lower = -1e300, upper = 1e300;                               ///< it stays within
+    enum class Kind {
+      constant,                            ///< a constant of the plant
+      effect,                              ///< a parameter of an effect
+      start                                ///< the first value of a state
+    } kind = Kind::constant;               ///< what it is
+    std::size_t which = 0;                 ///< constant, effect or state
+    std::size_t part = 0;                  ///< parameter of the effect
+    double speed = 1.0;                    ///< of the number by the direction
+    double scale = 1.0;                    ///< what it is typically as large as
+    double lower = -1e300, upper = 1e300;  ///< it stays within
   };
 
   FunctionRollout(const OwnPlant& plant, Simulator simulator, SimulatorCall at, std::vector<Moved> moved)

@@ -216,7 +216,10 @@ struct GimbalJoints {
 /// two axes at once is torqued about the third.
 struct GimbalCoupling {
   /// Its parameters, in this order.
-  enum Parameters { camera_z_less_x_kgm2, rolled_yaw_kgm2 };
+  enum Parameters {
+    camera_z_less_x_kgm2,  ///< the camera's moment of inertia about its z less that about its x, kg m^2
+    rolled_yaw_kgm2  ///< how much larger the inertia that yaw moves is at a roll of 90 degrees than at 0, kg m^2
+  };
   /// What it is.
   static EffectInfo info() {
     return {
@@ -264,7 +267,11 @@ enum class GimbalBody {
 template <GimbalBody body>
 struct GimbalProducts {
   /// Its parameters, in this order: integrals of xy, yz and xz over the body's mass.
-  enum Parameters { xy_kgm2, yz_kgm2, xz_kgm2 };
+  enum Parameters {
+    xy_kgm2,  ///< integral of xy over the mass, kg m^2
+    yz_kgm2,  ///< integral of yz, kg m^2
+    xz_kgm2   ///< integral of xz, kg m^2
+  };
   /// What it is.
   static EffectInfo info() {
     const std::string name = body == GimbalBody::camera ? "camera" : "arm";
@@ -308,7 +315,11 @@ inline EffectInfo imbalance(const char* name, const char* equation, const char* 
 /// A camera whose centre of mass is not where the axes meet.
 struct CameraImbalance {
   /// Its parameters, in this order: mass times the lever along the camera's x, y and z.
-  enum Parameters { ahead_kgm, right_kgm, below_kgm };
+  enum Parameters {
+    ahead_kgm,  ///< mass times the lever along the camera's x, kg m
+    right_kgm,  ///< along its y, kg m
+    below_kgm   ///< along its z, kg m
+  };
   /// What it is.
   static EffectInfo info() {
     return detail::imbalance(
@@ -337,7 +348,10 @@ struct CameraImbalance {
 /// A roll arm whose centre of mass, with the pitch motor on it, is beside, above or below the roll axis.
 struct ArmImbalance {
   /// Its parameters, in this order: mass times the lever along the arm's y and z.
-  enum Parameters { right_kgm, below_kgm };
+  enum Parameters {
+    right_kgm,  ///< mass times the lever along the arm's y, kg m
+    below_kgm   ///< along its z, kg m
+  };
   /// What it is.
   static EffectInfo info() {
     return detail::imbalance("arm_imbalance", "torque += (m r x g) about roll and yaw",
@@ -358,7 +372,10 @@ struct ArmImbalance {
 /// A centre of mass off the yaw axis: the yaw stage's own, or the roll arm's ahead of it.
 struct YawImbalance {
   /// Its parameters, in this order: mass times the lever along the yaw stage's x and y.
-  enum Parameters { ahead_kgm, right_kgm };
+  enum Parameters {
+    ahead_kgm,  ///< mass times the lever along the yaw stage's x, kg m
+    right_kgm   ///< along its y, kg m
+  };
   /// What it is.
   static EffectInfo info() {
     return detail::imbalance(
@@ -379,7 +396,9 @@ struct YawImbalance {
 template <GimbalJoint joint>
 struct JointFriction {
   /// Its parameter.
-  enum Parameters { size_Nm };
+  enum Parameters {
+    size_Nm  ///< torque against the motion, N m
+  };
   /// What it is.
   static EffectInfo info() {
     const std::string name = to_string(joint);
@@ -404,7 +423,10 @@ struct JointFriction {
 template <GimbalJoint joint>
 struct JointCable {
   /// Its parameters, in this order.
-  enum Parameters { Nm_per_rad, at_0_Nm };
+  enum Parameters {
+    Nm_per_rad,  ///< stiffness of the cables, N m/rad
+    at_0_Nm      ///< their torque against positive angles at angle 0, N m
+  };
   /// What it is.
   static EffectInfo info() {
     const std::string name = to_string(joint);

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A pure delay between command and torque; any value, not only multiples of the sampling step.
 struct ActuationDelay {
   /// Its parameters, in this order.
-  enum Parameters { delay_s };
+  enum Parameters {
+    delay_s  ///< time from command to torque, s
+  };
 
   /// What it is.
   static EffectInfo info() {

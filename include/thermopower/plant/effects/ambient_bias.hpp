@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A constant error of the recorded air temperature.
 struct AmbientBias {
   /// Its parameters, in this order.
-  enum Parameters { bias_K };
+  enum Parameters {
+    bias_K  ///< how much warmer the air at the motor is than its sensor says, K
+  };
 
   /// What it is.
   static EffectInfo info() {

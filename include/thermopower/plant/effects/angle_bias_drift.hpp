@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A drift of the angle in proportion to time.
 struct AngleBiasDrift {
   /// Its parameters, in this order.
-  enum Parameters { deg_per_s };
+  enum Parameters {
+    deg_per_s  ///< drift of the reading, deg/s
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A wrong factor of the angle (a unit, a gear, a sign).
 struct AngleScale {
   /// Its parameters, in this order.
-  enum Parameters { gain };
+  enum Parameters {
+    gain  ///< reading by angle
+  };
 
   /// What it is.
   static EffectInfo info() {

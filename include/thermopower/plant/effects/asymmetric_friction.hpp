@@ -12,7 +12,12 @@ namespace thermopower::plant {
 /// Dry friction with a magnitude for each direction.
 struct AsymmetricFriction {
   /// Its parameters, in this order.
-  enum Parameters { forward_Nm, backward_Nm, transition, tail };
+  enum Parameters {
+    forward_Nm,   ///< torque against motion of positive rate, N m
+    backward_Nm,  ///< torque against motion of negative rate, N m
+    transition,   ///< rate within which it turns over, see friction_transition()
+    tail          ///< how slowly it becomes full beyond, see friction_tail()
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// Viscous friction that differs between the directions.
 struct AsymmetricViscous {
   /// Its parameters, in this order.
-  enum Parameters { forward, backward };
+  enum Parameters {
+    forward,  ///< torque by rate where the rate is positive, N m s/rad
+    backward  ///< torque by rate where it is negative, N m s/rad
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// Voltage induced by the recorded rate.
 struct BackEmf {
   /// Its parameters, in this order.
-  enum Parameters { V_s_per_rad };
+  enum Parameters {
+    V_s_per_rad  ///< voltage that turning induces, by rate, V s/rad
+  };
 
   /// What it is.
   static EffectInfo info() {

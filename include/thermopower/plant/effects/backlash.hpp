@@ -12,7 +12,12 @@ namespace thermopower::plant {
 /// a spring and a damper. The near side is driven and measured.
 struct Backlash {
   /// Its parameters, in this order.
-  enum Parameters { gap_rad, far_share, contact_Hz, damping };
+  enum Parameters {
+    gap_rad,     ///< the whole gap, rad
+    far_share,   ///< part of the inertia that is behind the gap
+    contact_Hz,  ///< frequency at which the far side would ring on the contact's spring, Hz
+    damping      ///< damping ratio of the contact; 1 is critical
+  };
 
   /// What it is.
   static EffectInfo info() {

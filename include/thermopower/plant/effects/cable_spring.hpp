@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// A linear spring to a rest position.
 struct CableSpring {
   /// Its parameters, in this order.
-  enum Parameters { Nm_per_rad, centre_rad };
+  enum Parameters {
+    Nm_per_rad,  ///< stiffness of the cable, N m/rad
+    centre_rad   ///< angle at which it does not pull, rad
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,11 @@ namespace thermopower::plant {
 /// A torque that repeats several times a turn.
 struct Cogging {
   /// Its parameters, in this order.
-  enum Parameters { sin_Nm, cos_Nm, cycles_per_turn };
+  enum Parameters {
+    sin_Nm,          ///< part that goes with the sine of the angle times the cycles, N m
+    cos_Nm,          ///< part that goes with the cosine, N m
+    cycles_per_turn  ///< how often it repeats in a turn
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,11 @@ namespace thermopower::plant {
 /// Two inertias on a spring; the near one is driven and measured.
 struct Compliance {
   /// Its parameters, in this order.
-  enum Parameters { far_share, frequency_Hz, damping };
+  enum Parameters {
+    far_share,     ///< part of the inertia that is behind the spring
+    frequency_Hz,  ///< frequency of the spring, Hz
+    damping        ///< damping ratio of the spring; 1 is critical
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A torque that is always there.
 struct ConstantTorque {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm };
+  enum Parameters {
+    size_Nm  ///< the torque, N m; positive pushes towards positive angles
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -12,7 +12,11 @@ namespace thermopower::plant {
 /// Dry friction of constant magnitude.
 struct CoulombFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, transition, tail };
+  enum Parameters {
+    size_Nm,     ///< torque against the motion, N m
+    transition,  ///< rate within which it turns over, see friction_transition()
+    tail         ///< how slowly it becomes full beyond, see friction_tail()
+  };
 
   /// What it is.
   static EffectInfo info() {

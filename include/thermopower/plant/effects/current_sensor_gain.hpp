@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A wrong factor of the current sensor.
 struct CurrentSensorGain {
   /// Its parameters, in this order.
-  enum Parameters { gain };
+  enum Parameters {
+    gain  ///< reading by current
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A constant error of the current sensor.
 struct CurrentSensorOffset {
   /// Its parameters, in this order.
-  enum Parameters { offset_A };
+  enum Parameters {
+    offset_A  ///< reading at no current, A
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A constant loss of duty.
 struct DeadTime {
   /// Its parameters, in this order.
-  enum Parameters { duty_lost };
+  enum Parameters {
+    duty_lost  ///< part of each period that is lost, as duty
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A dead band of the drive; beyond it the command counts from its edge.
 struct DriveDeadband {
   /// Its parameters, in this order.
-  enum Parameters { band_A };
+  enum Parameters {
+    band_A  ///< command up to which nothing happens, A
+  };
 
   /// What it is.
   static EffectInfo info() {

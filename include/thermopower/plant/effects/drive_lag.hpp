@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A first-order lag between command and torque.
 struct DriveLag {
   /// Its parameters, in this order.
-  enum Parameters { lag_s };
+  enum Parameters {
+    lag_s  ///< time constant of the torque, s
+  };
 
   /// What it is.
   static EffectInfo info() {

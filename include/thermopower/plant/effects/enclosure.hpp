@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// Air around the body that warms up: what the body loses goes into it, and from there to the measured air.
 struct Enclosure {
   /// Its parameters, in this order.
-  enum Parameters { share, conductance_W_per_K };
+  enum Parameters {
+    share,               ///< heat capacity of the air in the box, as a multiple of the body's
+    conductance_W_per_K  ///< from the air in the box to the measured air, W/K
+  };
 
   /// What it is.
   static EffectInfo info() {

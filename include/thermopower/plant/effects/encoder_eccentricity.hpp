@@ -13,7 +13,11 @@ namespace thermopower::plant {
 /// An encoder whose disc or magnet sits off the centre: its error is periodic in the angle.
 struct EncoderEccentricity {
   /// Its parameters, in this order.
-  enum Parameters { sin_deg, cos_deg, cycles_per_turn };
+  enum Parameters {
+    sin_deg,         ///< part that goes with the sine of the angle times the cycles, deg
+    cos_deg,         ///< part that goes with the cosine, deg
+    cycles_per_turn  ///< how often it repeats in a turn
+  };
 
   /// What it is.
   static EffectInfo info() {

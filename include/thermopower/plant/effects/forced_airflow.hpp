@@ -12,7 +12,10 @@ namespace thermopower::plant {
 /// The conductance grows with the recorded airspeed; `gain` is its relative growth at 1 m/s.
 struct ForcedAirflowEffect {
   /// Its parameters, in this order.
-  enum Parameters { gain, exponent };
+  enum Parameters {
+    gain,     ///< how much larger the loss is at 1 m/s, as a part of that in still air
+    exponent  ///< power of the airspeed that the loss grows with
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// Gravity on a centre of mass off the axis.
 struct Imbalance {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, phase_rad };
+  enum Parameters {
+    size_Nm,   ///< weight times lever, N m
+    phase_rad  ///< added to the angle: at minus this the load hangs or stands, rad
+  };
 
   /// What it is.
   static EffectInfo info() {

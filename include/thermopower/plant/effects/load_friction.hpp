@@ -12,7 +12,11 @@ namespace thermopower::plant {
 /// Dry friction in proportion to the transmitted torque.
 struct LoadFriction {
   /// Its parameters, in this order.
-  enum Parameters { share, transition, tail };
+  enum Parameters {
+    share,       ///< part of the transmitted torque that is friction
+    transition,  ///< rate within which it turns over, see friction_transition()
+    tail         ///< how slowly it becomes full beyond, see friction_tail()
+  };
 
   /// What it is.
   static EffectInfo info() {

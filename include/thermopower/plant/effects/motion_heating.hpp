@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// Heat from turning, with the square of the recorded rate.
 struct MotionHeating {
   /// Its parameters, in this order.
-  enum Parameters { W_s2_per_rad2 };
+  enum Parameters {
+    W_s2_per_rad2  ///< heat by the square of the rate, W s^2/rad^2
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -12,7 +12,10 @@ namespace thermopower::plant {
 /// Natural convection in place of Newton's law; at a rise of `reference_K` both lose the same.
 struct NaturalConvectionEffect {
   /// Its parameters, in this order.
-  enum Parameters { exponent, reference_K };
+  enum Parameters {
+    exponent,    ///< power of the rise by which the conductance grows
+    reference_K  ///< rise at which the conductance is the model's, K
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// Heat conducted from a neighbour whose temperature was recorded.
 struct NeighbourHeating {
   /// Its parameters, in this order.
-  enum Parameters { coupling_W_per_K };
+  enum Parameters {
+    coupling_W_per_K  ///< conductance between neighbour and motor, W/K
+  };
 
   /// What it is.
   static EffectInfo info() {

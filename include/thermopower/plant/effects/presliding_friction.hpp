@@ -12,7 +12,11 @@ namespace thermopower::plant {
 /// others 1995, eqs. 1 to 3).
 struct PreslidingFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, bend_rad, damping };
+  enum Parameters {
+    size_Nm,   ///< torque against sliding, N m
+    bend_rad,  ///< how far the bristles bend before they slide, rad
+    damping    ///< torque of bending by its rate, as a time: of the stiffness, s
+  };
 
   /// What it is.
   static EffectInfo info() {

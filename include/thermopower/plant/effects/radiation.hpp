@@ -12,7 +12,9 @@ namespace thermopower::plant {
 /// Radiation to surroundings at air temperature; emissivity and area only show as their product.
 struct Radiation {
   /// Its parameters, in this order.
-  enum Parameters { emissive_area_m2 };
+  enum Parameters {
+    emissive_area_m2  ///< emissivity times the area that radiates, m^2
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A constant error of the rate sensor.
 struct RateBias {
   /// Its parameters, in this order.
-  enum Parameters { bias_dps };
+  enum Parameters {
+    bias_dps  ///< reading at rest, deg/s
+  };
 
   /// What it is.
   static EffectInfo info() {

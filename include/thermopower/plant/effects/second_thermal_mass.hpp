@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// A heated node (the thermometer is on it) coupled to a housing that loses the heat.
 struct SecondThermalMass {
   /// Its parameters, in this order.
-  enum Parameters { winding_share, coupling_W_per_K };
+  enum Parameters {
+    winding_share,    ///< part of the heat capacity that is the winding's
+    coupling_W_per_K  ///< conductance between winding and housing, W/K
+  };
 
   /// What it is.
   static EffectInfo info() {

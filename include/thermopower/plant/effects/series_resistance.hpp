@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// Resistance in the circuit that neither warms with the winding nor heats it.
 struct SeriesResistance {
   /// Its parameters, in this order.
-  enum Parameters { ohm };
+  enum Parameters {
+    ohm  ///< resistance of leads and switches, ohm
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A servo that acts later than its file says, from the sample of its sensors to the torque; any value.
 struct ServoDelay {
   /// Its parameters, in this order.
-  enum Parameters { delay_s };
+  enum Parameters {
+    delay_s  ///< time from what the servo measures to its torque, s
+  };
 
   /// What it is.
   static EffectInfo info() {

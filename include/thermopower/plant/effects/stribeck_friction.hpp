@@ -12,7 +12,14 @@ namespace thermopower::plant {
 /// Dry friction with a Stribeck rise near standstill.
 struct StribeckFriction {
   /// Its parameters, in this order.
-  enum Parameters { size_Nm, rise_Nm, knee_rad_per_s, transition, tail, exponent };
+  enum Parameters {
+    size_Nm,         ///< torque against fast motion, N m
+    rise_Nm,         ///< how much larger it is near standstill, N m
+    knee_rad_per_s,  ///< rate at which the rise has fallen to 1/e, rad/s
+    transition,      ///< rate within which it turns over, see friction_transition()
+    tail,            ///< how slowly it becomes full beyond, see friction_tail()
+    exponent         ///< power of the rate by which the rise falls
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// Heat by the supply's voltage in place of the effective one; a share of 1 is all of it.
 struct SupplyPowerHeating {
   /// Its parameters, in this order.
-  enum Parameters { share };
+  enum Parameters {
+    share  ///< part of what is lost between supply and winding that heats the motor
+  };
 
   /// What it is.
   static EffectInfo info() {

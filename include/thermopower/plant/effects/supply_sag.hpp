@@ -11,7 +11,10 @@ namespace thermopower::plant {
 /// Internal resistance and discharge of a supply whose voltage was not recorded.
 struct SupplySag {
   /// Its parameters, in this order.
-  enum Parameters { internal_ohm, V_per_Ah };
+  enum Parameters {
+    internal_ohm,  ///< internal resistance of the supply, ohm
+    V_per_Ah       ///< loss of voltage by charge taken, V/Ah
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A thermometer that scales the rise over air temperature.
 struct ThermometerGain {
   /// Its parameters, in this order.
-  enum Parameters { gain };
+  enum Parameters {
+    gain  ///< part of the temperature rise that is shown
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A first-order lag of the thermometer.
 struct ThermometerLag {
   /// Its parameters, in this order.
-  enum Parameters { lag_s };
+  enum Parameters {
+    lag_s  ///< time constant of the thermometer, s
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -12,7 +12,10 @@ namespace thermopower::plant {
 /// Asked of a model that has winding and surface: behind a single node a thermometer cannot tell it from a surface.
 struct ThirdThermalMass {
   /// Its parameters, in this order.
-  enum Parameters { share, coupling_W_per_K };
+  enum Parameters {
+    share,            ///< heat capacity of what soaks it up, as a part of the body's
+    coupling_W_per_K  ///< conductance between surface and what soaks it up, W/K
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A torque constant that falls with the recorded motor temperature.
 struct TorqueFade {
   /// Its parameters, in this order.
-  enum Parameters { per_K };
+  enum Parameters {
+    per_K  ///< part of the torque constant lost by each kelvin above 25 degC, 1/K
+  };
 
   /// What it is.
   static EffectInfo info() {

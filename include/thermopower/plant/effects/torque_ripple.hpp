@@ -13,7 +13,11 @@ namespace thermopower::plant {
 /// A torque constant that varies with the angle.
 struct TorqueRipple {
   /// Its parameters, in this order.
-  enum Parameters { sin_share, cos_share, cycles_per_turn };
+  enum Parameters {
+    sin_share,       ///< part of the torque that goes with the sine of the angle times the cycles
+    cos_share,       ///< part that goes with the cosine
+    cycles_per_turn  ///< how often it repeats in a turn
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A limit of the drive, stated in the command's unit.
 struct TorqueSaturation {
   /// Its parameters, in this order.
-  enum Parameters { limit_A };
+  enum Parameters {
+    limit_A  ///< largest command that acts, A
+  };
 
   /// What it is.
   static EffectInfo info() {

@@ -13,7 +13,9 @@ namespace thermopower::plant {
 /// Friction that falls as the motor warms.
 struct WarmFriction {
   /// Its parameters, in this order.
-  enum Parameters { per_K };
+  enum Parameters {
+    per_K  ///< how fast friction falls with temperature, 1/K
+  };
 
   /// What it is.
   static EffectInfo info() {

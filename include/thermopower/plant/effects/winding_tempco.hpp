@@ -11,7 +11,9 @@ namespace thermopower::plant {
 /// A temperature coefficient where the simulation has none.
 struct WindingTempco {
   /// Its parameters, in this order.
-  enum Parameters { tempco_per_K };
+  enum Parameters {
+    tempco_per_K  ///< what the winding's temperature coefficient is larger by, 1/K
+  };
 
   /// What it is.
   static EffectInfo info() {
