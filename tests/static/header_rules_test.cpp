@@ -348,6 +348,18 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("the rooms of the diagnosis's engine say nothing in the namespace that users autocomplete") {
+  std::size_t rooms = 0;
+  for (const auto& [name, header] : every_header()) {
+    if (!std::regex_search(name, std::regex("^gap/(fit|decide|report|localise)/"))) continue;
+    ++rooms;
+    CAPTURE(name);
+    CHECK(header.code.find("namespace thermopower::gap::engine {") != std::string::npos);
+    CHECK(header.code.find("namespace thermopower::gap {") == std::string::npos);
+  }
+  CHECK(rooms > 20);
+}
+
 /// Lines that are neither empty nor a comment alone.
 long code_lines(const std::string& code) {
   std::istringstream lines(code);
