@@ -32,7 +32,8 @@ Recording powered(int rows) {
     r.t_s[i] = interval_s * i;
     power[i] = (i / 40) % 3 == 2 ? 0.0 : (i / 40) % 3 == 1 ? 90.0 : 220.0;
     ambient[i] = air_C;
-    motor[i] = i == 0 ? air_C : std::nan("");  // where the simulation starts, and nothing to fit hidden nodes to
+    motor[i] =
+        i == 0 ? air_C : std::nan("");  // where the simulation starts, and nothing to fit hidden nodes to
   }
   r.set("power_param", power);
   r.set("ambient_C", ambient);
