@@ -62,6 +62,10 @@ int main(int argc, char** argv) {
   std::set<std::string> seen;
   std::set<std::string> broken;
   for (const Json& one : labels.value("broken", Json::array())) broken.insert(one.get<std::string>());
+  // The only unit of its kind is unlike all others: to call it odd is no mistake, nor is it one to call it sound.
+  std::map<std::string, int> kin;
+  for (const Json& unit : fleet.at("units"))
+    ++kin[labels.at("units").at(unit.at("unit").get<std::string>()).at("family").get<std::string>()];
   for (const Json& unit : fleet.at("units")) {
     const std::string name = unit.at("unit");
     // Only units with a single log have a broken one: what is left of such a unit is neither sound nor odd.
@@ -74,8 +78,10 @@ int main(int argc, char** argv) {
       odd_found.all += 1.0;
       odd_found.right += called_odd;
     } else {
-      ++sound;
-      false_odd += called_odd && !drifts;
+      if (kin[label.at("family").get<std::string>()] > 1) {
+        ++sound;
+        false_odd += called_odd && !drifts;
+      }
       const int index = unit.at("family");
       const std::string found =
           index < 0 ? "nothing"
