@@ -180,10 +180,7 @@ public:
           !is_driven_at(extreme))
         continue;
       // One sample tells little: just at the end of its range a sensor is still right.
-      std::ptrdiff_t wrong = 0;
-      for (Eigen::Index i = 0; i < values_.size(); ++i)
-        wrong += values_[i] == extreme && !resting(i) && !moves_on(i, extreme) ? 1 : 0;
-      if (2 * wrong < at_extreme) continue;
+      if (2 * denied(extreme) < at_extreme) continue;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
         if (values_[i] == extreme) mask[static_cast<std::size_t>(i)] = 1;
     }
@@ -364,13 +361,23 @@ private:
     return std::abs(moved - rate * lasts_s) <= allowed &&
            (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
   }
-  bool moves_on(Eigen::Index row, double rate) const {
+
+  /// How many samples of this value no other column bears out: nothing rests there, nor does what this one is the rate
+  /// of move on by it, stretch by stretch. (Between two rows a coarse position hardly moves.)
+  std::ptrdiff_t denied(double value) const {
     constexpr Eigen::Index around = 3;
-    if (traits_.integral == nullptr) return false;
+    std::ptrdiff_t count = 0;
     for (const RunSpan& run : runs_)
-      if (row >= run.begin && row < run.end)
-        return moves_on(std::max(run.begin, row - around), std::min(run.end - 1, row + around), rate);
-    return false;
+      for (Eigen::Index row = run.begin; row < run.end;) {
+        Eigen::Index end = row;
+        std::ptrdiff_t moving = 0;
+        for (; end < run.end && values_[end] == value; ++end) moving += resting(end) ? 0 : 1;
+        if (moving > 0 &&
+            !moves_on(std::max(run.begin, row - around), std::min(run.end - 1, end - 1 + around), value))
+          count += moving;
+        row = std::max(end, row + 1);
+      }
+    return count;
   }
 
   bool is_frozen(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
