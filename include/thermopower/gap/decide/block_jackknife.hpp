@@ -65,19 +65,21 @@ Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t
 
 /// How much better one candidate fits than another where every block has a noise of its own: the sum over the blocks of
 /// log(squares of a / squares of b) times the readings, as many as count as one, and its standard error over the blocks; 0
-/// where it is not better in nearly every block.
+/// where it is not better, clearly and in nearly every block.
 ///
 /// The difference of two pooled deviances is a function of two mean squares. Where a model runs away in one block (at a
 /// resonance that it does not have, say) its mean square is that block's, and leaving it out takes most of the logarithm
 /// away: the other model, a hundred times better in every block, is then not better beyond doubt. Block by block it is.
-/// That only counts where hardly any block speaks against it: what is better here and worse there has to be weighed by
-/// how much.
+/// That only counts where hardly any block speaks against it, as what is better here and worse there has to be weighed by
+/// how much, and where it is at least twice as good: a tenth in every block may come of an error that all blocks share.
 /// @param merge        neighbouring blocks that count as one
 /// @param correlation  readings of each signal that count as one
 inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::size_t merge,
                                  const std::array<double, signal_count>& correlation) {
   constexpr double least = 1e-6,  // mean square in units of the noise: below, nothing is told any more
-      hardly_any = 0.05;          // of what speaks for it
+      hardly_any = 0.05,          // of what speaks for it
+      twice_as_good = 1.386;      // per reading: log of a quarter of the squares
+  double readings = 0.0;
   std::vector<double> blocks;
   for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
     double sum = 0.0;
@@ -91,6 +93,7 @@ inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::
       }
       if (!(samples > 0.0)) continue;
       any = true;
+      readings += samples / correlation[i];
       sum += samples / correlation[i] *
              std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));
     }
@@ -104,7 +107,8 @@ inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::
     result.value += one;
     against += std::max(-one, 0.0);
   }
-  if (against > hardly_any * (result.value + against)) return {0.0, 0.0, result.blocks};
+  if (against > hardly_any * (result.value + against) || result.value < twice_as_good * readings)
+    return {0.0, 0.0, result.blocks};
   double square = 0.0;
   for (double one : blocks) square += (one - result.value / count) * (one - result.value / count);
   if (blocks.size() > 1) result.standard_error = std::sqrt(count / (count - 1.0) * square);
