@@ -147,3 +147,14 @@ TEST_CASE("send: two codecs, a controller and a board, talk") {
   sbgc::Confirm confirm;
   CHECK_FALSE(controller.read(confirm));  // the frame at hand is another one
 }
+
+TEST_CASE("encode: a codec encodes in the version it sends in") {
+  thermopower::SbgcCodec<124, sbgc::ProtocolAuto> codec;
+  Data buffer(10, 0);
+  CHECK(codec.encode(sbgc::Request(25), buffer.data(), buffer.size()) == 5);
+  CHECK(Data(buffer.begin(), buffer.begin() + 5) == reference::make_frame(0x3E, 25, {}));
+  codec.protocol().send_in(sbgc::Version::v2);
+  CHECK(codec.encode(sbgc::Request(25), buffer.data(), buffer.size()) == 6);
+  CHECK(Data(buffer.begin(), buffer.begin() + 6) == reference::make_frame(0x24, 25, {}));
+  CHECK(codec.encode(sbgc::Request(25), buffer.data(), 5) == 0);
+}

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <thermopower/sbgc/power_and_gain.hpp>
 
 #include "support.hpp"
 
@@ -44,6 +45,101 @@ void refuses_shorter_than(std::uint8_t id, std::size_t size) {
 
 }  // namespace
 
+TEST_CASE("messages: the protocol's numbers are those of its specification") {
+  // Specification 2.5: the tables of commands, of adjustable variables and of the modes of three commands.
+  const int numbers[][2] = {{command::realtime_data_3, 23},
+                            {command::realtime_data_4, 25},
+                            {command::set_adj_vars_val, 31},
+                            {command::save_params_3, 32},
+                            {command::get_adj_vars_val, 64},
+                            {command::confirm, 67},
+                            {command::control, 67},
+                            {command::get_angles, 73},
+                            {command::motors_on, 77},
+                            {command::data_stream_interval, 85},
+                            {command::board_info, 86},
+                            {command::realtime_data_custom, 88},
+                            {command::motors_off, 109},
+                            {command::reset, 114},
+                            {command::error, 255},
+                            {sbgc::variable::p_roll, 0},
+                            {sbgc::variable::p_pitch, 1},
+                            {sbgc::variable::p_yaw, 2},
+                            {sbgc::variable::i_roll, 3},
+                            {sbgc::variable::i_pitch, 4},
+                            {sbgc::variable::i_yaw, 5},
+                            {sbgc::variable::d_roll, 6},
+                            {sbgc::variable::d_pitch, 7},
+                            {sbgc::variable::d_yaw, 8},
+                            {sbgc::variable::power_roll, 9},
+                            {sbgc::variable::power_pitch, 10},
+                            {sbgc::variable::power_yaw, 11},
+                            {sbgc::control_mode::none, 0},
+                            {sbgc::control_mode::speed, 1},
+                            {sbgc::control_mode::angle, 2},
+                            {sbgc::control_mode::speed_angle, 3},
+                            {sbgc::control_mode::remote_control, 4},
+                            {sbgc::control_mode::angle_rel_frame, 5},
+                            {sbgc::MotorsOff::released, 0},
+                            {sbgc::MotorsOff::brake, 1},
+                            {sbgc::MotorsOff::safe_stop, 2},
+                            {sbgc::Reset::notify, 1},
+                            {sbgc::Reset::backup_state, 2},
+                            {sbgc::RealtimeData::basic_size, 63},
+                            {sbgc::RealtimeData::extended_size, 124}};
+  for (const auto& number : numbers) CHECK(number[0] == number[1]);
+}
+
+TEST_CASE("messages: one that nobody has filled in is sent as zeros") {
+  const auto zeros = [](std::uint8_t id, std::size_t size) {
+    return reference::make_frame(0x3E, id, Data(size, 0));
+  };
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Confirm()) == zeros(67, 1));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Error()) == zeros(255, 5));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::BoardInfo()) == zeros(86, 18));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Control()) == zeros(67, 15));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::MotorsOff()) == zeros(109, 1));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::Reset()) == zeros(114, 3));
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::DataStreamInterval()) == zeros(85, 21));
+  sbgc::RealtimeFields fields;
+  CHECK(encoded<sbgc::ProtocolV1>(fields) == zeros(25, 124));
+  fields.extended = false;
+  CHECK(encoded<sbgc::ProtocolV1>(fields) == zeros(23, 63));
+  CHECK_FALSE(sbgc::Control().one_mode);
+  CHECK(sbgc::GetAdjVarsView().ids.size == 0);
+  CHECK(sbgc::Request().id() == 0);
+}
+
+TEST_CASE("messages: what is read stays within the message") {
+  struct Guarded {
+    sbgc::Error error;
+    std::uint8_t behind_error;
+    sbgc::DataStreamInterval stream;
+    std::uint8_t behind_stream;
+  } guarded = {{}, 0xEE, {}, 0xEE};
+  const Data longer(40, 1);
+  REQUIRE(guarded.error.read(view(command::error, longer)));
+  REQUIRE(guarded.stream.read(view(command::data_stream_interval, longer)));
+  sbgc::Control control;
+  REQUIRE(control.read(view(command::control, Data(15, 1))));
+  CHECK_FALSE(control.one_mode);  // it lies behind the axes
+  CHECK(int(guarded.behind_error) == 0xEE);
+  CHECK(int(guarded.behind_stream) == 0xEE);
+  CHECK(sizeof(sbgc::Error::data) == 4);
+  CHECK(sizeof(sbgc::BoardInfo::reserved) == 3);
+  CHECK(sizeof(sbgc::Control::axis) == 3 * sizeof(sbgc::AxisControl));
+}
+
+TEST_CASE("messages: a gimbal's command is the same bytes with a table in between and without") {
+  struct Command {
+    std::uint8_t power[3] = {25, 125, 250};
+    std::uint8_t p_gain[3] = {22, 143, 2};
+  };
+  const Command gimbal;
+  CHECK(encoded<sbgc::ProtocolV1>(sbgc::PowerAndGain<Command>(gimbal)) == load_hex("v1_set_adj_vars_6.hex"));
+  CHECK(encoded<sbgc::ProtocolV2>(sbgc::PowerAndGain<Command>(gimbal)) == load_hex("v2_set_adj_vars_6.hex"));
+}
+
 TEST_CASE("messages: Request") {
   round_trip<sbgc::Request>(sbgc::Request(command::get_angles),
                             [](const sbgc::Request& r) { CHECK(r.id() == command::get_angles); });
@@ -75,6 +171,11 @@ TEST_CASE("messages: Confirm") {
   });
   CHECK(encoded<sbgc::ProtocolV1>(sbgc::Confirm()) == Data{0x3E, 67, 1, 68, 0, 0});
   refuses_shorter_than<sbgc::Confirm>(command::confirm, 1);
+  sbgc::Confirm bare;
+  const Data one = {command::set_adj_vars_val};
+  REQUIRE(bare.read(view(command::confirm, one)));
+  CHECK(bare.confirmed_id == command::set_adj_vars_val);
+  CHECK(bare.data.size == 0);
   CHECK_FALSE(confirm.read(view(command::control, Data(13, 0))));
   CHECK_FALSE(confirm.read(view(command::control, Data(15, 0))));
   confirm.data.size = 255;  // would make 256 bytes
@@ -88,7 +189,7 @@ TEST_CASE("messages: Error") {
   CHECK(encoded<sbgc::ProtocolV1>(error) == reference::make_frame(0x3E, 255, {2, 10, 11, 12, 13}));
   round_trip<sbgc::Error>(error, [](const sbgc::Error& e) {
     CHECK(e.code == 2);
-    CHECK(e.data[3] == 13);
+    for (int i = 0; i < 4; ++i) CHECK(e.data[i] == 10 + i);
   });
   refuses_shorter_than<sbgc::Error>(command::error, 5);
 }
@@ -102,12 +203,12 @@ TEST_CASE("messages: BoardInfo") {
   info.connection_flags = 1;
   info.firmware_extra_id = 0xDEADBEEF;
   info.board_features_ext = 0x0304;
-  info.reserved[2] = 99;
+  for (std::uint8_t i = 0; i < 3; ++i) info.reserved[i] = static_cast<std::uint8_t>(97 + i);
   info.base_firmware_version = 2600;
   CHECK(encoded<sbgc::ProtocolV1>(info) ==
         reference::make_frame(
             0x3E, 86,
-            {30, 0x7F, 0x0A, 1, 0x02, 0x81, 1, 0xEF, 0xBE, 0xAD, 0xDE, 0x04, 0x03, 0, 0, 99, 0x28, 0x0A}));
+            {30, 0x7F, 0x0A, 1, 0x02, 0x81, 1, 0xEF, 0xBE, 0xAD, 0xDE, 0x04, 0x03, 97, 98, 99, 0x28, 0x0A}));
   round_trip<sbgc::BoardInfo>(info, [&](const sbgc::BoardInfo& i) {
     CHECK(i.board_version == 30);
     CHECK(i.firmware_version == 2687);
@@ -116,7 +217,7 @@ TEST_CASE("messages: BoardInfo") {
     CHECK(i.connection_flags == 1);
     CHECK(i.firmware_extra_id == 0xDEADBEEF);
     CHECK(i.board_features_ext == 0x0304);
-    CHECK(i.reserved[2] == 99);
+    for (int k = 0; k < 3; ++k) CHECK(i.reserved[k] == 97 + k);
     CHECK(i.base_firmware_version == 2600);
   });
   refuses_shorter_than<sbgc::BoardInfo>(command::board_info, 18);
@@ -175,21 +276,24 @@ TEST_CASE("messages: motors on and off, reset") {
   CHECK(reset.delay_ms == 1000);
   CHECK(reset.read(view(command::reset, {})));
   CHECK(reset.delay_ms == 0);
+  CHECK(reset.flags == 0);
 }
 
 TEST_CASE("messages: DataStreamInterval") {
   sbgc::DataStreamInterval stream;
   stream.streamed_id = command::realtime_data_4;
   stream.interval_ms = 500;
-  stream.config[7] = 77;
-  stream.reserved[0] = 1;
+  for (std::uint8_t i = 0; i < 8; ++i) stream.config[i] = static_cast<std::uint8_t>(70 + i);
+  for (std::uint8_t i = 0; i < 10; ++i) stream.reserved[i] = static_cast<std::uint8_t>(1 + i);
   round_trip<sbgc::DataStreamInterval>(stream, [](const sbgc::DataStreamInterval& s) {
     CHECK(s.streamed_id == command::realtime_data_4);
     CHECK(s.interval_ms == 500);
-    CHECK(s.config[7] == 77);
-    CHECK(s.reserved[0] == 1);
+    for (int i = 0; i < 8; ++i) CHECK(s.config[i] == 70 + i);
+    for (int i = 0; i < 10; ++i) CHECK(s.reserved[i] == 1 + i);
   });
-  CHECK(encoded<sbgc::ProtocolV1>(stream).size() == 21 + 5);
+  CHECK(encoded<sbgc::ProtocolV1>(stream) ==
+        reference::make_frame(
+            0x3E, 85, {25, 0xF4, 0x01, 70, 71, 72, 73, 74, 75, 76, 77, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
   refuses_shorter_than<sbgc::DataStreamInterval>(command::data_stream_interval, 21);
 }
 
@@ -210,6 +314,15 @@ TEST_CASE("messages: adjustable variables") {
     CHECK(value == 5);
     CHECK(int(vars[3].id) == 255);  // past the end
     CHECK(vars[255].value == 0);
+  });
+
+  sbgc::SetAdjVars<3> different = {{{1, 10}, {2, 20}, {3, 30}}};
+  round_trip<sbgc::AdjVarsView>(different, [](const sbgc::AdjVarsView& vars) {
+    for (std::uint8_t id = 1; id <= 3; ++id) {
+      std::int32_t value = 0;
+      CHECK(vars.find(id, value));
+      CHECK(value == 10 * id);
+    }
   });
 
   sbgc::SetAdjVars<50> most;
@@ -237,6 +350,8 @@ TEST_CASE("messages: adjustable variables") {
     sbgc::GetAdjVarsView asked;
     CHECK_FALSE(asked.read(view(command::get_adj_vars_val, {})));
     CHECK_FALSE(asked.read(view(command::get_adj_vars_val, {2, 9})));
+    CHECK(asked.read(view(command::get_adj_vars_val, {0})));
+    CHECK(asked.ids.size == 0);
   }
 }
 

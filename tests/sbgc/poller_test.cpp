@@ -39,6 +39,34 @@ TEST_CASE("poller: an answer that does not come is missed once, and then asked f
   CHECK(poller.turn(80003) == Turn::ask);
 }
 
+TEST_CASE("poller: after late answers have ceased to come, a request without an answer is missed as before") {
+  Poller poller;
+  REQUIRE(poller.turn(20000) == Turn::ask);
+  REQUIRE(poller.turn(70001) == Turn::missed);
+  REQUIRE(poller.turn(70002) == Turn::ask);
+  poller.answered();  // to the first: that to the second may follow
+  CHECK(poller.turn(80000) == Turn::wait);
+  CHECK(poller.turn(130000) == Turn::wait);
+  CHECK(poller.turn(130001) == Turn::ask);  // it did not
+  CHECK(poller.turn(180001) == Turn::wait);
+  CHECK(poller.turn(180002) == Turn::missed);
+}
+
+TEST_CASE("poller: of all that was asked in vain up to 255 late answers are waited for") {
+  for (const int requests : {1, 2, 254, 255, 256, 257, 600}) {
+    CAPTURE(requests);
+    Poller poller;
+    std::uint32_t now_us = 0;
+    for (int asked = 0; asked < requests; now_us += 100) asked += poller.turn(now_us) == Turn::ask;
+    for (int answers = 1; answers < std::min(requests, 255); ++answers) {
+      poller.answered();
+      REQUIRE(poller.is_waiting());
+    }
+    poller.answered();
+    CHECK_FALSE(poller.is_waiting());
+  }
+}
+
 TEST_CASE("poller: the clock may wrap") {
   Poller poller;
   REQUIRE(poller.turn(0xFFFFF000u) == Turn::ask);

@@ -188,3 +188,10 @@ TEST_CASE("a copy of a codec goes on by itself") {
   CHECK(receive_all(codec, tail).size() == 1);
   CHECK(receive_all(copy_of_it, tail).size() == 1);
 }
+
+TEST_CASE("a codec as it comes holds REALTIME_DATA_4 and nothing longer") {
+  thermopower::SbgcCodec<> codec;
+  CHECK(receive_all(codec, reference::make_frame(0x3E, 25, Data(124, 1))).size() == 1);
+  CHECK(receive_all(codec, reference::make_frame(0x3E, 25, Data(125, 1))).empty());
+  CHECK(codec.counters().too_long == 1);
+}
