@@ -234,3 +234,34 @@ TEST_CASE(
   CHECK((by_node || by_proof));
   CHECK(body_C > 45.0);
 }
+
+TEST_CASE("a chain in which nobody limits grants all, and one of a single limiter is that limiter") {
+  Three open = three({255, LimitReason::none}, {255, LimitReason::none}, {255, LimitReason::none});
+  CHECK(open.ceiling() == 255);
+  CHECK(open.validate() == ConfigError::none);
+  CHECK(open.step(at(30.0f), 0.01f).power == 255);
+  CHECK(open.step(at(30.0f, 0), 0.01f).power == 0);
+  CHECK(open.cut(LimitReason::link_silent).power == least_power());
+  CHECK(open.cut(LimitReason::link_silent).reason == LimitReason::link_silent);
+  CHECK(open.cut(LimitReason::link_silent, 0).power == 0);
+  CHECK(open.cut(LimitReason::link_silent, 2).power == least_power());
+  for (int wrong = 0; wrong < 3; ++wrong) {
+    CAPTURE(wrong);
+    const auto ceiling = [&](int place) { return static_cast<uint8_t>(place == wrong ? 0 : 255); };
+    Three chain = three({ceiling(0), LimitReason::none}, {ceiling(1), LimitReason::none},
+                        {ceiling(2), LimitReason::none});
+    CHECK(chain.validate() == ConfigError::user_defined);
+  }
+
+  typedef LimiterChain<NodeLimiter> Alone;
+  CHECK(Alone::Config::standard().first.derating_K == NodeLimiter::Config::standard().derating_K);
+  Alone alone;
+  NodeLimiter limiter;
+  for (float body_C = 30.0f; body_C < 70.0f; body_C += 0.25f) {
+    AxisFacts facts = at(body_C);
+    const LimitedPower granted = alone.step(facts, 0.01f), own = limiter.step(NodeLimiter::read(facts));
+    CHECK(granted.power == own.power);
+    CHECK(granted.reason == own.reason);
+    CHECK(alone.ceiling() == limiter.ceiling());
+  }
+}

@@ -70,6 +70,88 @@ TEST_CASE("each node limits at its own temperature, and the state says which") {
   CHECK(magnets.state().node_C[NodeLimiter::bracket] == Approx(48.5f));
 }
 
+TEST_CASE(
+    "the band of a node limit: all power at its lower end, the least at the limit, a straight line between") {
+  NodeLimiter limiter;
+  const NodeLimiter::Config config = NodeLimiter::Config::standard();
+  const float maximum_C[] = {60.0f, 80.0f, 80.0f, 120.0f}, fraction[] = {1.0f, 1.0f, 0.1f, 1.0f};
+  for (int i = 0; i < NodeLimiter::count; ++i) {
+    CHECK(config.node[i].maximum_C == maximum_C[i]);
+    CHECK(config.node[i].fraction == fraction[i]);
+  }
+  CHECK(config.derating_K == 8.0f);
+  // 254 counts over 8 K: the bracket is as warm as the body.
+  const struct {
+    float body_C;
+    int ceiling;
+  } line[] = {{52.0f, 255}, {56.0f, 128}, {59.0f, 32}, {60.0f, 1}, {70.0f, 1}};
+  for (const auto& at : line) {
+    CAPTURE(at.body_C);
+    limiter.step({255, at.body_C, at.body_C, 20.0f});
+    CHECK(static_cast<int>(limiter.ceiling()) == at.ceiling);
+    CHECK(limiter.state().margin_K == 60.0f - at.body_C);
+  }
+  CHECK(limiter.step({255, 52.0f, 52.0f, 20.0f}).reason == LimitReason::none);
+  CHECK(limiter.state().node == NodeLimiter::none);  // at the band's lower end it is not inside
+  CHECK(limiter.step({255, 60.0f, 60.0f, 20.0f}).reason ==
+        LimitReason::node_limit);  // not above the limit yet
+  CHECK(limiter.step({255, 60.01f, 60.01f, 20.0f}).reason == LimitReason::over_temperature);
+  CHECK(limiter.step({128, 56.0f, 56.0f, 20.0f}).reason == LimitReason::none);  // as much as is granted
+  CHECK(limiter.step({0, 90.0f, 90.0f, 20.0f}).power == 0);
+}
+
+TEST_CASE("a node limiter before its first step, after a cut, and with what is no temperature") {
+  NodeLimiter limiter;
+  CHECK(limiter.ceiling() == least_power());
+  CHECK(limiter.state().node == NodeLimiter::none);
+  CHECK(std::isnan(limiter.state().margin_K));
+  for (int i = 0; i < NodeLimiter::count; ++i) CHECK(std::isnan(limiter.state().node_C[i]));
+  CHECK(limiter.step({255, 30.0f, 30.0f, 20.0f}).power == 255);
+  CHECK(limiter.cut(LimitReason::link_silent).power == least_power());
+  CHECK(limiter.cut(LimitReason::link_silent).reason == LimitReason::link_silent);
+  CHECK(limiter.cut(LimitReason::link_silent, 0).power == 0);
+  CHECK(limiter.ceiling() == least_power());
+  const float none = detail::not_a_number();
+  for (const float bad : {none, -274.0f, -273.15f, 1.0e4f, 1.0e9f}) {
+    CAPTURE(bad);
+    CHECK(limiter.step({255, bad, 30.0f, 20.0f}).reason == LimitReason::temperature_not_finite);
+    CHECK(limiter.step({255, 30.0f, bad, 20.0f}).reason == LimitReason::temperature_not_finite);
+    // Air that is no temperature counts as as warm as the body.
+    CHECK(limiter.step({255, 30.0f, 30.0f, bad}).power == 255);
+    CHECK(limiter.state().node_C[NodeLimiter::bracket] == 30.0f);
+  }
+  CHECK(limiter.step({255, 9999.0f, 30.0f, 20.0f}).reason == LimitReason::over_temperature);
+  CHECK(limiter.step({255, -273.0f, -273.0f, -273.0f}).power == 255);
+}
+
+TEST_CASE("a node limit out of its range is refused by name and keeps the power at its least") {
+  NodeLimiter::Config config = NodeLimiter::Config::standard();
+  for (int i = 0; i < NodeLimiter::count; ++i) {
+    config = NodeLimiter::Config::standard();
+    for (const float good : {0.0f, 250.0f}) {
+      config.node[i].maximum_C = good;
+      CHECK(config.validate() == ConfigError::none);
+    }
+    for (const float bad : {-0.001f, 250.01f, detail::not_a_number()}) {
+      config.node[i].maximum_C = bad;
+      CHECK(config.validate() == ConfigError::maximum_C);
+      CHECK(NodeLimiter(config).step({255, 30.0f, 30.0f, 20.0f}).reason == LimitReason::config_invalid);
+    }
+    config = NodeLimiter::Config::standard();
+    for (const float good : {0.0f, 2.0f}) {
+      config.node[i].fraction = good;
+      CHECK(config.validate() == ConfigError::none);
+    }
+    for (const float bad : {-0.001f, 2.001f}) {
+      config.node[i].fraction = bad;
+      CHECK(NodeLimiter(config).validate() == ConfigError::offset_fraction);
+    }
+  }
+  config = NodeLimiter::Config::standard();
+  config.derating_K = 0.0f;
+  CHECK(NodeLimiter(config).validate() == ConfigError::derating_K);
+}
+
 TEST_CASE("authority falls continuously with temperature: no threshold, no jump, monotone") {
   NodeLimiter limiter;
   int last = 255;

@@ -200,3 +200,71 @@ TEST_CASE("a wrong constant of the limiter is refused by name") {
     CHECK(error(60.0f, 30.0f, bad) == ConfigError::rate_per_s);
   }
 }
+
+TEMPLATE_TEST_CASE("each bound is where the description puts it", "", tp::PerCycle, tp::PerSecond) {
+  tp::SafetyLimiter<TestType> limiter;
+  // No time has passed: nothing moves, and it is no fault.
+  CHECK(limiter.step({200, 30.0f, 0.0f}, 0.0f).reason == LimitReason::none);
+  CHECK(limiter.step({200, -273.15f, 0.0f}, 0.03f).reason == LimitReason::none);  // absolute zero
+  CHECK(limiter.step({200, -273.2f, 0.0f}, 0.03f).reason == LimitReason::temperature_not_finite);
+  // A cut that nobody asked for any power for leaves the least.
+  tp::SafetyLimiter<TestType> unasked;
+  CHECK(unasked.cut(LimitReason::link_silent).power == tp::least_power());
+  CHECK(unasked.cut(LimitReason::link_silent).reason == LimitReason::link_silent);
+  CHECK(unasked.cut(LimitReason::link_silent, 1).power == 1);
+  CHECK(unasked.cut(LimitReason::link_silent, 2).power == tp::least_power());
+}
+
+TEST_CASE("the standard is the thesis's: 60 degC, 30 s, one count in 30 ms") {
+  const tp::SafetyLimiterConfig config = tp::SafetyLimiterConfig::standard();
+  CHECK(config.maximum_C == 60.0f);
+  CHECK(config.safety_time_s == 30.0f);
+  CHECK(std::abs(config.rate_per_s * 0.03f - 1.0f) < 1e-6f);
+  tp::SafetyLimiter<> limiter;
+  CHECK(limiter.config().maximum_C == 60.0f);
+  CHECK(limiter.state().ceiling == 255.0f);
+  limiter.step({255, 55.0f, 0.5f}, 0.015f);  // half a count
+  CHECK(std::abs(limiter.state().ceiling - 254.5f) < 1e-4f);
+}
+
+TEST_CASE("the ends of a constant's range belong to it") {
+  using tp::ConfigError;
+  const auto error = [](float maximum_C) {
+    return tp::SafetyLimiterConfig{maximum_C, 30.0f, 33.0f}.validate();
+  };
+  CHECK(error(0.0f) == ConfigError::none);
+  CHECK(error(200.0f) == ConfigError::none);
+  CHECK(error(-0.001f) == ConfigError::maximum_C);
+  CHECK(error(200.001f) == ConfigError::maximum_C);
+}
+
+TEST_CASE("the numbers of the reasons are stable, for logs, and from 64 up they are faults") {
+  const struct {
+    LimitReason reason;
+    int number;
+  } known[] = {{LimitReason::none, 0},
+               {LimitReason::safety_temperature, 1},
+               {LimitReason::over_temperature, 2},
+               {LimitReason::recovering, 3},
+               {LimitReason::winding_limit, 4},
+               {LimitReason::body_limit, 5},
+               {LimitReason::node_limit, 6},
+               {LimitReason::no_telemetry_yet, 64},
+               {LimitReason::link_silent, 65},
+               {LimitReason::error_not_finite, 66},
+               {LimitReason::air_implausible, 67},
+               {LimitReason::supply_low, 68},
+               {LimitReason::supply_not_finite, 69},
+               {LimitReason::temperature_not_finite, 70},
+               {LimitReason::time_invalid, 71},
+               {LimitReason::config_invalid, 72},
+               {LimitReason::not_obeyed, 73},
+               {LimitReason::supply_implausible, 74},
+               {LimitReason::sensor_missing, 75}};
+  for (const auto& one : known) {
+    CHECK(static_cast<int>(one.reason) == one.number);
+    CHECK(tp::is_fault(one.reason) == (one.number >= 64));
+  }
+  CHECK_FALSE(tp::is_fault(static_cast<LimitReason>(63)));
+  CHECK(static_cast<int>(tp::least_power()) == 1);
+}

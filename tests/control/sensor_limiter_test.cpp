@@ -56,3 +56,33 @@ TEST_CASE("in a chain it asks for the sensor, and the other limiter for the temp
   facts.motor_C = facts.body_C = 90.0f;
   CHECK(chain.step(facts, 0.1f).reason == LimitReason::over_temperature);
 }
+
+TEST_CASE("the time-out is ten seconds, the tenth still granted") {
+  SensorLimiter limiter;
+  limiter.measured();
+  CHECK(limiter.ceiling() == 255);
+  CHECK(limiter.step({200}, 0.0f).power == 200);  // no time has passed: no fault
+  CHECK(limiter.step({200}, 10.0f).power == 200);
+  CHECK(limiter.step({200}, 0.001f).reason == LimitReason::sensor_missing);
+  CHECK(limiter.ceiling() == least_power());
+  limiter.measured();
+  CHECK(limiter.step({200}, 10.001f).reason == LimitReason::sensor_missing);
+  // A waiver waives the sensor and nothing else.
+  CHECK(SensorLimiter::Config::waived().timeout_s == SensorLimiter::Config::standard().timeout_s);
+  SensorLimiter waived(SensorLimiter::Config::waived());
+  CHECK(waived.step({200}, -1.0f).reason == LimitReason::time_invalid);
+}
+
+TEST_CASE("a sensor's cut leaves the least power, or the demand if that is less") {
+  SensorLimiter limiter;
+  CHECK(limiter.cut(LimitReason::link_silent).power == least_power());
+  CHECK(limiter.cut(LimitReason::link_silent).reason == LimitReason::link_silent);
+  CHECK(limiter.cut(LimitReason::link_silent, 0).power == 0);
+  CHECK(limiter.cut(LimitReason::link_silent, 2).power == least_power());
+  CHECK(limiter.step({0}, 0.1f).power == 0);
+  CHECK(limiter.validate() == ConfigError::none);
+  CHECK(limiter.config().timeout_s == 10.0f);
+  SensorLimiter::Config wrong = SensorLimiter::Config::standard();
+  wrong.timeout_s = 0.0f;
+  CHECK(SensorLimiter(wrong).validate() == ConfigError::timeout_s);
+}
