@@ -148,6 +148,12 @@ TEST_CASE("send: two codecs, a controller and a board, talk") {
   CHECK_FALSE(controller.read(confirm));  // the frame at hand is another one
 }
 
+TEST_CASE("encode: a frame of v1 is 5 bytes and its payload, one of v2 is 6") {
+  CHECK(int(sbgc::ProtocolV1::overhead) == 5);
+  CHECK(int(sbgc::ProtocolV2::overhead) == 6);
+  CHECK(int(sbgc::ProtocolAuto::overhead) == 6);  // the longer of the two
+}
+
 TEST_CASE("encode: a codec encodes in the version it sends in") {
   thermopower::SbgcCodec<124, sbgc::ProtocolAuto> codec;
   Data buffer(10, 0);
