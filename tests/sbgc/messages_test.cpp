@@ -127,6 +127,16 @@ TEST_CASE("messages: what is read stays within the message") {
   CHECK(int(guarded.behind_stream) == 0xEE);
   CHECK(sizeof(sbgc::Error::data) == 4);
   CHECK(sizeof(sbgc::BoardInfo::reserved) == 3);
+  using Fields = sbgc::RealtimeFields;
+  for (const std::size_t size :
+       {sizeof(Fields::acc), sizeof(Fields::gyro), sizeof(Fields::imu_angle), sizeof(Fields::frame_imu_angle),
+        sizeof(Fields::target_angle), sizeof(Fields::rotor_angle), sizeof(Fields::balance_error),
+        sizeof(Fields::magnetometer)})
+    CHECK(size == 3 * sizeof(std::int16_t));
+  CHECK(sizeof(Fields::rc) == 6 * sizeof(std::int16_t));
+  CHECK(sizeof(Fields::motor_power) == 3);
+  CHECK(sizeof(Fields::reserved_17) == 3);
+  CHECK(sizeof(Fields::later) == 38);
   CHECK(sizeof(sbgc::Control::axis) == 3 * sizeof(sbgc::AxisControl));
 }
 
@@ -372,6 +382,9 @@ TEST_CASE("messages: what REALTIME_DATA_3 does not have reads as implausible") {
   sbgc::RealtimeData data;
   REQUIRE(data.read(view(command::realtime_data_3, payload)));
   CHECK_FALSE(data.has_extended());
+  CHECK_FALSE(data.motors_on());
+  CHECK(data.payload().data == payload.data());
+  CHECK(int(data.payload().size) == 63);
   CHECK(int(data.imu_C()) == -128);
   CHECK(int(data.frame_imu_C()) == -128);
   CHECK(std::isnan(data.current_A()));
@@ -383,6 +396,27 @@ TEST_CASE("messages: what REALTIME_DATA_3 does not have reads as implausible") {
   }
 }
 
+TEST_CASE("messages: what REALTIME_DATA_3 does not have is not read from the bytes behind it") {
+  const Data bytes(124, 0x55);
+  sbgc::RealtimeData data;
+  CHECK_FALSE(data.has_extended());
+  REQUIRE(data.read(sbgc::Frame{command::realtime_data_3, 63, bytes.data(), sbgc::Version::v1}));
+  CHECK(int(data.imu_C()) == -128);
+  CHECK(int(data.frame_imu_C()) == -128);
+  CHECK(std::isnan(data.current_A()));
+  CHECK(data.current_mA() == 0);
+  sbgc::RealtimeFields fields;
+  REQUIRE(fields.read(sbgc::Frame{command::realtime_data_3, 63, bytes.data(), sbgc::Version::v1}));
+  CHECK(int(fields.reserved_69) == 0);
+  for (const std::uint8_t later : fields.later) CHECK(int(later) == 0);
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    CHECK(data.rotor_angle(axis) == 0);
+    CHECK(data.balance_error(axis) == 0);
+    CHECK(data.magnetometer(axis) == 0);
+    CHECK(fields.rotor_angle[axis] == 0);
+  }
+}
+
 TEST_CASE("messages: an axis that does not exist reads as yaw, inside the payload") {
   Data payload = load_hex("payload_rt4_real.hex");
   sbgc::RealtimeData data;
@@ -391,6 +425,11 @@ TEST_CASE("messages: an axis that does not exist reads as yaw, inside the payloa
     CHECK(data.acc(axis) == data.acc(2));
     CHECK(data.gyro(axis) == data.gyro(2));
     CHECK(data.error_units(axis) == data.error_units(2));
+    CHECK(data.imu_angle(axis) == data.imu_angle(2));
+    CHECK(data.frame_imu_angle(axis) == data.frame_imu_angle(2));
+    CHECK(data.target_angle(axis) == data.target_angle(2));
+    CHECK(data.rotor_angle(axis) == data.rotor_angle(2));
+    CHECK(data.balance_error(axis) == data.balance_error(2));
     CHECK(data.motor_power(axis) == data.motor_power(2));
     CHECK(data.magnetometer(axis) == data.magnetometer(2));
     CHECK(data.rc(axis == 3 ? std::uint8_t(6) : axis) == data.rc(5));
