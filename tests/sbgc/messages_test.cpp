@@ -116,8 +116,10 @@ TEST_CASE("messages: what is read stays within the message") {
     std::uint8_t behind_error;
     sbgc::DataStreamInterval stream;
     std::uint8_t behind_stream;
-  } guarded = {{}, 0xEE, {}, 0xEE};
-  const Data longer(40, 1);
+    sbgc::RealtimeFields fields;
+    std::uint8_t behind_fields;
+  } guarded = {{}, 0xEE, {}, 0xEE, {}, 0xEE};
+  const Data longer(130, 1);
   REQUIRE(guarded.error.read(view(command::error, longer)));
   REQUIRE(guarded.stream.read(view(command::data_stream_interval, longer)));
   sbgc::Control control;
@@ -125,6 +127,8 @@ TEST_CASE("messages: what is read stays within the message") {
   CHECK_FALSE(control.one_mode);  // it lies behind the axes
   CHECK(int(guarded.behind_error) == 0xEE);
   CHECK(int(guarded.behind_stream) == 0xEE);
+  REQUIRE(guarded.fields.read(view(command::realtime_data_4, longer)));
+  CHECK(int(guarded.behind_fields) == 0xEE);
   CHECK(sizeof(sbgc::Error::data) == 4);
   CHECK(sizeof(sbgc::BoardInfo::reserved) == 3);
   using Fields = sbgc::RealtimeFields;

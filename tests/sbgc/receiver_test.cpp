@@ -110,7 +110,9 @@ TEST_CASE("a frame at hand stays until the next call, and no longer") {
   thermopower::SbgcCodec<> codec;
   CHECK_FALSE(codec.has_frame());
   CHECK(codec.frame().id == 0);
+  CHECK(int(codec.frame().size) == 0);
   CHECK(codec.frame().payload == nullptr);
+  CHECK(codec.frame().version == sbgc::Version::v1);
 
   receive_all(codec, Data(answer.begin(), answer.end() - 1));
   REQUIRE(codec.receive(answer.back(), 0));
@@ -194,4 +196,23 @@ TEST_CASE("a codec as it comes holds REALTIME_DATA_4 and nothing longer") {
   CHECK(receive_all(codec, reference::make_frame(0x3E, 25, Data(124, 1))).size() == 1);
   CHECK(receive_all(codec, reference::make_frame(0x3E, 25, Data(125, 1))).empty());
   CHECK(codec.counters().too_long == 1);
+}
+
+TEST_CASE("next() brings out each frame that a false start held back, and then no more") {
+  const Data one = reference::make_frame(0x3E, 10, {1}), two = reference::make_frame(0x3E, 20, {2});
+  const Data false_start = {0x3E, 1, 12, 13};  // a header that announces as many bytes as both frames have
+  const Data wrong_sum = {0x5A};
+  thermopower::SbgcCodec<> codec;
+  const Data all = false_start + one + two;
+  for (const std::uint8_t byte : all) REQUIRE_FALSE(codec.receive(byte, 0));
+  REQUIRE(codec.receive(wrong_sum[0], 0));
+  CHECK(codec.frame().id == 10);
+  CHECK(codec.pending() == two.size() + wrong_sum.size());
+  REQUIRE(codec.next());
+  CHECK(codec.frame().id == 20);
+  CHECK(codec.pending() == wrong_sum.size());
+  CHECK_FALSE(codec.next());
+  CHECK(codec.pending() == 0);
+  CHECK(codec.counters().frames == 2);
+  CHECK(codec.counters().skipped_bytes == false_start.size() + wrong_sum.size());
 }
