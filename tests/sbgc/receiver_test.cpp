@@ -216,3 +216,26 @@ TEST_CASE("next() brings out each frame that a false start held back, and then n
   CHECK(codec.counters().frames == 2);
   CHECK(codec.counters().skipped_bytes == false_start.size() + wrong_sum.size());
 }
+
+TEST_CASE("the longest frames, one behind the other, stay within the receiver, next() or not") {
+  // What a class adds begins right behind the buffer, its base's last member.
+  struct Guarded : sbgc::Receiver<16, sbgc::ProtocolV1> {
+    Guarded() {
+      for (std::uint8_t& byte : behind) byte = 0xEE;
+    }
+    std::uint8_t behind[8];
+  };
+  for (const bool ask_for_more : {false, true}) {
+    Guarded receiver;
+    const Data longest = reference::make_frame(0x3E, 9, Data(16, 7));
+    int frames = 0;
+    for (int i = 0; i < 4; ++i)
+      for (const std::uint8_t byte : longest) {
+        frames += receiver.receive(byte, 0);
+        if (ask_for_more && receiver.has_frame()) CHECK_FALSE(receiver.next());
+      }
+    CHECK(frames == 4);
+    CHECK(receiver.counters().skipped_bytes == 0);
+    for (const std::uint8_t byte : receiver.behind) CHECK(int(byte) == 0xEE);
+  }
+}
