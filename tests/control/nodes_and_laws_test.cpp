@@ -101,6 +101,10 @@ TEST_CASE(
 }
 
 TEST_CASE("a node limiter before its first step, after a cut, and with what is no temperature") {
+  const int numbers[] = {NodeLimiter::bracket, NodeLimiter::body, NodeLimiter::magnets, NodeLimiter::winding,
+                         NodeLimiter::count};
+  for (int i = 0; i < 5; ++i) CHECK(numbers[i] == i);  // for logs
+  CHECK(static_cast<int>(NodeLimiter::none) == 255);
   NodeLimiter limiter;
   CHECK(limiter.ceiling() == least_power());
   CHECK(limiter.state().node == NodeLimiter::none);
@@ -148,6 +152,8 @@ TEST_CASE("a node limit out of its range is refused by name and keeps the power 
     }
   }
   config = NodeLimiter::Config::standard();
+  config.derating_K = 5.0f;
+  CHECK(NodeLimiter(config).config().derating_K == 5.0f);
   config.derating_K = 0.0f;
   CHECK(NodeLimiter(config).validate() == ConfigError::derating_K);
 }

@@ -12,7 +12,8 @@ undefined-behaviour sanitizers. What still survives must be explained in docs/re
 "- `HEADER` `CODE` -> `CHANGED`", and what stands there must survive: the exit status is 0 only when both hold.
 
 Results are kept in DIR/journal.jsonl under a hash of the group's headers, its tests and the compiler, so that a run that was stopped goes
-on where it was. --known takes what failed a test before, whatever has changed since: for writing tests, not for figures.
+on where it was. --known takes what was found before, whatever has changed since, but for what survived and is not explained: for writing
+tests.
 """
 import argparse
 import concurrent.futures
@@ -50,7 +51,7 @@ GROUPS = {
                   ["control/config_record_test.cpp"]]),
 }
 # Of the processor, so that a busy machine changes no result; the tests of one stage take below 2.
-TEST_S, MEMORY_BYTES = 8, 4 << 30
+TEST_S, MEMORY_BYTES = 5, 4 << 30
 PLAIN = ["-std=gnu++17", "-w", "-g0", '-DTHERMOPOWER_TEST_DATA="%s"' % os.path.join(ROOT, "tests", "data")]
 SANITIZERS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
 KILLED, NOT_COMPILED, SAME, SURVIVED = "killed", "does not compile", "same code", "survived"
@@ -350,12 +351,12 @@ def main():
 
     tools = Tools(build, options.sanitizers)
     journal = os.path.join(build, "journal.jsonl")
-    known, killed_before = {}, {}
+    known, before, explained = {}, {}, explanations()
     if os.path.exists(journal):
         for line in read(journal).splitlines():
             entry = json.loads(line)
             known[entry["key"], entry["name"]] = entry
-            killed_before[entry["name"]] = entry
+            before[entry["name"]] = entry
     started = time.time()
     workers = queue.Queue()
     for number in range(options.jobs):
@@ -376,8 +377,8 @@ def main():
         group, header, text, change, name, number = item
         key = key_of[group.name]
         entry = known.get((key, name))
-        if entry is None and options.known and killed_before.get(name, {}).get("result") in (KILLED, NOT_COMPILED):
-            entry = killed_before[name]
+        if entry is None and options.known and name in before and (before[name]["result"] != SURVIVED or name in explained):
+            entry = before[name]
         if entry is None:
             worker = workers.get()
             try:
@@ -400,6 +401,11 @@ def main():
     return report(results, all_of_it, tools, time.time() - started)
 
 
+def explanations():
+    page = read(PAGE) if os.path.exists(PAGE) else ""
+    return set(re.findall(r"^- (`\S+` `.+?` -> `.*?`(?: \(\d+\))?)(?=: |$)", page, re.M))
+
+
 def report(results, all_of_it, tools, seconds):
     print("%s; %d of %d changes; %.0f s in this run" % (tools.version, len(results), all_of_it, seconds))
     print("| header | changes | do not compile | same code | fail a test | survive |\n| --- | ---: | ---: | ---: | ---: | ---: |")
@@ -407,8 +413,7 @@ def report(results, all_of_it, tools, seconds):
     for header in list(dict.fromkeys(entry["header"] for entry in results)) + ["all"]:
         of = [entry["result"] for entry in results if header in ("all", entry["header"])]
         print("| %s | %d | %s |" % (header if header == "all" else "`%s`" % header, len(of), " | ".join(str(of.count(one)) for one in order)))
-    page = read(PAGE) if os.path.exists(PAGE) else ""
-    explained = set(re.findall(r"^- (`\S+` `.+?` -> `.*?`(?: \(\d+\))?)(?=:|$)", page, re.M))
+    explained = explanations()
     wrong = 0
     for entry in results:
         if entry["result"] == SURVIVED:

@@ -480,6 +480,19 @@ TEST_CASE("units: angles and speeds") {
   CHECK(sbgc::angle_units(std::numeric_limits<float>::infinity()) == 32767);
   for (int units = -32768; units <= 32767; ++units)
     REQUIRE(sbgc::angle_units(sbgc::angle_deg(units)) == units);
+  const auto units_of = [](float units) { return sbgc::angle_units(units * sbgc::deg_per_angle_unit); };
+  for (const int units : {0, 1, 10, 100}) {  // the nearest
+    CAPTURE(units);
+    const float whole = static_cast<float>(units);
+    CHECK(units_of(whole + 0.498f) == units);
+    CHECK(units_of(whole + 0.502f) == units + 1);
+    CHECK(units_of(-whole - 0.498f) == -units);
+    CHECK(units_of(-whole - 0.502f) == -units - 1);
+  }
+  for (int beyond = 1; beyond < 1000; ++beyond) {
+    REQUIRE(units_of(32767.0f + static_cast<float>(beyond)) == 32767);
+    REQUIRE(units_of(-32768.0f - static_cast<float>(beyond)) == -32768);
+  }
   CHECK(is_near(sbgc::speed_deg_per_s(1000), 122.0740379));
   CHECK(sbgc::speed_units(122.0740379f) == 1000);
   CHECK(sbgc::speed_units(-122.0740379f) == -1000);

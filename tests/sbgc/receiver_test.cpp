@@ -109,6 +109,7 @@ TEST_CASE("counters: one for every kind of loss") {
 TEST_CASE("a frame at hand stays until the next call, and no longer") {
   thermopower::SbgcCodec<> codec;
   CHECK_FALSE(codec.has_frame());
+  CHECK(codec.pending() == 0);
   CHECK(codec.frame().id == 0);
   CHECK(int(codec.frame().size) == 0);
   CHECK(codec.frame().payload == nullptr);
