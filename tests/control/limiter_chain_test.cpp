@@ -235,6 +235,17 @@ TEST_CASE(
   CHECK(body_C > 45.0);
 }
 
+TEST_CASE("a limiter that grants more than it was asked for raises nothing, whatever its reason") {
+  struct Generous : Puppet<0> {
+    explicit Generous(const Config& config) : Puppet<0>(config) {}
+    LimitedPower step(const AxisFacts&, float) noexcept { return {255, LimitReason::temperature_not_finite}; }
+  };
+  LimiterChain<Puppet<1>, Generous> chain({{60, LimitReason::body_limit}, {{255, LimitReason::none}}});
+  const LimitedPower granted = chain.step(at(30.0f), 0.01f);
+  CHECK(granted.power == 60);
+  CHECK(granted.reason == LimitReason::temperature_not_finite);
+}
+
 TEST_CASE("a chain in which nobody limits grants all, and one of a single limiter is that limiter") {
   Three open = three({255, LimitReason::none}, {255, LimitReason::none}, {255, LimitReason::none});
   CHECK(open.ceiling() == 255);
@@ -253,9 +264,13 @@ TEST_CASE("a chain in which nobody limits grants all, and one of a single limite
     CHECK(chain.validate() == ConfigError::user_defined);
   }
 
+  CHECK(LimiterChainConfig<>::standard().validate() == ConfigError::none);
   typedef LimiterChain<NodeLimiter> Alone;
   CHECK(Alone::Config::standard().first.derating_K == NodeLimiter::Config::standard().derating_K);
   Alone alone;
+  const Three& seen = open;
+  CHECK(&seen.limiter<0>() == &open.limiter<0>());
+  CHECK(&seen.limiter<2>() == &open.limiter<2>());
   NodeLimiter limiter;
   for (float body_C = 30.0f; body_C < 70.0f; body_C += 0.25f) {
     AxisFacts facts = at(body_C);

@@ -120,6 +120,16 @@ TEST_CASE("send: stops at a wire that refuses, and says how much it took") {
   CHECK(sbgc::send<sbgc::ProtocolV1>(sbgc::Request(25), wire) == 3);
 }
 
+TEST_CASE("send: a wire that boasts of more than it was handed took no more than the frame") {
+  struct BoastfulWire {
+    std::size_t write(const std::uint8_t*, std::size_t size) { return size + 7; }
+  } wire;
+  for (const std::size_t size : {0u, 10u, 200u}) {
+    const Data payload(size, 1);
+    CHECK(sbgc::send<sbgc::ProtocolV1>(raw(payload), wire) == size + 5);
+  }
+}
+
 TEST_CASE("send: two codecs, a controller and a board, talk") {
   thermopower::SbgcCodec<> controller;
   thermopower::SbgcCodec<124, sbgc::ProtocolAuto> board;
