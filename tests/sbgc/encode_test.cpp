@@ -88,6 +88,21 @@ TEST_CASE(
   CHECK(wire.writes.empty());
 }
 
+TEST_CASE("encode: a payload of 256 bytes is refused before anything is written") {
+  const Data data(255, 1);
+  sbgc::Confirm confirm;
+  confirm.data = sbgc::Bytes{data.data(), 255};
+  REQUIRE(confirm.payload_size() == 256);
+  Data buffer(300, 0xEE);
+  CHECK(sbgc::encode<sbgc::ProtocolV1>(confirm, buffer.data(), buffer.size()) == 0);
+  CHECK(buffer == Data(300, 0xEE));
+  VectorWire wire;
+  CHECK(sbgc::send<sbgc::ProtocolV1>(confirm, wire) == 0);
+  CHECK(wire.all.empty());
+  confirm.data.size = 254;
+  CHECK(sbgc::encode<sbgc::ProtocolV1>(confirm, buffer.data(), buffer.size()) == 260);
+}
+
 TEST_CASE("send: writes the same bytes as encode, short frames in one go, whatever the portion") {
   for (std::size_t size = 0; size <= 255; ++size) {
     const Data payload(size, static_cast<std::uint8_t>(size));
