@@ -64,17 +64,17 @@ size_t with(Message& message, uint8_t* frame, size_t capacity, Wire& wire, Silen
          sbgc::send<sbgc::ProtocolAuto, 1>(message, silent, version) +
          sbgc::send<sbgc::ProtocolV2, 255>(message, silent, version);
 }
-#define EVERY(what)                                                                                \
+#define every_message(what)                                                                        \
   what(sbgc::Request) what(sbgc::Raw) what(sbgc::MotorsOn) what(sbgc::MotorsOff) what(sbgc::Reset) \
       what(sbgc::DataStreamInterval) what(sbgc::Control) what(sbgc::Confirm) what(sbgc::Error)     \
           what(sbgc::BoardInfo) what(sbgc::RealtimeFields) what(sbgc::RealtimeData)
-#define WITH(Message)                                                                                    \
+#define instantiate(Message)                                                                             \
   template size_t with(Message&, uint8_t*, size_t, Wire&, SilentWire&, Sink&, sbgc::Version);            \
   template void with_codec(thermopower::SbgcCodec<>&, Message&, uint8_t*, size_t, Wire&, SilentWire&);   \
   template void with_codec(thermopower::SbgcCodec<255, sbgc::ProtocolAuto>&, Message&, uint8_t*, size_t, \
                            Wire&, SilentWire&);
-EVERY(WITH)
-template size_t with(sbgc::SetAdjVars<50>&, uint8_t*, size_t, Wire&, SilentWire&, Sink&, sbgc::Version);
+every_message(instantiate) template size_t
+    with(sbgc::SetAdjVars<50>&, uint8_t*, size_t, Wire&, SilentWire&, Sink&, sbgc::Version);
 template size_t with(sbgc::GetAdjVars<50>&, uint8_t*, size_t, Wire&, SilentWire&, Sink&, sbgc::Version);
 template size_t with(sbgc::PowerAndGain<Command>&, uint8_t*, size_t, Wire&, SilentWire&, Sink&,
                      sbgc::Version);
@@ -128,10 +128,10 @@ extern const size_t sizes[] = {sizeof(sbgc::Receiver<255, sbgc::ProtocolV2>),
                                sizeof(sbgc::BoardInfo),
                                sizeof(sbgc::DataStreamInterval),
                                sizeof(sbgc::Error)};
-#define FRESH(Message) \
+#define set_fresh(Message) \
   void fresh(Message& message) { message = Message(); }
-FRESH(sbgc::Request)
-FRESH(sbgc::MotorsOff) FRESH(sbgc::Reset) FRESH(sbgc::DataStreamInterval) FRESH(sbgc::Control)
-    FRESH(sbgc::Confirm) FRESH(sbgc::Error) FRESH(sbgc::BoardInfo) FRESH(sbgc::RealtimeFields)
-        FRESH(sbgc::RealtimeData) FRESH(sbgc::AdjVarsView) FRESH(sbgc::GetAdjVarsView) FRESH(sbgc::Poller)
-            FRESH(sbgc::ProtocolAuto) FRESH(thermopower::SbgcCodec<>)
+set_fresh(sbgc::Request) set_fresh(sbgc::MotorsOff) set_fresh(sbgc::Reset) set_fresh(sbgc::DataStreamInterval)
+    set_fresh(sbgc::Control) set_fresh(sbgc::Confirm) set_fresh(sbgc::Error) set_fresh(sbgc::BoardInfo)
+        set_fresh(sbgc::RealtimeFields) set_fresh(sbgc::RealtimeData) set_fresh(sbgc::AdjVarsView)
+            set_fresh(sbgc::GetAdjVarsView) set_fresh(sbgc::Poller) set_fresh(sbgc::ProtocolAuto)
+                set_fresh(thermopower::SbgcCodec<>)
