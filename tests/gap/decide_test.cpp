@@ -122,7 +122,16 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   CHECK(by_block.value == Approx(100.0 * (23.0 * std::log(30.0) + std::log(1e7))));
   CHECK(by_block.value > 5.0 * by_block.standard_error);
   // What is better here and worse there is not proven so, nor what is a little better everywhere.
-  CHECK(block_by_block(sums_of(blocks(1.3, 1.3)), after, 1, correlation).value == 0.0);
+  CHECK(block_by_block(sums_of(blocks(2.6, 2.6)), after, 1, correlation).value == 0.0);
+  std::vector<double> hardly_above(SignalSums::block_count, 1.4);
+  hardly_above[5] = 3.0;
+  CHECK(block_by_block(sums_of(hardly_above), after, 1, correlation).value == 0.0);
+  CHECK(block_by_block(sums_of(blocks(1.2, 1.2)), after, 1, correlation).value == 0.0);
+  // Blocks in which both are at the noise do not speak.
+  std::vector<double> mostly_at_rest(SignalSums::block_count, 1.0);
+  mostly_at_rest[5] = 1e7;
+  mostly_at_rest[9] = 50.0;
+  CHECK(block_by_block(sums_of(mostly_at_rest), after, 1, correlation).value > 0.0);
   CHECK(block_by_block(sums_of(blocks(100.0, 100.0)), sums_of(blocks(30.0, 140.0)), 1, correlation).value ==
         0.0);
 

@@ -71,15 +71,17 @@ Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t
 /// resonance that it does not have, say) its mean square is that block's, and leaving it out takes most of the logarithm
 /// away: the other model, a hundred times better in every block, is then not better beyond doubt. Block by block it is.
 /// That only counts where hardly any block speaks against it, as what is better here and worse there has to be weighed by
-/// how much, and where it is at least twice as good: a tenth in every block may come of an error that all blocks share.
+/// how much, and where it is at least twice as good in those blocks where the other is above the noise at all: a tenth may
+/// come of an error that all blocks share.
 /// @param merge        neighbouring blocks that count as one
 /// @param correlation  readings of each signal that count as one
 inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::size_t merge,
                                  const std::array<double, signal_count>& correlation) {
-  constexpr double least = 1e-6,  // mean square in units of the noise: below, nothing is told any more
-      hardly_any = 0.05,          // of what speaks for it
-      twice_as_good = 1.386;      // per reading: log of a quarter of the squares
-  double readings = 0.0;
+  constexpr double least = 1e-6,         // mean square in units of the noise: below, nothing is told any more
+      hardly_any = 0.05,                 // of what speaks for it
+      twice_as_good = 1.386,             // per reading: log of a quarter of the squares
+      above_the_noise = 1.5;             // mean square in units of the noise
+  double readings = 0.0, clearly = 0.0;  // in blocks where `a` is above the noise
   std::vector<double> blocks;
   for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
     double sum = 0.0;
@@ -93,9 +95,11 @@ inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::
       }
       if (!(samples > 0.0)) continue;
       any = true;
-      readings += samples / correlation[i];
-      sum += samples / correlation[i] *
-             std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));
+      const double counted = samples / correlation[i];
+      const double better =
+          counted * std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));
+      sum += better;
+      if (of_a > above_the_noise * samples) readings += counted, clearly += better;
     }
     if (any) blocks.push_back(sum);
   }
@@ -107,7 +111,8 @@ inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::
     result.value += one;
     against += std::max(-one, 0.0);
   }
-  if (against > hardly_any * (result.value + against) || result.value < twice_as_good * readings)
+  if (against > hardly_any * (result.value + against) || !(readings > 0.0) ||
+      clearly < twice_as_good * readings)
     return {0.0, 0.0, result.blocks};
   double square = 0.0;
   for (double one : blocks) square += (one - result.value / count) * (one - result.value / count);
