@@ -111,8 +111,9 @@ struct MissingRates {
     double interval_s = 0.0;                     ///< length of the last window
     double noise = 0.0;                          ///< standard deviation of the measured signal
   };
-  std::vector<Samples> of;                ///< by signal
-  std::vector<std::string> names, units;  ///< of the variables: inputs, signals, time
+  std::vector<Samples> of;         ///< by signal
+  std::vector<std::string> names;  ///< of the variables: inputs, signals, time
+  std::vector<std::string> units;  ///< of the variables
 };
 
 /// Simulates short windows from the measured states: what each misses at its end, over its length.
