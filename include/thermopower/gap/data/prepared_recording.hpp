@@ -5,6 +5,7 @@
 #include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/clock.hpp>
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 

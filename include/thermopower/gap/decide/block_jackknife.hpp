@@ -63,61 +63,70 @@ Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t
   return result;
 }
 
-/// How much better one candidate fits than another where every block has a noise of its own: the sum over the blocks of
-/// log(squares of a / squares of b) times the readings, as many as count as one, and its standard error over the blocks; 0
-/// where it is not better, clearly and in nearly every block.
+/// How much better one candidate fits than another where every block has a noise of its own.
 ///
 /// The difference of two pooled deviances is a function of two mean squares. Where a model runs away in one block (at a
 /// resonance that it does not have, say) its mean square is that block's, and leaving it out takes most of the logarithm
 /// away: the other model, a hundred times better in every block, is then not better beyond doubt. Block by block it is.
-/// That only counts where hardly any block speaks against it, as what is better here and worse there has to be weighed by
-/// how much, and where it is at least twice as good in those blocks where the other is above the noise at all: a tenth may
-/// come of an error that all blocks share.
-/// @param merge        neighbouring blocks that count as one
-/// @param correlation  readings of each signal that count as one
-inline Jackknifed block_by_block(const SignalSums& a, const SignalSums& b, std::size_t merge,
-                                 const std::array<double, signal_count>& correlation) {
-  constexpr double least = 1e-6,         // mean square in units of the noise: below, nothing is told any more
-      hardly_any = 0.05,                 // of what speaks for it
-      twice_as_good = 1.386,             // per reading: log of a quarter of the squares
-      above_the_noise = 1.5;             // mean square in units of the noise
-  double readings = 0.0, clearly = 0.0;  // in blocks where `a` is above the noise
-  std::vector<double> blocks;
-  for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
-    double sum = 0.0;
-    bool any = false;
-    for (std::size_t i = 0; i < signal_count; ++i) {
-      double samples = 0.0, of_a = 0.0, of_b = 0.0;
-      for (std::size_t k = first; k < first + merge; ++k) {
-        samples += b.block_samples[i][k];
-        of_a += a.block_squares[i][k];
-        of_b += b.block_squares[i][k];
+class BlockByBlock {
+public:
+  /// Adds data. @param a, b  the worse one's sums and the better one's
+  /// @param merge            neighbouring blocks that count as one
+  /// @param correlation      readings of each signal that count as one
+  void add(const SignalSums& a, const SignalSums& b, std::size_t merge,
+           const std::array<double, signal_count>& correlation) {
+    constexpr double least = 1e-6,  // mean square in units of the noise: below, nothing is told any more
+        above_the_noise = 1.5;      // the same
+    std::vector<double> blocks;
+    for (std::size_t first = 0; first < SignalSums::block_count; first += merge) {
+      double sum = 0.0;
+      bool any = false;
+      for (std::size_t i = 0; i < signal_count; ++i) {
+        double samples = 0.0, of_a = 0.0, of_b = 0.0;
+        for (std::size_t k = first; k < first + merge; ++k) {
+          samples += b.block_samples[i][k];
+          of_a += a.block_squares[i][k];
+          of_b += b.block_squares[i][k];
+        }
+        if (!(samples > 0.0)) continue;
+        any = true;
+        const double counted = samples / correlation[i];
+        const double better =
+            counted * std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));
+        sum += better;
+        if (of_a > above_the_noise * samples) readings_ += counted, clearly_ += better;
       }
-      if (!(samples > 0.0)) continue;
-      any = true;
-      const double counted = samples / correlation[i];
-      const double better =
-          counted * std::log(std::max(of_a / samples, least) / std::max(of_b / samples, least));
-      sum += better;
-      if (of_a > above_the_noise * samples) readings += counted, clearly += better;
+      if (any) blocks.push_back(sum);
     }
-    if (any) blocks.push_back(sum);
+    const double count = static_cast<double>(blocks.size());
+    double value = 0.0;
+    for (double one : blocks) {
+      value += one;
+      against_ += std::max(-one, 0.0);
+    }
+    value_ += value;
+    for (double one : blocks)
+      if (count > 1.0) variance_ += count / (count - 1.0) * (one - value / count) * (one - value / count);
   }
-  Jackknifed result;
-  result.blocks = blocks.size();
-  const double count = static_cast<double>(blocks.size());
-  double against = 0.0;
-  for (double one : blocks) {
-    result.value += one;
-    against += std::max(-one, 0.0);
+
+  /// Sum over the blocks of log(squares of a / squares of b) times the readings, as many as count as one.
+  double value() const { return value_; }
+  /// Its standard error: from how much the blocks differ.
+  double standard_error() const { return std::sqrt(variance_); }
+
+  /// Whether that decides. Only where hardly any block speaks against it, as what is better here and worse there has to
+  /// be weighed by how much; and where it is at least twice as good in the blocks in which the other is above the noise
+  /// at all: a tenth may come of an error that all blocks share.
+  bool decides() const {
+    constexpr double hardly_any = 0.05,  // of what speaks for it
+        twice_as_good = 1.386;           // per reading: log of a quarter of the squares
+    return readings_ > 0.0 && variance_ > 0.0 && against_ <= hardly_any * (value_ + against_) &&
+           clearly_ >= twice_as_good * readings_;
   }
-  if (against > hardly_any * (result.value + against) || !(readings > 0.0) ||
-      clearly < twice_as_good * readings)
-    return {0.0, 0.0, result.blocks};
-  double square = 0.0;
-  for (double one : blocks) square += (one - result.value / count) * (one - result.value / count);
-  if (blocks.size() > 1) result.standard_error = std::sqrt(count / (count - 1.0) * square);
-  return result;
-}
+
+private:
+  double value_ = 0.0, variance_ = 0.0, against_ = 0.0;
+  double readings_ = 0.0, clearly_ = 0.0;  // in blocks where `a` is above the noise
+};
 
 }  // namespace thermopower::gap::engine

@@ -58,6 +58,23 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
   return true;
 }
 
+/// Whether the training data tell a parameter at all, where an effect has another one of its kind (friction forward and
+/// backward): moved by as much as the other one is, it must show. In a motion one way a friction that differs by
+/// direction is no more than a friction.
+/// @param first  place of the effect's first parameter among the candidate's coordinates
+/// @param i      place of the parameter among the effect's
+inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std::size_t first,
+                    std::size_t i) {
+  const std::vector<Parameter>& parameters = entry.info.parameters;
+  const auto row = static_cast<Eigen::Index>(first + i);
+  if (candidate.fit.information.rows() <= row || candidate.list[first + i].logarithmic) return true;
+  double size = 0.0;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (k != i && parameters[k].unit == parameters[i].unit && !candidate.list[first + k].logarithmic)
+      size = std::max(size, std::abs(candidate.fit.at[static_cast<Eigen::Index>(first + k)]));
+  return !(size > 0.0) || candidate.fit.information(row, row) * size * size > 1.0;
+}
+
 /// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
 /// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
 /// friction does not count: at its bound friction sticks.)
@@ -65,7 +82,8 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
 /// Nor is one beside which a constant went as far as it may: then the equation is another one.
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, a period longer than the travel holds.
+/// transition through standstill, a period longer than the travel holds, a friction backward of what never moved
+/// backward.
 /// @param travel_rad  range of the angle in the training data; 1e300: whatever it is
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
@@ -80,7 +98,9 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
       return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;
+    const std::size_t first = at;
     for (const Parameter& parameter : entry->info.parameters) {
+      if (!parameter.standard && !is_told(candidate, *entry, first, at - first)) return true;
       if (at_bound[at] && parameter.degenerate_at_bounds) return true;
       if (!shows(candidate, *entry, parameter, at, travel_rad)) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
@@ -185,7 +205,7 @@ inline bool in_the_running(const Candidate& candidate) {
 /// at most those of a difference as many standard errors large (Vuong 1989), the standard error from leaving out
 /// blocks of the training and the held-out data: where a candidate is better in some parts of the recording and
 /// worse in others, no number of rows makes it certain; where it is better in every block, it is beyond doubt however
-/// unlike the blocks are (block_by_block()). That holds for what the data say; what the parameters of a
+/// unlike the blocks are (BlockByBlock). That holds for what the data say; what the parameters of a
 /// richer explanation cost stays: where the data are of two minds, the simpler one is named.
 inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, const Model& model) {
   double samples = 0.0;
@@ -238,13 +258,11 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     const Candidate &good = first ? one : other, &bad = first ? other : one;
     const double pooled = std::hypot(standard_error(bad.train, good.train, weight.correlation),
                                      standard_error(bad.held_out, good.held_out, weight.held_out));
-    const Jackknifed train = block_by_block(bad.train, good.train, merged(bad.train, weight.correlation),
-                                            weight.correlation),
-                     held_out = block_by_block(bad.held_out, good.held_out,
-                                               merged(bad.held_out, weight.held_out), weight.held_out);
-    const double error = std::hypot(train.standard_error, held_out.standard_error);
-    if (!(train.value > 0.0) || !(held_out.value > 0.0) || !(error > 0.0)) return pooled;
-    return std::min(pooled, (fit(bad) - fit(good)) / (train.value + held_out.value) * error);
+    BlockByBlock by_block;
+    by_block.add(bad.train, good.train, merged(bad.train, weight.correlation), weight.correlation);
+    by_block.add(bad.held_out, good.held_out, merged(bad.held_out, weight.held_out), weight.held_out);
+    if (!by_block.decides()) return pooled;
+    return std::min(pooled, (fit(bad) - fit(good)) / by_block.value() * by_block.standard_error());
   };
   if (best == nullptr) {
     for (Candidate& one : candidates) one.probability = 0.0;
