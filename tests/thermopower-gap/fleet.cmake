@@ -69,12 +69,13 @@ if(NOT one STREQUAL three OR NOT one STREQUAL killed)
   message(FATAL_ERROR "the results differ:\none worker\n${one}three workers\n${three}killed and resumed\n${killed}")
 endif()
 
-# Two of the same command at once: CMake starts both, the output of the one being the input of the other.
-execute_process(COMMAND ${PROGRAM} fleet ${HERE}/sound.csv --out ${HERE}/shared --workers 1
-                COMMAND ${PROGRAM} fleet ${HERE}/sound.csv --out ${HERE}/shared --workers 1
-                RESULTS_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE error)
+# Two of the same command at once, each with an output of its own: whichever ends first must not close the other's.
+execute_process(COMMAND sh -c "\"$0\" fleet \"$1\" --out \"$2\" --workers 1 >\"$2.first\" & first=$!
+                               \"$0\" fleet \"$1\" --out \"$2\" --workers 1 >\"$2.second\" && wait $first"
+                        ${PROGRAM} ${HERE}/sound.csv ${HERE}/shared
+                RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE error)
 contents(${HERE}/shared shared)
-if(NOT one STREQUAL shared OR NOT status STREQUAL "0;0")
+if(NOT one STREQUAL shared OR NOT status EQUAL 0)
   message(FATAL_ERROR "two commands that share a fleet: exit ${status}\n${output}${error}\none worker\n${one}\nshared\n${shared}")
 endif()
 # A unit's logs are one unit; without pages there are none.
