@@ -205,6 +205,25 @@ TEST_CASE("a rate in coarse steps is cut off where the angle sees it go faster")
 }
 
 TEST_CASE(
+    "an angle that is held at its largest value while a coarse rate is off by one step is at rest there") {
+  // A servo goes to its target and stays; its rate comes in steps, and reads one of them at standstill.
+  const double rate_step = 1.4, angle_step = 0.09;
+  Recording r = axis();
+  double angle_deg = -20.0;
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double dps = i < r.rows() / 3 ? 12.0 : 0.0;
+    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
+    angle[i] = angle_step * std::round(angle_deg / angle_step);
+    rate[i] = rate_step * std::round(dps / rate_step) + (dps > 0.0 ? 0.0 : rate_step);
+  }
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK_FALSE(found(prepared, FindingKind::clipped_samples, "angle_deg", FindingAction::masked));
+}
+
+TEST_CASE(
     "a noisy current that stands at its end is cut off there, under one power too, from its first sample on") {
   // A winding that warms draws less and less; the first third of it is beyond the sensor.
   Recording r = bench();

@@ -326,9 +326,11 @@ private:
 
   double rest_rate() const {
     if (rest_rate_ >= 0.0) return rest_rate_;
-    constexpr double rest_share = 0.05;  // of the rate's 90th percentile
+    constexpr double rest_share = 0.05,  // of the rate's 90th percentile
+        rest_steps = 2.0;                // of a coarse rate, which may be off by one
     std::vector<double> list = finite_samples(traits_.at_rest->cwiseAbs());
-    return rest_rate_ = rest_share * quantile_of(list, 0.9);
+    return rest_rate_ =
+               std::max(rest_share * quantile_of(list, 0.9), rest_steps * quantum_of(*traits_.at_rest));
   }
 
   /// A quantum and the noise of the column that this one is the rate of.
