@@ -1,0 +1,29 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Copyright (c) 2026 the thermopower authors
+
+# sh tests/mcdc/lines.sh [DIR]   builds all tests of what runs in firmware for coverage in DIR (build/lines), runs them, and prints how
+#                                many lines and branches of the firmware headers they have run. cmake --build <build> --target lines
+#                                does the same. What the compiler evaluates (tables, constants of motors) counts as not run.
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1:-$root/build/lines}
+for tool in clang++-19 llvm-profdata-19 llvm-cov-19 python3 ninja; do
+  command -v $tool > /dev/null || { echo "SKIPPED: no $tool (Debian: clang-19 llvm-19 libclang-rt-19-dev python3 ninja-build)"; exit 0; }
+done
+mkdir -p "$build"
+build=$(cd "$build" && pwd)
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 \
+  "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF \
+  -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF > "$build/configure.log"
+cmake --build "$build" > "$build/build.log" 2>&1 || { tail -40 "$build/build.log"; exit 1; }
+rm -rf "$build/profiles"
+set --
+for test in "$build"/bin/actuator_* "$build"/bin/certified_* "$build"/bin/control_* "$build"/bin/fixed_point* "$build"/bin/sbgc_test; do
+  name=$(basename "$test")
+  LLVM_PROFILE_FILE="$build/profiles/$name.profraw" "$test" > "$build/$name.log" 2>&1 || { tail -40 "$build/$name.log"; exit 1; }
+  set -- "$@" -object "$test"
+done
+llvm-profdata-19 merge -sparse -o "$build/all.profdata" "$build"/profiles/*.profraw
+llvm-cov-19 export -summary-only "$@" -instr-profile "$build/all.profdata" > "$build/summary.json" 2> "$build/export.log"
+python3 -B "$root/tests/mcdc/lines.py" "$build/summary.json"
