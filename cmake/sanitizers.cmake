@@ -41,13 +41,6 @@ macro(thermopower_numerical_directory)
   endif()
 endmacro()
 
-# thermopower_links_sanitized(<target>): a program of a numerical directory that links a library that is under the sanitizers.
-function(thermopower_links_sanitized target)
-  if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS")
-    target_link_options(${target} PRIVATE -fsanitize=address,undefined)
-  endif()
-endfunction()
-
 # What a project outside must be configured with to link what was built here.
 set(thermopower_user_options "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}")
 if(THERMOPOWER_SANITIZE STREQUAL "PROGRAMS")

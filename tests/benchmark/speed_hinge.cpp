@@ -26,9 +26,8 @@ bool speed::hinge() {
 #include <thermopower/simulation/gimbal_axis.hpp>
 #include <thermopower/simulation/random.hpp>
 
-#include <mujoco/mujoco.h>
+#include "../mujoco_model.hpp"
 
-#include <cstring>
 #include <memory>
 #include <string>
 
@@ -91,36 +90,19 @@ public:
         text(hinge.viscous_Nm_s_per_rad) + "\" frictionloss=\"" + text(hinge.friction_Nm) +
         "\" solreffriction=\"0.0002 1\" solimpfriction=\"0.99 0.999 0.0001 0.5 2\"/></body></worldbody><actuator>"
         "<motor joint=\"hinge\"/></actuator></mujoco>";
-    auto files = std::make_unique<mjVFS>();  // half a megabyte
-    mj_defaultVFS(files.get());
-    const int at = mj_makeEmptyFileVFS(files.get(), "hinge.xml", static_cast<int>(xml.size()));
-    std::memcpy(files->filedata[at], xml.data(), xml.size());
-    char error[1000] = "";
-    model_ = mj_loadXML("hinge.xml", files.get(), error, sizeof error);
-    mj_deleteVFS(files.get());
-    if (model_ == nullptr) {
-      std::printf("  MuJoCo refuses the hinge: %s\n", error);
-      return;
-    }
-    data_ = mj_makeData(model_);
+    loaded_ = std::make_unique<test::MujocoModel>(xml);
+    if (!is_loaded()) std::printf("  MuJoCo refuses the hinge: %s\n", loaded_->error.c_str());
   }
-  ~Mujoco() {
-    mj_deleteData(data_);
-    mj_deleteModel(model_);
-  }
-  Mujoco(const Mujoco&) = delete;
-  Mujoco& operator=(const Mujoco&) = delete;
 
-  bool is_loaded() const { return data_ != nullptr; }
+  bool is_loaded() const { return loaded_->data != nullptr; }
   double step(double motor_Nm) {
-    data_->ctrl[0] = motor_Nm;
-    mj_step(model_, data_);
-    return data_->qpos[0];
+    loaded_->data->ctrl[0] = motor_Nm;
+    mj_step(loaded_->model, loaded_->data);
+    return loaded_->data->qpos[0];
   }
 
 private:
-  mjModel* model_ = nullptr;
-  mjData* data_ = nullptr;
+  std::unique_ptr<test::MujocoModel> loaded_;
 };
 
 template <class Number>

@@ -8,13 +8,10 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:-$root/build/lines}
-for tool in clang++-19 llvm-profdata-19 llvm-cov-19 python3 ninja; do
-  command -v $tool > /dev/null || { echo "SKIPPED: no $tool (Debian: clang-19 llvm-19 libclang-rt-19-dev python3 ninja-build)"; exit 0; }
-done
-mkdir -p "$build"
-build=$(cd "$build" && pwd)
+flags="-fprofile-instr-generate -fcoverage-mapping"
+. "$root/tests/mcdc/tools.sh"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 \
-  "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF \
+  "-DCMAKE_CXX_FLAGS=$flags" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF \
   -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF > "$build/configure.log"
 cmake --build "$build" > "$build/build.log" 2>&1 || { tail -40 "$build/build.log"; exit 1; }
 rm -rf "$build/profiles"

@@ -8,15 +8,8 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:-$root/build/mcdc}
-for tool in clang++-19 llvm-profdata-19 llvm-cov-19 python3 ninja; do
-  command -v $tool > /dev/null || { echo "SKIPPED: no $tool (Debian: clang-19 llvm-19 libclang-rt-19-dev python3 ninja-build)"; exit 0; }
-done
 flags="-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc"
-mkdir -p "$build"
-build=$(cd "$build" && pwd)
-echo "int main() { return 0; }" > "$build/probe.cpp"
-# shellcheck disable=SC2086
-clang++-19 $flags "$build/probe.cpp" -o "$build/probe" 2> /dev/null || { echo "SKIPPED: clang++-19 does not link for coverage (Debian: libclang-rt-19-dev)"; exit 0; }
+. "$root/tests/mcdc/tools.sh"
 
 tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements
   control_air_temperature control_axis_controller control_config_record control_failures_of_others control_gimbal_controller control_limiter_chain

@@ -4,14 +4,12 @@
 // Exported models, run in MuJoCo, against an integrator of this test and against the library's own simulation.
 
 #include "../catch.hpp"
+#include "../mujoco_model.hpp"
 
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/io/simulator_export.hpp>
 
-#include <mujoco/mujoco.h>
-
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <random>
 #include <string>
@@ -25,29 +23,14 @@ namespace {
 
 constexpr double deg = 57.29577951308232;
 
-/// A model of MuJoCo from text, and its state.
+/// A model of MuJoCo that is driven.
 class Mujoco {
 public:
-  explicit Mujoco(const std::string& xml) {
-    auto files = std::make_unique<mjVFS>();  // half a megabyte
-    mj_defaultVFS(files.get());
-    const int at = mj_makeEmptyFileVFS(files.get(), "model.xml", static_cast<int>(xml.size()));
-    REQUIRE(at >= 0);
-    std::memcpy(files->filedata[at], xml.data(), xml.size());
-    char error[1000] = "";
-    model_ = mj_loadXML("model.xml", files.get(), error, sizeof error);
-    mj_deleteVFS(files.get());
-    INFO(error);
+  explicit Mujoco(const std::string& xml) : loaded_(xml) {
+    INFO(loaded_.error);
     INFO(xml);
-    REQUIRE(model_ != nullptr);
-    data_ = mj_makeData(model_);
+    REQUIRE(loaded_.model != nullptr);
   }
-  ~Mujoco() {
-    mj_deleteData(data_);
-    mj_deleteModel(model_);
-  }
-  Mujoco(const Mujoco&) = delete;
-  Mujoco& operator=(const Mujoco&) = delete;
 
   void start(double angle, double rate, double drive_A) {
     mj_resetData(model_, data_);
@@ -64,8 +47,9 @@ public:
   double rate() const { return data_->qvel[0]; }
 
 private:
-  mjModel* model_ = nullptr;
-  mjData* data_ = nullptr;
+  test::MujocoModel loaded_;
+  mjModel* const model_ = loaded_.model;
+  mjData* const data_ = loaded_.data;
 };
 
 /// The same joint, stated here once more, in steps of 10 us.

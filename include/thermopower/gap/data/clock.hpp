@@ -45,8 +45,7 @@ inline std::optional<ClockStamps> clock_of(const Eigen::VectorXd& t_s, const Run
   constexpr ClockThresholds limit;
   if (run.size() < limit.least_rows) return std::nullopt;
   const auto stamp = [&](std::size_t i) { return t_s[run.begin + static_cast<Eigen::Index>(i)]; };
-  std::vector<double> tick(static_cast<std::size_t>(run.size()), 0.0), steps;
-  for (std::size_t i = 1; i < tick.size(); ++i) steps.push_back(stamp(i) - stamp(i - 1));
+  std::vector<double> tick(static_cast<std::size_t>(run.size()), 0.0), steps = step_sizes(t_s, {run});
   ClockStamps clock;
   clock.period_s = median_of(steps);
   if (!(clock.period_s > 0.0)) return std::nullopt;

@@ -147,8 +147,7 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
     const bool slow = column.name == "ambient_C" || column.name == "neighbour_C" ||
                       (electrical_ && column.name == "supply_V");
     if (is_output(column.name)) {
-      for (std::size_t i = 0; i < repeated.size(); ++i)
-        if (repeated[i] != 0) column.values[static_cast<Eigen::Index>(i)] = missing;
+      take_away(column.values, repeated);
       mask_output(recorded, column.name, column.values, list);
     } else if (slow) {
       mask_slow_input(column.name, column.values, list);
@@ -176,9 +175,7 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   }
   list.add_rows(FindingKind::glitched_samples, Severity::warning, "", lost, FindingAction::masked,
                 "read what the sensors read when they say nothing", "look at what reads the sensors");
-  for (Column* column : lossy)
-    for (std::size_t i = 0; i < lost.size(); ++i)
-      if (lost[i] != 0) column->values[static_cast<Eigen::Index>(i)] = missing;
+  for (Column* column : lossy) take_away(column->values, lost);
 }
 
 /// Rows of a constant power that a spike can be told in.
@@ -271,10 +268,6 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
              std::to_string(recorded.rows() - present) + " of " + std::to_string(recorded.rows()) +
                  " samples are missing (" + short_number(100.0 * share) + " %)");
   }
-  const auto take = [&](const RowMask& mask) {
-    for (std::size_t i = 0; i < mask.size(); ++i)
-      if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
-  };
   if (name == "motor_C") {
     std::vector<double> list_of = finite_samples(values);
     const double typical = median_of(list_of);
@@ -284,7 +277,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
       if (typical > possible.low_C && typical < possible.high_C &&
           (values[i] < possible.low_C || values[i] > possible.high_C))
         mask[static_cast<std::size_t>(i)] = 1;
-    take(mask);
+    take_away(values, mask);
     list.add_rows(FindingKind::impossible_samples, Severity::warning, name, mask, FindingAction::masked,
                   "are no temperature of a motor", "look at the thermometer's wiring");
   }
@@ -310,7 +303,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   SampleMasks masks(values, steady, traits);
   if (power != nullptr) {
     const RowMask lost = lost_current(values, *power, masks.scale());
-    take(lost);
+    take_away(values, lost);
     masks.take(lost);
     list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
                   "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
@@ -330,10 +323,10 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     const RowMask hidden = masks.spikes();
     for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];
   }
-  take(spikes);
+  take_away(values, spikes);
   list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
                 "lie far from all around them");
-  take(bursts);
+  take_away(values, bursts);
   list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
   traits.driver = power;
@@ -341,11 +334,11 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     SampleMasks still(values, runs, traits);
     // First: all but the first sample of a clipped stretch look frozen.
     const RowMask clipped = still.clipped();
-    take(clipped);
+    take_away(values, clipped);
     list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
                   "stand at the end of the sensor's range", "use a sensor with a wider range");
     const RowMask frozen = still.frozen();
-    take(frozen);
+    take_away(values, frozen);
     list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
                   "repeat the value before them where noise or motion would show",
                   "look at what reads the sensor");
@@ -376,8 +369,7 @@ inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::V
         (row + 1 < power->size() && (*power)[row] != (*power)[row + 1]))
       mask[i] = 0;
   }
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
+  take_away(values, mask);
   list.add_rows(FindingKind::spiked_samples, Severity::note, name, mask, FindingAction::masked,
                 "lie far from all around them");
 }

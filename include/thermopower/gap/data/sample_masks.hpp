@@ -18,7 +18,7 @@
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of the masks. In white Gaussian noise of 1e6 samples none is passed; see tests/unit/gap/data.
+/// Thresholds of the masks. In white Gaussian noise of 1e6 samples none is passed; see tests/gap/data.
 struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
@@ -53,6 +53,12 @@ struct ColumnTraits {
   const Eigen::VectorXd* driver = nullptr;    ///< a column that this one rises with (the power of a current)
 };
 
+/// Makes samples of a column missing. @param mask  which; empty: none
+inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
+}
+
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
 /// one took.
 class SampleMasks {
@@ -76,10 +82,7 @@ public:
   const Eigen::VectorXd& values() const { return values_; }
 
   /// Takes samples away that are set in a mask.
-  void take(const RowMask& mask) {
-    for (std::size_t i = 0; i < mask.size(); ++i)
-      if (mask[i] != 0) values_[static_cast<Eigen::Index>(i)] = missing;
-  }
+  void take(const RowMask& mask) { take_away(values_, mask); }
 
   /// Isolated samples (one, or two of five) far from the median of five around them.
   RowMask spikes() {
@@ -275,12 +278,14 @@ private:
     return true;
   }
 
+  Eigen::VectorXd others_than(double value) const {
+    return (values_.array() == value).select(missing, values_);
+  }
+
   /// Whether a value is none of those that the other samples, in steps of a quantum, take.
   bool is_between_steps(double value, double neighbour) const {
     constexpr double on = 0.05, off = 0.1, nearly_all = 0.95;  // of a step; of the samples
-    Eigen::VectorXd others = values_;
-    for (double& one : others)
-      if (one == value) one = missing;
+    const Eigen::VectorXd others = others_than(value);
     const double quantum = quantum_of(others);
     if (!(quantum > 0.0)) return false;
     const auto off_step = [&](double one) {
@@ -300,10 +305,7 @@ private:
   /// there: of it all neighbours count.
   bool stands_still_besides(double value) const {
     if (traits_.cannot_jump) return !(equal_share_ < limit_.hardly_equal);
-    Eigen::VectorXd others = values_;
-    for (double& one : others)
-      if (one == value) one = missing;
-    return !(equal_share_of(step_sizes(others, runs_)) < limit_.hardly_equal);
+    return !(equal_share_of(step_sizes(others_than(value), runs_)) < limit_.hardly_equal);
   }
 
   /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.

@@ -257,13 +257,16 @@ inline void note_recalibration(Diagnosis& result) {
     result.recalibration += ": they made up for something on the training data that is not a constant";
 }
 
+/// Whether the printed table shows a signal clearly above the noise.
+inline bool is_above_the_noise(const GapScore& gap) {
+  return gap.noise_floor > 0.0 && gap.after > decision.near_floor * gap.noise_floor;
+}
+
 /// Takes "explained" back where the printed table shows a signal above the noise: the decision is drawn on a part of the
 /// held-out data, and what is said must hold on all of it. @return whether it did
 inline bool admit_a_rest(Diagnosis& result) {
   if (result.verdict != Verdict::explained) return false;
-  const bool above = std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
-    return gap.noise_floor > 0.0 && gap.after > decision.near_floor * gap.noise_floor;
-  });
+  const bool above = std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise);
   const bool only_constants = std::all_of(result.cause.begin(), result.cause.end(), [](const Cause& one) {
     return one.effect.rfind("calibration.", 0) == 0;
   });
@@ -277,7 +280,7 @@ inline bool admit_a_rest(Diagnosis& result) {
 inline bool deny_a_rest(Diagnosis& result) {
   if (result.verdict != Verdict::partial) return false;
   for (const GapScore& gap : result.gap)
-    if (!(gap.noise_floor > 0.0) || gap.after > decision.near_floor * gap.noise_floor) return false;
+    if (!(gap.noise_floor > 0.0) || is_above_the_noise(gap)) return false;
   const bool alone = result.alternatives.empty();
   result.verdict = alone ? Verdict::explained : Verdict::ambiguous;
   result.reason = alone ? wholly_explained : several_explain;
