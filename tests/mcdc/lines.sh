@@ -14,13 +14,12 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BU
   "-DCMAKE_CXX_FLAGS=$flags" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF \
   -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF > "$build/configure.log"
 cmake --build "$build" > "$build/build.log" 2>&1 || { tail -40 "$build/build.log"; exit 1; }
-rm -rf "$build/profiles"
-set --
-for test in "$build"/bin/actuator_* "$build"/bin/certified_* "$build"/bin/control_* "$build"/bin/fixed_point* "$build"/bin/sbgc_test; do
+rm -rf "$build/profiles" "$build/exports"
+mkdir "$build/exports"
+for test in "$build"/bin/actuator_* "$build"/bin/certified_* "$build"/bin/control_* "$build"/bin/fixed_point* "$build"/bin/sbgc_*; do
   name=$(basename "$test")
   LLVM_PROFILE_FILE="$build/profiles/$name.profraw" "$test" > "$build/$name.log" 2>&1 || { tail -40 "$build/$name.log"; exit 1; }
-  set -- "$@" -object "$test"
+  llvm-profdata-19 merge -sparse -o "$build/one.profdata" "$build/profiles/$name.profraw"
+  llvm-cov-19 export "$test" -instr-profile "$build/one.profdata" > "$build/exports/$name.json" 2> "$build/export.log"
 done
-llvm-profdata-19 merge -sparse -o "$build/all.profdata" "$build"/profiles/*.profraw
-llvm-cov-19 export -summary-only "$@" -instr-profile "$build/all.profdata" > "$build/summary.json" 2> "$build/export.log"
-python3 -B "$root/tests/mcdc/lines.py" "$build/summary.json"
+python3 -B "$root/tests/mcdc/lines.py" "$build/exports"

@@ -115,7 +115,9 @@ public:
     stage_ = 0;
   }
 
-  /// Carries the estimate over a step of constant heat. @param power_W  in the winding  @param dt_s  >= 0
+  /// Carries the estimate over a step of constant heat. @param power_W  in the winding  @param dt_s  >= 0; of a gap
+  /// longer than a thousand times `variance_s` the variances see that much: `start_unknown()` forgets what was known
+  /// before it
   const State& step(float power_W, float air_C, float dt_s) noexcept {
     if (!(dt_s >= 0.0f) || !detail::is_finite(dt_s)) return state_;
     if (!(dt_s == way_s_)) {
@@ -196,7 +198,7 @@ private:
   // Temperatures move in seconds: of short steps each does a fourth of the work.
   void carry_variances(float dt_s) noexcept {
     const bool is_long_step = dt_s * 10.0f > config_.variance_s;
-    // A gap of more than a thousand carries leaves nothing to be learnt from the next.
+    // A longer gap would take as many carries more: temperatures need none of them.
     const float most_s = 1000.0f * config_.variance_s;
     if (pending_s_ > most_s) {
       pending_J_ *= most_s / pending_s_;
