@@ -41,7 +41,7 @@ struct HeatedTank {
     const Scalar level_m = thermopower::plant::at_least(states[0], 1e-3);
     Terms<Scalar> terms{states[0], states[1], inputs[3], constants[1] * sqrt(level_m),
                         constants[2] * (states[1] - inputs[3])};
-    effects(terms);
+    effects(terms);  // a plant::ActingEffects: all that act, in their order
     rates[0] = (inputs[0] - terms.outflow_m3_per_s) / constants[0];
     rates[1] = (inputs[1] - terms.loss_W + J_per_m3_K * inputs[0] * (inputs[2] - states[1])) /
                (J_per_m3_K * constants[0] * level_m);

@@ -8,6 +8,9 @@
 namespace thermopower {
 
 /// Version of the library, in the sense of semantic versioning 2.0.
+///
+/// @snippet control_examples.cpp version
+/// How to: @ref other_firmware.
 /// @ingroup control
 struct Version {
   static constexpr int major_number() { return 0; }  ///< Incompatible changes.

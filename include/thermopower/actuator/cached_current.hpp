@@ -13,6 +13,9 @@ namespace thermopower {
 /// small chip, and most cycles ask the same again. Exact in power and supply; the temperature may have moved
 /// by half a kelvin, 0.2 % of a copper winding's current.
 /// @tparam Law  as for CurrentModel, with float as its scalar
+///
+/// @snippet actuator_examples.cpp cached current
+/// How to: @ref custom_motor.
 template <class Law>
 class CachedCurrent {
   static_assert(

@@ -22,6 +22,9 @@ namespace thermopower {
 /// A law of your own is a struct with `typedef ... Scalar`, `Scalar current_A(v_rms_V, motor_C) const` and
 /// `ConfigError validate() const`.
 /// @tparam Law  one of the above
+///
+/// @snippet actuator_examples.cpp current
+/// How to: @ref custom_motor, @ref laws.
 /// @ingroup actuator
 template <class Law>
 class CurrentModel {

@@ -12,6 +12,9 @@
 namespace thermopower {
 
 /// Power in the winding: V_rms I (eq 4.13).
+///
+/// @snippet actuator_examples.cpp energy
+/// How to: @ref units_and_temperatures.
 /// @ingroup actuator
 struct AtWinding {
   /// @return W
@@ -22,6 +25,9 @@ struct AtWinding {
 };
 
 /// Power drawn from the supply: V_supply I, where the measured current is the supply's own (section 5.3).
+///
+/// @snippet actuator_examples.cpp energy
+/// How to: @ref units_and_temperatures.
 /// @ingroup actuator
 struct AtSupply {
   /// @return W
@@ -47,6 +53,9 @@ struct IsMeterPlace<Candidate, Number,
 
 /// Sums P dt (eq 4.24) and divides by the time (eq 4.25).
 /// @tparam Where  `AtWinding` or `AtSupply`. Numbers of the two are not comparable.
+///
+/// @snippet actuator_examples.cpp energy
+/// How to: @ref units_and_temperatures.
 /// @ingroup actuator
 template <class Where, class Number = float>
 class EnergyMeter {

@@ -12,6 +12,9 @@ namespace thermopower {
 
 /// Conductance that grows with the speed of the air: G (1 + g v^n). n is about 0.5 (laminar) to 0.8
 /// (turbulent).
+///
+/// @snippet actuator_examples.cpp cooling
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct ForcedAirflow {

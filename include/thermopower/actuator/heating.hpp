@@ -19,6 +19,9 @@
 namespace thermopower {
 
 /// Heating of a body with a heat capacity: r = 1 / C.
+///
+/// @snippet actuator_examples.cpp thermal model
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct HeatCapacityHeating {
@@ -65,6 +68,9 @@ struct HeatCapacityHeating {
 /// Eq 4.16 and 4.17 (BGM2606-90T) use all four constants. Eq 4.18 (BGM5208-200-12) prints o1 = 0.2435, o0 =
 /// -0.4952; the program multiplies 0.2435 by the temperature instead, s0 = 0.2435. Both are in `motors/`, by
 /// name.
+///
+/// @snippet actuator_examples.cpp thesis heating
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct ThesisHeating {

@@ -18,6 +18,9 @@
 namespace thermopower {
 
 /// What a HottestJournal is tuned to. A set of your own has the same functions.
+///
+/// @snippet actuator_examples.cpp hottest journal
+/// How to: @ref explain_observer.
 struct StandardJournal {
   /// First byte in the memory.
   static constexpr uint16_t start() { return 0; }
@@ -37,6 +40,9 @@ struct StandardJournal {
 /// @tparam Memory     has `uint8_t read(size_t)`, `void write(size_t, uint8_t)` and `bool is_ready()`: nothing
 ///                    is written before it says so, and nobody waits for it
 /// @tparam Constants  StandardJournal, or your own
+///
+/// @snippet actuator_examples.cpp hottest journal
+/// How to: @ref explain_observer.
 template <class Memory, class Constants = StandardJournal>
 class HottestJournal {
   static_assert(Constants::slots() >= 2 && Constants::slots() <= 120 && Constants::change_K() >= 1,

@@ -15,6 +15,9 @@ namespace thermopower {
 /// \mathrm{loss} = G \, (T - T_\mathrm{air}) \left( \frac{|T - T_\mathrm{air}|}{T_\mathrm{ref}} \right)^{n}
 /// \f]
 /// At a difference of `reference_K` it equals Newton's G. n is 0.25 for laminar, 1/3 for turbulent flow (VDI Heat Atlas, F2; Incropera, ch. 9).
+///
+/// @snippet actuator_examples.cpp cooling
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct NaturalConvection {

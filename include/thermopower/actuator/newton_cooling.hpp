@@ -11,6 +11,9 @@
 namespace thermopower {
 
 /// Newton's law as a rate, eq 3.8: dT/dt = -k (T - T_air), whatever the heat capacity.
+///
+/// @snippet actuator_examples.cpp thesis heating
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct RateCooling {
@@ -47,6 +50,9 @@ struct RateCooling {
 };
 
 /// Newton's law as a conductance: loss = G (T - T_air).
+///
+/// @snippet actuator_examples.cpp cooling
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct NewtonCooling {

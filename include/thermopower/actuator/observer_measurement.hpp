@@ -20,6 +20,9 @@ struct MeasuredTemperature {
 };
 
 /// Winding temperature from V_rms and current. A lost or broken reading is not valid; it never reads as cold.
+///
+/// @snippet actuator_examples.cpp observer
+/// How to: @ref explain_observer.
 class WindingResistance {
 public:
   /// What one tunes.

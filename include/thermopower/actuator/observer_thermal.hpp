@@ -13,6 +13,9 @@ namespace thermopower {
 /// your motor. It steps at a fifth of the cost of `TwoNodeThermalModel` when the step length does not change,
 /// and it starts worst case instead of as warm as the air. Measurements go in through
 /// `axis.thermal().observer()`.
+///
+/// @snippet actuator_examples.cpp observed thermal
+/// How to: @ref explain_observer.
 class ObservedThermal {
 public:
   typedef float Scalar;  ///< As the other thermal models have it.

@@ -17,6 +17,9 @@ namespace thermopower {
 /// temperature.
 /// @tparam Number  float in firmware; double, lanes of numbers or an automatic-differentiation scalar on the
 /// desk
+///
+/// @snippet actuator_examples.cpp current
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct OhmicCurrent {

@@ -31,6 +31,9 @@
 namespace thermopower {
 
 /// What is known at power-up.
+///
+/// @snippet actuator_examples.cpp power-up
+/// How to: @ref explain_observer.
 struct PowerUpFacts {
   bool has_stored;          ///< A whole record was found.
   StoredState stored;       ///< That record.
@@ -95,6 +98,9 @@ inline PowerUpTemperatures carried(const PowerUpFacts& facts,
 }  // namespace detail
 
 /// Drew what it draws now. Take it when the actuator has a supply of its own and its load does not change.
+///
+/// @snippet actuator_examples.cpp power-up rules
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsNewLoad {
   /// Carries the record over the time off with `heat_now_W` in the winding.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
@@ -103,6 +109,9 @@ struct AsNewLoad {
   }
 };
 /// Went on drawing what it drew. Take it when a controller was reset and the drive went on.
+///
+/// @snippet actuator_examples.cpp power-up rules
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsOldLoad {
   /// Carries the record over the time off with the heat that was stored with it.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
@@ -111,6 +120,9 @@ struct AsOldLoad {
   }
 };
 /// Neither warmed nor cooled. Take it when the time off is short or not known.
+///
+/// @snippet actuator_examples.cpp power-up rules
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsStored {
   /// The record as it is, however long ago it was written.
   static PowerUpTemperatures start(PowerUpFacts facts,
@@ -120,6 +132,9 @@ struct AsStored {
   }
 };
 /// As warm as a setting says, whatever was stored.
+///
+/// @snippet actuator_examples.cpp power-up rules
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsPreset {
   /// `preset_C` in winding and body.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
@@ -130,6 +145,9 @@ struct AsPreset {
   }
 };
 /// Was off, and cooled. Take it when controller and actuator share a switch and a clock goes on.
+///
+/// @snippet actuator_examples.cpp power-up
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsCooled {
   /// Carries the record over the time off without heat.
   static PowerUpTemperatures start(const PowerUpFacts& facts,
@@ -138,6 +156,9 @@ struct AsCooled {
   }
 };
 /// May have been anything: at its limits. Take it when nothing was stored, until a resistance was measured.
+///
+/// @snippet actuator_examples.cpp power-up rules
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct AsHottest {
   /// Winding and body at their limits.
   static PowerUpTemperatures start(const PowerUpFacts& facts,

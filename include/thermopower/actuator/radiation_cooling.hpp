@@ -14,6 +14,9 @@ namespace thermopower {
 /// \f[
 /// \mathrm{loss} = \sigma A \varepsilon \, (T^4 - T_\mathrm{air}^4)
 /// \f]
+///
+/// @snippet actuator_examples.cpp cooling
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct RadiationCooling {

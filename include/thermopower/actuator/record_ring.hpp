@@ -44,6 +44,9 @@ struct IsRecord<Candidate, typename Exists<decltype(Candidate::size()),
 ///                 is_ready()`: nothing is read or written before it says so, and nobody waits for it
 /// @tparam Record  has `static constexpr uint8_t size()`, `void write(uint8_t*) const`, `bool read(const
 ///                 uint8_t*)` that refuses what is damaged, and `uint16_t sequence`
+///
+/// @snippet actuator_examples.cpp record ring
+/// How to: @ref explain_observer.
 template <class Memory, class Record>
 class RecordRing {
 public:
@@ -125,6 +128,9 @@ private:
 /// It has no constructor on purpose: one would wipe what it is there to keep. Where a reset clears all memory
 /// it is of no use, and of no harm.
 /// @tparam Record  as RecordRing takes it
+///
+/// @snippet actuator_examples.cpp retained
+/// How to: @ref explain_observer.
 template <class Record>
 struct Retained {
   static_assert(

@@ -44,6 +44,9 @@ struct StartFacts {
 
 /// Bounds of the actuator that the start bounds are computed with; heat capacities, conductances and coupling
 /// as in TwoNodeThermalModel. Take a body as large as you like for an actuator of one node.
+///
+/// @snippet actuator_examples.cpp start bounds
+/// How to: @ref explain_observer.
 struct StartAssumptions {
   float largest_heat_W;             ///< Most that the winding is ever heated with. >= 0.
   float least_winding_J_per_K;      ///< Above 0.

@@ -30,6 +30,9 @@
 namespace thermopower {
 
 /// What is worth keeping.
+///
+/// @snippet actuator_examples.cpp journal
+/// How to: @ref explain_observer.
 struct StoredState {
   float winding_C;        ///< -300 .. 300; outside, it is kept as the nearest of these.
   float body_C;           ///< -300 .. 300.
@@ -126,6 +129,9 @@ struct RecordPromise {
 /// something has changed but at most once in `interval_s`, at least once in `longest_s`, and before a planned
 /// stop (`write_now()`). What that makes certain is `promise()`. A record that was cut off by the loss of
 /// power fails its check sum, and the one before it counts.
+///
+/// @snippet actuator_examples.cpp journal
+/// How to: @ref explain_observer.
 template <class Memory>
 class StateJournal {
 public:

@@ -12,6 +12,9 @@
 namespace thermopower {
 
 /// Two cooling paths in parallel.
+///
+/// @snippet actuator_examples.cpp cooling
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class First, class Second>
 struct SumOfCooling {

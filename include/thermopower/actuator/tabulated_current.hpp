@@ -17,6 +17,9 @@ namespace thermopower {
 /// functions, all `constexpr`.
 /// @tparam Motor  has a `constexpr current_law<double>()` that is a ThesisCurrent, as the motors in `motors/`
 /// do
+///
+/// @snippet actuator_examples.cpp tabulated current
+/// How to: @ref custom_motor.
 /// @ingroup actuator
 template <class Motor>
 struct ThesisCurrentSource {
@@ -72,6 +75,9 @@ constexpr float CurrentNodes<Source, node_count, Indices<node...> >::slopes[node
 /// extrapolation would be too low.
 /// @tparam Source      the law: ThesisCurrentSource, or your own
 /// @tparam node_count  entries of the table, 2 .. 255; eight bytes of flash each
+///
+/// @snippet actuator_examples.cpp tabulated current
+/// How to: @ref custom_motor. Menu: @ref policies.
 /// @ingroup actuator
 template <class Source, int node_count = 65>
 struct TabulatedCurrent {

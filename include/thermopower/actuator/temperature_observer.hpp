@@ -54,6 +54,9 @@ struct TemperatureObserverConfig {
 /// It starts worst case (`start_unknown`): as hot as its limits, and not
 /// sure. A measurement that is hotter than expected is believed sooner than one that is colder: a wrong "hot"
 /// costs power, a wrong "cold" costs the motor.
+///
+/// @snippet actuator_examples.cpp observer
+/// How to: @ref explain_observer.
 class TemperatureObserver {
 public:
   typedef TemperatureObserverConfig Config;  ///< What one tunes.

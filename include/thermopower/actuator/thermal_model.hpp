@@ -21,6 +21,9 @@ namespace thermopower {
 /// Energy balance: with `HeatCapacityHeating` and a cooling law in watts, C (T2 - T1) is the heat in less the
 /// heat lost. With constant power the temperature settles where the cooling equals r P; for `NewtonCooling`
 /// that is T_air + P / G.
+///
+/// @snippet actuator_examples.cpp thermal model
+/// How to: @ref custom_motor, @ref laws.
 /// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {

@@ -16,6 +16,9 @@
 namespace thermopower {
 
 /// Forward Euler, eq 4.21: T += rate dt. Unstable when dt exceeds twice the time constant.
+///
+/// @snippet actuator_examples.cpp steps
+/// How to: @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 struct EulerStep {
   static constexpr bool needs_linear_laws() { return false; }  ///< Takes any law.
@@ -29,6 +32,9 @@ struct EulerStep {
 };
 
 /// The solution of dT/dt = a - s T for inputs that are constant over the step.
+///
+/// @snippet actuator_examples.cpp steps
+/// How to: @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 struct LinearizedStep {
   static constexpr bool needs_linear_laws() { return false; }  ///< Takes any law; exact for a linear one.
@@ -44,6 +50,9 @@ struct LinearizedStep {
 
 /// As LinearizedStep, but only for laws that are linear, where it is exact: two half steps equal one whole
 /// step.
+///
+/// @snippet actuator_examples.cpp steps
+/// How to: @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 struct ExactStep : LinearizedStep {
   /// Refuses, at compile time, laws that are not linear.

@@ -21,6 +21,9 @@ namespace thermopower {
 /// interpolation of measurements, not physics: outside 5.8 .. 12.9 V and 25 .. 75 degC it extrapolates, and
 /// below about 4 V the 5208's current comes out as zero.
 /// @tparam Number  see OhmicCurrent
+///
+/// @snippet actuator_examples.cpp thesis current
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Number = float>
 struct ThesisCurrent {

@@ -18,6 +18,9 @@ namespace thermopower {
 ///
 /// Costs some tens of exponentials a question: ask once a second, not in every cycle. In firmware each of them is
 /// float; the times are exact to a thousandth of themselves, or a hundredth of a second.
+///
+/// @snippet actuator_examples.cpp forecast
+/// How to: @ref choose_a_limiter.
 /// @ingroup actuator
 class TwoNodeForecast {
 public:

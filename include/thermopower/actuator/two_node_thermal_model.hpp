@@ -23,6 +23,9 @@ namespace thermopower {
 /// Take it when the winding is much faster than the housing, so that a short overload heats copper long
 /// before a thermometer on the housing shows it. Both eigenvalues are real and negative (the network has no
 /// way to store what would oscillate).
+///
+/// @snippet actuator_examples.cpp two nodes
+/// How to: @ref custom_motor, @ref laws.
 /// @ingroup actuator
 template <class Number = float>
 class TwoNodeThermalModel {

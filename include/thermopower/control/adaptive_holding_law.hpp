@@ -66,6 +66,9 @@ struct AdaptiveHoldingConfig {
 /// The power is the memory of this pose plus what the error beyond its tolerance is worth. It never exceeds
 /// `highest_power`, and at a limiter's mercy it learns nothing: what was not granted is no evidence that
 /// it was not enough. The pose and what was granted come with the axis's facts.
+///
+/// @snippet control_examples.cpp holding law
+/// How to: @ref custom_actuator. Menu: @ref policies.
 template <uint8_t bins = 8>
 class AdaptiveHoldingLaw {
   static_assert(bins >= 1 && bins <= 64, "thermopower: AdaptiveHoldingLaw takes 1 .. 64 ranges of poses");

@@ -28,6 +28,9 @@ enum class AirSource : uint8_t {
 /// A thermometer that has never read anything but exactly 0 is not believed at all: it is not fitted, or not
 /// awake yet. (One in air of 0 degC is warmed by its own chip, and does not stand there.) Where the time is
 /// told, a fall is believed no faster than air can fall; a rise is believed at once.
+///
+/// @snippet control_examples.cpp air
+/// How to: @ref wire_up_sbgc, @ref faults_and_reasons.
 /// @ingroup control
 class AirTemperature {
 public:

@@ -28,6 +28,9 @@ namespace thermopower {
 /// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is
 /// the least there is. The temperature is estimated through a fault with the last valid air and supply: the
 /// motor stays warm even if its sensor is gone.
+///
+/// @snippet control_examples.cpp axis
+/// How to: @ref first_axis, @ref custom_actuator.
 /// @ingroup control
 template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>,
           class Gain = GainScheduler<>>

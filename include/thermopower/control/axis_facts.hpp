@@ -13,6 +13,9 @@ namespace thermopower {
 /// What an axis knows when it asks its policies. A power law may take `step(error_deg, facts, dt_s)` instead of
 /// `step(error_deg)`, a gain `step(power, facts)` instead of `step(power)`, and a limiter `step(facts, dt_s)`
 /// instead of `step(inputs, dt_s)`. NaN stands for what is not known.
+///
+/// @snippet control_examples.cpp axis facts
+/// How to: @ref custom_actuator.
 /// @ingroup control
 struct AxisFacts {
   uint8_t demand;           ///< Power parameter asked for; the least power while the law is being asked.

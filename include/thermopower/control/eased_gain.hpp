@@ -18,6 +18,9 @@ namespace thermopower {
 /// damping then has nothing left to act with. Beyond `ease_from_deg` the gain falls in proportion, so that
 /// gain times error grows no further, but not below `far_gain`, with which the axis comes back as fast as its
 /// damping allows. Within `ease_from_deg` nothing changes. An error that is not finite changes nothing.
+///
+/// @snippet control_examples.cpp eased gain
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Gain = GainScheduler<> >
 class EasedGain {

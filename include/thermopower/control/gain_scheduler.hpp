@@ -68,6 +68,9 @@ inline uint8_t scheduled_gain(uint8_t power, const GainConfig& config, float rou
 }  // namespace detail
 
 /// Eq 4.27, cut to a whole count as the program does: 22 / 172 / 36 at power 25 for roll / pitch / yaw.
+///
+/// @snippet control_examples.cpp gain scheduler
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct TruncatedGain {
   typedef GainConfig Config;  ///< What one tunes.
@@ -78,6 +81,9 @@ struct TruncatedGain {
 };
 
 /// Eq 4.27 to the nearest count.
+///
+/// @snippet control_examples.cpp gain scheduler
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct RoundedGain {
   typedef GainConfig Config;  ///< What one tunes.
@@ -90,6 +96,9 @@ struct RoundedGain {
 /// Gains at equally spaced powers, linearly interpolated. `Table` has `static constexpr uint8_t size()` (2 ..
 /// 255) and `static const uint8_t* gains()`, the address of that many bytes declared with
 /// `thermopower_flash`; the first is for power 0, the last for power 255.
+///
+/// @snippet control_examples.cpp gain table
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Table>
 struct TableGain {
@@ -134,6 +143,9 @@ private:
 
 /// The proportional gain for a power.
 /// @tparam Rule  one of the rules above
+///
+/// @snippet control_examples.cpp gain scheduler
+/// How to: @ref first_axis, @ref custom_actuator.
 /// @ingroup control
 template <class Rule = RoundedGain>
 class GainScheduler {
@@ -160,6 +172,9 @@ private:
 };
 
 /// For actuators without a gain: always 0, which the caller ignores. It stands in the place of a `GainScheduler`.
+///
+/// @snippet control_examples.cpp no gain
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 class NoGain {
 public:

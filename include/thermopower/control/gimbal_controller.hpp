@@ -29,6 +29,9 @@ struct GimbalConfigError {
 
 /// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate
 /// to compute with.
+///
+/// @snippet control_examples.cpp gimbal
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct NominalSupply {
   /// @return V
@@ -36,6 +39,9 @@ struct NominalSupply {
 };
 
 /// The supply as the board measures it: take it when the measurement has been checked, or the battery sags.
+///
+/// @snippet control_examples.cpp gimbal
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct MeasuredSupply {
   /// @return V
@@ -183,6 +189,9 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 /// The controller of a whole gimbal.
 /// @tparam Supply  `NominalSupply` or `MeasuredSupply`
 /// @tparam Axes    one AxisController per axis
+///
+/// @snippet control_examples.cpp gimbal
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 template <class Supply, class... Axes>
 class BasicGimbalController : detail::GimbalPoses<sizeof...(Axes), detail::AnyTakesPose<Axes...>::value> {

@@ -154,6 +154,9 @@ const First& limiter_at(const LimiterLinks<index, First, Rest...>& links) noexce
 /// always before a limit. What counts as too hot for one of them (NaN, a time that runs backwards) cuts the whole
 /// chain. Put a limiter that keeps account of the power it granted, `CertifiedLimiter`, last: only the last one
 /// knows what acted; before others it counts more heat than there was, which is safe and wastes a little.
+///
+/// @snippet control_examples.cpp limiter chain
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 template <class... Limiters>
 class LimiterChain {

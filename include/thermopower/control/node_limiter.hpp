@@ -36,6 +36,9 @@ struct NodeLimit {
 /// the actuator settles inside the band, on one power. Take it when parts have limits of their own and no
 /// bounds can be declared; with bounds, `CertifiedLimiter` needs no band. A temperature that is NaN or
 /// infinite counts as too hot.
+///
+/// @snippet control_examples.cpp node limiter
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 class NodeLimiter {
 public:

@@ -38,6 +38,9 @@ uint8_t reported_power(const Telemetry&, uint8_t, long) noexcept {
 /// | no telemetry for longer than is tolerated | 255: the board may have restarted with anything |
 ///
 /// A board that neither reports nor ever confirms cannot be verified; what is sent to it is believed.
+///
+/// @snippet control_examples.cpp power in force
+/// How to: @ref faults_and_reasons.
 /// @ingroup control
 template <uint8_t axis_count>
 class PowerInForce {

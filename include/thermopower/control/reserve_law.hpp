@@ -18,6 +18,9 @@ namespace thermopower {
 /// error up and down pushes the camera each time it changes, and one that waits for an error is too late for
 /// the next gust. Here an error beyond `moving_error_deg` lifts the power to a steady reserve, which stays
 /// until there was none for `calm_s`, and then sinks slowly. An axis at rest pays for none of it.
+///
+/// @snippet control_examples.cpp reserve law
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Law = StepPowerLaw<>>
 class ReserveLaw {

@@ -48,6 +48,9 @@ struct SafetyLimiterConfig {
 };
 
 /// The thesis's rule: one count per call, so the speed depends on the loop rate.
+///
+/// @snippet control_examples.cpp safety limiter
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 struct PerCycle {
   /// The ceiling.
@@ -67,6 +70,9 @@ struct PerCycle {
 };
 
 /// The same rule in counts per second: independent of the loop rate.
+///
+/// @snippet control_examples.cpp safety limiter
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 struct PerSecond {
   /// The ceiling.
@@ -94,6 +100,9 @@ struct PerSecond {
 /// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time
 /// that is NaN, infinite or impossible (below absolute zero, a negative time) counts as too hot; at equal
 /// history a hotter actuator never gets more.
+///
+/// @snippet control_examples.cpp safety limiter
+/// How to: @ref choose_a_limiter.
 /// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {

@@ -17,6 +17,9 @@ namespace thermopower {
 ///
 /// The correction is bounded below and above, and the result by 1 .. 255; the limiter comes after it, so more
 /// power is never granted than the actuator bears. A supply that is not finite, or 0, is not corrected for.
+///
+/// @snippet control_examples.cpp sag-aware law
+/// How to: @ref custom_actuator. Menu: @ref policies.
 template <class Law = StepPowerLaw<>>
 class SagAwareLaw {
   static_assert(

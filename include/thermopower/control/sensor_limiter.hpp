@@ -18,6 +18,9 @@ namespace thermopower {
 ///
 ///     if (observer.correct_winding(winding, v_rms_V, current_A)) axis.limiter().limiter<0>().measured();
 ///
+///
+/// @snippet control_examples.cpp sensor limiter
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 class SensorLimiter {
 public:

@@ -54,6 +54,9 @@ struct StepPowerConfig {
 struct NoState {};
 
 /// Levels per degree, divided once: a division in every step is dear on a small chip.
+///
+/// @snippet control_examples.cpp level scale
+/// How to: @ref custom_actuator.
 /// @ingroup control
 class LevelScale {
 public:
@@ -71,6 +74,9 @@ private:
 };
 
 /// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).
+///
+/// @snippet control_examples.cpp power law rules
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct ProgrammedLevels {
   typedef StepPowerConfig Config;  ///< What one tunes.
@@ -83,6 +89,9 @@ struct ProgrammedLevels {
 };
 
 /// Eq 4.22 as printed: no power below a tenth of the full error, and a cap at 255.
+///
+/// @snippet control_examples.cpp power law rules
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct PrintedLevels {
   typedef StepPowerConfig Config;  ///< What one tunes.
@@ -95,6 +104,9 @@ struct PrintedLevels {
 };
 
 /// `ProgrammedLevels` that rise at a level's edge and fall only `hysteresis_deg` below it.
+///
+/// @snippet control_examples.cpp power law
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct HysteresisLevels {
   typedef StepPowerConfig Config;  ///< What one tunes.
@@ -114,6 +126,9 @@ struct HysteresisLevels {
 };
 
 /// Proportional to the error, from one level to ten.
+///
+/// @snippet control_examples.cpp power law rules
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct ContinuousPower {
   typedef StepPowerConfig Config;  ///< What one tunes.
@@ -129,6 +144,9 @@ struct ContinuousPower {
 
 /// Power demanded by a position error.
 /// @tparam Rule  one of the rules above
+///
+/// @snippet control_examples.cpp power law
+/// How to: @ref first_axis, @ref custom_actuator.
 /// @ingroup control
 template <class Rule = ProgrammedLevels>
 class StepPowerLaw {

@@ -55,6 +55,9 @@ struct UtilisationConfig {
 
 /// Thermal utilisation: (T - T_air) / (T_limit - T_air) of the node that is nearer to its limit. 0 % is as warm as
 /// the air, 100 % is the limit, whatever the weather; at a constant power it settles in proportion to the heat.
+///
+/// @snippet control_examples.cpp utilisation
+/// How to: @ref choose_a_limiter.
 /// @ingroup control
 class Utilisation {
 public:

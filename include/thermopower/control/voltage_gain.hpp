@@ -17,6 +17,9 @@
 namespace thermopower {
 
 /// V_rms of a switched supply, eq 3.11.
+///
+/// @snippet control_examples.cpp voltage gain
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct SwitchedDrive {
   /// Voltage against voltage of two powers. @param power_ratio  POWER against POWER, above 0
@@ -25,6 +28,9 @@ struct SwitchedDrive {
 
 /// A sine whose amplitude POWER scales. The currents of Tables 4.1 and 4.2 rise with POWER^0.93 and POWER^0.95: 3 to 5 %
 /// from this at half the power, where `SwitchedDrive` is 35 % away.
+///
+/// @snippet control_examples.cpp voltage gain
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct SineDrive {
   /// Voltage against voltage of two powers. @param power_ratio  POWER against POWER, above 0
@@ -43,6 +49,9 @@ struct SineDrive {
 /// one when the supply sags or the motor gets warm. Without facts (`step(power)`) the supply and temperature
 /// of the tuning are assumed.
 /// @tparam Drive  one of the drives above, or one of your own with `static float voltage_ratio(float)`
+///
+/// @snippet control_examples.cpp voltage gain
+/// How to: @ref custom_actuator.
 /// @ingroup control
 template <class Drive>
 class BasicVoltageGain {

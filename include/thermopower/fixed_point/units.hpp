@@ -67,6 +67,9 @@ inline float K_per_s_of(Rate rate) noexcept {
 
 /// Turns a clock in microseconds that wraps at 2^32 into elapsed ticks; what is less than a tick is kept for
 /// the next time, so that no time is lost in the long run.
+///
+/// @snippet fixed_point_examples.cpp fixed-point gimbal
+/// How to: @ref wire_up_sbgc.
 class Clock {
 public:
   /// Ticks since the last call (since `start()` or 0 at the first).

@@ -151,6 +151,9 @@ struct RowRange {
 };
 
 /// Something about the data themselves, found before any effect is looked for.
+///
+/// @snippet plant_examples.cpp finding
+/// How to: @ref diagnose_a_gap.
 struct Finding {
   FindingKind kind = FindingKind::missing_samples;  ///< what it is
   Severity severity = Severity::note;               ///< an error decides the verdict

@@ -28,6 +28,9 @@ struct Column {
 /// Outputs are samples at the row's time. Every other numeric column is a covariate.
 /// Invariants (see validate()): all columns are as long as `t_s`; `t_s` is finite and strictly increasing
 /// inside a run; the runs are in order and do not overlap.
+///
+/// @snippet plant_examples.cpp recording
+/// How to: @ref diagnose_a_gap, @ref take_logs_in.
 struct Recording {
   std::string name;                             ///< for messages, usually the file's name
   Eigen::VectorXd t_s;                          ///< time of each row in s

@@ -20,6 +20,9 @@ public:
 /// Each file is written under a temporary name in its own directory and renamed over the target once every
 /// one of them is complete on disk. Until then an older file of that name stays as it was. Special files (a
 /// pipe, /dev/stdout) are written straight through.
+///
+/// @snippet 10_own_effect/own_effect.cpp writing files
+/// How to: @ref diagnose_a_gap, @ref gap_files.
 class OutputFiles {
 public:
   /// @brief Announces a file and finds out at once whether it can be written, so that a long computation is

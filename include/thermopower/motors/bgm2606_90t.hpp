@@ -17,6 +17,9 @@ namespace motors {
 /// this one. Valid for V_rms 5.8 .. 12.9 V, motor 25 .. 75 degC (Table 4.1); cooling from Table 4.3.
 ///
 /// As a motor type for `AxisController` it names its models (`Current`, `Thermal`) and gives their constants.
+///
+/// @snippet actuator_examples.cpp motors
+/// How to: @ref custom_motor, @ref first_axis.
 /// @ingroup motors
 struct Bgm2606_90t {
   typedef CurrentModel<ThesisCurrent<float>> Current;                                      ///< Current law.

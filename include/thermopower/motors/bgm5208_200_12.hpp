@@ -18,6 +18,9 @@ namespace motors {
 /// degC (Table 4.2); cooling from Table 4.6.
 ///
 /// As a motor type for `AxisController` it names its models (`Current`, `Thermal`) and gives their constants.
+///
+/// @snippet actuator_examples.cpp motors
+/// How to: @ref custom_motor, @ref first_axis.
 /// @ingroup motors
 struct Bgm5208_200_12 {
   typedef CurrentModel<ThesisCurrent<float>> Current;                                      ///< Current law.

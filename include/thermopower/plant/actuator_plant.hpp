@@ -22,6 +22,9 @@ namespace thermopower::plant {
 ///
 /// The bench runs freely over whole runs, from the first measured temperature on; the axis in windows, each from
 /// the measured angle and rate.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method.
 class ActuatorPlant : public Plant {
 public:
   const std::vector<Signal>& signals(const Segment& segment) const override {

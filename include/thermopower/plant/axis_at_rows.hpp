@@ -24,6 +24,8 @@ namespace thermopower::plant {
 
 /// Twist of a spring between two inertias, and its rate, while the near one moves as measured:
 /// q'' = -rate' - w^2 q - 2 z w q', with q of the far side relative to the near one.
+///
+/// How the whole works: @ref gap_method.
 struct SpringTwist {
   Eigen::VectorXd angle_rad;        ///< q
   Eigen::VectorXd rate_rad_per_s;   ///< q'
@@ -63,6 +65,8 @@ struct SpringTwist {
 };
 
 /// What an axis recorded and what its equation says of it, row by row at the measured motion.
+///
+/// How the whole works: @ref gap_method.
 class AxisAtRows {
 public:
   /// What a balance needs of each row.

@@ -19,6 +19,9 @@ inline const Eigen::VectorXd& command(const Inputs& inputs, bool voltage_driven)
 }
 
 /// Simulates angle and rate of one axis over the rows of a window.
+///
+/// @snippet plant_examples.cpp bench rollout
+/// How to: @ref gap_method.
 template <class Scalar>
 class AxisRollout {
 public:

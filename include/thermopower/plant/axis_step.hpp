@@ -12,6 +12,8 @@
 namespace thermopower::plant {
 
 /// The values of the states that effects bring to the joint. Copies no more than there are.
+///
+/// How the whole works: @ref gap_method.
 template <class Scalar>
 struct OwnValues {
   int count = 0;               ///< of the states that there are
@@ -57,6 +59,8 @@ struct AxisDrive {
 /// sticks while friction holds the other torques, else it leaves with friction reversed. With an
 /// automatic-differentiation scalar the cut's position is differentiated too, so derivatives are exact
 /// through reversals.
+///
+/// How the whole works: @ref gap_method.
 template <class Scalar>
 class AxisStep {
 public:

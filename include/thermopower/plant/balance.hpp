@@ -36,6 +36,8 @@ enum class BalanceForm {
 };
 
 /// The rows that balances stand on.
+///
+/// How the whole works: @ref gap_method.
 struct BalanceRows {
   Eigen::VectorXd t_s;        ///< stamps, strictly increasing inside a run
   std::vector<RunSpan> runs;  ///< rows between which time passes
@@ -73,6 +75,8 @@ struct Correction {
 };
 
 /// What in a plant may be otherwise than its equation says, with no formula for it: a few directions.
+///
+/// How the whole works: @ref gap_method.
 struct Freedom {
   SubmodelName submodel;  ///< who is at fault if this helps
   std::string variable;   ///< what orders the missing quantity then: one of the balance's variables, or empty
@@ -150,6 +154,8 @@ struct Balance {
 using ReadingOffsets = PerSignal<double>;
 
 /// A balance that is made when a stage asks for it.
+///
+/// How the whole works: @ref gap_method.
 struct BalanceSource {
   QuantityName quantity;                               ///< as in Balance
   SignalName signal;                                   ///< as in Balance

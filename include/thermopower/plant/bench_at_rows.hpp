@@ -31,6 +31,8 @@ enum class HeatTold {
 
 /// What the laws of a bench say at the rows of a recording, each at its measured inputs. Behind a thermometer that
 /// lags (a model with that effect) the circuit is judged at what the thermometer shows.
+///
+/// How the whole works: @ref gap_method.
 class BenchAtRows {
 public:
   /// What a balance needs of each row.

@@ -19,6 +19,9 @@ namespace thermopower::plant {
 /// Inputs are held over each interval. The coupled equations are integrated with the midpoint rule where an
 /// interval is short against every time constant and with sub-steps of the classical Runge-Kutta rule else;
 /// two nodes whose exchange is fast against the interval, with an exponential rule that solves it exactly.
+///
+/// @snippet plant_examples.cpp bench rollout
+/// How to: @ref gap_method.
 template <class Scalar>
 class BenchRollout {
 public:

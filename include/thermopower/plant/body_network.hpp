@@ -11,6 +11,8 @@
 namespace thermopower::plant {
 
 /// Places of a body's nodes in a network. Where winding and surface are one, both have its place, the first one.
+///
+/// How the whole works: @ref gap_method.
 struct BodyPlaces {
   std::size_t surface;   ///< node that the air cools
   std::size_t soaking;   ///< node behind the surface, where there is one

@@ -19,6 +19,9 @@
 namespace thermopower::plant {
 
 /// Which hooks an effect has; the engine calls no others.
+///
+/// @snippet plant_examples.cpp catalogue
+/// How to: @ref diagnose_a_gap.
 struct HookSet {
   bool electrical = false;         ///< overload of `act` for ElectricalTerms
   bool air = false;                ///< for AirTerms
@@ -104,6 +107,9 @@ private:
 }  // namespace detail
 
 /// An effect of the catalogue: what it is, and its hooks for both scalars.
+///
+/// @snippet plant_examples.cpp catalogue
+/// How to: @ref diagnose_a_gap.
 struct CatalogueEntry {
   EffectInfo info;                                          ///< id, prose, parameters, needs
   HookSet hooks;                                            ///< where it acts
@@ -126,6 +132,9 @@ struct CatalogueEntry {
 /// `template <class Scalar> static void act(const Scalar* p, XTerms<Scalar>& terms)`, where XTerms is one of
 /// terms.hpp and `p` its parameters in the order of `info().parameters`. It is simulated, fitted (derivatives
 /// by automatic differentiation), compared and exported because it exists: `catalogue.add<MyEffect>()`.
+///
+/// @snippet plant_examples.cpp catalogue
+/// How to: @ref diagnose_a_gap.
 class Catalogue {
 public:
   /// Adds an effect; a type that is none is a compile-time error in one sentence. @throws InvalidInput where its info is unusable or its id is taken.

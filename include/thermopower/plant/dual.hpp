@@ -18,6 +18,9 @@ inline constexpr int dual_width = 12;
 /// Values are double precision, derivatives single: a fit is judged by its values, and its steps need a direction
 /// right to some digits. Twelve directions, an axis with two causes and the starts of its windows, then go in one
 /// pass of half the size, which halves the time of a search through pairs.
+///
+/// @snippet plant_examples.cpp dual
+/// How to: @ref gap_method.
 class Dual {
 public:
   using Scalar = double;  ///< the type of literals, as the actuator's laws ask for it

@@ -101,6 +101,9 @@ struct Parameter {
 };
 
 /// Builds a Parameter, each property by its name.
+///
+/// @snippet plant_examples.cpp effect of one's own
+/// How to: @ref diagnose_a_gap.
 class ParameterBuilder {
 public:
   /// @param index  by which the effect reads it, an enumerator: the catalogue checks it against the list

@@ -15,6 +15,9 @@ namespace thermopower::plant {
 /// d/dt (winding, surface) = J (winding, surface) + the rest. The functions phi_1(z) = (e^z - 1) / z and
 /// phi_2(z) = (phi_1(z) - 1) / z of the matrix h J carry a slope, and the change of the rest, over a step of
 /// any length (Cox and Matthews 2002, the method ETD2RK; Hochbruck and Ostermann 2010, eq. 2.39).
+///
+/// @snippet plant_examples.cpp exchange step
+/// How to: @ref gap_method.
 template <class Scalar>
 class ExchangeStep {
 public:

@@ -31,6 +31,9 @@ class Condition;
 /// Arithmetic on it builds nodes of a Trace, each distinct one once, with constants folded. A comparison
 /// yields a Condition; where code branches on one, Trace::every_branch() runs it once for each way. Without a
 /// trace it is a constant.
+///
+/// @snippet plant_examples.cpp expression
+/// How to: @ref gap_method.
 class Expression {
 public:
   using Scalar = double;  ///< the type of literals, as the actuator's laws ask for it
@@ -68,6 +71,9 @@ private:
 };
 
 /// A comparison of expressions. As a bool it asks its trace which way to take.
+///
+/// @snippet plant_examples.cpp expression
+/// How to: @ref gap_method.
 class Condition {
 public:
   /// Known beforehand.
@@ -90,6 +96,9 @@ private:
 };
 
 /// Where expressions are written down.
+///
+/// @snippet plant_examples.cpp expression
+/// How to: @ref gap_method.
 class Trace {
 public:
   /// What a node does with its arguments.

@@ -17,6 +17,9 @@
 namespace thermopower::plant {
 
 /// One call of a simulator: from which state, with which numbers, over which rows.
+///
+/// @snippet 13_black_box/black_box.cpp black box
+/// How to: @ref diagnose_a_gap.
 struct SimulatorCall {
   std::vector<double> constants;             ///< in the order of the plant's info
   std::vector<double> start;                 ///< states at the first row, in the order of the info

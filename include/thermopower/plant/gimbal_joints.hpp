@@ -28,6 +28,9 @@ inline const char* to_string(GimbalJoint joint) {
 }
 
 /// A symmetric matrix over the joints: inertias in kg m^2, or their derivatives by an angle in kg m^2/rad.
+///
+/// @snippet plant_examples.cpp joint matrix
+/// How to: @ref gimbal_how_to.
 template <class Scalar>
 struct JointMatrix {
   Scalar yaw{0.0};         ///< yaw with itself
@@ -75,6 +78,9 @@ struct AngularRow {
 /// accelerates, or stands askew, is in `gravity_*_mps2`, the gravity less the frame's acceleration in
 /// the frame's axes (x ahead, y right, z down), 9.81 m/s^2 downwards where nothing else is recorded. Angles
 /// in degrees; columns `yaw_A`, `yaw_deg`, `yaw_dps` and so on.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 struct GimbalJoints {
   /// What it is made of.
   static PlantInfo info() {
@@ -214,6 +220,9 @@ struct GimbalJoints {
 
 /// Joints that move each other: the inertia of each depends on the pose of those behind it, and what turns about
 /// two axes at once is torqued about the third.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 struct GimbalCoupling {
   /// Its parameters, in this order.
   enum Parameters {
@@ -264,6 +273,9 @@ enum class GimbalBody {
 };
 
 /// A body whose principal axes are not those of the joints.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 template <GimbalBody body>
 struct GimbalProducts {
   /// Its parameters, in this order: integrals of xy, yz and xz over the body's mass.
@@ -313,6 +325,9 @@ inline EffectInfo imbalance(const char* name, const char* equation, const char* 
 }  // namespace detail
 
 /// A camera whose centre of mass is not where the axes meet.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 struct CameraImbalance {
   /// Its parameters, in this order: mass times the lever along the camera's x, y and z.
   enum Parameters {
@@ -346,6 +361,9 @@ struct CameraImbalance {
 };
 
 /// A roll arm whose centre of mass, with the pitch motor on it, is beside, above or below the roll axis.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 struct ArmImbalance {
   /// Its parameters, in this order: mass times the lever along the arm's y and z.
   enum Parameters {
@@ -370,6 +388,9 @@ struct ArmImbalance {
 };
 
 /// A centre of mass off the yaw axis: the yaw stage's own, or the roll arm's ahead of it.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 struct YawImbalance {
   /// Its parameters, in this order: mass times the lever along the yaw stage's x and y.
   enum Parameters {
@@ -393,6 +414,9 @@ struct YawImbalance {
 };
 
 /// Dry friction in one joint.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 template <GimbalJoint joint>
 struct JointFriction {
   /// Its parameter.
@@ -420,6 +444,9 @@ struct JointFriction {
 };
 
 /// Cables that bend with one joint.
+///
+/// @snippet plant_examples.cpp gimbal
+/// How to: @ref gimbal_how_to, @ref three_joints.
 template <GimbalJoint joint>
 struct JointCable {
   /// Its parameters, in this order.

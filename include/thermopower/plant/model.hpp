@@ -58,6 +58,9 @@ struct ThesisThermalModel {
 
 /// `"law": "rigid"`: J dw/dt = Kt drive - b w, for a drive that commands the current. `"law": "voltage"`:
 /// J dw/dt = Kt (u - Kt w) / R - b w, for a brushed motor at a voltage u.
+///
+/// @snippet plant_examples.cpp axis model
+/// How to: @ref diagnose_a_gap.
 struct RigidAxisModel {
   double inertia_kgm2 = 1e-3;             ///< kg m^2, > 0
   double viscous_Nms_per_rad = 1e-3;      ///< N m s/rad, >= 0
@@ -102,6 +105,9 @@ struct NamedConstant {
 
 /// A constant that may be off: one field of the model, or several that only make sense scaled together (the
 /// coefficients of one polynomial). As a cause the diagnosis calls it by its id after `calibration.`
+///
+/// @snippet plant_examples.cpp model
+/// How to: @ref diagnose_a_gap, @ref gap_files.
 struct CalibratedConstant {
   std::string id;                   ///< `resistance`, `heat_capacity`, ...
   std::string block;                ///< `current`, `thermal`, `axis`, `servo` or `effects.<id>`
@@ -133,6 +139,9 @@ struct PlantModel {
 };
 
 /// The simulation under test, as in a model file. Blocks may be absent: what they would say is not judged.
+///
+/// @snippet plant_examples.cpp model
+/// How to: @ref diagnose_a_gap, @ref gap_files.
 struct Model {
   std::string name;  ///< as reports call it
   /// Needed where the recording has no `supply_V`.

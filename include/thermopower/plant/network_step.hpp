@@ -21,6 +21,9 @@ namespace thermopower::plant {
 /// It is of second order with any J, so that what J does not know (a resistance that follows the temperature, radiation)
 /// costs no accuracy; and with the right J an exchange as fast as one likes dies away in one step (L-stable).
 /// @tparam most  nodes that a body may have
+///
+/// @snippet plant_examples.cpp network step
+/// How to: @ref gap_method.
 template <class Scalar, std::size_t most>
 class NetworkStep {
 public:

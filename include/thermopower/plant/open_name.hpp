@@ -16,6 +16,9 @@ namespace thermopower::plant {
 /// member, however it was made: two equal texts are equal names.
 ///
 /// @tparam Known an enum that counts from 0, with `const char* to_string(Known)` and `int count_of(Known)`
+///
+/// @snippet plant_examples.cpp open name
+/// How to: @ref diagnose_a_gap.
 template <class Known>
 class OpenName {
 public:

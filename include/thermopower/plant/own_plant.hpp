@@ -25,6 +25,9 @@ struct WrittenEquation {
 };
 
 /// What all plants of one's own have in common: states of which some are measured, and signals.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref diagnose_a_gap.
 class OwnPlant : public Plant {
 public:
   /// @throws InvalidInput where the info or an effect's is unusable

@@ -22,6 +22,9 @@ struct PlantInfo;
 
 /// A point in the space that a fit moves in: factors on a model's constants, and parameters of effects that act
 /// besides the model's own.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method, @ref diagnose_a_gap.
 struct ParameterPoint {
   std::vector<double> factors;                 ///< on each of Model::calibrated(), > 0; empty: all 1
   std::vector<const CatalogueEntry*> effects;  ///< that act in addition, not owned
@@ -41,6 +44,9 @@ struct Directions {
 };
 
 /// What a rollout says of a segment: a value for each of its signals at each of its rows, with derivatives.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method, @ref diagnose_a_gap.
 class Readings {
 public:
   /// Makes room for rows [begin, end), all NaN.
@@ -98,6 +104,9 @@ struct HiddenStart {
 };
 
 /// A plant at one point of its parameters, under way through the segments of recordings.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method, @ref diagnose_a_gap.
 class Rollout {
 public:
   virtual ~Rollout() = default;
@@ -119,6 +128,9 @@ public:
 ///
 /// A Model says which plant it is of, with which constants and effects; a Plant holds no values. Stages never
 /// state an equation: whatever answers these questions is diagnosed like the library's own plants.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method, @ref diagnose_a_gap.
 class Plant {
 public:
   virtual ~Plant() = default;

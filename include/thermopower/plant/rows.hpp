@@ -21,6 +21,9 @@ inline constexpr double rad_per_deg = 0.017453292519943295;
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// Half-open range of rows [begin, end) that belong to one run; the model's state starts anew at `begin`.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method.
 struct RunSpan {
   Eigen::Index begin = 0;  ///< first row
   Eigen::Index end = 0;    ///< one past the last row
@@ -40,6 +43,9 @@ enum class HeatSource {
 };
 
 /// A recording as a rollout wants it: inputs without holes, outputs with theirs, and what can be judged.
+///
+/// @snippet plant_examples.cpp rollout
+/// How to: @ref gap_method.
 struct Inputs {
   std::string name;           ///< of the recording
   Eigen::VectorXd t_s;        ///< stamps of the rows, strictly increasing in a run

@@ -16,6 +16,9 @@
 namespace thermopower::plant {
 
 /// A servo's gains in the scalar of a rollout.
+///
+/// @snippet plant_examples.cpp servo gains
+/// How to: @ref servo_on_a_pendulum.
 template <class Scalar>
 struct ServoGains {
   bool position = true;    ///< from `target_deg`; else from `target_dps`
@@ -124,6 +127,9 @@ inline void replay_servo(const Model& model, Inputs& inputs) {
 }
 
 /// A servo under way in a window: samples the simulated motion, and lets each command act when its time has come.
+///
+/// @snippet plant_examples.cpp bench rollout
+/// How to: @ref gap_method, @ref servo_on_a_pendulum.
 template <class Scalar>
 class ServoLoop {
 public:

@@ -56,6 +56,9 @@ inline const char* unit_of(Signal signal) {
 using SignalName = OpenName<Signal>;
 
 /// One value for each signal of a plant, indexed by the signal.
+///
+/// @snippet plant_examples.cpp per signal
+/// How to: @ref gap_method.
 template <class T>
 class PerSignal {
 public:

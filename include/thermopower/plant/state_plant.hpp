@@ -28,6 +28,9 @@ struct ActsOn<Effect, Terms, Scalar,
 }  // namespace detail
 
 /// The effects that act in a rollout of a plant of one's own: the plant calls it with the terms of its equations.
+///
+/// @snippet 12_own_plant/heated_tank.hpp own plant
+/// How to: @ref diagnose_a_gap.
 template <class Scalar, class... Effects>
 class ActingEffects {
 public:

@@ -64,6 +64,9 @@ struct ThermalTerms {
 };
 
 /// The shape of the thermal model, set once per simulation.
+///
+/// @snippet plant_examples.cpp thermal structure
+/// How to: @ref diagnose_a_gap.
 template <class Scalar>
 struct ThermalStructure {
   Scalar winding_share;      ///< of the heat capacity; 1: a single node
@@ -151,6 +154,9 @@ Scalar film_slope(const Scalar& x, const Scalar& tail) {
 
 /// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
 /// friction sees every load whatever the order of the effects.
+///
+/// @snippet plant_examples.cpp effect of one's own
+/// How to: @ref diagnose_a_gap.
 template <class Scalar>
 struct FrictionTerms {
   Given<Scalar> t_s;             ///< time since the start of the run

@@ -28,6 +28,9 @@ struct AdjVar {
 /// Fill `vars`. To read one from a frame, use AdjVarsView, which takes any number.
 /// @tparam count number of variables, 1..50.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_SET_ADJ_VARS_VAL.
+///
+/// @snippet sbgc_examples.cpp adjustable variables
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <uint8_t count>
 struct SetAdjVars {
@@ -51,6 +54,9 @@ struct SetAdjVars {
 };
 
 /// @brief View of a SET_ADJ_VARS_VAL payload with any number of variables; valid as long as its frame.
+///
+/// @snippet sbgc_examples.cpp views of variables
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class AdjVarsView {
 public:
@@ -91,6 +97,9 @@ private:
 /// @brief Asks for adjustable variables; the board answers with SET_ADJ_VARS_VAL.
 /// @tparam count number of variables, 1..50.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_GET_ADJ_VARS_VAL.
+///
+/// @snippet sbgc_examples.cpp adjustable variables
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <uint8_t count>
 struct GetAdjVars {
@@ -111,6 +120,9 @@ struct GetAdjVars {
 };
 
 /// @brief View of a GET_ADJ_VARS_VAL payload: the ids asked for; valid as long as its frame.
+///
+/// @snippet sbgc_examples.cpp views of variables
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct GetAdjVarsView {
   Bytes ids = {nullptr, 0};  ///< see variable::Id

@@ -20,6 +20,9 @@ namespace sbgc {
 /// Its id is that of CONTROL; the direction tells them apart, and so does the size here: read() refuses the
 /// 13 and 15 bytes of a Control.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_CONFIRM.
+///
+/// @snippet sbgc_examples.cpp answers
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Confirm {
   uint8_t confirmed_id = 0;   ///< command that was executed, see command::Id
@@ -46,6 +49,9 @@ struct Confirm {
 
 /// @brief The board could not execute a command.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_ERROR.
+///
+/// @snippet sbgc_examples.cpp answers
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Error {
   uint8_t code = 0;      ///< what went wrong
@@ -72,6 +78,9 @@ struct Error {
 
 /// @brief What board it is. Asked for with `Request(command::board_info)`.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_BOARD_INFO.
+///
+/// @snippet sbgc_examples.cpp answers
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct BoardInfo {
   uint8_t board_version = 0;           ///< tenths: 30 is board 3.0

@@ -14,6 +14,9 @@ namespace sbgc {
 /// @brief Protocol v1: sum of the payload bytes modulo 256.
 ///
 /// It misses swapped bytes, and about one random error in 256.
+///
+/// @snippet sbgc_examples.cpp checksum
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class Sum8 {
 public:
@@ -31,6 +34,9 @@ private:
 ///
 /// It finds every change within any 16 neighbouring bits, so every change of a single byte.
 /// Source: SimpleBGC serial protocol specification 2.5, appendix with the CRC.
+///
+/// @snippet sbgc_examples.cpp checksum
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class Crc16 {
 public:

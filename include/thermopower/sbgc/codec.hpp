@@ -39,6 +39,9 @@ namespace thermopower {
 /// @tparam payload_capacity longest payload to be received, 0..255. The default holds every message that has
 /// a type here up to REALTIME_DATA_4.
 /// @tparam Protocol sbgc::ProtocolV1, sbgc::ProtocolV2 or sbgc::ProtocolAuto (a menu: see sbgc::ProtocolV1).
+///
+/// @snippet sbgc_examples.cpp codec
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <size_t payload_capacity = 124, class Protocol = sbgc::ProtocolV1>
 class SbgcCodec : public sbgc::Receiver<payload_capacity, Protocol> {

@@ -17,6 +17,9 @@ namespace sbgc {
 
 /// @brief A command without payload: asks for data (`Request(command::realtime_data_4)`), or any other such
 /// command.
+///
+/// @snippet sbgc_examples.cpp codec
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Request {
   uint8_t requested_id = 0;  ///< see command::Id; 0 cannot be sent
@@ -41,6 +44,9 @@ struct Request {
 };
 
 /// @brief Any command with any payload, for those that have no type here.
+///
+/// @snippet sbgc_examples.cpp commands
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Raw {
   uint8_t raw_id;  ///< 1..255
@@ -66,6 +72,9 @@ struct Raw {
 
 /// @brief Switches the motors on; the board answers Confirm.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_MOTORS_ON.
+///
+/// @snippet sbgc_examples.cpp commands
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct MotorsOn {
   /// @brief Is the frame one?
@@ -81,6 +90,9 @@ struct MotorsOn {
 
 /// @brief Switches the motors off; the board answers Confirm.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_MOTORS_OFF.
+///
+/// @snippet sbgc_examples.cpp commands
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct MotorsOff {
   /// @brief How (firmware 2.68b7 and later; older firmware always frees the motors).
@@ -110,6 +122,9 @@ struct MotorsOff {
 
 /// @brief Restarts the board.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_RESET.
+///
+/// @snippet sbgc_examples.cpp commands
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Reset {
   /// @brief Flags.
@@ -141,6 +156,9 @@ struct Reset {
 
 /// @brief Has the board send a command's data regularly (firmware 2.59 and later); the board answers Confirm.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_DATA_STREAM_INTERVAL.
+///
+/// @snippet sbgc_examples.cpp commands
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct DataStreamInterval {
   uint8_t streamed_id = 0;    ///< command whose answers are wanted, such as command::realtime_data_4

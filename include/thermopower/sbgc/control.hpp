@@ -42,6 +42,9 @@ struct AxisControl {
 ///
 /// Firmware 2.55b5 and later takes a mode for each axis (15 bytes); older firmware one mode for all (13
 /// bytes). Source: SimpleBGC serial protocol specification 2.5, CMD_CONTROL.
+///
+/// @snippet sbgc_examples.cpp control
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct Control {
   AxisControl axis[3];    ///< roll, pitch, yaw

@@ -12,6 +12,9 @@ namespace thermopower {
 namespace sbgc {
 
 /// @brief The pace of the thesis's program, with a time-out. A set of your own has the same functions.
+///
+/// @snippet sbgc_examples.cpp poller
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct StandardPolling {
   /// @brief From one request to the next, at least. A board answers within 24 ms, its 8 ms between commands
@@ -44,6 +47,9 @@ enum class Turn : uint8_t {
 /// It knows no wire and no clock. All times are differences, so a clock that wraps at 2^32 (71.6 minutes)
 /// does no harm.
 /// @tparam Constants StandardPolling, or your own
+///
+/// @snippet sbgc_examples.cpp poller
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <class Constants>
 class BasicPoller {

@@ -18,6 +18,9 @@ namespace sbgc {
 /// 30-byte table in between. Take it where stack and time are short.
 /// @tparam Command any type with `power[3]` and `p_gain[3]` of 0..255, roll, pitch, yaw. It must outlive the
 /// view.
+///
+/// @snippet sbgc_examples.cpp power and gain
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <class Command>
 class PowerAndGain {

@@ -31,6 +31,9 @@ enum class Version : uint8_t {
 /// - ProtocolAuto: takes both, answers in the version it heard last: for an emulated board, a sniffer, a
 /// desktop
 ///   program. A v2 frame whose first byte is damaged into the one of v1 has one chance in 256 to pass.
+///
+/// @snippet sbgc_examples.cpp receiver
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class ProtocolV1 {
 public:
@@ -61,6 +64,9 @@ private:
 };
 
 /// @brief Policy: protocol v2 only. Members as in ProtocolV1, which also says when to take which.
+///
+/// @snippet sbgc_examples.cpp receiver
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class ProtocolV2 {
 public:
@@ -95,6 +101,9 @@ private:
 
 /// @brief Policy: receives v1 and v2 mixed and sends in the version of the last valid frame (v1 before the
 /// first). Members as in ProtocolV1, which also says when to take which.
+///
+/// @snippet sbgc_examples.cpp receiver
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class ProtocolAuto {
 public:

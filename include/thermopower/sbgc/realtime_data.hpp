@@ -30,6 +30,9 @@ namespace sbgc {
 /// fields read 0.
 ///
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_REALTIME_DATA_3 and CMD_REALTIME_DATA_4.
+///
+/// @snippet sbgc_examples.cpp telemetry
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 class RealtimeData {
 public:

@@ -18,6 +18,9 @@ namespace sbgc {
 /// RealtimeData reads them without a copy; this is the other direction, or a copy to keep (124 bytes and a
 /// little). Units are those of RealtimeData's fields as sent; everything starts at 0. Bytes the protocol
 /// reserves are kept too, so that reading a payload and sending it gives the same bytes.
+///
+/// @snippet sbgc_examples.cpp emulated
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct RealtimeFields {
   bool extended = true;        ///< send as REALTIME_DATA_4 (else as _3, without the fields from rotor_angle)

@@ -52,6 +52,9 @@ struct ReceiverCounters {
 ///
 /// @tparam payload_capacity longest payload to be received, 0..255; RAM is this plus about 50 bytes.
 /// @tparam Protocol ProtocolV1, ProtocolV2 or ProtocolAuto.
+///
+/// @snippet sbgc_examples.cpp receiver
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 template <size_t payload_capacity, class Protocol>
 class Receiver {

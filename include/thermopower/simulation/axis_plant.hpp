@@ -23,6 +23,9 @@ constexpr double deg_per_rad = 57.29577951308232;
 ///     for (...) plant.move(plant.ask(error_deg, p_gain, board_dt_s), disturbance_Nm, base, board_dt_s);
 ///
 /// @tparam Number  double, float, or `Lanes`: one axis per lane
+///
+/// @snippet simulation_examples.cpp axis plant
+/// How to: @ref rig.
 template <class Number>
 class AxisPlant {
   using Real = typename thermopower::detail::Numeric<Number>::Real;

@@ -11,6 +11,9 @@ namespace thermopower::simulation {
 
 /// A battery: an open-circuit voltage that falls from full to empty, and a resistance in series.
 /// A bench supply is a battery with next to no resistance and equal voltages.
+///
+/// @snippet simulation_examples.cpp parts of an axis
+/// How to: @ref rig.
 template <class Number>
 class Battery {
   using Real = typename thermopower::detail::Numeric<Number>::Real;

@@ -18,6 +18,9 @@ namespace thermopower::simulation {
 /// `share` is the sine of the angle by which the field leads the rotor. So the loop's stiffness is P times
 /// the available torque, which is why P must fall when POWER rises (eq 4.27). I and D stay as tuned. The
 /// integral stops where the whole torque is used.
+///
+/// @snippet simulation_examples.cpp parts of an axis
+/// How to: @ref rig.
 template <class Number>
 class BoardPid {
   using Real = typename thermopower::detail::Numeric<Number>::Real;

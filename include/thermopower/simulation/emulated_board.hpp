@@ -49,6 +49,9 @@ struct BoardCounters {
 ///
 /// It answers REALTIME_DATA_3/4, BOARD_INFO, GET_ADJ_VARS_VAL and confirms SET_ADJ_VARS_VAL, MOTORS_ON/OFF
 /// and DATA_STREAM_INTERVAL (whose streams it sends). Anything else is counted and ignored.
+///
+/// @snippet simulation_examples.cpp emulated board
+/// How to: @ref rig.
 class EmulatedBoard {
 public:
   /// @throws std::invalid_argument naming the field that is out of range

@@ -23,6 +23,9 @@ struct LineByte {
 };
 
 /// Bytes in a row, one after the other, at the line's pace.
+///
+/// @snippet simulation_examples.cpp board line
+/// How to: @ref rig.
 class BoardLine {
 public:
   /// @param byte_us  time of one byte on the wire, above 0

@@ -26,6 +26,9 @@ struct BaseMotion {
 /// Integrated by the classical Runge-Kutta rule; torques are constant over a step, the base moves on its
 /// parabola.
 /// @tparam Number  double, float, or `Lanes`: one axis per lane
+///
+/// @snippet simulation_examples.cpp parts of an axis
+/// How to: @ref rig.
 template <class Number>
 class GimbalAxis {
   using Real = typename thermopower::detail::Numeric<Number>::Real;

@@ -22,6 +22,9 @@ namespace thermopower::simulation {
 /// n = 1/2 would be eq 3.11 as it stands. The currents of Tables 4.1 and 4.2 rise faster: n = 0.93 and 0.95
 /// fit them (a drive that scales the sine's amplitude would have n = 1). Counter-voltage is left out: at 100
 /// deg/s it is a hundredth of the supply.
+///
+/// @snippet simulation_examples.cpp parts of an axis
+/// How to: @ref rig.
 template <class Number>
 struct GimbalDrive {
   OhmicCurrent<Number> winding;  ///< R(T).

@@ -16,6 +16,9 @@ namespace thermopower::simulation {
 /// The Stribeck term falls off as 1 / (1 + (w/w_s)^2) (Hess and Soom, J. Tribology 112, 1990). Below the
 /// speed w_0 the joint creeps instead of sticking: the law stays smooth, so that a fixed-step integrator
 /// keeps its order.
+///
+/// @snippet simulation_examples.cpp joint friction
+/// How to: @ref rig.
 template <class Number>
 struct JointFriction {
   Number coulomb_Nm;            ///< M_c, >= 0.

@@ -19,6 +19,9 @@ namespace thermopower::simulation {
 ///
 /// The controllers believe in one node with a loss proportional to the rise. Magnets and the printed bracket
 /// are as warm as the body.
+///
+/// @snippet simulation_examples.cpp parts of an axis
+/// How to: @ref rig.
 template <class Number>
 class MotorBody {
   using Real = typename thermopower::detail::Numeric<Number>::Real;

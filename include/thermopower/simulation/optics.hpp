@@ -8,6 +8,9 @@
 namespace thermopower::simulation {
 
 /// A camera and what it looks at.
+///
+/// @snippet simulation_examples.cpp optics
+/// How to: @ref rig.
 struct Optics {
   double distance_m;  ///< D, to the target.
   double pixel_m;     ///< p_x, size of a pixel.

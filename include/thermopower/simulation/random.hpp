@@ -11,6 +11,9 @@ namespace thermopower::simulation {
 
 /// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a seed gives the same numbers everywhere, which `<random>`'s
 /// distributions do not promise.
+///
+/// @snippet simulation_examples.cpp random
+/// How to: @ref rig.
 class Random {
 public:
   /// @param seed  any; equal seeds give equal numbers

@@ -22,6 +22,9 @@ struct AxisFault {
 };
 
 /// What one sets up.
+///
+/// @snippet simulation_examples.cpp rig
+/// How to: @ref rig.
 struct RigConfig {
   std::array<AxisPlant<double>::Config, 3> axes;  ///< Roll, pitch, yaw.
   double board_cycle_s = 0.0008;  ///< The board computes torque this often, and the mechanics take this step.
@@ -41,6 +44,9 @@ struct RigConfig {
 
 /// The rig in motion. Everything follows from the configuration, the scenario and the commands: no clock, no
 /// randomness.
+///
+/// @snippet simulation_examples.cpp rig by hand
+/// How to: @ref rig.
 class Rig {
 public:
   /// @param config    copied  @param scenario  copied

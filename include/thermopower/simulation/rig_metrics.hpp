@@ -27,6 +27,9 @@ struct AxisMetrics {
 };
 
 /// Figures of a run.
+///
+/// @snippet simulation_examples.cpp rig
+/// How to: @ref rig.
 struct RigMetrics {
   std::array<AxisMetrics, 3> axes;  ///< Roll, pitch, yaw.
   double time_s = 0.0;              ///< Counted.

@@ -97,6 +97,9 @@ inline ConstantPower stiff_constant_power(const AdaptiveTuning& tuning = {},
 }
 
 /// The gimbal of three such axes.
+///
+/// @snippet simulation_examples.cpp rig
+/// How to: @ref rig.
 class AdaptiveGimbal {
   using Small = AdaptiveAxis<motors::Bgm2606_90t>;
   using Large = AdaptiveAxis<motors::Bgm5208_200_12>;

@@ -11,6 +11,9 @@
 namespace thermopower::simulation {
 
 /// Constant power with the gain that goes with it: how a gimbal is run without any of this.
+///
+/// @snippet simulation_examples.cpp rig
+/// How to: @ref rig.
 struct ConstantPower {
   GimbalCommand<3> command;  ///< Sent in every cycle.
 
@@ -40,6 +43,9 @@ struct RigSample {
 };
 
 /// Adds up the figures of a run, cycle by cycle.
+///
+/// @snippet simulation_examples.cpp rig by hand
+/// How to: @ref rig.
 class RigMeter {
 public:
   /// After every cycle of the board.

@@ -14,6 +14,9 @@
 namespace thermopower::simulation {
 
 /// One telemetry sample. It answers like `sbgc::RealtimeData`, so that a controller takes either.
+///
+/// @snippet simulation_examples.cpp rig by hand
+/// How to: @ref rig.
 struct RigTelemetry {
   std::array<std::int16_t, 3> imu_units{};     ///< Camera angles, 360/16384 degree.
   std::array<std::int16_t, 3> target_units{};  ///< Angles to be held.

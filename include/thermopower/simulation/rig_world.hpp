@@ -13,6 +13,9 @@ namespace thermopower::simulation {
 /// The rig as the world of an `EmulatedBoard`: called before each look of the board at its input, it lets the
 /// time since the last call pass under the board's POWER and P, and says what there is to be measured. Call
 /// it at multiples of the rig's parse interval.
+///
+/// @snippet simulation_examples.cpp emulated board
+/// How to: @ref rig.
 class RigWorld {
 public:
   /// @param config, scenario  as for `Rig`; the board's own faults are the emulated board's

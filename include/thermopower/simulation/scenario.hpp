@@ -15,6 +15,9 @@
 namespace thermopower::simulation {
 
 /// A sine that fades in and out: a base that sways, a wind that comes in gusts.
+///
+/// @snippet simulation_examples.cpp scenario
+/// How to: @ref rig.
 struct Wave {
   double amplitude;     ///< Degrees for a base, N m for a torque.
   double frequency_Hz;  ///< >= 0
@@ -34,6 +37,9 @@ struct Wave {
 };
 
 /// A push: half a sine of torque.
+///
+/// @snippet simulation_examples.cpp scenario
+/// How to: @ref rig.
 struct Push {
   double at_s;        ///< Begins.
   double duration_s;  ///< Above 0.
@@ -47,6 +53,9 @@ struct Push {
 };
 
 /// What happens to one axis.
+///
+/// @snippet simulation_examples.cpp scenario
+/// How to: @ref rig.
 struct AxisScenario {
   double target_deg = 0.0;   ///< Angle to be held, in space.
   std::vector<Wave> base;    ///< Motion of what the axis is fixed to, degrees.

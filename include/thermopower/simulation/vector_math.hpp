@@ -11,6 +11,9 @@
 namespace thermopower::simulation {
 
 /// Functions of one kind of scalar: a number, or a class that behaves like one.
+///
+/// @snippet simulation_examples.cpp vector math
+/// How to: @ref rig.
 template <class Number>
 struct VectorMath {
   using Math = thermopower::detail::Numeric<Number>;  ///< Its operations.

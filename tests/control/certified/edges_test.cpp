@@ -169,7 +169,7 @@ TEMPLATE_TEST_CASE("air that is said to be colder than the coldest counts as the
   TestType told(config), at_coldest(config);
   told.start(40.0f, 40.0f);
   at_coldest.start(40.0f, 40.0f);
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 6000; ++i) {
     const int absurd = told.step({255, 12.0f, -200.0f}, 0.1f).power;
     CHECK(absurd == at_coldest.step({255, 12.0f, -10.0f - 5.0f - 1.0f}, 0.1f).power);
   }
@@ -199,12 +199,16 @@ TEMPLATE_TEST_CASE(
                                  : what == 1 ? limiter.cut_after(LimitReason::link_silent, 255, nan_)
                                  : what == 2 ? limiter.cut_after(LimitReason::link_silent, 255, -1.0f)
                                              : limiter.step({255, 12.0f, 35.0f}, dt_s);
+    const std::size_t last = static_cast<std::size_t>(truth.count - 1);
+    if (what < 3 || config.use.every == 1) {  // what this call was told of is in the bounds now
+      REQUIRE(static_cast<double>(limiter.winding_upper_C()) >= truth.node_C[0]);
+      REQUIRE(static_cast<double>(limiter.body_upper_C()) >= truth.node_C[last]);
+    }
     cuts += what < 3;
     late += what == 7;
     // What is granted acts until the next call: at most a hold, but where that will be late.
     const unsigned next = ((random * 1664525u + 1013904223u) >> 24) % 8u;
     truth.run(granted.power, next == 7 ? static_cast<double>(late_s) : 0.1);
-    const std::size_t last = static_cast<std::size_t>(truth.count - 1);
     TestType seen = limiter;  // what it would say after the time that has passed
     seen.cut_after(LimitReason::link_silent, 1, next == 7 ? late_s : 0.1f);
     closest_K = std::min(closest_K, static_cast<double>(seen.winding_upper_C()) - truth.node_C[0]);
@@ -215,6 +219,25 @@ TEMPLATE_TEST_CASE(
   CHECK(late > 200);
   CHECK(limiter.state().late_steps > 200);
   CHECK(closest_K < 30.0);  // and not by being absurdly high
+}
+
+TEMPLATE_TEST_CASE("one cut of an unknown time counts a whole hold of the power before it, from cold", "",
+                   One, Two, Three) {
+  typename TestType::Config config;
+  set(config);
+  TestType limiter(config);
+  Worst truth = Worst::of(limiter);
+  truth.start(30.0);
+  limiter.start(30.0f, 30.0f, 30.0f);
+  double warmest_K = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const LimitedPower granted = limiter.step({255, 12.0f, 30.0f}, 0.0f);
+    truth.run(granted.power, 0.1, 35.0);
+    limiter.cut(LimitReason::link_silent);
+    REQUIRE(static_cast<double>(limiter.winding_upper_C()) >= truth.node_C[0]);
+    warmest_K = std::max(warmest_K, truth.node_C[0] - 30.0);
+  }
+  CHECK(warmest_K > 10.0);
 }
 
 TEMPLATE_TEST_CASE("the time to the limit is never longer than the worst actuator takes", "", One, Two,

@@ -131,6 +131,9 @@ struct HeatScaling {
 /// degC for the 5208 as programmed, level 6 of the corrected one) the laws have a pole: the heating then is
 /// bounded by 3.8 K/s, and 0 beyond the pole, as programmed.
 /// @tparam Source  motor.hpp
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost.
 /// @ingroup actuator
 template <class Source>
 struct Heating {

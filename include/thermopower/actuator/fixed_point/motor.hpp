@@ -39,6 +39,9 @@ struct IsMotor<Candidate,
 }  // namespace detail
 
 /// The thesis's supply, 13 V. A supply of your own is such a struct.
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost.
 /// @ingroup actuator
 struct ThirteenVolts {
   static constexpr double supply_V() { return 13.0; }  ///< V, above 0.
@@ -48,6 +51,9 @@ struct ThirteenVolts {
 /// @tparam Motor   has `constexpr` `current_law<double>()`, `heating_law<double>()`, `cooling_law<double>()`,
 /// as the motors in `motors/`
 /// @tparam Supply  has `static constexpr double supply_V()`
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost. Menu: @ref policies.
 /// @ingroup actuator
 template <class Motor, class Supply = ThirteenVolts>
 struct ThesisMotor {
@@ -92,6 +98,9 @@ struct ThesisMotor {
 /// @tparam Constants  `static constexpr double` functions `supply_V()`, `resistance_ohm()` at
 /// `reference_C()`, `tempco_per_K()` (copper:
 ///                    0.00393), `heat_capacity_J_per_K()`, `conductance_W_per_K()`; all as in those laws
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost. Menu: @ref policies.
 /// @ingroup actuator
 template <class Constants>
 struct OhmicMotor {

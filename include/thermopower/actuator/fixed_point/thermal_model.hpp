@@ -30,6 +30,9 @@ inline Temperature within_range(Temperature value) noexcept {
 }  // namespace detail
 
 /// The part of ThermalModel that is the same for every motor, so that axes share its code.
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost.
 /// @ingroup actuator
 class ThermalCore {
 public:
@@ -82,6 +85,9 @@ private:
 /// the nearest 2^-7 K. The temperature saturates at -50 and 180 degC. Never unstable: the largest k that fits
 /// (0.029 per s) times the longest step (16.8 s) is below 1.
 /// @tparam Source  the motor: motor.hpp
+///
+/// @snippet actuator_examples.cpp fixed-point motor
+/// How to: @ref custom_motor, @ref target_cost.
 /// @ingroup actuator
 template <class Source>
 class ThermalModel : public ThermalCore {

@@ -14,6 +14,9 @@
 namespace thermopower {
 
 /// A constant that is not known exactly. `lowest` <= true value <= `highest`.
+///
+/// @snippet control_examples.cpp certified two nodes
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
 struct Bounds {
   float lowest;   ///< Above 0.
   float highest;  ///< Not below `lowest`, finite.
@@ -38,6 +41,9 @@ struct Bounds {
 /// The most heat that can arise in the winding at full POWER (255) and the highest supply: at two winding
 /// temperatures, because a warm winding takes less. In between, the heat may be no more than that of a
 /// resistance that rises in a straight line.
+///
+/// @snippet control_examples.cpp certified two nodes
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
 struct HeatBounds {
   float highest_supply_V;  ///< The supply is never above this. Above 0.
   float supply_error;  ///< The measured supply may be wrong by this fraction until the next step, >= 0. 1 or
@@ -113,6 +119,9 @@ struct CertifiedUse {
 };
 
 /// Temperatures measured at one instant since the last plan; NaN where nothing was measured.
+///
+/// @snippet control_examples.cpp certified parts
+/// How to: @ref explain_certified_limiter.
 struct CertifiedMeasurement {
   float winding_C;  ///< Never below the truth at that instant.
   float body_C;     ///< Never below the truth at that instant.
@@ -129,6 +138,9 @@ struct CertifiedMeasurement {
 
 /// Carries a step's length through the network's two time constants: the part of the way to its final value
 /// that a node goes.
+///
+/// @snippet control_examples.cpp certified parts
+/// How to: @ref explain_certified_limiter.
 struct CertifiedTravel {
   detail::FineFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
   detail::FineFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
@@ -155,6 +167,9 @@ struct CertifiedTravel {
 };
 
 /// How much less heat a warm winding takes: a chord over 1/R(T), which is convex, so the chord lies above it.
+///
+/// @snippet control_examples.cpp certified parts
+/// How to: @ref explain_certified_limiter.
 class CertifiedRelief {
 public:
   /// @param hot_C  where `heat_when_hot_W` holds  @param end_C  where the chord is to be exact; above it the
@@ -195,6 +210,9 @@ enum class CertifiedNode : uint8_t {
 };
 
 /// The largest power that a network can bear, in counts of heat above the least, and which node says so.
+///
+/// @snippet control_examples.cpp certified parts
+/// How to: @ref explain_certified_limiter.
 struct CertifiedCount {
   uint8_t count;              ///< 0 .. 254.
   CertifiedNode node;         ///< `none` at 254.

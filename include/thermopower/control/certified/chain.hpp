@@ -46,6 +46,9 @@ struct CertifiedChainNode {
 /// unknown. Any node may lose heat to the air besides: only what the last one loses is counted on. A measurement
 /// (`tighten()`) is not used: it would have to be one of every node.
 /// @tparam node_count  2 .. 8
+///
+/// @snippet control_examples.cpp certified chain
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 template <uint8_t node_count>
 class CertifiedChain {
   static_assert(node_count >= 2 && node_count <= 8,

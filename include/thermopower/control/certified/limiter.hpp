@@ -28,6 +28,9 @@
 namespace thermopower {
 
 /// Heat in proportion to POWER.
+///
+/// @snippet control_examples.cpp certified one node
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 struct LinearHeat {
   /// Counts of 1/255 of the full heat. @param power  1 .. 255
   static uint8_t count(uint8_t power) noexcept { return power; }
@@ -36,6 +39,9 @@ struct LinearHeat {
 };
 
 /// Heat that rises at least with the square of POWER.
+///
+/// @snippet control_examples.cpp certified one node
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 struct SquareHeat {
   /// @copydoc LinearHeat::count
   static uint8_t count(uint8_t power) noexcept {
@@ -63,6 +69,9 @@ struct SquareHeat {
 /// exceeded, ever. Also: the result does not depend on the loop rate; at a constant demand above the ceiling,
 /// in constant air, the power settles and stays (no dithering); a fault gives the least power and forgets
 /// nothing.
+///
+/// @snippet control_examples.cpp certified two nodes
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
   static_assert(

@@ -13,6 +13,9 @@ namespace thermopower {
 
 /// One node with bounds instead of constants: C dT/dt = P - G (T - T_air). G, the air, the supply and the
 /// resistance may change at any time within their bounds, and so may C.
+///
+/// @snippet control_examples.cpp certified one node
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 class CertifiedOneNode {
 public:
   /// What is declared.

@@ -17,6 +17,9 @@
 namespace thermopower {
 
 /// What is declared about an actuator with a winding and a body.
+///
+/// @snippet control_examples.cpp certified bounds
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
 struct CertifiedTwoNodeConfig {
   Bounds winding_heat_capacity_J_per_K;  ///< C_w
   Bounds body_heat_capacity_J_per_K;     ///< C_b
@@ -73,6 +76,9 @@ struct CertifiedTwoNodeConfig {
 ///
 /// K, G, the air, the supply and the resistance may change at any time within their bounds; C_w and C_b are
 /// constant but unknown.
+///
+/// @snippet control_examples.cpp certified two nodes
+/// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
 class CertifiedTwoNode {
 public:
   typedef CertifiedTwoNodeConfig Config;  ///< What is declared.

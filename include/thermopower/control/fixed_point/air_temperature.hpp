@@ -13,6 +13,9 @@ namespace thermopower {
 namespace fixed_point {
 
 /// What thermopower::AirTemperature::Config::standard() has. A set of your own has the same functions.
+///
+/// @snippet fixed_point_examples.cpp fixed-point air
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct StandardAir {
   /// Below this a reading is rejected. -60 or more.
@@ -25,6 +28,9 @@ struct StandardAir {
   static constexpr double fall_per_s() { return 0.2; }
 };
 /// The same for a program that believes a fall at once, as the thesis's does.
+///
+/// @snippet fixed_point_examples.cpp fixed-point air
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct ProgrammedAir : StandardAir {
   static constexpr double fall_per_s() { return 0.0; }  ///< At once.
@@ -49,6 +55,9 @@ namespace fixed_point {
 
 /// Fuses two thermometers as thermopower::AirTemperature does, whose documentation says why.
 /// @tparam Constants  StandardAir, or your own
+///
+/// @snippet fixed_point_examples.cpp fixed-point air
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 template <class Constants = StandardAir>
 class AirTemperature {

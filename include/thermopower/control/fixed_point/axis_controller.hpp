@@ -63,6 +63,9 @@ public:
 /// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
+///
+/// @snippet fixed_point_examples.cpp fixed-point axis
+/// How to: @ref first_axis, @ref target_cost.
 /// @ingroup control
 template <class Thermal, class PowerLaw = ProgrammedLevels<>, class Limiter = SafetyLimiter<>,
           class Gain = NoGain>

@@ -41,6 +41,9 @@ constexpr uint16_t gain_times_255(uint8_t power) noexcept {
 
 /// Eq 4.27 to the nearest count.
 /// @tparam low_power   P at power 0  @tparam high_power  P at power 255
+///
+/// @snippet fixed_point_examples.cpp fixed-point axis
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <uint8_t low_power, uint8_t high_power>
 struct RoundedGain {
@@ -53,6 +56,9 @@ struct RoundedGain {
 
 /// Eq 4.27 cut to a whole count as the program does: 22 / 172 / 36 at power 25 for roll / pitch / yaw.
 /// @tparam low_power   P at power 0  @tparam high_power  P at power 255
+///
+/// @snippet fixed_point_examples.cpp fixed-point gains
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <uint8_t low_power, uint8_t high_power>
 struct TruncatedGain {
@@ -63,6 +69,9 @@ struct TruncatedGain {
 };
 
 /// For actuators without a gain.
+///
+/// @snippet fixed_point_examples.cpp fixed-point gains
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct NoGain {
   /// @return 0

@@ -17,6 +17,9 @@ namespace fixed_point {
 
 /// The constants of GimbalConfig::standard() that a fixed-point gimbal has; the supply is the motors'. A set
 /// of your own has the same.
+///
+/// @snippet fixed_point_examples.cpp fixed-point gimbal
+/// How to: @ref wire_up_sbgc, @ref target_cost.
 /// @ingroup control
 struct StandardGimbal {
   typedef StandardAir Air;  ///< When a thermometer is believed.
@@ -26,6 +29,9 @@ struct StandardGimbal {
   static constexpr double timeout_s() { return 0.5; }
 };
 /// The same for the thesis's program, which believes a fall of the air at once.
+///
+/// @snippet fixed_point_examples.cpp fixed-point gimbal
+/// How to: @ref wire_up_sbgc, @ref target_cost.
 /// @ingroup control
 struct ProgrammedGimbal : StandardGimbal {
   typedef ProgrammedAir Air;  ///< When a thermometer is believed.
@@ -70,6 +76,9 @@ const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
 ///
 /// @tparam Constants  StandardGimbal, or your own
 /// @tparam Axes       one AxisController per axis
+///
+/// @snippet fixed_point_examples.cpp fixed-point gimbal
+/// How to: @ref wire_up_sbgc, @ref target_cost.
 /// @ingroup control
 template <class Constants, class... Axes>
 class BasicGimbalController {

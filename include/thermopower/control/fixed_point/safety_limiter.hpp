@@ -32,6 +32,9 @@ struct SafetyHorizon {
 }  // namespace detail
 
 /// The thesis's constants: 60 degC, 30 s, one count per 30 ms. A set of your own has the same functions.
+///
+/// @snippet fixed_point_examples.cpp fixed-point parts
+/// How to: @ref choose_a_limiter.
 /// @ingroup control
 struct ThesisLimit {
   static constexpr double maximum_C() { return 60.0; }      ///< T_max, 0 .. 170 degC.
@@ -42,6 +45,9 @@ struct ThesisLimit {
 
 /// The thesis's rule: one count per call, so the speed depends on the loop rate.
 /// @tparam Constants  ThesisLimit, or your own
+///
+/// @snippet fixed_point_examples.cpp fixed-point parts
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 template <class Constants = ThesisLimit>
 class PerCycle {
@@ -63,6 +69,9 @@ private:
 
 /// The same rule in counts per second: independent of the loop rate.
 /// @tparam Constants  ThesisLimit, or your own
+///
+/// @snippet fixed_point_examples.cpp fixed-point constants
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 template <class Constants = ThesisLimit>
 class PerSecond {
@@ -99,6 +108,9 @@ private:
 /// actuator never gets more. There is no number here that is not one, so nothing needs to be asked about it.
 /// @tparam Constants  ThesisLimit, or your own
 /// @tparam Rule       how the ceiling moves
+///
+/// @snippet fixed_point_examples.cpp fixed-point constants
+/// How to: @ref choose_a_limiter.
 /// @ingroup control
 template <class Constants = ThesisLimit, template <class> class Rule = PerSecond>
 class SafetyLimiter {

@@ -21,6 +21,9 @@ namespace fixed_point {
 
 /// The constants of the program: 1 degree is worth full power, levels of 25, a quarter of a level of
 /// hysteresis. A set of your own has the same functions.
+///
+/// @snippet fixed_point_examples.cpp fixed-point constants
+/// How to: @ref custom_actuator.
 /// @ingroup control
 struct ThesisLevels {
   /// Error worth full power, 0.5 .. 180 degrees.
@@ -61,6 +64,9 @@ uint8_t level_of_error(uint16_t error_units) noexcept {
 /// With one degree for full power the levels change at exactly the same unit as the law's; with another full
 /// error at most one unit (0.022 degree) beside it.
 /// @tparam Constants  ThesisLevels, or your own
+///
+/// @snippet fixed_point_examples.cpp fixed-point parts
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Constants = ThesisLevels>
 struct ProgrammedLevels {
@@ -74,6 +80,9 @@ struct ProgrammedLevels {
 
 /// `ProgrammedLevels` that rise at a level's edge and fall only `hysteresis_deg()` below it.
 /// @tparam Constants  ThesisLevels, or your own
+///
+/// @snippet fixed_point_examples.cpp fixed-point constants
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Constants = ThesisLevels>
 class HysteresisLevels {

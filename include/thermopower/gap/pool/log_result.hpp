@@ -14,6 +14,9 @@
 namespace thermopower::gap::pool {
 
 /// Where the fit of one explanation to one log ended; as a report's `ranking` has it.
+///
+/// @snippet plant_examples.cpp fleet
+/// How to: @ref diagnose_a_fleet.
 struct FittedExplanation {
   std::string name;          ///< ids of its effects, " + " between them; empty: nothing is missing
   std::size_t effects = 0;   ///< how many those are
@@ -46,6 +49,9 @@ struct FittedExplanation {
 };
 
 /// What the diagnosis of one log leaves for the fleet.
+///
+/// @snippet plant_examples.cpp fleet
+/// How to: @ref diagnose_a_fleet.
 struct LogResult {
   std::string log;   ///< its name
   std::string unit;  ///< the actuator that was recorded; empty: the log's own

@@ -28,6 +28,9 @@ inline Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
 ///
 /// The spread between units by restricted maximum likelihood, with the EM iteration of Laird & Ware (1982); the mean by
 /// generalised least squares, its covariance that of the inverse weights.
+///
+/// @snippet plant_examples.cpp fleet
+/// How to: @ref diagnose_a_fleet.
 struct MixedEffects {
   Eigen::VectorXd mean;             ///< of the units, k; empty where there were fewer than two
   Eigen::MatrixXd mean_covariance;  ///< of the mean's error

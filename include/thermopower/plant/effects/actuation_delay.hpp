@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A pure delay between command and torque; any value, not only multiples of the sampling step.
+///
+/// @snippet effects_examples.cpp ActuationDelay
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ActuationDelay {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A constant error of the recorded air temperature.
+///
+/// @snippet effects_examples.cpp AmbientBias
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct AmbientBias {
   /// Its parameters, in this order.
   enum Parameters {

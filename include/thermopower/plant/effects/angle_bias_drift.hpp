@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A drift of the angle in proportion to time.
+///
+/// @snippet effects_examples.cpp AngleBiasDrift
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct AngleBiasDrift {
   /// Its parameters, in this order.
   enum Parameters {

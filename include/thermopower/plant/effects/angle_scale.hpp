@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A wrong factor of the angle (a unit, a gear, a sign).
+///
+/// @snippet effects_examples.cpp AngleScale
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct AngleScale {
   /// Its parameters, in this order.
   enum Parameters {

@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Dry friction with a magnitude for each direction.
+///
+/// @snippet effects_examples.cpp AsymmetricFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct AsymmetricFriction {
   /// Its parameters, in this order.
   enum Parameters {

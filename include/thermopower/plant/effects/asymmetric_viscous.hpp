@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Viscous friction that differs between the directions.
+///
+/// @snippet effects_examples.cpp AsymmetricViscous
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct AsymmetricViscous {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Voltage induced by the recorded rate.
+///
+/// @snippet effects_examples.cpp BackEmf
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct BackEmf {
   /// Its parameters, in this order.
   enum Parameters {

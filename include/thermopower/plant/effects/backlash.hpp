@@ -10,6 +10,9 @@ namespace thermopower::plant {
 
 /// Part of the inertia is coupled with free play: inside the gap nothing is transmitted, at its ends two sides meet on
 /// a spring and a damper. The near side is driven and measured.
+///
+/// @snippet effects_examples.cpp Backlash
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Backlash {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A linear spring to a rest position.
+///
+/// @snippet effects_examples.cpp CableSpring
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct CableSpring {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A torque that repeats several times a turn.
+///
+/// @snippet effects_examples.cpp Cogging
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Cogging {
   /// Its parameters, in this order.
   enum Parameters {

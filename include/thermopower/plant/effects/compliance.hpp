@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Two inertias on a spring; the near one is driven and measured.
+///
+/// @snippet effects_examples.cpp Compliance
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Compliance {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A torque that is always there.
+///
+/// @snippet effects_examples.cpp ConstantTorque
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ConstantTorque {
   /// Its parameters, in this order.
   enum Parameters {

@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Dry friction of constant magnitude.
+///
+/// @snippet effects_examples.cpp CoulombFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct CoulombFriction {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A wrong factor of the current sensor.
+///
+/// @snippet effects_examples.cpp CurrentSensorGain
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct CurrentSensorGain {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A constant error of the current sensor.
+///
+/// @snippet effects_examples.cpp CurrentSensorOffset
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct CurrentSensorOffset {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A constant loss of duty.
+///
+/// @snippet effects_examples.cpp DeadTime
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct DeadTime {
   /// Its parameters, in this order.
   enum Parameters {

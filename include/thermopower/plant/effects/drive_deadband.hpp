@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A dead band of the drive; beyond it the command counts from its edge.
+///
+/// @snippet effects_examples.cpp DriveDeadband
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct DriveDeadband {
   /// Its parameters, in this order.
   enum Parameters {

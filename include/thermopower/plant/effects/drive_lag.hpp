@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A first-order lag between command and torque.
+///
+/// @snippet effects_examples.cpp DriveLag
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct DriveLag {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Air around the body that warms up: what the body loses goes into it, and from there to the measured air.
+///
+/// @snippet effects_examples.cpp Enclosure
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Enclosure {
   /// Its parameters, in this order.
   enum Parameters {

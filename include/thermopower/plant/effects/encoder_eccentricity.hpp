@@ -11,6 +11,9 @@
 namespace thermopower::plant {
 
 /// An encoder whose disc or magnet sits off the centre: its error is periodic in the angle.
+///
+/// @snippet effects_examples.cpp EncoderEccentricity
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct EncoderEccentricity {
   /// Its parameters, in this order.
   enum Parameters {
@@ -41,8 +44,8 @@ struct EncoderEccentricity {
   static void act(const Scalar* p, AxisReadings<Scalar>& read) {
     using std::cos;
     using std::sin;
-    constexpr double rad_per_deg = 0.017453292519943295;
-    const Scalar phase_rad = read.angle_deg * p[cycles_per_turn] * rad_per_deg;
+    constexpr double rad_of_deg = 0.017453292519943295;
+    const Scalar phase_rad = read.angle_deg * p[cycles_per_turn] * rad_of_deg;
     read.angle_deg += p[sin_deg] * sin(phase_rad) + p[cos_deg] * cos(phase_rad);
   }
 };

@@ -10,6 +10,9 @@ namespace thermopower::plant {
 
 /// The thesis's heating law r(V, T) with voltage and temperature in each other's place: what a call with its arguments
 /// exchanged makes of it, and what mends a simulation that holds such a call. It has no parameters.
+///
+/// @snippet effects_examples.cpp ExchangedHeatingLaw
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ExchangedHeatingLaw {
   /// What it is.
   static EffectInfo info() {

@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// The conductance grows with the recorded airspeed; `gain` is its relative growth at 1 m/s.
+///
+/// @snippet effects_examples.cpp ForcedAirflowEffect
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ForcedAirflowEffect {
   /// Its parameters, in this order.
   enum Parameters {

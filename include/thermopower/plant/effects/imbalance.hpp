@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Gravity on a centre of mass off the axis.
+///
+/// @snippet effects_examples.cpp Imbalance
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Imbalance {
   /// Its parameters, in this order.
   enum Parameters {

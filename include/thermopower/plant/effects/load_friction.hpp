@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Dry friction in proportion to the transmitted torque.
+///
+/// @snippet effects_examples.cpp LoadFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct LoadFriction {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Heat from turning, with the square of the recorded rate.
+///
+/// @snippet effects_examples.cpp MotionHeating
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct MotionHeating {
   /// Its parameters, in this order.
   enum Parameters {

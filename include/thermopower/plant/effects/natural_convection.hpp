@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Natural convection in place of Newton's law; at a rise of `reference_K` both lose the same.
+///
+/// @snippet effects_examples.cpp NaturalConvectionEffect
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct NaturalConvectionEffect {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Heat conducted from a neighbour whose temperature was recorded.
+///
+/// @snippet effects_examples.cpp NeighbourHeating
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct NeighbourHeating {
   /// Its parameters, in this order.
   enum Parameters {

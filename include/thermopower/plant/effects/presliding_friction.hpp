@@ -10,6 +10,9 @@ namespace thermopower::plant {
 
 /// Dry friction with bristles that bend before they slide (LuGre without a Stribeck rise; Canudas de Wit and
 /// others 1995, eqs. 1 to 3).
+///
+/// @snippet effects_examples.cpp PreslidingFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct PreslidingFriction {
   /// Its parameters, in this order.
   enum Parameters {

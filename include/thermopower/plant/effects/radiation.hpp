@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Radiation to surroundings at air temperature; emissivity and area only show as their product.
+///
+/// @snippet effects_examples.cpp Radiation
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct Radiation {
   /// Its parameters, in this order.
   enum Parameters {

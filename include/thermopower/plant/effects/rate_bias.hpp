@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A constant error of the rate sensor.
+///
+/// @snippet effects_examples.cpp RateBias
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct RateBias {
   /// Its parameters, in this order.
   enum Parameters {

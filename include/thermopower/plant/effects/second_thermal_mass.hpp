@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A heated node (the thermometer is on it) coupled to a housing that loses the heat.
+///
+/// @snippet effects_examples.cpp SecondThermalMass
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct SecondThermalMass {
   /// Its parameters, in this order.
   enum Parameters {

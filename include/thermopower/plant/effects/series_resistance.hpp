@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Resistance in the circuit that neither warms with the winding nor heats it.
+///
+/// @snippet effects_examples.cpp SeriesResistance
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct SeriesResistance {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A servo that acts later than its file says, from the sample of its sensors to the torque; any value.
+///
+/// @snippet effects_examples.cpp ServoDelay
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ServoDelay {
   /// Its parameters, in this order.
   enum Parameters {

@@ -10,6 +10,9 @@
 namespace thermopower::plant {
 
 /// Dry friction with a Stribeck rise near standstill.
+///
+/// @snippet effects_examples.cpp StribeckFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct StribeckFriction {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Heat by the supply's voltage in place of the effective one; a share of 1 is all of it.
+///
+/// @snippet effects_examples.cpp SupplyPowerHeating
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct SupplyPowerHeating {
   /// Its parameters, in this order.
   enum Parameters {

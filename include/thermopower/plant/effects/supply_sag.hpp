@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// Internal resistance and discharge of a supply whose voltage was not recorded.
+///
+/// @snippet effects_examples.cpp SupplySag
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct SupplySag {
   /// Its parameters, in this order.
   enum Parameters {

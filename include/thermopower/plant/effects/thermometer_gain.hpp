@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A thermometer that scales the rise over air temperature.
+///
+/// @snippet effects_examples.cpp ThermometerGain
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ThermometerGain {
   /// Its parameters, in this order.
   enum Parameters {

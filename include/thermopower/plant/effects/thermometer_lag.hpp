@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A first-order lag of the thermometer.
+///
+/// @snippet effects_examples.cpp ThermometerLag
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ThermometerLag {
   /// Its parameters, in this order.
   enum Parameters {

@@ -10,6 +10,9 @@ namespace thermopower::plant {
 
 /// A further part of the body, such as a frame or a mount, that soaks up heat from the surface and loses none itself.
 /// Asked of a model that has winding and surface: behind a single node a thermometer cannot tell it from a surface.
+///
+/// @snippet effects_examples.cpp ThirdThermalMass
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct ThirdThermalMass {
   /// Its parameters, in this order.
   enum Parameters {

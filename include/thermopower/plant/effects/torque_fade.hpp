@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A torque constant that falls with the recorded motor temperature.
+///
+/// @snippet effects_examples.cpp TorqueFade
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct TorqueFade {
   /// Its parameters, in this order.
   enum Parameters {

@@ -11,6 +11,9 @@
 namespace thermopower::plant {
 
 /// A torque constant that varies with the angle.
+///
+/// @snippet effects_examples.cpp TorqueRipple
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct TorqueRipple {
   /// Its parameters, in this order.
   enum Parameters {

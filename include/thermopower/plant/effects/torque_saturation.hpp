@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A limit of the drive, stated in the command's unit.
+///
+/// @snippet effects_examples.cpp TorqueSaturation
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct TorqueSaturation {
   /// Its parameters, in this order.
   enum Parameters {

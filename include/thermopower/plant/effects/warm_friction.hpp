@@ -11,6 +11,9 @@
 namespace thermopower::plant {
 
 /// Friction that falls as the motor warms.
+///
+/// @snippet effects_examples.cpp WarmFriction
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct WarmFriction {
   /// Its parameters, in this order.
   enum Parameters {

@@ -9,6 +9,9 @@
 namespace thermopower::plant {
 
 /// A temperature coefficient where the simulation has none.
+///
+/// @snippet effects_examples.cpp WindingTempco
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct WindingTempco {
   /// Its parameters, in this order.
   enum Parameters {
