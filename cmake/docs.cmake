@@ -26,12 +26,26 @@ execute_process(COMMAND ${DOXYGEN_EXECUTABLE} -w html header.html footer.html st
 file(READ ${PROJECT_BINARY_DIR}/docs/header.html header)
 set(into_head "")
 set(full_text)
+set(link_names)
 if(THERMOPOWER_NODE)
+  set(link_names COMMAND ${THERMOPOWER_NODE} ${PROJECT_SOURCE_DIR}/cmake/link_names.cjs ${PROJECT_BINARY_DIR}/docs/html)
   file(READ ${PROJECT_SOURCE_DIR}/cmake/search_header.html into_head)
   set(full_text COMMAND ${THERMOPOWER_NODE} ${PROJECT_SOURCE_DIR}/cmake/full_text.cjs ${PROJECT_BINARY_DIR}/docs/html)
 endif()
 string(REPLACE "$mathjax" "${into_head}" header "${header}")
 file(WRITE ${PROJECT_BINARY_DIR}/docs/header.html "${header}")
+# What a class is for, and its example, come before the lists of its members.
+execute_process(COMMAND ${DOXYGEN_EXECUTABLE} -l layout.xml WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/docs OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(READ ${PROJECT_BINARY_DIR}/docs/layout.xml layout)
+string(FIND "${layout}" "<class>" begin)
+string(FIND "${layout}" "</class>" end)
+math(EXPR length "${end} - ${begin}")
+string(SUBSTRING "${layout}" ${begin} ${length} of_a_class)
+string(REPLACE "<detaileddescription title=\"\"/>" "" changed "${of_a_class}")
+string(REPLACE "<briefdescription visible=\"yes\"/>" "<briefdescription visible=\"no\"/>" changed "${changed}")
+string(REPLACE "<memberdecl>" "<detaileddescription title=\"\"/>\n    <memberdecl>" changed "${changed}")
+string(REPLACE "${of_a_class}" "${changed}" layout "${layout}")
+file(WRITE ${PROJECT_BINARY_DIR}/docs/layout.xml "${layout}")
 if(DOXYGEN_DOT_FOUND)
   set(doxygen_dot YES)
 else()
@@ -49,7 +63,7 @@ add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/
                        COMMAND Doxygen::doxygen ${PROJECT_BINARY_DIR}/docs/Doxyfile ${typeset}
                        COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/tools/web/try_it_here.js
                                ${PROJECT_SOURCE_DIR}/tools/docs-search/find.js ${PROJECT_BINARY_DIR}/docs/html
-                       ${full_text}
+                       ${link_names} ${full_text}
                        ${web_files}
                        COMMAND ${CMAKE_COMMAND} -DPAGES=${PROJECT_BINARY_DIR}/docs/html -P ${PROJECT_SOURCE_DIR}/cmake/docs_requests.cmake
                        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMENT "Documentation in ${PROJECT_BINARY_DIR}/docs/html" VERBATIM)

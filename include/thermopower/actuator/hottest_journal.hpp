@@ -24,7 +24,7 @@ namespace thermopower {
 struct StandardJournal {
   /// First byte in the memory.
   static constexpr uint16_t start() { return 0; }
-  /// Records in the ring, 2 .. 120; 100 last 2.5 years of changing every 8 s in an AVR's EEPROM (100 000
+  /// Records in the ring, 2 to 120; 100 last 2.5 years of changing every 8 s in an AVR's EEPROM (100 000
   /// writes).
   static constexpr uint8_t slots() { return 100; }
   /// Not more often than this, s; 1 .. 16. The time that an outage leaves open.

@@ -28,7 +28,7 @@ struct AdaptiveHoldingConfig {
   float first_pose_deg;      ///< Pose at the first range's edge.
   float last_pose_deg;       ///< Pose at the last range's edge; above `first_pose_deg`.
 
-  /// A tenth of a degree, full power at one degree, 40 counts up and 1 down per second, poses -90 .. 90
+  /// A tenth of a degree, full power at one degree, 40 counts up and 1 down per second, poses -90 to 90
   /// degrees.
   static AdaptiveHoldingConfig standard() noexcept {
     const AdaptiveHoldingConfig config = {0.1f, 1.0f, 40.0f, 1.0f, 10, 250, -90.0f, 90.0f};

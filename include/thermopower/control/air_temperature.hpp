@@ -41,7 +41,7 @@ public:
     float maximum_difference_K;  ///< Further apart than this the two are not averaged. Above 0.
     float fall_per_s;            ///< A fall is believed no faster than this, K/s. Above 0, may be infinite.
 
-    /// -40 .. 85 degC (the sensor's own range), 15 K apart; 0.2 K/s, which carries a rig from a warm room into
+    /// -40 to 85 degC (the sensor's own range), 15 K apart; 0.2 K/s, which carries a rig from a warm room into
     /// frost in two minutes.
     static Config standard() noexcept {
       Config config = {-40.0f, 85.0f, 15.0f, 0.2f};

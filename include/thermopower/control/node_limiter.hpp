@@ -14,7 +14,7 @@ namespace thermopower {
 /// A part that lies between two temperatures that are known: T = from + fraction (to - from).
 struct NodeLimit {
   float maximum_C;  ///< Limit, 0 .. 250 degC.
-  float fraction;   ///< Place between the two, 0 .. 1; above 1 beyond the second (a hot spot in the winding),
+  float fraction;   ///< Place between the two, 0 to 1; above 1 beyond the second (a hot spot in the winding),
                     ///< at most 2.
 
   /// Hands each field to an archive, in the order of a record: config_record.hpp.

@@ -9,7 +9,7 @@
 
 namespace thermopower {
 
-/// Folds an angle to -180 .. 180 degrees. Angles beyond a million degrees, NaN and Inf give NaN.
+/// Folds an angle into -180 to 180 degrees. Angles beyond a million degrees, NaN and Inf give NaN.
 /// @ingroup control
 inline float wrap_deg(float angle_deg) noexcept {
   // The usual case by its bits, which costs a small chip a tenth of two comparisons: -180 .. 180, and no NaN.

@@ -73,7 +73,7 @@ private:
   float per_deg_ = 0.0f;  // 0: not yet known
 };
 
-/// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).
+/// Ten levels, never none: level = 1 to 10, power = 25 level (program lines 192 to 195).
 ///
 /// @snippet control_examples.cpp power law rules
 /// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.

@@ -58,7 +58,7 @@ class BasicVoltageGain {
 public:
   /// What one tunes.
   struct Config {
-    float gain_low_power;    ///< The gain at the tuning point, 0 .. 255: `tuned_power`, `nominal_supply_V`,
+    float gain_low_power;    ///< The gain at the tuning point, 0 to 255: `tuned_power`, `nominal_supply_V`,
                              ///< `reference_C`.
     uint8_t tuned_power;     ///< POWER at which it was tuned, 1 .. 255.
     float nominal_supply_V;  ///< Supply at which it was tuned. Above 0.

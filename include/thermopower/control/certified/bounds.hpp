@@ -17,6 +17,7 @@ namespace thermopower {
 ///
 /// @snippet control_examples.cpp certified two nodes
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
+/// @ingroup control
 struct Bounds {
   float lowest;   ///< Above 0.
   float highest;  ///< Not below `lowest`, finite.
@@ -44,6 +45,7 @@ struct Bounds {
 ///
 /// @snippet control_examples.cpp certified two nodes
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
+/// @ingroup control
 struct HeatBounds {
   float highest_supply_V;  ///< The supply is never above this. Above 0.
   float supply_error;  ///< The measured supply may be wrong by this fraction until the next step, >= 0. 1 or
@@ -101,6 +103,7 @@ private:
 };
 
 /// What a certified network is told about its surroundings and its use.
+/// @ingroup control
 struct CertifiedUse {
   HeatBounds heat;      ///< What full POWER does.
   float highest_air_C;  ///< The air is never warmer than this. Not below `heat.coldest_C`.
@@ -122,6 +125,7 @@ struct CertifiedUse {
 ///
 /// @snippet control_examples.cpp certified parts
 /// How to: @ref explain_certified_limiter.
+/// @ingroup control
 struct CertifiedMeasurement {
   float winding_C;  ///< Never below the truth at that instant.
   float body_C;     ///< Never below the truth at that instant.
@@ -141,6 +145,7 @@ struct CertifiedMeasurement {
 ///
 /// @snippet control_examples.cpp certified parts
 /// How to: @ref explain_certified_limiter.
+/// @ingroup control
 struct CertifiedTravel {
   detail::FineFraction heating;  ///< Not below 1 - exp(-fastest rate * dt).
   detail::FineFraction cooling;  ///< Not above 1 - exp(-slowest rate * dt).
@@ -170,6 +175,7 @@ struct CertifiedTravel {
 ///
 /// @snippet control_examples.cpp certified parts
 /// How to: @ref explain_certified_limiter.
+/// @ingroup control
 class CertifiedRelief {
 public:
   /// @param hot_C  where `heat_when_hot_W` holds  @param end_C  where the chord is to be exact; above it the
@@ -203,6 +209,7 @@ private:
 };
 
 /// What holds a power back.
+/// @ingroup control
 enum class CertifiedNode : uint8_t {
   none = 0,     ///< Nothing: full power is bearable.
   winding = 1,  ///< The winding's limit.
@@ -213,6 +220,7 @@ enum class CertifiedNode : uint8_t {
 ///
 /// @snippet control_examples.cpp certified parts
 /// How to: @ref explain_certified_limiter.
+/// @ingroup control
 struct CertifiedCount {
   uint8_t count;              ///< 0 .. 254.
   CertifiedNode node;         ///< `none` at 254.

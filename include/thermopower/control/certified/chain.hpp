@@ -15,6 +15,7 @@
 namespace thermopower {
 
 /// What is declared about one node of a chain.
+/// @ingroup control
 struct CertifiedChainNode {
   Bounds heat_capacity_J_per_K;  ///< C
   float
@@ -49,6 +50,7 @@ struct CertifiedChainNode {
 ///
 /// @snippet control_examples.cpp certified chain
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 template <uint8_t node_count>
 class CertifiedChain {
   static_assert(node_count >= 2 && node_count <= 8,

@@ -31,6 +31,7 @@ namespace thermopower {
 ///
 /// @snippet control_examples.cpp certified one node
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 struct LinearHeat {
   /// Counts of 1/255 of the full heat. @param power  1 .. 255
   static uint8_t count(uint8_t power) noexcept { return power; }
@@ -42,6 +43,7 @@ struct LinearHeat {
 ///
 /// @snippet control_examples.cpp certified one node
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 struct SquareHeat {
   /// @copydoc LinearHeat::count
   static uint8_t count(uint8_t power) noexcept {
@@ -72,6 +74,7 @@ struct SquareHeat {
 ///
 /// @snippet control_examples.cpp certified two nodes
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 template <class Network = CertifiedTwoNode, class Heat = LinearHeat>
 class CertifiedLimiter {
   static_assert(

@@ -16,6 +16,7 @@ namespace thermopower {
 ///
 /// @snippet control_examples.cpp certified one node
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 class CertifiedOneNode {
 public:
   /// What is declared.

@@ -20,6 +20,7 @@ namespace thermopower {
 ///
 /// @snippet control_examples.cpp certified bounds
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter.
+/// @ingroup control
 struct CertifiedTwoNodeConfig {
   Bounds winding_heat_capacity_J_per_K;  ///< C_w
   Bounds body_heat_capacity_J_per_K;     ///< C_b
@@ -79,6 +80,7 @@ struct CertifiedTwoNodeConfig {
 ///
 /// @snippet control_examples.cpp certified two nodes
 /// How to: @ref choose_a_limiter, @ref explain_certified_limiter. Menu: @ref policies.
+/// @ingroup control
 class CertifiedTwoNode {
 public:
   typedef CertifiedTwoNodeConfig Config;  ///< What is declared.

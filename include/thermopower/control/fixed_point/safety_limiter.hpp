@@ -38,7 +38,7 @@ struct SafetyHorizon {
 /// @ingroup control
 struct ThesisLimit {
   static constexpr double maximum_C() { return 60.0; }      ///< T_max, 0 .. 170 degC.
-  static constexpr double safety_time_s() { return 30.0; }  ///< t_safety, 0.1 .. 240 s.
+  static constexpr double safety_time_s() { return 30.0; }  ///< t_safety, 0.1 to 240 s.
   /// Read by `PerSecond` only: counts per second, 0.1 .. 3900.
   static constexpr double rate_per_s() { return 1.0 / 0.03; }
 };

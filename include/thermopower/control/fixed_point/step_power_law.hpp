@@ -59,7 +59,7 @@ uint8_t level_of_error(uint16_t error_units) noexcept {
 
 }  // namespace detail
 
-/// Ten levels, never none: level = 1 .. 10, power = 25 level (program lines 192 to 195).
+/// Ten levels, never none: level = 1 to 10, power = 25 level (program lines 192 to 195).
 ///
 /// With one degree for full power the levels change at exactly the same unit as the law's; with another full
 /// error at most one unit (0.022 degree) beside it.
