@@ -16,7 +16,7 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BU
 cmake --build "$build" > "$build/build.log" 2>&1 || { tail -40 "$build/build.log"; exit 1; }
 rm -rf "$build/profiles" "$build/exports"
 mkdir "$build/exports"
-for test in "$build"/bin/actuator_* "$build"/bin/certified_* "$build"/bin/control_* "$build"/bin/fixed_point* "$build"/bin/sbgc_*; do
+for test in "$build"/bin/actuator_* "$build"/bin/certified_* "$build"/bin/control_* "$build"/bin/fixed_point* "$build"/bin/sbgc_test "$build"/bin/sbgc_examples; do
   name=$(basename "$test")
   LLVM_PROFILE_FILE="$build/profiles/$name.profraw" "$test" > "$build/$name.log" 2>&1 || { tail -40 "$build/$name.log"; exit 1; }
   llvm-profdata-19 merge -sparse -o "$build/one.profdata" "$build/profiles/$name.profraw"

@@ -13,7 +13,7 @@ flags="-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc"
 
 tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements
   control_air_temperature control_axis_controller control_config_record control_failures_of_others control_gimbal_controller control_limiter_chain
-  control_nodes_and_laws control_position_error control_power_law control_protection control_safety_limiter control_sensor_limiter control_utilisation control_decisions actuator_start_decisions
+  control_nodes_and_laws control_position_error control_power_law control_protection control_safety_limiter control_sensor_limiter control_utilisation control_decisions control_refusals actuator_start_decisions actuator_edges actuator_hottest_journal certified_edges
   fixed_point fixed_point_loop"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 \
   "-DCMAKE_CXX_FLAGS=$flags" -DTHERMOPOWER_TESTS=ON -DTHERMOPOWER_STRICT=OFF -DTHERMOPOWER_DESKTOP=OFF -DTHERMOPOWER_TOOLS=OFF -DTHERMOPOWER_EXAMPLES=OFF > "$build/configure.log"

@@ -58,8 +58,9 @@ struct Worst {
   static Worst of(const Three&) {
     return {{25.0, 25.0, 25.0}, {4.5, 18.0, 54.0}, {0.5, 0.3, 0.2}, 3, 0.0038};
   }
+  double supply_V = 12.0;
   double heat_W(double power) const {
-    return power / 255.0 * 144.0 / 5.4 / (1.0 + tempco * (node_C[0] - 20.0));
+    return power / 255.0 * supply_V * supply_V / 5.4 / (1.0 + tempco * (node_C[0] - 20.0));
   }
   void run(double power, double seconds, double air_C = 35.0) {
     const int parts = std::max(1, static_cast<int>(seconds / 0.001 + 0.5));
@@ -270,6 +271,34 @@ TEMPLATE_TEST_CASE("the time to the limit is never longer than the worst actuato
   limiter.start(300.0f, 300.0f);
   CHECK(limiter.state().seconds_to_limit == 0.0f);
   CHECK_FALSE(limiter.state().is_certified);
+}
+
+TEMPLATE_TEST_CASE(
+    "a supply that is measured low is granted more power, and the bounds stay above the worst actuator", "",
+    One, Two, Three) {
+  typename TestType::Config config;
+  set(config);
+  config.use.heat.supply_error = 0.02f;
+  TestType measured(config), unknown(config);
+  Worst truth = Worst::of(measured);
+  truth.supply_V = 6.0 * 1.02;  // of a reading of 6 V
+  truth.start(30.0);
+  measured.start(30.0f, 30.0f);
+  unknown.start(30.0f, 30.0f);
+  long granted = 0, granted_blind = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const int power = measured.step({255, 6.0f, 35.0f}, 0.1f).power;
+    granted += power;
+    granted_blind += unknown.step({255, nan_, 35.0f}, 0.1f).power;
+    truth.run(power, 0.1);
+    REQUIRE(static_cast<double>(measured.winding_upper_C()) >=
+            truth.node_C[0] - 0.1 * truth.heat_W(power) / truth.capacity_J[0]);
+  }
+  const double limits_C[3] = {60.0, 110.0, 120.0};
+  CHECK(truth.node_C[0] <= limits_C[truth.count - 1]);
+  CHECK(truth.node_C[truth.count - 1] <= 60.0);
+  // A quarter of the heat for each count: two to four times the power.
+  CHECK(granted > 2 * granted_blind);
 }
 
 TEST_CASE("a power that acted besides the one granted is carried as heat, the largest of several") {
