@@ -13,7 +13,7 @@
 namespace thermopower::io {
 
 /// @brief The report for people: one self-contained HTML page, light and dark, printable, legible on a telephone,
-/// under a megabyte whatever the length of the recordings.
+/// under 300 KB besides the data, whatever the length of the recordings.
 ///
 /// Style, pictures and a small script are inside, nothing is loaded. The script adds zoom and values under the
 /// pointer; everything reads without it.

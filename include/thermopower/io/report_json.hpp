@@ -9,7 +9,7 @@
 
 namespace thermopower::io {
 
-/// @brief The report for machines ("thermopower-gap-report/1", docs/reference/gap-report.md).
+/// @brief The report for machines ("thermopower-gap-report/1", @ref gap_files).
 ///
 /// Keys in a fixed order, numbers that read back bit by bit, NaN and infinities as null, no time stamp and no
 /// duration: the same diagnosis gives the same bytes.
