@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The documentation in a browser. Every page that the front page leads to, at 390 and 1400 px: nothing is wider than the page,
+// The documentation in a browser. Every page that the front page leads to, and some of the classes, at 390 and 1400 px: nothing is wider than the page,
 // no formula is left as LaTeX, no script fails, nothing is asked of another host. A word is looked for in all of them. Then "Try it here" is tried, where it was
 // built with its program: the example, a motor that lacks nothing, 10 000 rows in less than 10 s, a recording that is
 // dropped on the page, and one that is broken.
@@ -68,6 +68,10 @@ const look = async () => {
     await open(name);
     for (const one of JSON.parse(await run(links))) seen.add(one);
   }
+  // Every twelfth page of a class, each with the example that it must have.
+  const classes = fs.readdirSync(pages).filter(n => /^(struct|class)thermopower_1_1[\w]*\.html$/.test(n) && /class="fragment"/.test(fs.readFileSync(path.join(pages, n), 'utf8')));
+  check(classes.length > 200, 'only ' + classes.length + ' pages of classes have an example');
+  for (const name of classes.filter((_, i) => i % 12 === 0)) seen.add(name);
   let formulas = 0;
   for (const name of seen) {
     await open(name);

@@ -174,10 +174,14 @@ TEST_CASE("every public class that does something has an example, a link to its 
   REQUIRE(known_pages.size() > 30);
   // The menus: what stands in the first column of the tables of policies.md.
   std::set<std::string> in_menus;
-  static const std::regex row(R"(^\| `(\w+)[^|]*\|)");
+  // So does what takes them: every class of a header that has a menu.
+  static const std::regex row(R"(^\| `(\w+)[^|]*\|)"), heading(R"(^## (\S+\.hpp)$)");
+  std::set<std::string> have_a_menu = {"control/axis_controller.hpp",
+                                       "control/fixed_point/axis_controller.hpp"};
   for (const std::string& line : lines_in(read_text(root / "docs/reference/policies.md"))) {
     std::smatch match;
     if (std::regex_search(line, match, row)) in_menus.insert(match[1]);
+    if (std::regex_match(line, match, heading)) have_a_menu.insert(match[1]);
   }
   CHECK(in_menus.size() > 30);
   int count = 0;
@@ -185,7 +189,9 @@ TEST_CASE("every public class that does something has an example, a link to its 
     for (const Class& one : classes_in(header, text)) {
       if (!one.acts) continue;
       ++count;
-      const std::string what = broken(one, known_pages, in_menus);
+      std::set<std::string> menus = in_menus;
+      if (have_a_menu.count(header) == 1) menus.insert(one.name);
+      const std::string what = broken(one, known_pages, menus);
       INFO(header << ": " << one.name << ":" << what);
       CHECK(what.empty());
     }

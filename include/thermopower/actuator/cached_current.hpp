@@ -15,7 +15,7 @@ namespace thermopower {
 /// @tparam Law  as for CurrentModel, with float as its scalar
 ///
 /// @snippet actuator_examples.cpp cached current
-/// How to: @ref custom_motor.
+/// How to: @ref custom_motor. Menu: @ref policies.
 template <class Law>
 class CachedCurrent {
   static_assert(

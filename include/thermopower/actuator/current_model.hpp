@@ -24,7 +24,7 @@ namespace thermopower {
 /// @tparam Law  one of the above
 ///
 /// @snippet actuator_examples.cpp current
-/// How to: @ref custom_motor, @ref laws.
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Law>
 class CurrentModel {

@@ -33,7 +33,7 @@ namespace thermopower {
 /// What is known at power-up.
 ///
 /// @snippet actuator_examples.cpp power-up
-/// How to: @ref explain_observer.
+/// How to: @ref explain_observer. Menu: @ref policies.
 struct PowerUpFacts {
   bool has_stored;          ///< A whole record was found.
   StoredState stored;       ///< That record.

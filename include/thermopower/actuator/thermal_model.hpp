@@ -23,7 +23,7 @@ namespace thermopower {
 /// that is T_air + P / G.
 ///
 /// @snippet actuator_examples.cpp thermal model
-/// How to: @ref custom_motor, @ref laws.
+/// How to: @ref custom_motor, @ref laws. Menu: @ref policies.
 /// @ingroup actuator
 template <class Heating = HeatCapacityHeating<>, class Cooling = NewtonCooling<>, class Step = ExactStep>
 class ThermalModel {

@@ -21,16 +21,16 @@ namespace thermopower {
 ///
 /// @tparam Motor     names `Current` and `Thermal` and gives their constants: `motors/`, or a struct of your
 /// own
-/// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
-/// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
-/// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
+/// @tparam PowerLaw  how much power an error is worth: control/step_power_law.hpp
+/// @tparam Limiter   how the temperature is kept below its limit: control/safety_limiter.hpp
+/// @tparam Gain      how the P gain follows the power: control/gain_scheduler.hpp
 ///
 /// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is
 /// the least there is. The temperature is estimated through a fault with the last valid air and supply: the
 /// motor stays warm even if its sensor is gone.
 ///
 /// @snippet control_examples.cpp axis
-/// How to: @ref first_axis, @ref custom_actuator.
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Motor, class PowerLaw = StepPowerLaw<>, class Limiter = SafetyLimiter<>,
           class Gain = GainScheduler<>>

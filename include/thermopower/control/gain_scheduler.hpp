@@ -145,7 +145,7 @@ private:
 /// @tparam Rule  one of the rules above
 ///
 /// @snippet control_examples.cpp gain scheduler
-/// How to: @ref first_axis, @ref custom_actuator.
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Rule = RoundedGain>
 class GainScheduler {

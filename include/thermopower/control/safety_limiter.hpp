@@ -102,7 +102,7 @@ struct PerSecond {
 /// history a hotter actuator never gets more.
 ///
 /// @snippet control_examples.cpp safety limiter
-/// How to: @ref choose_a_limiter.
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 template <class Rule = PerSecond>
 class SafetyLimiter {

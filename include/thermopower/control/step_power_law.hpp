@@ -56,7 +56,7 @@ struct NoState {};
 /// Levels per degree, divided once: a division in every step is dear on a small chip.
 ///
 /// @snippet control_examples.cpp level scale
-/// How to: @ref custom_actuator.
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 class LevelScale {
 public:
@@ -146,7 +146,7 @@ struct ContinuousPower {
 /// @tparam Rule  one of the rules above
 ///
 /// @snippet control_examples.cpp power law
-/// How to: @ref first_axis, @ref custom_actuator.
+/// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Rule = ProgrammedLevels>
 class StepPowerLaw {

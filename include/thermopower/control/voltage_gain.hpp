@@ -51,7 +51,7 @@ struct SineDrive {
 /// @tparam Drive  one of the drives above, or one of your own with `static float voltage_ratio(float)`
 ///
 /// @snippet control_examples.cpp voltage gain
-/// How to: @ref custom_actuator.
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 template <class Drive>
 class BasicVoltageGain {

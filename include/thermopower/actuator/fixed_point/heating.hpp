@@ -133,7 +133,7 @@ struct HeatScaling {
 /// @tparam Source  motor.hpp
 ///
 /// @snippet actuator_examples.cpp fixed-point motor
-/// How to: @ref custom_motor, @ref target_cost.
+/// How to: @ref custom_motor, @ref target_cost. Menu: @ref policies.
 /// @ingroup actuator
 template <class Source>
 struct Heating {

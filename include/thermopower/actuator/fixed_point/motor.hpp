@@ -41,7 +41,7 @@ struct IsMotor<Candidate,
 /// The thesis's supply, 13 V. A supply of your own is such a struct.
 ///
 /// @snippet actuator_examples.cpp fixed-point motor
-/// How to: @ref custom_motor, @ref target_cost.
+/// How to: @ref custom_motor, @ref target_cost. Menu: @ref policies.
 /// @ingroup actuator
 struct ThirteenVolts {
   static constexpr double supply_V() { return 13.0; }  ///< V, above 0.

@@ -87,7 +87,7 @@ private:
 /// @tparam Source  the motor: motor.hpp
 ///
 /// @snippet actuator_examples.cpp fixed-point motor
-/// How to: @ref custom_motor, @ref target_cost.
+/// How to: @ref custom_motor, @ref target_cost. Menu: @ref policies.
 /// @ingroup actuator
 template <class Source>
 class ThermalModel : public ThermalCore {

@@ -60,12 +60,12 @@ public:
 /// @tparam Thermal   ThermalModel of a motor. A model of your own names its `Core`, which has `start()`,
 ///                   `step()`, `heat()` and `state()` as ThermalCore, and has `cooling_factor`, which it
 ///                   is stepped with, and a static `heating(power, motor)`
-/// @tparam PowerLaw  how much power an error is worth: step_power_law.hpp
-/// @tparam Limiter   how the temperature is kept below its limit: safety_limiter.hpp
-/// @tparam Gain      how the P gain follows the power: gain_scheduler.hpp
+/// @tparam PowerLaw  how much power an error is worth: control/fixed_point/step_power_law.hpp
+/// @tparam Limiter   how the temperature is kept below its limit: control/fixed_point/safety_limiter.hpp
+/// @tparam Gain      how the P gain follows the power: control/fixed_point/gain_scheduler.hpp
 ///
 /// @snippet fixed_point_examples.cpp fixed-point axis
-/// How to: @ref first_axis, @ref target_cost.
+/// How to: @ref first_axis, @ref target_cost. Menu: @ref policies.
 /// @ingroup control
 template <class Thermal, class PowerLaw = ProgrammedLevels<>, class Limiter = SafetyLimiter<>,
           class Gain = NoGain>

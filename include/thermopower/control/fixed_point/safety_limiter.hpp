@@ -34,7 +34,7 @@ struct SafetyHorizon {
 /// The thesis's constants: 60 degC, 30 s, one count per 30 ms. A set of your own has the same functions.
 ///
 /// @snippet fixed_point_examples.cpp fixed-point parts
-/// How to: @ref choose_a_limiter.
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 struct ThesisLimit {
   static constexpr double maximum_C() { return 60.0; }      ///< T_max, 0 .. 170 degC.
@@ -110,7 +110,7 @@ private:
 /// @tparam Rule       how the ceiling moves
 ///
 /// @snippet fixed_point_examples.cpp fixed-point constants
-/// How to: @ref choose_a_limiter.
+/// How to: @ref choose_a_limiter. Menu: @ref policies.
 /// @ingroup control
 template <class Constants = ThesisLimit, template <class> class Rule = PerSecond>
 class SafetyLimiter {

@@ -23,7 +23,7 @@ namespace fixed_point {
 /// hysteresis. A set of your own has the same functions.
 ///
 /// @snippet fixed_point_examples.cpp fixed-point constants
-/// How to: @ref custom_actuator.
+/// How to: @ref custom_actuator. Menu: @ref policies.
 /// @ingroup control
 struct ThesisLevels {
   /// Error worth full power, 0.5 .. 180 degrees.
