@@ -180,6 +180,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(io::report_json(diagnosis) == json, "the same diagnosis gives the same bytes");
   const std::string page = io::report_html(diagnosis, from.text(), plant::standard_catalogue().list());
   require(page.find(foreign) == std::string::npos, "a text brings no element into the page");
+  require(nlohmann::json::accept(nlohmann::json(page).dump()),
+          "the page is UTF-8");  // dump() throws where not
   require(page.size() < 300000, "the page is below 300 KB besides the data");
   io::one_sentence(diagnosis);
   return 0;

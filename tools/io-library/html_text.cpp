@@ -119,7 +119,7 @@ std::string unit_text(const std::string& unit) {
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
-  const std::string text = unit_text(unit);
+  const std::string text = escaped(unit_text(unit));
   return text.empty() ? number : number + "\u00a0" + text;
 }
 

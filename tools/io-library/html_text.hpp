@@ -26,7 +26,7 @@ std::string percent_html(double share);
 /// @brief A unit as people write it: `degC` as degrees Celsius, `1` as nothing.
 std::string unit_text(const std::string& unit);
 
-/// @brief A number and its unit with a space that does not break.
+/// @brief A number and its unit with a space that does not break, as HTML: a unit may come from a file.
 std::string with_unit(const std::string& number, const std::string& unit);
 
 /// @brief A signal in words: "motor temperature".

@@ -249,7 +249,7 @@ private:
     for (const auto& gap : d_.gap) {
       out_ += "<tr class=\"name\"><td class=\"t\" colspan=\"" + std::string(has_cause() ? "5" : "3") + "\">" +
               escaped(capital(signal_text(gap.signal))) + "<span class=\"soft\">" +
-              (unit_text(gap.unit).empty() ? "" : " in " + unit_text(gap.unit));
+              (unit_text(gap.unit).empty() ? "" : " in " + escaped(unit_text(gap.unit)));
       if (gap.horizon_s) out_ += ", windows of " + readable(*gap.horizon_s, 2) + "\u00a0s";
       out_ += "</span>" + gap_picture(gap) + "</td></tr>\n<tr><td class=\"t\">" + readable(gap.before) +
               "</td><td>" + readable(gap.recalibrated) + "</td>";

@@ -14,7 +14,7 @@
 namespace thermopower {
 
 /// One-node thermal model: an actuator that is equally warm everywhere.
-/// @tparam Heating  how a watt warms it: heating.hpp
+/// @tparam Heating  how a watt warms it: actuator/heating.hpp
 /// @tparam Cooling  how it loses heat: cooling.hpp
 /// @tparam Step     how a time step is made: thermal_step.hpp
 ///

@@ -10,6 +10,8 @@
 #include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
 #include <thermopower/gap/simulate.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/exchange_step.hpp>
 #include <thermopower/plant/gimbal_joints.hpp>
 #include <thermopower/plant/network_step.hpp>
