@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
+
 /// @file surroundings.hpp
 /// What an actuator loses its heat to.
 
@@ -11,7 +13,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number = float>
 struct Surroundings {
-  Number air_C;         ///< Air temperature, degC.
+  typename detail::AirOf<Number>::Type air_C;  ///< Air temperature, degC; left out: NaN.
   Number airspeed_mps;  ///< Speed of forced airflow, m/s, >= 0; only `ForcedAirflow` reads it.
 };
 

@@ -28,9 +28,9 @@ public:
 
   /// Where both stand.
   struct State {
-    float winding_C;  ///< Now.
-    float body_C;     ///< Now.
-    float air_C;      ///< Now and from now on.
+    float winding_C;          ///< Now.
+    float body_C;             ///< Now.
+    AirCelsius<float> air_C;  ///< Now and from now on; left out: NaN, and so is the forecast.
   };
 
   /// What neither may pass; infinite where there is no limit.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "../detail/check.hpp"
 #include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
@@ -89,9 +90,9 @@ public:
 
   /// What the axis decides on.
   struct Inputs {
-    float error_deg;    ///< Position error, any number of turns up to a million degrees.
-    float supply_V;     ///< Amplitude of the switched supply, >= 0.
-    float air_C;        ///< Air temperature, -100 .. 200 degC.
+    float error_deg;          ///< Position error, any number of turns up to a million degrees.
+    float supply_V;           ///< Amplitude of the switched supply, >= 0.
+    AirCelsius<float> air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault.
     LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
   };
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "../detail/check.hpp"
 #include "axis_facts.hpp"
 
@@ -78,10 +79,10 @@ public:
 
   /// What the limiter decides on.
   struct Inputs {
-    uint8_t demand;   ///< Power parameter asked for.
-    float winding_C;  ///< Estimated.
-    float body_C;     ///< Estimated; the winding's where a model has one node.
-    float air_C;      ///< NaN counts as as warm as the body.
+    uint8_t demand;           ///< Power parameter asked for.
+    float winding_C;          ///< Estimated.
+    float body_C;             ///< Estimated; the winding's where a model has one node.
+    AirCelsius<float> air_C;  ///< Left out: NaN, which counts as as warm as the body.
   };
 
   /// What one logs.
@@ -116,7 +117,7 @@ public:
     if (is_error(config_.validate())) return cut(LimitReason::config_invalid, inputs.demand);
     if (!is_possible(inputs.winding_C) || !is_possible(inputs.body_C))
       return cut(LimitReason::temperature_not_finite, inputs.demand);
-    const float air_C = is_possible(inputs.air_C) ? inputs.air_C : inputs.body_C;
+    const float told_C = inputs.air_C, air_C = is_possible(told_C) ? told_C : inputs.body_C;
     state_.margin_K = 1.0e9f;
     for (uint8_t i = 0; i < count; ++i) {
       const bool is_outside = i <= body;

@@ -92,6 +92,34 @@ TEST_CASE("one node: heating, cooling, and where it settles") {
   CHECK(settled_C == Approx(25.0 + 2.0 / 0.05));
 }
 
+TEST_CASE("air that is left out is not 0 degC") {
+  //! [air left out]
+  tp::ThermalModel<> motor({{18.0f}, {0.05f}}, 25.0f);
+  motor.step(
+      {2.0f, 0.0f, {}},
+      1.0f);  // no air: its AirCelsius is NaN, and so is the temperature, which a limiter takes for hot
+  const float unknown_C = motor.hottest_C();
+  //! [air left out]
+  CHECK(std::isnan(unknown_C));
+
+  struct Motor {
+    typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
+    typedef tp::ThermalModel<> Thermal;
+    static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+    static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
+  };
+  typedef tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::NoGain> Axis;
+  Axis axis;
+  const Axis::Inputs without_air = {0.5f, 12.0f, {}, tp::LimitReason::none};
+  CHECK(axis.step(without_air, 0.03f).reason == tp::LimitReason::air_implausible);
+  CHECK(axis.state().power == tp::least_power());
+  // To the others air that is not known is the warmest there is: never more power than any air gives.
+  tp::NodeLimiter nodes;
+  CHECK(nodes.step({255, 90.0f, 57.0f, {}}).power <= nodes.step({255, 90.0f, 57.0f, 25.0f}).power);
+  const tp::TwoNodeForecast forecast(hoist(), {60.0f, 50.0f, {}}, 5.0f);
+  CHECK(std::isnan(forecast.seconds_to({100.0f, 60.0f})));
+}
+
 TEST_CASE("the thesis's laws of heating and cooling") {
   //! [thesis heating]
   // dT/dt = r P - k (T - T_air): r from the motor's own measurements, k per minute, eq 4.21 with Euler's step

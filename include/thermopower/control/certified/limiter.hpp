@@ -5,6 +5,7 @@
 #include "chain.hpp"
 #include "one_node.hpp"
 #include "two_node.hpp"
+#include "../../air_celsius.hpp"
 #include "../detail/composition.hpp"
 #include "../detail/policy_call.hpp"
 
@@ -132,9 +133,9 @@ public:
 
   /// What the limiter decides on.
   struct Inputs {
-    uint8_t demand;  ///< Power parameter asked for.
-    float supply_V;  ///< Measured supply; NaN counts as the highest.
-    float air_C;     ///< Measured air; NaN counts as the highest.
+    uint8_t demand;           ///< Power parameter asked for.
+    float supply_V;           ///< Measured supply; NaN counts as the highest.
+    AirCelsius<float> air_C;  ///< Measured air; NaN, or left out, counts as the highest.
   };
 
   /// What one logs.
