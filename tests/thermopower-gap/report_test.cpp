@@ -165,6 +165,17 @@ TEST_CASE(
   CHECK(text == io::report_json(example()));
 }
 
+TEST_CASE(
+    "where the interval of the shrinkage reaches below 0, the page says what the proof rests on instead") {
+  Diagnosis d = example();
+  REQUIRE_FALSE(d.cause.empty());
+  const char* const sentence = "The interval reaches below 0";
+  for (GapScore& gap : d.gap) gap.ci95 = {0.1, 0.4};
+  CHECK_THAT(io::report_html(d, "motor", {}), !ContainsSubstring(sentence));
+  for (GapScore& gap : d.gap) gap.ci95 = {-0.1, 0.4};
+  CHECK_THAT(io::report_html(d, "motor", {}), ContainsSubstring(sentence));
+}
+
 TEST_CASE("a report survives names that are no UTF-8") {
   Diagnosis d = example();
   d.findings[0].recording = "\xff\xfe<b>.csv";

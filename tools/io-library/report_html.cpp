@@ -193,11 +193,15 @@ private:
       if (most == nullptr || named) most = &gap;
     }
     if (most != nullptr && has_cause()) {
-      fact("How far it shrinks",
-           percent_html(most->shrunk_by) + " [" + percent_html(most->ci95.low) + ", " +
-               percent_html(most->ci95.high) + "]",
-           escaped(signal_text(most->signal)) + ": " + readable(most->before) + " to " +
-               with_unit(readable(most->after), most->unit) + ", noise floor " + readable(most->noise_floor));
+      fact(
+          "How far it shrinks",
+          percent_html(most->shrunk_by) + " [" + percent_html(most->ci95.low) + ", " +
+              percent_html(most->ci95.high) + "]",
+          escaped(signal_text(most->signal)) + ": " + readable(most->before) + " to " +
+              with_unit(readable(most->after), most->unit) + ", noise floor " + readable(most->noise_floor) +
+              (most->ci95.low < 0.0
+                   ? "<br>The interval reaches below 0: what is proven is a smaller held-out error than with recalibrated constants alone, not than as configured."
+                   : ""));
     } else if (most != nullptr) {
       fact("How large", with_unit(readable(most->before), most->unit),
            escaped(signal_text(most->signal)) + ", RMS; noise floor " +
