@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 #include "../catch.hpp"
+#include "data/sampled_axis.hpp"
 #include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
@@ -76,6 +77,29 @@ Diagnosis diagnosed(const Joint& joint) {
   Options options;
   options.effects_at_once = 1;
   return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
+}
+
+TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz and at 50 Hz") {
+  using Effect = test::SampledAxis::Effect;
+  const test::SampledAxis train(Effect::none, 30.0, 15), held_out(Effect::none, 20.0, 16),
+      rough_train(Effect::friction, 30.0, 17), rough_held_out(Effect::friction, 20.0, 18);
+  for (const int kept : {1, 5, 20}) {
+    CAPTURE(kept);
+    const Diagnosis sound =
+        diagnose(test::SampledAxis::model(), {train.logged_each(kept)}, {held_out.logged_each(kept)});
+    CHECK(sound.verdict == Verdict::no_gap);
+    const Diagnosis rough = diagnose(test::SampledAxis::model(), {rough_train.logged_each(kept)},
+                                     {rough_held_out.logged_each(kept)});
+    CHECK(rough.verdict == Verdict::explained);
+    REQUIRE(rough.cause.size() == 1);
+    CHECK(rough.cause.front().effect == "coulomb_friction");
+    const auto has_sampled = [](const Diagnosis& one) {
+      return std::count_if(one.findings.begin(), one.findings.end(), [](const Finding& finding) {
+        return finding.kind == FindingKind::sampled_command;
+      });
+    };
+    CHECK(has_sampled(rough) == (kept > 1 ? 2 : 0));  // of either recording
+  }
 }
 
 }  // namespace

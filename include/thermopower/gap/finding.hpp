@@ -34,6 +34,7 @@ enum class FindingKind {
   wrong_sign,       ///< the simulation follows the data with the sign turned round
   swapped_columns,  ///< the simulation follows the data with two columns exchanged
   clock_shift,      ///< an input stamped by another clock than the outputs
+  sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
   // The experiment.
   sampled_too_slowly,     ///< hardly a row in each window of the horizon
   never_driven,           ///< an input that is 0 throughout
@@ -86,6 +87,8 @@ inline const char* to_string(FindingKind kind) {
       return "swapped_columns";
     case FindingKind::clock_shift:
       return "clock_shift";
+    case FindingKind::sampled_command:
+      return "sampled_command";
     case FindingKind::sampled_too_slowly:
       return "sampled_too_slowly";
     case FindingKind::never_driven:

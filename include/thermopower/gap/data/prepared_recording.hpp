@@ -39,6 +39,11 @@ public:
   const std::vector<Eigen::Index>& source_rows() const { return source_rows_; }
   /// Median interval between rows in s.
   double interval_s() const { return interval_s_; }
+  /// Takes other values of a command than were recorded. @param values  one for each row of recording()
+  void take_command(const Model& model, const std::string& column, Eigen::VectorXd values) {
+    believed_.set(column, std::move(values));
+    inputs_ = prepare(model, believed_);
+  }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
 

@@ -3,15 +3,51 @@
 #pragma once
 
 #include <thermopower/gap/check.hpp>
+#include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/experiment.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
+
+/// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
+inline void read_between_rows(const Model& model, CheckedRecordings& checked,
+                              std::vector<Finding>& findings) {
+  if (!model.has_axis()) return;
+  CommandBetweenRows between;
+  const auto is_commanded = [](const PreparedRecording& one) {
+    return one.inputs().axis() && !one.inputs().closed_loop;
+  };
+  const auto command_of = [&](const PreparedRecording& one) -> const Eigen::VectorXd& {
+    return plant::command(one.inputs(), model.axis->voltage_driven());
+  };
+  for (const PreparedRecording& one : checked.train)
+    if (is_commanded(one)) between.add(one.inputs(), command_of(one));
+  const std::optional<double> share = between.steady();
+  if (!share) return;
+  for (auto* all : {&checked.train, &checked.held_out})
+    for (PreparedRecording& one : *all) {
+      if (!is_commanded(one)) continue;
+      const std::string column = command_column(one.inputs());
+      findings.push_back(
+          {FindingKind::sampled_command,
+           Severity::note,
+           one.recording().name,
+           column,
+           "went on between the rows, as the motion shows: its mean until the next row is taken, " +
+               short_number(100.0 * *share) + " % of the way to that one's",
+           "log the command at the rate it is set, or the mean of it between the rows",
+           FindingAction::none,
+           {}});
+      one.take_command(model, column, mean_until_next(command_of(one), one.recording().spans(), *share));
+    }
+}
 
 THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::vector<Recording>& train,
                                                const std::vector<Recording>& held_out,
@@ -29,6 +65,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
   };
   take(train, result.train);
   take(held_out, result.held_out);
+  if (!options.as_recorded) read_between_rows(model, result, others);
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
     others.push_back(std::move(finding));
   // A horizon or a rest that does not fit says nothing of its own where the unit of a column is wrong.
