@@ -124,7 +124,7 @@ public:
         directions_(directions.count),
         isolated_(mode == SimulationMode::measured_inputs) {
     const Scalar still = constant<Scalar>(0.0);
-    carried_ = {still, still, still, still, {}};
+    carried_ = carried_in_ = {still, still, still, still, {}};
   }
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
@@ -135,8 +135,9 @@ public:
   }
 
   std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
+    if (segment.axis) return hidden_rate(segment);
     const auto& shape = instance_.thermal_structure;
-    if (segment.axis || !segment.inputs->judged(Signal::motor_C)) return {};
+    if (!segment.inputs->judged(Signal::motor_C)) return {};
     if (!shape.lagged && !shape.two_nodes && !shape.has_further_nodes()) return {};
     HiddenStart hidden;
     hidden.coordinate = 1;
@@ -167,6 +168,29 @@ public:
   }
 
 private:
+  /// The rate at a start of which the angle alone is recorded: between the slopes of the rows around it.
+  static std::vector<HiddenStart> hidden_rate(const Segment& segment) {
+    const Inputs& inputs = *segment.inputs;
+    if (inputs.judged(Signal::rate_dps) || !inputs.judged(Signal::angle_deg) || segment.warm_up) return {};
+    constexpr Eigen::Index around = 3;
+    const Eigen::VectorXd& angle = inputs.of(Signal::angle_deg);
+    double least = 1e300, most = -1e300;
+    for (Eigen::Index row = std::max(segment.run.begin, segment.begin - around);
+         row + 1 < std::min(segment.run.end, segment.begin + around + 1); ++row) {
+      const double slope_dps = (angle[row + 1] - angle[row]) / (inputs.t_s[row + 1] - inputs.t_s[row]);
+      if (!std::isfinite(slope_dps)) continue;
+      least = std::min(least, slope_dps);
+      most = std::max(most, slope_dps);
+    }
+    if (!(most > least)) return {};
+    HiddenStart hidden;
+    hidden.coordinate = 1;
+    hidden.shows_in = Signal::angle_deg;
+    hidden.noise_per_spread = 1e-3;  // 0.05 deg of noise, and starts that spread by tens of deg/s
+    hidden.farthest = most - least;
+    return {hidden};
+  }
+
   Scalar start_scalar(const Start& start, int coordinate) const {
     Scalar result = constant<Scalar>(start[coordinate]);
     const int direction = starts_from_ + coordinate;
@@ -206,6 +230,11 @@ private:
     if (segment.warm_up && !instance_.axis_structure.compliant && instance_.own_states == 0) return;
     const Inputs& inputs = *segment.inputs;
     const AxisRollout<Scalar> rollout(instance_, inputs);
+    // A segment that is rolled again starts with what was carried into it the first time.
+    if (rolled_ == &inputs && rolled_begin_ == segment.begin) carried_ = carried_in_;
+    rolled_ = &inputs;
+    rolled_begin_ = segment.begin;
+    carried_in_ = carried_;
     AxisState<Scalar> state = measured_start(rollout, inputs, segment.run, segment.begin);
     state.angle_rad += start[0] * rad_per_deg;
     state.rate_rad_per_s += start[1] * rad_per_deg;
@@ -247,7 +276,9 @@ private:
   int starts_from_;  ///< direction of the first coordinate of a start
   int directions_;
   bool isolated_;
-  AxisState<Scalar> carried_;
+  AxisState<Scalar> carried_, carried_in_;  ///< out of the last segment, and into it
+  const Inputs* rolled_ = nullptr;          ///< of the last segment
+  Eigen::Index rolled_begin_ = 0;
 };
 
 }  // namespace detail
