@@ -7,6 +7,7 @@
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
+#include <functional>
 
 // Bristles, the rise of friction near standstill and gears with play, stepped here apart from the library's equations: each is found, and
 // none is taken for its neighbour.
@@ -99,6 +100,32 @@ TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz and a
       });
     };
     CHECK(has_sampled(rough) == (kept > 1 ? 2 : 0));  // of either recording
+  }
+}
+
+TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late does not spoil it") {
+  using Effect = test::SampledAxis::Effect;
+  const test::SampledAxis train(Effect::none, 40.0, 21, 10), held_out(Effect::none, 30.0, 22, 10),
+      rough_train(Effect::friction, 40.0, 23, 10), rough_held_out(Effect::friction, 30.0, 24, 10);
+  const auto angle_alone = [](Recording r) {
+    r.columns.erase(std::remove_if(r.columns.begin(), r.columns.end(),
+                                   [](const Column& one) { return one.name == "rate_dps"; }),
+                    r.columns.end());
+    return r;
+  };
+  const auto late_rate = [](const Recording& r) { return test::filtered(r, "rate_dps", 0.03); };
+  for (const std::function<Recording(const Recording&)>& seen :
+       {std::function<Recording(const Recording&)>(angle_alone),
+        std::function<Recording(const Recording&)>(late_rate)}) {
+    const Diagnosis sound =
+        diagnose(test::SampledAxis::model(), {seen(train.logged_each(10))}, {seen(held_out.logged_each(10))});
+    CHECK(sound.verdict == Verdict::no_gap);
+    const Diagnosis rough = diagnose(test::SampledAxis::model(), {seen(rough_train.logged_each(10))},
+                                     {seen(rough_held_out.logged_each(10))});
+    CHECK(rough.verdict == Verdict::explained);
+    REQUIRE(rough.cause.size() == 1);
+    CHECK(rough.cause.front().effect == "coulomb_friction");
+    CHECK(rough.not_judged.size() == 1);
   }
 }
 

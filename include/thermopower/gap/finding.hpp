@@ -34,6 +34,7 @@ enum class FindingKind {
   wrong_sign,       ///< the simulation follows the data with the sign turned round
   swapped_columns,  ///< the simulation follows the data with two columns exchanged
   clock_shift,      ///< an input stamped by another clock than the outputs
+  lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate; it is not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
   // The experiment.
   sampled_too_slowly,     ///< hardly a row in each window of the horizon
@@ -87,6 +88,8 @@ inline const char* to_string(FindingKind kind) {
       return "swapped_columns";
     case FindingKind::clock_shift:
       return "clock_shift";
+    case FindingKind::lagging_output:
+      return "lagging_output";
     case FindingKind::sampled_command:
       return "sampled_command";
     case FindingKind::sampled_too_slowly:

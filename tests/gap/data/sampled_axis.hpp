@@ -85,4 +85,16 @@ private:
   std::vector<double> t_s_, drive_A_, angle_deg_, rate_dps_;
 };
 
+/// With one of its columns behind a filter of the first order.
+inline thermopower::gap::Recording filtered(thermopower::gap::Recording recording, const char* column,
+                                            double time_constant_s) {
+  Eigen::VectorXd values = recording.column(column);
+  for (Eigen::Index i = 1; i < values.size(); ++i)
+    values[i] =
+        values[i - 1] + (1.0 - std::exp(-(recording.t_s[i] - recording.t_s[i - 1]) / time_constant_s)) *
+                            (values[i] - values[i - 1]);
+  recording.set(column, values);
+  return recording;
+}
+
 }  // namespace test

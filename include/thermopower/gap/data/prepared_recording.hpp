@@ -44,6 +44,15 @@ public:
     believed_.set(column, std::move(values));
     inputs_ = prepare(model, believed_);
   }
+  /// Leaves an output out. @param sentence  why it is not judged
+  void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
+    std::vector<Column>& all = believed_.columns;
+    all.erase(std::remove_if(all.begin(), all.end(), [&](const Column& one) { return one.name == column; }),
+              all.end());
+    inputs_ = prepare(model, believed_);
+    for (std::string& note : inputs_.not_judged)
+      if (note.rfind(column + " ", 0) == 0) note = sentence;
+  }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
 

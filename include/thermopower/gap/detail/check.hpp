@@ -5,6 +5,7 @@
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/experiment.hpp>
+#include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 
@@ -15,6 +16,33 @@
 #include <vector>
 
 namespace thermopower::gap::engine {
+
+/// Leaves out a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate.
+inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
+                                std::vector<Finding>& findings) {
+  if (!model.has_axis()) return;
+  RateLag rate_lag;
+  for (const PreparedRecording& one : checked.train) rate_lag.add(one.inputs());
+  const std::optional<double> lag_s = rate_lag.lag_s();
+  if (!lag_s) return;
+  const std::string late = *lag_s > 0.0 ? "rate_dps" : "angle_deg";
+  const std::string words = *lag_s > 0.0
+                                ? "comes " + short_number(*lag_s) + " s behind the slope of angle_deg"
+                                : "comes " + short_number(-*lag_s) + " s behind what rate_dps sums up to";
+  for (auto* all : {&checked.train, &checked.held_out})
+    for (PreparedRecording& one : *all) {
+      if (!one.inputs().judged(Signal::angle_deg) || !one.inputs().judged(Signal::rate_dps)) continue;
+      findings.push_back({FindingKind::lagging_output,
+                          Severity::warning,
+                          one.recording().name,
+                          late,
+                          words + ": filtered, or read later; it is not judged",
+                          "log it unfiltered and with the instant it is of",
+                          FindingAction::masked,
+                          {}});
+      one.leave_out(model, late, late + " is not judged: it " + words);
+    }
+}
 
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
 inline void read_between_rows(const Model& model, CheckedRecordings& checked,
@@ -65,7 +93,10 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
   };
   take(train, result.train);
   take(held_out, result.held_out);
-  if (!options.as_recorded) read_between_rows(model, result, others);
+  if (!options.as_recorded) {
+    leave_out_what_lags(model, result, others);
+    read_between_rows(model, result, others);
+  }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
     others.push_back(std::move(finding));
   // A horizon or a rest that does not fit says nothing of its own where the unit of a column is wrong.

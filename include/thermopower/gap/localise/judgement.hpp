@@ -114,7 +114,8 @@ private:
       least = left;
       course_ = &one;
     }
-    if (!(least < limit_.course_better * choice_.best.seen_total)) course_ = nullptr;
+    if (!(least < limit_.course_better * std::min(choice_.best.seen_total, choice_.none.seen_total)))
+      course_ = nullptr;
     course_share_ = std::clamp(1.0 - least / choice_.none.seen_total, 0.0, 1.0);
   }
 

@@ -175,9 +175,8 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
         if (list.empty() || !of_one_run(list.back(), here)) list.push_back(here);
         break;
       }
-    const bool everywhere =
-        list.size() == runs.size() &&
-        std::none_of(list.begin(), list.end(), [](const Occurrence& one) { return one.from_s.has_value(); });
+    // What shows throughout the first run did not begin in a later one.
+    const bool everywhere = list.size() == runs.size() && !list.front().from_s;
     if (everywhere) list.clear();
     return list;
   };

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/rows.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+/// @file lagging_output.hpp
+/// A rate that comes behind its own angle, or an angle behind its rate. A drive reports the rate as filtered differences of
+/// the angle, or a bus later than the rest. No model of the axis explains that, and what tries to is named for it. The two
+/// columns tell without a model: the slope of the angle is the rate.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the question whether rate and angle belong together.
+struct LagThresholds {
+  std::size_t least_rows = 300;  ///< fewer do not tell
+  std::size_t blocks = 20;       ///< of the jackknife
+  double sure = 8.0;             ///< standard errors that a lag differs from 0 by
+  double matters = 0.5;          ///< noise scales of the rate that the lag makes: less is nobody's concern
+  double precise = 0.1;          ///< largest standard error of a lag, of the lag
+};
+
+/// Regresses what the slope of the angle has more than the rate on the acceleration: their ratio is the lag.
+///
+/// The acceleration's own noise would make the lag smaller: a difference over other rows stands in for it (an instrument:
+/// Wooldridge 2010, chapter 5). A wrong scale, an offset and an eccentric encoder are regressed out.
+class RateLag {
+public:
+  /// Adds a recording of which angle and rate are judged.
+  void add(const Inputs& inputs) {
+    if (!inputs.judged(Signal::angle_deg) || !inputs.judged(Signal::rate_dps)) return;
+    const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
+    const Eigen::VectorXd& dps = inputs.of(Signal::rate_dps);
+    noise_dps_ = std::max(noise_dps_, white_scale(dps, inputs.runs));
+    for (const RunSpan& run : inputs.runs)
+      for (Eigen::Index k = run.begin + 1; k + 2 < run.end; ++k) {
+        const double step_s = inputs.t_s[k + 1] - inputs.t_s[k];
+        const double mean_dps = 0.5 * (dps[k] + dps[k + 1]), rad = 0.5 * (deg[k] + deg[k + 1]) * rad_per_deg;
+        Row row;
+        row.more_dps = (deg[k + 1] - deg[k]) / step_s - mean_dps;
+        row.steeper = (dps[k + 1] - dps[k]) / step_s;
+        row.others << (dps[k + 2] - dps[k - 1]) / (inputs.t_s[k + 2] - inputs.t_s[k - 1]), 1.0, mean_dps,
+            mean_dps * std::sin(rad), mean_dps * std::cos(rad);
+        if (std::isfinite(row.more_dps) && row.others.allFinite()) rows_.push_back(row);
+      }
+  }
+
+  /// Seconds that the rate comes behind the angle, negative where the angle does; nothing where they belong together or
+  /// nobody can tell.
+  std::optional<double> lag_s() const {
+    constexpr LagThresholds limit;
+    if (rows_.size() < limit.least_rows) return std::nullopt;
+    std::vector<Sums> blocks(limit.blocks);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      blocks[i * limit.blocks / rows_.size()].add(rows_[i]);
+      squares += rows_[i].others[0] * rows_[i].others[0] / static_cast<double>(rows_.size());
+    }
+    Sums all;
+    for (const Sums& one : blocks) all.add(one, 1.0);
+    const double lag = all.lag_s(), count = static_cast<double>(blocks.size());
+    double mean = 0.0, square = 0.0;
+    std::vector<double> without;
+    for (const Sums& one : blocks) {
+      Sums rest = all;
+      rest.add(one, -1.0);
+      without.push_back(rest.lag_s());
+      mean += without.back() / count;
+    }
+    for (const double one : without) square += (one - mean) * (one - mean);
+    const double standard_error = std::sqrt(square * (count - 1.0) / count);
+    const bool sure =
+        std::abs(lag) > limit.sure * standard_error && standard_error < limit.precise * std::abs(lag);
+    if (!sure || std::abs(lag) * std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;
+    return lag;
+  }
+
+private:
+  static constexpr int terms = 5;
+  using Terms = Eigen::Matrix<double, terms, 1>;
+  struct Row {
+    double more_dps = 0.0, steeper = 0.0;
+    Terms others = Terms::Zero();  ///< the instrument, and what else makes a difference
+  };
+  struct Sums {
+    Eigen::Matrix<double, terms, terms> square = Eigen::Matrix<double, terms, terms>::Zero();
+    Terms product = Terms::Zero();
+    void add(const Row& row) {
+      Terms x = row.others;
+      x[0] = row.steeper;
+      square += row.others * x.transpose();
+      product += row.others * row.more_dps;
+    }
+    void add(const Sums& other, double weight) {
+      square += weight * other.square;
+      product += weight * other.product;
+    }
+    double lag_s() const { return square.completeOrthogonalDecomposition().solve(product)[0]; }
+  };
+
+  std::vector<Row> rows_;
+  double noise_dps_ = 0.0;
+};
+
+}  // namespace thermopower::gap::engine

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// A rate behind its own angle, made of recordings in which both belong together.
+#include "../../catch.hpp"
+
+#include "sampled_axis.hpp"
+
+#include <thermopower/gap/check.hpp>
+#include <thermopower/gap/data/lagging_output.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <algorithm>
+
+using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
+
+namespace {
+
+std::optional<double> lag_of(const Recording& r) {
+  RateLag lag;
+  lag.add(prepare(test::SampledAxis::model(), r));
+  return lag.lag_s();
+}
+
+Recording sound(std::uint64_t seed) {
+  return test::SampledAxis(test::SampledAxis::Effect::friction, 40.0, seed, 10).logged_each(10);
+}
+
+Recording shifted(Recording r, const char* column, Eigen::Index rows) {
+  const Eigen::VectorXd values = r.column(column);
+  Eigen::VectorXd late = values;
+  for (Eigen::Index i = rows; i < values.size(); ++i) late[i] = values[i - rows];
+  r.set(column, late);
+  return r;
+}
+
+TEST_CASE("rate and angle that belong together are both judged, whatever else is wrong with them") {
+  for (std::uint64_t seed = 31; seed < 36; ++seed) {
+    Recording r = sound(seed);
+    CHECK_FALSE(lag_of(r));
+    Recording scaled = r;
+    scaled.set("angle_deg", Eigen::VectorXd(1.3 * r.column("angle_deg")));
+    CHECK_FALSE(lag_of(scaled));
+    Recording offset = r;
+    offset.set("rate_dps", Eigen::VectorXd(r.column("rate_dps").array() + 5.0));
+    CHECK_FALSE(lag_of(offset));
+    Recording eccentric = r;
+    eccentric.set("angle_deg",
+                  Eigen::VectorXd(r.column("angle_deg").array() +
+                                  2.0 * (r.column("angle_deg").array() * 0.017453292519943295).sin()));
+    CHECK_FALSE(lag_of(eccentric));
+  }
+}
+
+TEST_CASE("a rate that is filtered or read late is found with its delay, and so is an angle") {
+  for (std::uint64_t seed = 31; seed < 34; ++seed) {
+    const Recording r = sound(seed);  // a row each 10 ms
+    const auto late = lag_of(shifted(r, "rate_dps", 2)), behind = lag_of(shifted(r, "angle_deg", 2)),
+               slow = lag_of(test::filtered(r, "rate_dps", 0.05));
+    REQUIRE(late);
+    CHECK(*late == Approx(0.020).epsilon(0.05));
+    REQUIRE(behind);
+    CHECK(*behind == Approx(-0.020).epsilon(0.05));
+    // y[i] = y[i-1] + a (x[i] - y[i-1]) comes (1 - a) / a rows late.
+    const double a = 1.0 - std::exp(-0.01 / 0.05);
+    REQUIRE(slow);
+    CHECK(*slow == Approx(0.01 * (1.0 - a) / a).epsilon(0.05));
+  }
+}
+
+TEST_CASE("what comes late is not judged, in every recording, and the reason is said once for each") {
+  const CheckedRecordings checked =
+      check(test::SampledAxis::model(), {shifted(sound(31), "rate_dps", 2)},
+            {shifted(sound(32), "rate_dps", 2)}, {}, thermopower::plant::standard_catalogue());
+  for (const auto* all : {&checked.train, &checked.held_out}) {
+    const PreparedRecording& one = all->front();
+    CHECK_FALSE(one.inputs().judged(Signal::rate_dps));
+    CHECK(one.inputs().judged(Signal::angle_deg));
+    REQUIRE(one.inputs().not_judged.size() == 1);
+    CHECK(one.inputs().not_judged.front().find("rate_dps is not judged: it comes 0.02") == 0);
+  }
+  CHECK(std::count_if(checked.findings.begin(), checked.findings.end(), [](const Finding& one) {
+          return one.kind == FindingKind::lagging_output && one.column == "rate_dps";
+        }) == 2);
+}
+
+}  // namespace
