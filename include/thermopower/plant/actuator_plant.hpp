@@ -75,6 +75,7 @@ namespace detail {
 template <class Scalar>
 Scalar seeded(double value, double speed, int index, const Directions& directions) {
   Scalar result = constant<Scalar>(value);
+  if (index < 0) return result;
   const int direction = index - directions.first;
   if (direction < 0 || direction >= directions.count) return result;
   Scalar unit = constant<Scalar>(0.0);
@@ -89,7 +90,7 @@ std::vector<Scalar> factors_of(const ParameterPoint& point, const Directions& di
   std::vector<Scalar> factors;
   for (std::size_t i = 0; i < point.factors.size(); ++i)
     factors.push_back(seeded<Scalar>(point.factors[i], point.speed.empty() ? 1.0 : point.speed[i],
-                                     static_cast<int>(i), directions));
+                                     point.direction(static_cast<int>(i)), directions));
   return factors;
 }
 
@@ -105,7 +106,7 @@ std::vector<AddedEffect<Scalar>> effects_of(const ParameterPoint& point, const D
       const std::size_t index = point.factors.size() + at;
       one.parameters.push_back(seeded<Scalar>(point.parameters[at],
                                               point.speed.empty() ? 1.0 : point.speed[index],
-                                              static_cast<int>(index), directions));
+                                              point.direction(static_cast<int>(index)), directions));
     }
     added.push_back(std::move(one));
   }
@@ -120,7 +121,7 @@ public:
                   const Directions& directions, SimulationMode mode)
       : instance_(model, factors_of<Scalar>(point, directions), effects_of<Scalar>(point, directions),
                   catalogue),
-        starts_from_(point.size() - directions.first),
+        starts_from_(point.directions() - directions.first),
         directions_(directions.count),
         isolated_(mode == SimulationMode::measured_inputs) {
     const Scalar still = constant<Scalar>(0.0);

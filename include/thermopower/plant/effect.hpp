@@ -91,6 +91,11 @@ struct Parameter {
   std::optional<double> standard = {};     ///< its value where a model leaves it out; none: it must be given
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   bool degenerate_at_bounds = false;
+  /// It is a detail of the effect's shape: it stays at its standard, which it must have, until the effect without it is
+  /// fitted and leaves what the detail takes away.
+  bool refines = false;
+  /// Two families of shapes meet at its standard: a fit that ends below it looks at the other side, too.
+  bool two_families = false;
   /// Name of another parameter of the effect that it must exceed: below, nothing shows it, and a fit that ends
   /// there explains nothing. Empty: none.
   std::string exceeds = {};
@@ -133,6 +138,10 @@ public:
   ParameterBuilder& exceeds(std::string other) { return parameter_.exceeds = std::move(other), *this; }
   /// It counts periods in the angle, and so many must lie within the recorded travel.
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
+  /// It stays at its standard until the effect without it leaves what it takes away.
+  ParameterBuilder& refines() { return parameter_.refines = true, *this; }
+  /// Two families of shapes meet at its standard.
+  ParameterBuilder& two_families() { return parameter_.two_families = true, *this; }
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   ParameterBuilder& degenerate_at_bounds() { return parameter_.degenerate_at_bounds = true, *this; }
 
@@ -166,9 +175,12 @@ struct EffectInfo {
   /// What the joint remembers because of it; only with hooks on AxisTerms or FrictionTerms, at most
   /// `most_own_states` in a model.
   std::vector<HiddenState> states = {};
-  /// Whether it costs much to simulate: then it is looked at only where no other single cause brings the data to
-  /// their noise.
+  /// Whether it is looked at only where no other single cause brings the data to their noise: it costs much to
+  /// simulate, or is a richer kind of a cause that is cheaper.
   bool costly = false;
+  /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds half of the
+  /// longest run stands for something that does not change in it. None: any.
+  double (*slowest_s)(const double* parameters) = nullptr;
 };
 
 }  // namespace thermopower::plant

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -31,9 +32,21 @@ struct ParameterPoint {
   std::vector<double> parameters;              ///< of `effects`, one effect after the other, in their units
   /// Derivative of each factor, then of each parameter, by the coordinate that a fit moves it with; empty: 1.
   std::vector<double> speed;
+  std::vector<bool>
+      still;  ///< of each factor and parameter: it does not move, and is no direction; empty: all move
 
   /// How many factors and parameters there are.
   int size() const { return static_cast<int>(factors.size() + parameters.size()); }
+
+  /// How many directions factors and parameters make: those that move.
+  int directions() const { return size() - static_cast<int>(std::count(still.begin(), still.end(), true)); }
+
+  /// The direction of a factor or, after all of them, a parameter; -1: it does not move.
+  int direction(int index) const {
+    if (still.empty()) return index;
+    if (still[static_cast<std::size_t>(index)]) return -1;
+    return index - static_cast<int>(std::count(still.begin(), still.begin() + index, true));
+  }
 };
 
 /// The directions that one rollout differentiates by: `count` of them from `first` on, in the order factors,

@@ -21,6 +21,7 @@ struct Weight {
   std::array<double, signal_count> held_out =
       plant::for_each_signal(1.0);  ///< held-out samples that count as one
   double travel_rad = 1e300;        ///< range of the angle in the training data
+  double longest_run_s = 1e300;     ///< of the training data
 };
 
 /// How many residuals of a candidate count as one, signal by signal, in the data it was fitted to.
@@ -82,10 +83,12 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
 /// Nor is one beside which a constant went as far as it may: then the equation is another one.
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, a period longer than the travel holds, a friction backward of what never moved
+/// transition through standstill, a period longer than the travel holds, a time constant longer than half a run, a friction backward of what never moved
 /// backward.
-/// @param travel_rad  range of the angle in the training data; 1e300: whatever it is
-inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300) {
+/// @param travel_rad     range of the angle in the training data; 1e300: whatever it is
+/// @param longest_run_s  of the training data; 1e300: whatever it is
+inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300,
+                           double longest_run_s = 1e300) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
   if (at_bound.size() < candidate.list.size()) return false;
   for (int index : candidate.explanation.released)
@@ -106,6 +109,14 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
     if (all && !entry->info.parameters.empty()) return true;
+    if (entry->info.slowest_s != nullptr) {
+      std::vector<double> values;
+      for (std::size_t i = first; i < at; ++i) {
+        const double coordinate = candidate.fit.at[static_cast<Eigen::Index>(i)];
+        values.push_back(candidate.list[i].logarithmic ? std::exp(coordinate) : coordinate);
+      }
+      if (entry->info.slowest_s(values.data()) > 0.5 * longest_run_s) return true;
+    }
   }
   return false;
 }
@@ -234,7 +245,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.held_out_deviance = part(one.held_out, weight.held_out);
     one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
     // What brings everything to the noise was shown, however little of a period the travel holds.
-    one.on_bounds = ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad);
+    one.on_bounds =
+        ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad, weight.longest_run_s);
     if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   }
   const auto merged = [&](const SignalSums& sums, const std::array<double, signal_count>& correlation) {

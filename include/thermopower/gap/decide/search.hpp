@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
@@ -46,6 +47,20 @@ public:
     refine(candidates, first, 7);
   }
 
+  /// Looks at the details of the effects of the best candidates, where these leave more than noise: a second harmonic is one
+  /// only where the first is found. A detail stays where it takes away most of the rest.
+  /// @return whether the best one has changed
+  bool refine_shapes(std::vector<Candidate>& candidates) const {
+    constexpr std::size_t looked_at = 3;
+    FitOptions options;
+    options.iterations = 15;
+    std::vector<std::size_t> order = by_fitness(candidates, 0);
+    order.resize(std::min(looked_at, order.size()));
+    in_parallel(order.size(), threads_,
+                [&](std::size_t i) { fine_.refine(candidates[order[i]], decision.second_takes, options); });
+    return candidates[order.front()].explanation.refined;
+  }
+
   /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
   void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
                 double enough) const {
@@ -78,8 +93,9 @@ public:
              related++ < 3))
           rivals.push_back(index);
       }
-      in_parallel(rivals.size(), threads_,
-                  [&](std::size_t i) { fine_.refit_from(candidates[rivals[i]], leader, finish); });
+      in_parallel(rivals.size(), threads_, [&](std::size_t i) {
+        fine_.refit_from(candidates[rivals[i]], leader, finish, decision.second_takes);
+      });
     }
   }
 

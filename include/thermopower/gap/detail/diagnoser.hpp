@@ -327,6 +327,7 @@ private:
       causes.insert(causes.end(), costly.begin(), costly.end());
       renew();
     }
+    if (searching.refine_shapes(candidates)) renew();
     if (worst != nullptr && !(*worst = overlooked_by(attempt)).empty()) return attempt;
     if (options_.effects_at_once > 1) {
       // Constants move in every explanation: only effects are joined.
@@ -335,11 +336,13 @@ private:
         if (!one.effects.empty()) effects.push_back(one);
       searching.run_sets(candidates, effects, options_.effects_at_once, 1.8);
       renew();
+      if (searching.refine_shapes(candidates)) renew();
     }
     searching.refit_rivals(candidates);
     name_moved_constants(candidates, model_);
     attempt.weight = correlation_of(Search::best(candidates), problem);
     attempt.weight.travel_rad = travel_rad();
+    attempt.weight.longest_run_s = longest_run_s(train_inputs_);
     attempt.recalibrated = recalibrate(candidates, fine);
     judge(attempt, fine);
     weigh(candidates, attempt.weight, model_);

@@ -106,6 +106,20 @@ public:
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
+  /// Frees the details of a candidate's effects and fits once more from where it ended. Details are of the effects where
+  /// they take away at least `share` of what is left above the noise; else the candidate stays as it was.
+  void refine(Candidate& candidate, double share, const FitOptions& options) const {
+    if (!candidate.explanation.can_be_refined() || candidate.train.within(noise_)) return;
+    Candidate finer = candidate;
+    finer.explanation.refined = true;
+    finer.list = coordinates(*problem_.model, finer.explanation, *problem_.catalogue);
+    const bool same = candidate.fit.starts.size() == problem_.segments.size();
+    finer.fit = Fitter(problem_, finer.explanation, finer.list)
+                    .minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
+    finer.train = sums(finer, problem_, finer.fit.starts);
+    if (takes_away(finer, candidate, share)) candidate = std::move(finer);
+  }
+
   /// Looks at the curvature where a fit ended: what the intervals of its parameters are made of.
   void survey(Candidate& candidate) const {
     if (candidate.fit.information.size() > 0) return;
@@ -161,8 +175,18 @@ public:
 
   /// Fits a candidate once more from where another one ended: its constants, and those of its parameters that
   /// the candidate has too, under their own names or, between effects of one submodel, under the same one. Keeps
-  /// the better of both fits.
-  void refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options) const {
+  /// the better of both fits. Where the other one's effects have details that are free, the candidate's are freed, too,
+  /// and stay so where they take away at least `share` of what is left above the noise.
+  void refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options,
+                  double share) const {
+    if (other.explanation.refined && candidate.explanation.can_be_refined()) {
+      Candidate finer = candidate;
+      finer.explanation.refined = true;
+      finer.list = coordinates(*problem_.model, finer.explanation, *problem_.catalogue);
+      refit_from(finer, other, options, share);
+      if (takes_away(finer, candidate, share)) candidate = std::move(finer);
+      return;
+    }
     Eigen::VectorXd from = candidate.fit.at;
     for (std::size_t i = 0; i < candidate.list.size(); ++i)
       for (std::size_t k = 0; k < other.list.size(); ++k)
@@ -178,6 +202,18 @@ public:
   }
 
 private:
+  /// Whether one fit takes away at least so large a share of what another one leaves above the noise, if that is anything.
+  static bool takes_away(const Candidate& finer, const Candidate& plain, double share) {
+    if (plain.train.within(noise_)) return false;
+    const auto above_noise = [](const Candidate& one) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < signal_count; ++i)
+        sum += std::max(one.train.squares[i] - one.train.samples[i], 0.0);
+      return sum;
+    };
+    return above_noise(finer) <= (1.0 - share) * above_noise(plain);
+  }
+
   /// Whether two coordinates are parameters of one name in effects of one submodel.
   static bool same_parameter(const Candidate& one, std::size_t i, const Candidate& other, std::size_t k) {
     const auto submodel = [](const Candidate& of, std::size_t index) {
@@ -207,8 +243,7 @@ private:
       const auto at = static_cast<Eigen::Index>(i);
       if (!one.standard) continue;
       if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
-      const bool other_side =
-          !one.logarithmic && one.lower < 0.0 && again[at] < *one.standard && again[at] > 0.5 * one.lower;
+      const bool other_side = one.two_families && again[at] < *one.standard && again[at] > 0.5 * one.lower;
       if (other_side) {
         again[at] = 2.0 * *one.standard - again[at];
         trapped = true;
@@ -285,6 +320,8 @@ private:
     }
     return largest > 0.0 ? largest : 1.0;
   }
+
+  static constexpr double noise_ = 1.2;  ///< mean square up to which there is nothing left but noise
 
   const FitProblem& problem_;
 };

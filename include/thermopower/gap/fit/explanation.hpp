@@ -26,12 +26,15 @@ struct Coordinate {
   Prior prior = {};                     ///< around 0: what is known of a constant
   bool logarithmic = false;             ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
+  bool still = false;                   ///< it stays at its start: a detail that is not looked at
+  bool two_families = false;            ///< below its standard it is of another shape than above
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than is known of them.
 struct Explanation {
   std::vector<const CatalogueEntry*> effects;  ///< not owned: the catalogue must outlive it
   std::vector<int> released;                   ///< indices into Model::calibrated()
+  bool refined = false;                        ///< details of its effects' shapes are free, too
 
   /// How many causes it has.
   std::size_t size() const { return effects.size() + released.size(); }
@@ -58,6 +61,7 @@ struct Explanation {
   /// Both sets of causes together.
   Explanation with(const Explanation& other) const {
     Explanation both = *this;
+    both.refined = refined || other.refined;
     for (const CatalogueEntry* entry : other.effects)
       if (std::find(both.effects.begin(), both.effects.end(), entry) == both.effects.end())
         both.effects.push_back(entry);
@@ -70,8 +74,17 @@ struct Explanation {
   /// Number of parameters of its own, the other constants not counted.
   int parameter_count() const {
     std::size_t count = released.size();
-    for (const CatalogueEntry* entry : effects) count += entry->info.parameters.size();
+    for (const CatalogueEntry* entry : effects)
+      for (const Parameter& parameter : entry->info.parameters) count += refined || !parameter.refines;
     return static_cast<int>(count);
+  }
+
+  /// Whether its effects have details that are not free.
+  bool can_be_refined() const {
+    for (const CatalogueEntry* entry : effects)
+      for (const Parameter& parameter : entry->info.parameters)
+        if (parameter.refines && !refined) return true;
+    return false;
   }
 };
 
@@ -127,7 +140,14 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
                       {},
                       parameter.logarithmic,
                       {}});
-      if (parameter.standard) list.back().standard = to(*parameter.standard);
+      Coordinate& one = list.back();
+      if (parameter.refines && !explanation.refined && !model.own) {
+        one.still = true;
+        one.lower = one.upper = one.start = to(parameter.standard.value_or(parameter.starts.front()));
+      } else if (parameter.standard) {
+        one.standard = to(*parameter.standard);
+      }
+      one.two_families = parameter.two_families && !one.still;
     }
   return list;
 }
@@ -143,6 +163,8 @@ inline ParameterPoint point_of(const Model& model, const Explanation& explanatio
     (i < constants ? point.factors : point.parameters).push_back(value);
     point.speed.push_back(coordinates[i].logarithmic ? value : 1.0);
   }
+  if (std::any_of(coordinates.begin(), coordinates.end(), [](const Coordinate& one) { return one.still; }))
+    for (const Coordinate& one : coordinates) point.still.push_back(one.still);
   point.effects = explanation.effects;
   return point;
 }

@@ -61,12 +61,16 @@ struct FitProblem {
     }
     const ParameterPoint point = point_of(*model, explanation, list, at);
     if (!with_jacobian) {
-      pass(plant, point, {0, 0}, starts, all);
+      pass(plant, point, {0, 0}, {}, starts, all);
     } else {
+      std::vector<int> columns;  // of the directions: what stays where it is, is none
+      for (int i = 0; i < parameters; ++i)
+        if (!list[static_cast<std::size_t>(i)].still) columns.push_back(i);
+      for (int i = 0; i < largest; ++i) columns.push_back(parameters + i);
       // As many directions at once as the plant carries; the last pass carries the starts, too.
-      const int directions = parameters + largest, at_once = plant.directions_at_once();
+      const int directions = static_cast<int>(columns.size()), at_once = plant.directions_at_once();
       for (int first = 0; first < directions; first += at_once)
-        pass(plant, point, {first, std::min(at_once, directions - first)}, starts, all);
+        pass(plant, point, {first, std::min(at_once, directions - first)}, columns, starts, all);
     }
     for (std::size_t i = 0; i < all.size(); ++i) use(i, all[i]);
   }
@@ -87,22 +91,24 @@ private:
   }
 
   void pass(const Plant& plant, const ParameterPoint& point, const Directions& directions,
-            const std::vector<Start>& starts, std::vector<Residuals>& all) const {
+            const std::vector<int>& columns, const std::vector<Start>& starts,
+            std::vector<Residuals>& all) const {
     const auto rollout = plant.rollout(*model, *catalogue, point, directions, SimulationMode::free_running);
     Readings readings;
     for (std::size_t i = 0; i < segments.size(); ++i) {
       const Segment& segment = segments[i];
       rollout->roll(segment, starts[i], readings);
-      if (!segment.warm_up) take(plant.signals(segment), segment, readings, directions, all[i]);
+      if (!segment.warm_up) take(plant.signals(segment), segment, readings, directions, columns, all[i]);
     }
   }
 
   /// Compares the readings of a segment with what was measured.
   void take(const std::vector<Signal>& signals, const Segment& segment, const Readings& readings,
-            const Directions& directions, Residuals& residuals) const {
+            const Directions& directions, const std::vector<int>& columns, Residuals& residuals) const {
     const Inputs& inputs = *segment.inputs;
-    const int columns =
-        std::min(directions.count, static_cast<int>(residuals.jacobian.cols()) - directions.first);
+    const auto column = [&](int d) { return columns[static_cast<std::size_t>(directions.first + d)]; };
+    int count = directions.count;  // a segment may have fewer starts than others
+    while (count > 0 && column(count - 1) >= residuals.jacobian.cols()) --count;
     Eigen::Index filled = 0;
     for (Eigen::Index row = segment.begin; row < segment.end; ++row)
       for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -114,8 +120,8 @@ private:
         const double weight = repeats / sigma[static_cast<std::size_t>(signal)];
         const int place = static_cast<int>(k);
         residuals.value[filled] = bounded((readings.value(row, place) - measured) * weight);
-        for (int d = 0; d < columns; ++d)
-          residuals.jacobian(filled, directions.first + d) = bounded(readings.slope(row, place, d) * weight);
+        for (int d = 0; d < count; ++d)
+          residuals.jacobian(filled, column(d)) = bounded(readings.slope(row, place, d) * weight);
         ++filled;
       }
   }

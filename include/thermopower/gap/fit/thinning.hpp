@@ -20,6 +20,15 @@ inline Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
   return rows;
 }
 
+/// Seconds of the longest run of several recordings.
+inline double longest_run_s(const std::vector<Inputs>& inputs) {
+  double longest_s = 0.0;
+  for (const Inputs& one : inputs)
+    for (const RunSpan& run : one.runs)
+      if (run.size() > 0) longest_s = std::max(longest_s, one.t_s[run.end - 1] - one.t_s[run.begin]);
+  return longest_s;
+}
+
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its

@@ -73,7 +73,7 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
     const bool released =
         std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
                   static_cast<int>(i)) != candidate.explanation.released.end();
-    if (i < constants && !released) continue;
+    if ((i < constants && !released) || one.still) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
     const double value = candidate.fit.at[at],
                  reach = covariance.of.size() == 0
@@ -91,17 +91,34 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
   return list;
 }
 
+/// The coordinates of a candidate that its fit could move.
+inline std::vector<Eigen::Index> moving(const Candidate& candidate) {
+  std::vector<Eigen::Index> places;
+  for (std::size_t i = 0; i < candidate.list.size(); ++i)
+    if (!candidate.list[i].still) places.push_back(static_cast<Eigen::Index>(i));
+  return places;
+}
+
+/// The covariance of the coordinates that the fit could move; 0 by 0 where nothing is known.
+inline Eigen::MatrixXd covariance_of_moving(const Candidate& candidate, const Weight& weight) {
+  const Eigen::MatrixXd all = covariance_of(candidate, weight).of;
+  if (all.size() == 0) return all;
+  const std::vector<Eigen::Index> places = moving(candidate);
+  return all(places, places);
+}
+
 /// How the estimates of a fit hang together: its covariance, each coordinate in units of its own standard deviation.
 inline ParameterCorrelation correlation_of_parameters(const Candidate& candidate, const Weight& weight,
                                                       std::size_t constants) {
   ParameterCorrelation correlation;
-  const Eigen::MatrixXd covariance = covariance_of(candidate, weight).of;
+  const Eigen::MatrixXd covariance = covariance_of_moving(candidate, weight);
+  const std::vector<Eigen::Index> places = moving(candidate);
   const Eigen::Index n = covariance.rows();
-  if (n != static_cast<Eigen::Index>(candidate.list.size())) return correlation;
+  if (n != static_cast<Eigen::Index>(places.size())) return correlation;
   correlation.of = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    correlation.names.push_back(candidate.list[static_cast<std::size_t>(i)].name +
-                                (static_cast<std::size_t>(i) < constants ? ".scale" : ""));
+    const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(i)]);
+    correlation.names.push_back(candidate.list[place].name + (place < constants ? ".scale" : ""));
     for (Eigen::Index k = 0; k < n; ++k)
       if (k != i)
         correlation.of(i, k) =
@@ -175,10 +192,12 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
                               ? empty.held_out_deviance - one.held_out_deviance
                               : missing;
     entry.hidden_starts = one.hidden_starts;
-    for (std::size_t k = 0; k < one.list.size(); ++k)
-      entry.fitted.push_back({one.list[k].name, one.fit.at[static_cast<Eigen::Index>(k)],
-                              one.list[k].logarithmic, k < one.fit.at_bound.size() && one.fit.at_bound[k]});
-    entry.covariance = covariance_of(one, weight).of;
+    for (const Eigen::Index at : moving(one)) {
+      const auto k = static_cast<std::size_t>(at);
+      entry.fitted.push_back({one.list[k].name, one.fit.at[at], one.list[k].logarithmic,
+                              k < one.fit.at_bound.size() && one.fit.at_bound[k]});
+    }
+    entry.covariance = covariance_of_moving(one, weight);
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;
       const double cosine = likeness(signatures[i], signatures[k]);
