@@ -15,10 +15,12 @@ namespace {
 
 /// Heat capacities in J/K and conductances in W/K; 0: there is no such part.
 struct Body {
-  double winding = 0.0, coupling = 1.0;  ///< heated part of its own, coupled to the surface
-  double surface = 60.0, to_air = 0.15;  ///< loses the heat
-  double mount = 0.0, to_mount = 0.0;    ///< behind the surface
-  double box = 0.0, box_to_room = 0.0;   ///< air around it
+  double winding = 0.0, coupling = 1.0;                  ///< heated part of its own, coupled to the surface
+  double surface = 60.0, to_air = 0.15;                  ///< loses the heat
+  double mount = 0.0, to_mount = 0.0;                    ///< behind the surface
+  double box = 0.0, box_to_room = 0.0;                   ///< air around it
+  double sink = 0.0, contact = 1.0, sink_to_room = 0.0;  ///< what it is bolted to; the contact in K/W
+  double hysteresis = 0.0, eddy = 0.0;                   ///< heat of the iron, W s/rad and W s^2/rad^2
 };
 
 Recording record(const Body& body, int rows, std::uint64_t seed) {
@@ -27,10 +29,14 @@ Recording record(const Body& body, int rows, std::uint64_t seed) {
   r.name = "body";
   r.t_s.resize(rows);
   Eigen::VectorXd power(rows), current(rows), motor(rows), ambient(rows), supply(rows);
-  double winding = 23.0, surface = 23.0, mount = 23.0, box = 23.0, level = 200.0;
+  Eigen::VectorXd rate(rows);
+  double winding = 23.0, surface = 23.0, mount = 23.0, box = 23.0, sink = 23.0, level = 200.0;
   for (int i = 0; i < rows; ++i) {
     if (i % 150 == 0) level = 25.0 * std::floor(5.2 + 5.0 * std::sin(1.7 * i + static_cast<double>(seed)));
     if ((i / 150) % 4 == 3) level = 0.0;
+    // Still, turning slowly forward, fast backward, at changing power.
+    const double turning = (i / 110) % 3 == 0 ? 0.0 : (i / 110) % 3 == 1 ? 8.0 : -25.0;
+    rate[i] = turning * 57.29577951308232;
     r.t_s[i] = 2.0 * i;
     power[i] = level;
     supply[i] = 12.0;
@@ -45,12 +51,15 @@ Recording record(const Body& body, int rows, std::uint64_t seed) {
       const double h = 2.0 / steps, heat = v * v / ohm();
       const double air = body.box > 0.0 ? box : 23.0;
       const double lost = body.to_air * (surface - air), soaked = body.to_mount * (surface - mount);
+      const double iron = body.hysteresis * std::fabs(turning) + body.eddy * turning * turning;
+      const double sunk = body.sink > 0.0 ? (surface - sink) / body.contact : 0.0;
       double into_surface = heat;
       if (body.winding > 0.0) {
         into_surface = body.coupling * (winding - surface);
         winding += h * (heat - into_surface) / body.winding;
       }
-      surface += h * (into_surface - lost - soaked) / body.surface;
+      surface += h * (into_surface + iron - lost - soaked - sunk) / body.surface;
+      if (body.sink > 0.0) sink += h * (sunk - body.sink_to_room * (sink - 23.0)) / body.sink;
       if (body.mount > 0.0) mount += h * soaked / body.mount;
       if (body.box > 0.0) box += h * (lost - body.box_to_room * (box - 23.0)) / body.box;
     }
@@ -60,7 +69,16 @@ Recording record(const Body& body, int rows, std::uint64_t seed) {
   r.set("motor_C", motor);
   r.set("ambient_C", ambient);
   r.set("supply_V", supply);
+  if (body.hysteresis + body.eddy > 0.0) r.set("rate_dps", rate);
   return r;
+}
+
+/// Whether the interval of a parameter of the cause holds a value.
+bool holds(const Diagnosis& diagnosis, const std::string& name, double value) {
+  for (const Cause& cause : diagnosis.cause)
+    for (const ParameterEstimate& one : cause.parameters)
+      if (one.name == name) return one.ci95.low <= value && value <= one.ci95.high;
+  return false;
 }
 
 Diagnosis diagnosed(const Model& model, const Body& body, int effects_at_once = 1) {
@@ -98,6 +116,61 @@ TEST_CASE("air that warms up around the body is found") {
   REQUIRE_FALSE(diagnosis.cause.empty());
   CHECK(diagnosis.cause.front().effect == "enclosure");
   CHECK(test::parameter_of(diagnosis, "W_per_K") == Approx(0.2).epsilon(0.1));
+}
+
+TEST_CASE(
+    "what a motor is bolted to is found behind its contact, and what is known of the motor tells it from a box") {
+  Body body;
+  body.sink = 180.0;
+  body.contact = 4.0;
+  body.sink_to_room = 0.3;
+  const Diagnosis diagnosis = diagnosed(test::bench_model(), body);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "contact_resistance");
+  CHECK(holds(diagnosis, "J_per_K", 180.0));
+  CHECK(holds(diagnosis, "K_per_W", 4.0));
+  CHECK(holds(diagnosis, "W_per_K", 0.3));
+
+  // Were nothing known of the motor, a surface with a winding in it would be the same circuit.
+  Model unknown = test::bench_model();
+  unknown.uncertainty["thermal.heat_capacity_J_per_K"] = 1.0;
+  unknown.uncertainty["thermal.conductance_W_per_K"] = 1.0;
+  const Diagnosis open = diagnosed(unknown, body);
+  INFO(open.reason);
+  CHECK_FALSE((open.cause.size() == 1 && open.cause.front().effect == "contact_resistance" &&
+               open.alternatives.empty()));
+}
+
+TEST_CASE(
+    "heat of the iron is told from heat that goes with the square of the rate, and by where it enters") {
+  Body body;
+  body.hysteresis = 0.12;
+  const Diagnosis by_rate = diagnosed(test::bench_model(), body);
+  INFO(by_rate.reason);
+  REQUIRE(by_rate.cause.size() == 1);
+  CHECK(by_rate.cause.front().effect == "iron_loss");
+  CHECK(holds(by_rate, "hysteresis_W_s_per_rad", 0.12));
+
+  body.hysteresis = 0.0;
+  body.eddy = 0.004;
+  const Diagnosis by_square = diagnosed(test::bench_model(), body);
+  INFO(by_square.reason);
+  REQUIRE(by_square.cause.size() == 1);
+  CHECK(by_square.cause.front().effect == "motion_heating");
+  CHECK(holds(by_square, "W_s2_per_rad2", 0.004));
+
+  // In a body whose winding the simulation knows, the iron's heat enters behind it.
+  body.winding = 15.0;
+  body.coupling = 0.5;
+  body.surface = 45.0;
+  Model model = test::bench_model();
+  model.effects["second_thermal_mass"] = {{"winding_share", 0.25}, {"coupling", 0.5}};
+  const Diagnosis in_stator = diagnosed(model, body);
+  INFO(in_stator.reason);
+  REQUIRE(in_stator.cause.size() == 1);
+  CHECK(in_stator.cause.front().effect == "iron_loss");
+  CHECK(holds(in_stator, "eddy_W_s2_per_rad2", 0.004));
 }
 
 TEST_CASE("two nodes are not taken for three") {

@@ -171,6 +171,48 @@ TEST_CASE("a friction backward that no motion tells is no friction that differs 
   CHECK(ends_on_bounds(one, model));
 }
 
+TEST_CASE("a sink that does not change in a run is no sink, but air of another temperature") {
+  const Model model = bench_model();
+  Candidate one;
+  one.explanation.effects.push_back(standard_catalogue().find("contact_resistance"));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  const auto count = static_cast<Eigen::Index>(one.list.size());
+  REQUIRE(one.list[static_cast<std::size_t>(count - 3)].name == "contact_resistance.J_per_K");
+  one.fit.at = Eigen::VectorXd::Zero(count);
+  one.fit.at[count - 3] = std::log(100.0);
+  one.fit.at[count - 2] = std::log(10.0);  // 1000 s
+  one.fit.at_bound.assign(one.list.size(), false);
+  CHECK_FALSE(ends_on_bounds(one, model));
+  CHECK_FALSE(ends_on_bounds(one, model, 1e300, 2500.0));
+  CHECK(ends_on_bounds(one, model, 1e300, 1500.0));
+  one.fit.at[count - 1] = 0.1;  // half of the heat leaves by the air: 500 s
+  CHECK_FALSE(ends_on_bounds(one, model, 1e300, 1500.0));
+}
+
+TEST_CASE("a detail of an effect's shape is neither moved nor counted until it is looked at") {
+  const Model model = axis_model();
+  Explanation cogging{{standard_catalogue().find("cogging")}, {}};
+  CHECK(cogging.parameter_count() == 3);
+  CHECK(cogging.can_be_refined());
+  std::vector<Coordinate> list = coordinates(model, cogging, standard_catalogue());
+  REQUIRE(list.back().name == "cogging.second_cos");
+  CHECK(list.back().still);
+  CHECK(list.back().lower == list.back().upper);
+  const Eigen::VectorXd at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(list.size()));
+  const ParameterPoint point = point_of(model, cogging, list, at);
+  CHECK(point.directions() == point.size() - 2);
+  CHECK(point.direction(point.size() - 1) == -1);
+  CHECK(point.direction(0) == 0);
+
+  cogging.refined = true;
+  CHECK(cogging.parameter_count() == 5);
+  CHECK_FALSE(cogging.can_be_refined());
+  list = coordinates(model, cogging, standard_catalogue());
+  CHECK_FALSE(list.back().still);
+  CHECK(list.back().lower < list.back().upper);
+  CHECK(point_of(model, cogging, list, at).directions() == point.size());
+}
+
 TEST_CASE("where the axis rests and both are at the noise, a second cause need not help") {
   Candidate without, with;
   // One block in three moves; there the second cause halves the error, elsewhere noise decides.

@@ -59,7 +59,7 @@ TEST_CASE("derivatives by automatic differentiation agree with finite difference
     const Model model = baseline_of(trial);
     const std::vector<Inputs> inputs{prepare(model, recorded(trial, 11))};
     const FitProblem problem = problem_of(model, inputs);
-    const Explanation explanation{{standard_catalogue().find(trial.id)}, {}};
+    const Explanation explanation{{standard_catalogue().find(trial.id)}, {}, true};
     const std::vector<Coordinate> list = coordinates(model, explanation, {});
     const Eigen::VectorXd at = coordinates_of(trial, list);
     Eigen::MatrixXd jacobian(residuals(problem, explanation, list, at).size(), at.size());
@@ -92,7 +92,7 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
     const Attribution attribution(problem);
     INFO(trial.id);
     const Candidate empty = attribution.fit({}, {});
-    Candidate fitted = attribution.fit({{standard_catalogue().find(trial.id)}, {}}, {});
+    Candidate fitted = attribution.fit({{standard_catalogue().find(trial.id)}, {}, true}, {});
     attribution.survey(fitted);
     CHECK(empty.fit.chi2 > 2.0 * fitted.fit.chi2);
     CHECK(fitted.fit.chi2 / static_cast<double>(fitted.fit.samples) < 1.15);

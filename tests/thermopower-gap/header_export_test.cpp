@@ -57,6 +57,7 @@ std::vector<Trial> trials() {
       {"ambient_bias", {{"ambient_bias", {{"bias_K", 6.0}}}}},
       {"neighbour_heating", {{"neighbour_heating", {{"coupling", 0.08}}}}},
       {"motion_heating", {{"motion_heating", {{"W_s2_per_rad2", 0.05}}}}},
+      {"iron_loss", {{"iron_loss", {{"hysteresis_W_s_per_rad", 0.1}, {"eddy_W_s2_per_rad2", 0.03}}}}},
       {"thermometer_lag", {{"thermometer_lag", {{"lag_s", 25.0}}}}},
       {"thermometer_gain", {{"thermometer_gain", {{"gain", 0.8}}}}},
       {"supply_power_heating", {{"supply_power_heating", {{"share", 0.7}}}}},
@@ -93,6 +94,9 @@ std::vector<Trial> trials() {
          {{"Nm", 0.005}, {"rise_Nm", 0.008}, {"knee_rad_per_s", 0.5}, {"transition_rad_per_s", 0.2}}}},
        true},
       {"load_friction", {{"load_friction", {{"share", 0.3}, {"transition_rad_per_s", 0.2}}}}, true},
+      {"drive_efficiency",
+       {{"drive_efficiency", {{"efficiency", 0.8}, {"back_efficiency", 0.5}, {"transition_rad_per_s", 0.2}}}},
+       true},
       {"load_friction_under_a_load",
        {{"load_friction", {{"share", 0.3}, {"transition_rad_per_s", 0.2}}},
         {"imbalance", {{"Nm", 0.03}, {"phase_rad", 0.4}}}},
@@ -101,6 +105,14 @@ std::vector<Trial> trials() {
       {"imbalance", {{"imbalance", {{"Nm", 0.03}, {"phase_rad", 0.4}}}}, true},
       {"cable_spring", {{"cable_spring", {{"Nm_per_rad", 0.01}, {"centre_rad", 0.3}}}}, true},
       {"cogging", {{"cogging", {{"sin_Nm", 0.01}, {"cos_Nm", 0.004}, {"cycles_per_turn", 7.0}}}}, true},
+      {"cogging_with_a_second_harmonic",
+       {{"cogging",
+         {{"sin_Nm", 0.01},
+          {"cos_Nm", 0.004},
+          {"cycles_per_turn", 7.0},
+          {"second_sin", 0.4},
+          {"second_cos", -0.3}}}},
+       true},
       {"compliance", {{"compliance", {{"far_share", 0.4}, {"frequency_Hz", 9.0}, {"damping", 0.05}}}}, true},
       {"actuation_delay", {{"actuation_delay", {{"s", 0.023}}}}, true},
       {"backlash",
@@ -336,8 +348,10 @@ TEST_CASE("an equation that cannot be followed is listed, with its constants, an
 }
 
 TEST_CASE("nodes that firmware's types do not have are listed, with their constants") {
-  for (const Trial& trial : {Trial{"soaking", {{"third_thermal_mass", {{"share", 0.4}, {"coupling", 0.1}}}}},
-                             Trial{"boxed", {{"enclosure", {{"share", 0.8}, {"W_per_K", 0.25}}}}}}) {
+  for (const Trial& trial :
+       {Trial{"soaking", {{"third_thermal_mass", {{"share", 0.4}, {"coupling", 0.1}}}}},
+        Trial{"boxed", {{"enclosure", {{"share", 0.8}, {"W_per_K", 0.25}}}}},
+        Trial{"bolted", {{"contact_resistance", {{"J_per_K", 90.0}, {"K_per_W", 4.0}, {"W_per_K", 0.2}}}}}}) {
     const io::MotorModelHeader header = io::motor_model_header(model_of(trial), "a test", catalogue());
     REQUIRE(header.left_out.size() == 1);
     CHECK(header.left_out[0].find("winding and surface") != std::string::npos);
@@ -370,7 +384,7 @@ TEST_CASE("a reading that bends is listed, and an exchanged law is written as it
 
 TEST_CASE("there is a trial for every effect of the catalogue") {
   // These are above: they do not write themselves, or have no parameters.
-  std::set<std::string> tried{"third_thermal_mass", "enclosure", "encoder_eccentricity",
+  std::set<std::string> tried{"third_thermal_mass", "enclosure", "contact_resistance", "encoder_eccentricity",
                               "law.exchanged_heating"};
   for (const Trial& trial : trials())
     for (const auto& effect : trial.effects) tried.insert(effect.first);

@@ -463,13 +463,11 @@ private:
     const auto* lumped = std::get_if<LumpedThermalModel>(&m_.thermal);
     const auto* thesis = std::get_if<ThesisThermalModel>(&m_.thermal);
     if (lumped == nullptr && thesis == nullptr) return;
-    plant::ThermalStructure<double> shape{1.0, 0.0,   0.0,   0.0,   0.0,   0.0,
-                                          0.0, false, false, false, false, false};
+    plant::ThermalStructure<double> shape{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
     // What stands behind the surface or around the body is no part of firmware's types.
     for (const Written& one : written_) {
-      plant::ThermalStructure<double> alone{1.0, 0.0,   0.0,   0.0,   0.0,   0.0,
-                                            0.0, false, false, false, false, false};
+      plant::ThermalStructure<double> alone{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
       one.entry->of<double>().call(one.values.data(), alone);
       if (alone.has_further_nodes())
         leave(one.entry->info.id, "`Thermal` has no nodes but winding and surface");

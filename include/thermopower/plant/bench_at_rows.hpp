@@ -161,7 +161,7 @@ private:
     const double node_C = two ? hidden.surface_C : winding_C;
     const auto flows = rollout.heat_flows(i, t_s, electrical, winding_C, node_C, enclosed_C);
     const double total = flows.rise_K_per_J > 0.0 ? 1.0 / flows.rise_K_per_J : 6e4;
-    const double rest = 1.0 - (shape.soaks ? shape.soaking_share : 0.0);
+    const double rest = shape.own_share();
     const double soaked_W = shape.soaks ? shape.soaking_W_per_K * (node_C - hidden.soaking_C) : 0.0;
     const auto approach = [&](double gain_K_per_s, double decay_per_s) {
       return gain_K_per_s * (decay_per_s > 0.0 ? -std::expm1(-decay_per_s * step_s) / decay_per_s : step_s);
@@ -188,9 +188,12 @@ private:
                             (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
           (rest * total);
     }
-    if (shape.soaks)
-      hidden.soaking_C += approach(soaked_W / (shape.soaking_share * total),
-                                   shape.soaking_W_per_K / (shape.soaking_share * total));
+    if (shape.soaks) {
+      const double K_per_J = shape.soaking_K_per_J(1.0 / total);
+      hidden.soaking_C +=
+          approach((soaked_W - shape.soaking_loss_W_per_K * (hidden.soaking_C - flows.outside_C)) * K_per_J,
+                   (shape.soaking_W_per_K + shape.soaking_loss_W_per_K) * K_per_J);
+    }
     if (shape.enclosed) {
       const double capacity = shape.enclosed_share * total;
       hidden.enclosed_C +=

@@ -283,7 +283,7 @@ private:
     const Scalar& surface_C = shape.two_nodes ? state.surface_C : state.winding_C;
     const Scalar soaked_W =
         shape.soaks ? Scalar(shape.soaking_W_per_K * (surface_C - state.further.soaking_C)) : zero;
-    const Scalar rest = 1.0 - shape.soaking_share;  // of the heat capacity, in winding and surface
+    const Scalar rest = shape.own_share();  // of the heat capacity, in winding and surface
     if (shape.two_nodes) {
       const Scalar flow_W = coupling_W_per_K_ * (state.winding_C - state.surface_C);
       rate.winding = (flows.heat_W - flow_W) * rise_K_per_J / (rest * shape.winding_share);
@@ -293,7 +293,11 @@ private:
       rate.surface = rate.winding;
     }
     rate.further.any = true;
-    rate.further.soaking_C = shape.soaks ? Scalar(soaked_W * rise_K_per_J / shape.soaking_share) : zero;
+    rate.further.soaking_C =
+        shape.soaks
+            ? Scalar((soaked_W - shape.soaking_loss_W_per_K * (state.further.soaking_C - flows.outside_C)) *
+                     shape.soaking_K_per_J(rise_K_per_J))
+            : zero;
     rate.further.enclosed_C =
         shape.enclosed
             ? Scalar((flows.loss_W - shape.enclosed_W_per_K * (state.further.enclosed_C - flows.outside_C)) *
@@ -321,10 +325,11 @@ private:
       fastest = std::max(fastest, flow / share + (flow + 2.0 * base) / (1.0 - share));
     }
     if (shape.soaks) {
-      const double share = value_of(shape.soaking_share), rest = 1.0 - share;
-      const double flow = value_of(shape.soaking_W_per_K) * rise_K_per_J;
+      const double rest = value_of(shape.own_share()), coupling = value_of(shape.soaking_W_per_K);
       const double surface = rest * (shape.two_nodes ? 1.0 - value_of(shape.winding_share) : 1.0);
-      fastest = fastest / rest + flow / share + flow / surface;
+      const double away = coupling + value_of(shape.soaking_loss_W_per_K);
+      fastest = fastest / rest + away * value_of(shape.soaking_K_per_J(constant<Scalar>(rise_K_per_J))) +
+                coupling * rise_K_per_J / surface;
     }
     if (shape.enclosed)
       fastest +=

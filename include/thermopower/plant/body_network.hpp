@@ -40,7 +40,7 @@ template <class Scalar>
 BodyNetwork<Scalar> body_network(const ThermalStructure<Scalar>& shape, const BodyPlaces& at,
                                  const Scalar& coupling_W_per_K, const Scalar& rise_K_per_J,
                                  const Scalar& loss_per_s) {
-  const Scalar rest = 1.0 - shape.soaking_share;
+  const Scalar rest = shape.own_share();
   const Scalar surface_share = shape.two_nodes ? Scalar(rest * (1.0 - shape.winding_share)) : rest;
   BodyNetwork<Scalar> result(at.count);
   if (shape.two_nodes) {
@@ -48,8 +48,10 @@ BodyNetwork<Scalar> body_network(const ThermalStructure<Scalar>& shape, const Bo
     result.link(0, at.surface, flow_per_s / (rest * shape.winding_share), flow_per_s / surface_share);
   }
   if (shape.soaks) {
-    const Scalar flow_per_s = shape.soaking_W_per_K * rise_K_per_J;
-    result.link(at.surface, at.soaking, flow_per_s / surface_share, flow_per_s / shape.soaking_share);
+    const Scalar soaking_K_per_J = shape.soaking_K_per_J(rise_K_per_J);
+    result.link(at.surface, at.soaking, shape.soaking_W_per_K * rise_K_per_J / surface_share,
+                shape.soaking_W_per_K * soaking_K_per_J);
+    result.lose(at.soaking, shape.soaking_loss_W_per_K * soaking_K_per_J);
   }
   if (shape.enclosed) {
     result.link(at.surface, at.enclosed, loss_per_s / surface_share, loss_per_s / shape.enclosed_share);

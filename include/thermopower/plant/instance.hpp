@@ -78,8 +78,7 @@ struct Instance {
            const std::vector<AddedEffect<Scalar>>& added, const Catalogue& catalogue) {
     set_constants(model, factors);
     const Scalar none = constant<Scalar>(0.0);
-    thermal_structure = {
-        constant<Scalar>(1.0), none, none, none, none, none, none, false, false, false, false, false};
+    thermal_structure = {constant<Scalar>(1.0), none, none, none, none, none, none, none, none};
     axis_structure = {none, none, none, none, none, false, false, false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {

@@ -69,19 +69,31 @@ struct ThermalTerms {
 /// How to: @ref diagnose_a_gap.
 template <class Scalar>
 struct ThermalStructure {
-  Scalar winding_share;      ///< of the heat capacity; 1: a single node
-  Scalar coupling_W_per_K;   ///< between winding and surface node
-  Scalar thermometer_lag_s;  ///< time constant of the thermometer; 0: none
-  Scalar soaking_share;      ///< of the heat capacity, in a node behind the surface that loses nothing itself
-  Scalar soaking_W_per_K;    ///< between that node and the surface
-  Scalar enclosed_share;     ///< heat capacity of the air around the body, relative to the body's
-  Scalar enclosed_W_per_K;   ///< from that air to the measured one
-  bool two_nodes = false;    ///< to be set with the share: winding and surface are nodes of their own
-  bool lagged = false;       ///< to be set with the lag: the thermometer follows the winding late
-  bool soaks = false;        ///< to be set with its share: there is a node behind the surface
-  bool enclosed = false;     ///< to be set with its share: the air around the body warms up
+  Scalar winding_share;         ///< of the heat capacity; 1: a single node
+  Scalar coupling_W_per_K;      ///< between winding and surface node
+  Scalar thermometer_lag_s;     ///< time constant of the thermometer; 0: none
+  Scalar soaking_share;         ///< of the heat capacity, in a node behind the surface
+  Scalar soaking_W_per_K;       ///< between that node and the surface
+  Scalar enclosed_share;        ///< heat capacity of the air around the body, relative to the body's
+  Scalar enclosed_W_per_K;      ///< from that air to the measured one
+  Scalar soaking_loss_W_per_K;  ///< from the node behind the surface to the air; 0: it loses nothing itself
+  Scalar soaking_J_per_K;       ///< its heat capacity, where it comes on top of the body's
+  bool two_nodes = false;       ///< to be set with the share: winding and surface are nodes of their own
+  bool lagged = false;          ///< to be set with the lag: the thermometer follows the winding late
+  bool soaks = false;           ///< to be set with its share: there is a node behind the surface
+  bool soaking_added =
+      false;  ///< to be set with `soaking_J_per_K` instead of the share: it is no part of the body
+  bool enclosed = false;  ///< to be set with its share: the air around the body warms up
   bool heating_exchanged =
       false;  ///< the thesis's heating law takes the temperature for the voltage, and the reverse
+
+  /// Share of the body's heat capacity that is in winding and surface.
+  Scalar own_share() const { return soaking_added ? Scalar(1.0) : Scalar(1.0 - soaking_share); }
+
+  /// What a joule warms the node behind the surface by. @param rise_K_per_J  what it warms the body by
+  Scalar soaking_K_per_J(const Scalar& rise_K_per_J) const {
+    return soaking_added ? Scalar(1.0 / soaking_J_per_K) : Scalar(rise_K_per_J / soaking_share);
+  }
 
   /// Whether there are nodes besides winding and surface.
   bool has_further_nodes() const { return soaks || enclosed; }

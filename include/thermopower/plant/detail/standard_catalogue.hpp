@@ -14,17 +14,20 @@
 #include <thermopower/plant/effects/cogging.hpp>
 #include <thermopower/plant/effects/compliance.hpp>
 #include <thermopower/plant/effects/constant_torque.hpp>
+#include <thermopower/plant/effects/contact_resistance.hpp>
 #include <thermopower/plant/effects/coulomb_friction.hpp>
 #include <thermopower/plant/effects/current_sensor_gain.hpp>
 #include <thermopower/plant/effects/current_sensor_offset.hpp>
 #include <thermopower/plant/effects/dead_time.hpp>
 #include <thermopower/plant/effects/drive_deadband.hpp>
+#include <thermopower/plant/effects/drive_efficiency.hpp>
 #include <thermopower/plant/effects/drive_lag.hpp>
 #include <thermopower/plant/effects/enclosure.hpp>
 #include <thermopower/plant/effects/encoder_eccentricity.hpp>
 #include <thermopower/plant/effects/exchanged_heating_law.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
+#include <thermopower/plant/effects/iron_loss.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
 #include <thermopower/plant/effects/motion_heating.hpp>
 #include <thermopower/plant/effects/natural_convection.hpp>
@@ -56,12 +59,14 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<SecondThermalMass>();
     all.add<ThirdThermalMass>();
     all.add<Enclosure>();
+    all.add<ContactResistance>();
     all.add<Radiation>();
     all.add<NaturalConvectionEffect>();
     all.add<ForcedAirflowEffect>();
     all.add<AmbientBias>();
     all.add<NeighbourHeating>();
     all.add<MotionHeating>();
+    all.add<IronLoss>();
     all.add<ThermometerLag>();
     all.add<ThermometerGain>();
     all.add<SupplyPowerHeating>();
@@ -77,6 +82,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<AsymmetricFriction>();
     all.add<StribeckFriction>();
     all.add<LoadFriction>();
+    all.add<DriveEfficiency>();
     all.add<PreslidingFriction>();
     all.add<DriveDeadband>();
     all.add<Imbalance>();
