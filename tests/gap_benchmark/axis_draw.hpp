@@ -65,7 +65,7 @@ inline AxisSetup draw_axis(const std::vector<std::string>& wanted, Random& rando
     if (random.chance(0.12)) s.decoys.push_back(decoy);
   // Half of the bearings are greased. The simulation under test knows nothing of dry friction, so it is not told.
   const bool rubs = wants("coulomb_friction") || wants("asymmetric_friction") || wants("stribeck_friction") ||
-                    wants("load_friction");
+                    wants("load_friction") || wants("drive_efficiency");
   if (rubs && random.chance(0.5)) c.model[film_dps] = c.plant[film_dps] = random.log_uniform(0.3, 3.0);
   s.plant = c.plant;
   return s;
@@ -123,6 +123,10 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
 /// Gives a drawn effect another form than the catalogue's.
 inline void draw_form(AxisSetup& s, OtherForm form, Random& random) {
   if (form == OtherForm::stribeck_exponent) s.plant[stribeck_exponent] = random.pick({1.0, 4.0});
+  if (form == OtherForm::cogging_harmonic) {
+    s.plant[cogging_second] = random.uniform(0.3, 0.8);
+    s.plant[cogging_second_phase] = random.uniform(-3.1, 3.1);
+  }
 }
 
 /// Noise-free residuals in windows of `window_s`, over at most `limit_s` of the recording.

@@ -93,6 +93,21 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{load_share, 0.0, 0.7, {0.15}}};
        },
        {}},
+      {"drive_efficiency",
+       "mechanical.friction",
+       motion,
+       always,
+       [](Random& r, const Context&, Values& p) {
+         // A worm is hard to turn from behind; a preloaded thread may be easy.
+         const bool worm = r.chance(0.6);
+         const double lost = worm ? r.uniform(0.04, 0.2) : r.uniform(0.15, 0.4);
+         p[gear_forward] = 1.0 - lost;
+         p[gear_backward] = 1.0 / (1.0 + lost * (worm ? r.uniform(2.5, 6.0) : r.uniform(0.0, 0.25)));
+       },
+       [](const Context&) {
+         return List{{gear_forward, 0.3, 1.0, {0.85}}, {gear_backward, 0.2, 1.0, {0.7, 0.95}}};
+       },
+       {"load_friction"}},
       {"drive_deadband",
        "mechanical.drive",
        motion,

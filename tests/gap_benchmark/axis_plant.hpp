@@ -21,6 +21,8 @@ enum AxisParameter : int {
   stribeck_dps,
   stribeck_exponent,
   load_share,
+  gear_forward,
+  gear_backward,
   film_dps,
   // drive
   deadband_A,
@@ -35,6 +37,8 @@ enum AxisParameter : int {
   cogging_sin_Nm,
   cogging_cos_Nm,
   cogging_count,
+  cogging_second,
+  cogging_second_phase,
   // a spring between motor and load
   far_share,
   spring_Hz,
@@ -76,6 +80,7 @@ inline AxisParameters axis_defaults() {
   p[spring_Hz] = 10.0;
   p[spring_damping] = 0.05;
   p[angle_gain] = 1.0;
+  p[gear_forward] = p[gear_backward] = 1.0;
   p[notch_width_deg] = p[bristle_deg] = p[warming_s] = p[run_out_count] = p[clutch_dps] = 1.0;
   return p;
 }
@@ -112,7 +117,8 @@ public:
       damper_ = 2.0 * p_[spring_damping] * reduced * omega;
       step_s_ = std::min(step_s_, 0.1 / omega);
     }
-    const bool rubs = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0;
+    const bool rubs = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0 ||
+                      p_[gear_forward] < 1.0 || p_[gear_backward] < 1.0;
     if (p_[gap_deg] > 0.0) half_gap_ = 0.5 * p_[gap_deg] / degrees_per_radian;
     creeps_ = rubs && p_[film_dps] > 0.0;
     dry_ = rubs && !creeps_;
@@ -254,7 +260,13 @@ private:
       torque *= 1.0 + p_[stick_ratio] * std::exp(-std::pow(v, p_[stribeck_exponent]));
     }
     if (p_[run_out_share] > 0.0) torque *= 1.0 + p_[run_out_share] * std::sin(p_[run_out_count] * x.angle);
-    torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm);
+    const double load_Nm = p_[far_share] > 0.0 ? 0.0 : load_torque(x.angle, x.rate);
+    torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm - load_Nm);
+    // A gear hands on a part of the motor's torque; of the load's, when that turns the motor, another part.
+    const double motor_Nm = held.motor_Nm;
+    const double arrives_Nm =
+        motor_Nm * way > 0.0 ? motor_Nm * p_[gear_forward] : motor_Nm / p_[gear_backward];
+    torque += (motor_Nm - arrives_Nm) * way;
     if (p_[notch_Nm] > 0.0) {
       const double z = (x.angle * degrees_per_radian - p_[notch_deg]) / p_[notch_width_deg];
       torque += p_[notch_Nm] * std::exp(-0.5 * z * z);
@@ -324,6 +336,9 @@ private:
     if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
       torque -= p_[cogging_sin_Nm] * std::sin(p_[cogging_count] * x.angle) +
                 p_[cogging_cos_Nm] * std::cos(p_[cogging_count] * x.angle);
+    if (p_[cogging_second] != 0.0)
+      torque -= p_[cogging_second] * std::hypot(p_[cogging_sin_Nm], p_[cogging_cos_Nm]) *
+                std::sin(2.0 * p_[cogging_count] * x.angle + p_[cogging_second_phase]);
     if (p_[bristle_Nm] > 0.0) torque -= p_[bristle_Nm] * x.bent;
     if (p_[drag_Nm_per_dps2] > 0.0) {
       const double v = x.rate * degrees_per_radian;

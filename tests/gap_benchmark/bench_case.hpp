@@ -132,7 +132,7 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
           break;
       }
       if (k == 0) {
-        x.winding_C = x.housing_C = x.sensor_C = x.soak_C =
+        x.winding_C = x.housing_C = x.sensor_C = x.soak_C = x.sink_C =
             u.ambient_C + (run ? session.run_gap_K : fixed.uniform(0.0, 4.0));
         x.box_C = u.ambient_C + setup.plant[air_bias_K];
         if (setup.warm_start && run == 0) {
@@ -143,6 +143,7 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
           x.charge_Ah = 0.0;
           out.exact[housing_start_K] = x.housing_C - x.winding_C;
           out.exact[winding_start_K] = x.winding_C - x.sensor_C;
+          out.exact[sink_start_K] = x.sink_C - x.housing_C;
           out.exact[box_start_K] = x.box_C - u.ambient_C - setup.plant[air_bias_K];
         }
         out.drive.run_start.push_back(first);

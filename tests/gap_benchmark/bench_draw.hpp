@@ -106,7 +106,7 @@ inline BenchSetup draw_bench(const std::vector<std::string>& wanted, bool thesis
   if (!c.knows_tempco) m[tempco_per_K] = c.plant[tempco_per_K] = 0.0;
   c.has_airspeed = wants("forced_airflow") || random.chance(0.25);
   c.has_neighbour = wants("neighbour_heating") || random.chance(0.25);
-  c.has_rate = wants("motion_heating") || wants("back_emf") || random.chance(0.2);
+  c.has_rate = wants("motion_heating") || wants("iron_loss") || wants("back_emf") || random.chance(0.2);
   c.has_supply = !wants("supply_sag") && random.chance(0.6);
   bool electrical = false;
   for (const auto& id : wanted) {

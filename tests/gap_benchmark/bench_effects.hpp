@@ -64,6 +64,26 @@ inline const std::vector<BenchEffect>& bench_effects() {
              {box_start_K, -5.0, 40.0, {0.0}}};
        },
        {}},
+      {"contact_resistance",
+       "thermal.loss",
+       {"motor_C"},
+       lumped,
+       [](Random& r, const Context&, Values& p) {
+         p[contact_K_per_W] = 1.0 / (p[conductance] * r.log_uniform(0.4, 3.0));
+         p[sink_W_per_K] = p[conductance] * r.log_uniform(0.4, 3.0);
+         // Its time constant lies between a third of the motor's and twice that.
+         const double through = 1.0 / p[contact_K_per_W] + p[sink_W_per_K];
+         p[sink_J_per_K] = p[heat_capacity] / p[conductance] * through * r.log_uniform(0.3, 2.0);
+       },
+       [](const Context& c) {
+         const double g = c.model[conductance], capacity = c.model[heat_capacity];
+         return std::vector<Free>{
+             {contact_K_per_W, 0.1 / g, 10.0 / g, {0.5 / g, 2.0 / g}},
+             {sink_W_per_K, 0.1 * g, 10.0 * g, {1.0 * g}},
+             {sink_J_per_K, 0.05 * capacity, 30.0 * capacity, {1.0 * capacity, 5.0 * capacity}},
+             {sink_start_K, -40.0, 10.0, {0.0}}};
+       },
+       {}},
       {"radiation",
        "thermal.loss",
        {"motor_C"},
@@ -133,6 +153,20 @@ inline const std::vector<BenchEffect>& bench_effects() {
          return std::vector<Free>{{motion_W_per_dps2, 0.0, c.top_W * 3e-5, {c.top_W * 3e-6}}};
        },
        {}},
+      {"iron_loss",
+       "thermal.heating",
+       {"motor_C"},
+       [](const Context& c) { return c.has_rate; },
+       [](Random& r, const Context& c, Values& p) {
+         const double watts = c.top_W * r.log_uniform(0.08, 0.5), share = r.uniform(0.5, 1.0);
+         p[hysteresis_W_per_dps] = watts * share / 200.0;
+         p[eddy_W_per_dps2] = watts * (1.0 - share) / (200.0 * 200.0);
+       },
+       [](const Context& c) {
+         return std::vector<Free>{{hysteresis_W_per_dps, 0.0, c.top_W * 6e-3, {c.top_W * 6e-4}},
+                                  {eddy_W_per_dps2, 0.0, c.top_W * 3e-5, {c.top_W * 1e-6}}};
+       },
+       {"motion_heating"}},
       {"thermometer_lag",
        "sensing.temperature",
        {"motor_C"},

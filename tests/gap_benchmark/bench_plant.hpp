@@ -55,10 +55,16 @@ enum BenchParameter : int {
   supply_heating,
   box_J_per_K,
   box_W_per_K,
+  sink_J_per_K,
+  sink_W_per_K,
+  contact_K_per_W,
+  hysteresis_W_per_dps,
+  eddy_W_per_dps2,
   // what nobody measures at the start of a run
   housing_start_K,
   winding_start_K,
   box_start_K,
+  sink_start_K,
   // effects that have no name in the catalogue
   fan_gain,
   fan_on_C,
@@ -94,7 +100,8 @@ struct BenchInput {
 
 struct BenchState {
   double winding_C = 20.0, housing_C = 20.0, sensor_C = 20.0, soak_C = 20.0, charge_Ah = 0.0;
-  double box_C = 20.0;  ///< air around the motor, where that stands in a box
+  double box_C = 20.0;   ///< air around the motor, where that stands in a box
+  double sink_C = 20.0;  ///< what the motor is bolted to
   bool fan = false;
 };
 
@@ -112,6 +119,11 @@ public:
     if (p_[soak_J_per_K] > 0.0) fastest_s = std::min(fastest_s, p_[soak_J_per_K] / p_[soak_W_per_K]);
     if (p_[box_J_per_K] > 0.0)
       fastest_s = std::min(fastest_s, p_[box_J_per_K] / (p_[box_W_per_K] + 2.0 * p_[conductance]));
+    if (p_[sink_J_per_K] > 0.0) {
+      const double per_contact = 1.0 / p_[contact_K_per_W];
+      fastest_s = std::min(fastest_s, p_[sink_J_per_K] / (per_contact + p_[sink_W_per_K]));
+      fastest_s = std::min(fastest_s, p_[heat_capacity] / (per_contact + p_[conductance]));
+    }
     step_s_ = std::min(0.5, fastest_s / 12.0);
     if (p_[latent_J] > 0.0 || p_[short_share] > 0.0) step_s_ = std::min(step_s_, 0.1);
     step_s_ *= step_scale;
@@ -162,6 +174,7 @@ public:
     x.housing_C = x.winding_C + (two_nodes() ? p_[housing_start_K] : 0.0);
     x.soak_C = x.winding_C;
     x.box_C = u.ambient_C + p_[air_bias_K] + p_[box_start_K];
+    x.sink_C = x.housing_C + p_[sink_start_K];
     return x;
   }
 
@@ -225,7 +238,7 @@ private:
     return x.fan ? x.winding_C < p_[fan_off_C] : x.winding_C > p_[fan_on_C];
   }
 
-  using Rates = std::array<double, 6>;
+  using Rates = std::array<double, 7>;
 
   Rates rates(const BenchState& x, const BenchInput& u) const {
     double capacity = p_[heat_capacity], base = p_[conductance];
@@ -240,24 +253,29 @@ private:
     Rates d{};
     const double heat_W = heating(u, x),
                  outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + u.hidden_W;
-    const double air_C = air_around(u, x),
-                 lost_W = loss(u, two_nodes() ? x.housing_C : x.winding_C, x.fan, base, air_C);
+    const double speed_dps = std::fabs(u.rate_dps);
+    const double iron_W = (p_[hysteresis_W_per_dps] + p_[eddy_W_per_dps2] * speed_dps) * speed_dps;
+    const double outer_C = two_nodes() ? x.housing_C : x.winding_C;
+    const double sunk_W = p_[sink_J_per_K] > 0.0 ? (outer_C - x.sink_C) / p_[contact_K_per_W] : 0.0;
+    const double air_C = air_around(u, x), lost_W = loss(u, outer_C, x.fan, base, air_C);
     const double soak_W = p_[soak_J_per_K] > 0.0 ? p_[soak_W_per_K] * (x.winding_C - x.soak_C) : 0.0;
     if (two_nodes()) {
       const double across = p_[coupling_W_per_K] * (x.winding_C - x.housing_C);
       d[0] = (heat_W + outside_W - across - soak_W) / (p_[winding_share] * capacity);
-      d[1] = (across - lost_W) / ((1.0 - p_[winding_share]) * capacity);
+      d[1] = (across + iron_W - lost_W - sunk_W) / ((1.0 - p_[winding_share]) * capacity);
     } else {
       if (p_[latent_J] > 0.0) {
         const double z = (x.winding_C - p_[melting_C]) / p_[melting_width_K];
         capacity += p_[latent_J] * std::exp(-0.5 * z * z) / (p_[melting_width_K] * 2.5066282746310002);
       }
-      d[0] = (heat_W + outside_W - soak_W - lost_W) / capacity;
+      d[0] = (heat_W + outside_W + iron_W - soak_W - lost_W - sunk_W) / capacity;
     }
     if (p_[sensor_lag_s] > 0.0) d[2] = (x.winding_C - x.sensor_C) / p_[sensor_lag_s];
     if (p_[soak_J_per_K] > 0.0) d[3] = soak_W / p_[soak_J_per_K];
     if (p_[box_J_per_K] > 0.0)
       d[5] = (lost_W - p_[box_W_per_K] * (x.box_C - u.ambient_C - p_[air_bias_K])) / p_[box_J_per_K];
+    if (p_[sink_J_per_K] > 0.0)
+      d[6] = (sunk_W - p_[sink_W_per_K] * (x.sink_C - u.ambient_C - p_[air_bias_K])) / p_[sink_J_per_K];
     if (p_[internal_ohm] > 0.0 || p_[volt_per_Ah] > 0.0)
       d[4] = current(u, x) * std::sqrt(std::max(0.0, u.power_param / 255.0 - p_[dead_duty])) / 3600.0;
     return d;
@@ -271,6 +289,7 @@ private:
     y.soak_C += h * d[3];
     y.charge_Ah += h * d[4];
     y.box_C += h * d[5];
+    y.sink_C += h * d[6];
     return y;
   }
 

@@ -31,19 +31,22 @@ inline const char* name(Half half) {
 enum class OtherForm {
   none,
   stribeck_exponent,  ///< friction falls with exp(-|w / knee|^n), n of 1 or 4 instead of 2
+  cogging_harmonic,   ///< cogging whose second harmonic is a good part of the first
   third_node,         ///< a body behind the winding soaks up heat beside the housing
   curved_sensor       ///< the current sensor's gain changes with the current
 };
 
 inline const char* name(OtherForm form) {
-  static const char* const names[] = {"none", "Stribeck friction of another exponent", "a third node",
+  static const char* const names[] = {"none", "Stribeck friction of another exponent",
+                                      "cogging with a second harmonic", "a third node",
                                       "a current sensor that is not straight"};
   return names[static_cast<int>(form)];
 }
 
 /// The effect of the catalogue that comes nearest to a form, though it is not the same.
 inline const char* nearest(OtherForm form) {
-  static const char* const ids[] = {"", "stribeck_friction", "second_thermal_mass", "current_sensor_gain"};
+  static const char* const ids[] = {"", "stribeck_friction", "cogging", "second_thermal_mass",
+                                    "current_sensor_gain"};
   return ids[static_cast<int>(form)];
 }
 
