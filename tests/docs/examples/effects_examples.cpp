@@ -19,17 +19,20 @@
 #include <thermopower/plant/effects/cogging.hpp>
 #include <thermopower/plant/effects/compliance.hpp>
 #include <thermopower/plant/effects/constant_torque.hpp>
+#include <thermopower/plant/effects/contact_resistance.hpp>
 #include <thermopower/plant/effects/coulomb_friction.hpp>
 #include <thermopower/plant/effects/current_sensor_gain.hpp>
 #include <thermopower/plant/effects/current_sensor_offset.hpp>
 #include <thermopower/plant/effects/dead_time.hpp>
 #include <thermopower/plant/effects/drive_deadband.hpp>
+#include <thermopower/plant/effects/drive_efficiency.hpp>
 #include <thermopower/plant/effects/drive_lag.hpp>
 #include <thermopower/plant/effects/enclosure.hpp>
 #include <thermopower/plant/effects/encoder_eccentricity.hpp>
 #include <thermopower/plant/effects/exchanged_heating_law.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
+#include <thermopower/plant/effects/iron_loss.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
 #include <thermopower/plant/effects/motion_heating.hpp>
 #include <thermopower/plant/effects/natural_convection.hpp>
@@ -529,5 +532,32 @@ TEST_CASE("rate_bias acts in a simulation") {
   //! [RateBias]
   model.effects[RateBias::info().id] = {{"dps", 1.5}};
   //! [RateBias]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("drive_efficiency acts in a simulation") {
+  Model model = axis();
+  const Model without = model;
+  //! [DriveEfficiency]
+  model.effects[DriveEfficiency::info().id] = {{"efficiency", 0.8}, {"back_efficiency", 0.6}};
+  //! [DriveEfficiency]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("contact_resistance acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [ContactResistance]
+  model.effects[ContactResistance::info().id] = {{"J_per_K", 80.0}, {"K_per_W", 10.0}, {"W_per_K", 0.2}};
+  //! [ContactResistance]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("iron_loss acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [IronLoss]
+  model.effects[IronLoss::info().id] = {{"hysteresis_W_s_per_rad", 0.01}, {"eddy_W_s2_per_rad2", 1e-4}};
+  //! [IronLoss]
   CHECK(acts(model, without));
 }

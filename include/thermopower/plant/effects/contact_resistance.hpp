@@ -13,6 +13,9 @@ namespace thermopower::plant {
 ///
 /// The body is what it was without, heat capacity and loss; the sink comes on top of it. With one thermometer that is the
 /// same circuit as `second_thermal_mass` or `enclosure` with other constants of the body: what is known of those tells them apart.
+///
+/// @snippet effects_examples.cpp ContactResistance
+/// How to: @ref motor_on_a_frame, @ref diagnose_a_gap.
 struct ContactResistance {
   /// Its parameters, in this order.
   enum Parameters {

@@ -20,6 +20,9 @@ namespace thermopower::plant {
 /// Where nothing but the motor loads the axis it is the same as `load_friction` with another torque constant, by a factor
 /// of (efficiency + 1 / back_efficiency) / 2: what is known of the torque constant tells them apart, or a load that is
 /// known. Driven one way only it is a smaller torque constant.
+///
+/// @snippet effects_examples.cpp DriveEfficiency
+/// How to: @ref geared_joint, @ref diagnose_a_gap.
 struct DriveEfficiency {
   /// Its parameters, in this order.
   enum Parameters {

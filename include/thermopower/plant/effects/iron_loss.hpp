@@ -13,6 +13,9 @@ namespace thermopower::plant {
 /// body has winding and surface.
 ///
 /// In a body of one node without hysteresis it is `motion_heating`.
+///
+/// @snippet effects_examples.cpp IronLoss
+/// How to: @ref diagnose_a_gap, @ref laws.
 struct IronLoss {
   /// Its parameters, in this order.
   enum Parameters {
