@@ -227,6 +227,17 @@ TEST_CASE("what is not known counts as hot: no record, no clock, no air") {
   PowerUpFacts no_air = facts(100.0f);
   no_air.air_C = detail::not_a_number();
   CHECK(AsCooled::start(no_air, motor()).winding_C == 110.0f);
+  // Left out, the air is not known either, and not 0 degC, in which an hour cools much.
+  PowerUpFacts forgotten = {};
+  forgotten.has_stored = true;
+  forgotten.stored = warm();
+  forgotten.off_s = 3600.0f;
+  forgotten.preset_C = 40.0f;
+  forgotten.hottest_winding_C = 110.0f;
+  forgotten.hottest_body_C = 60.0f;
+  CHECK(AsCooled::start(forgotten, motor()).winding_C == 110.0f);
+  CHECK(AsStored::start(forgotten, motor()).body_C == 60.0f);
+  CHECK(AsPreset::start(forgotten, motor()).winding_C == 110.0f);
   // An unknown time keeps the value: it does not cool.
   CHECK(AsCooled::start(facts(detail::not_a_number()), motor()).winding_C == warm().winding_C);
   CHECK(AsCooled::start(facts(-5.0f), motor()).winding_C == warm().winding_C);
@@ -239,6 +250,10 @@ TEST_CASE("what is not known counts as hot: no record, no clock, no air") {
     CHECK(AsNewLoad::start(no_heat, motor()).winding_C == 110.0f);
     CHECK_FALSE(AsNewLoad::start(no_heat, motor()).rests_on_record);
     CHECK(AsCooled::start(no_heat, motor()).rests_on_record);  // which does not ask for it
+    PowerUpFacts no_warming = facts(100.0f);
+    no_warming.unrecorded_K = unknown;
+    CHECK(AsStored::start(no_warming, motor()).winding_C == 110.0f);
+    CHECK_FALSE(AsStored::start(no_warming, motor()).rests_on_record);
     PowerUpFacts no_setting = facts(100.0f);
     no_setting.preset_C = unknown;
     CHECK(AsPreset::start(no_setting, motor()).winding_C == 110.0f);

@@ -61,6 +61,22 @@ TEST_CASE("start bounds: without a record or an air the limits count, or where i
   }
 }
 
+TEST_CASE("start bounds: air that is left out is not 0 degC") {
+  StartFacts forgotten = {};
+  forgotten.has_stored = true;
+  forgotten.stored = record();
+  forgotten.promise = {60.0f, 2.0f, 600.0f};
+  forgotten.age_s = 3600.0f;
+  CHECK(assumptions().start(forgotten).winding_upper_C == 110.0f);
+  CHECK(assumptions().start(forgotten).body_upper_C == 60.0f);
+  // Nor does it say that nothing warmed: then all heat stays inside.
+  CHECK(assumptions().unrecorded_K(forgotten) >= assumptions().unrecorded_K(facts(3600.0f)));
+  forgotten.is_driven_while_off = true;
+  CHECK(assumptions().unrecorded_K(forgotten) >= 25.0f * 3600.0f / 80.0f);
+  forgotten.age_s = nan_;
+  CHECK(std::isinf(assumptions().unrecorded_K(forgotten)));
+}
+
 TEST_CASE("start bounds: where the winding may be the slow one, no cooling is counted on") {
   StartAssumptions loose = assumptions();
   const StartBounds hot = {80.0f, 50.0f};

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "start_bounds.hpp"
 #include "stored_state.hpp"
 #include "two_node_thermal_model.hpp"
@@ -38,13 +39,14 @@ struct PowerUpFacts {
   bool has_stored;          ///< A whole record was found.
   StoredState stored;       ///< That record.
   float off_s;              ///< How long the power was certainly off; NaN or negative: not known.
-  float air_C;              ///< Air temperature; NaN: not known, which counts as `AsHottest`.
+  AirCelsius<float> air_C;  ///< Air temperature; NaN, or left out: not known, which counts as `AsHottest`.
   float heat_now_W;         ///< Read by `AsNewLoad`.
   float preset_C;           ///< Read by `AsPreset`.
   float hottest_winding_C;  ///< Limit of the winding; what `AsHottest` starts from.
   float hottest_body_C;     ///< Limit of the body; what `AsHottest` starts from.
   float
-      unrecorded_K;  ///< It may have warmed by this after the record: `StartAssumptions::unrecorded_K()`. >= 0.
+      unrecorded_K;  ///< It may have warmed by this after the record: `StartAssumptions::unrecorded_K()`. >= 0;
+                     ///< NaN or infinite: not known, which counts as `AsHottest`.
 
   /// The time that was certainly spent without power, from a clock that went on: the age of the record less
   /// the time that the controller may have run without leaving another one.
@@ -68,7 +70,7 @@ struct PowerUpTemperatures {
 
 namespace detail {
 inline PowerUpTemperatures hottest(const PowerUpFacts& facts) noexcept {
-  const float air_C = is_finite(facts.air_C) ? facts.air_C : 0.0f;
+  const float told_C = facts.air_C, air_C = is_finite(told_C) ? told_C : 0.0f;
   const PowerUpTemperatures at = {facts.hottest_winding_C, facts.hottest_body_C,
                                   0.5f * magnitude(facts.hottest_winding_C - air_C), false};
   return at;
@@ -82,6 +84,7 @@ inline PowerUpTemperatures not_below_air(PowerUpTemperatures at, float air_C) no
 inline PowerUpTemperatures carried(const PowerUpFacts& facts,
                                    const TwoNodeThermalModel<float>::Config& thermal, float heat_W) noexcept {
   if (!facts.has_stored || !is_finite(facts.air_C) || !is_finite(heat_W)) return hottest(facts);
+  if (!is_finite(facts.unrecorded_K)) return hottest(facts);
   const float half_K = 0.5f * (facts.unrecorded_K > 0.0f ? facts.unrecorded_K : 0.0f);
   PowerUpTemperatures at = {facts.stored.winding_C + half_K, facts.stored.body_C + half_K,
                             sqrtf(facts.stored.std_K * facts.stored.std_K + half_K * half_K), true};

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "stored_state.hpp"
 
 /// @file start_bounds.hpp
@@ -32,12 +33,13 @@ inline float record_age_s(const StoredState& stored, uint32_t clock_s) noexcept 
 
 /// What is known when power comes back.
 struct StartFacts {
-  bool has_stored;           ///< A whole record was found.
-  StoredState stored;        ///< That record.
-  RecordPromise promise;     ///< What it leaves open: `StateJournal::promise()`; for a record that survived a
-                             ///< reset, how long it may have gone on being driven since: `{s, 0, s}`.
-  float age_s;               ///< Age of the record: `record_age_s()`. NaN or negative: not known.
-  float air_upper_C;         ///< The air was never warmer than this since the record.
+  bool has_stored;        ///< A whole record was found.
+  StoredState stored;     ///< That record.
+  RecordPromise promise;  ///< What it leaves open: `StateJournal::promise()`; for a record that survived a
+                          ///< reset, how long it may have gone on being driven since: `{s, 0, s}`.
+  float age_s;            ///< Age of the record: `record_age_s()`. NaN or negative: not known.
+  AirCelsius<float>
+      air_upper_C;  ///< The air was never warmer than this since the record; NaN, or left out: not known.
   bool is_driven_while_off;  ///< The actuator may go on being driven while this controller is off: a board
                              ///< with a supply of its own that keeps its last command.
 };
@@ -93,7 +95,8 @@ struct StartAssumptions {
         detail::require_within(hottest_body_C, 0.0f, 250.0f, ConfigError::maximum_body_C));
   }
 
-  /// Upper bounds after some time of the largest heat. @param time_s  >= 0, may be infinite
+  /// Upper bounds after some time of the largest heat. @param air_upper_C  NaN: not known, which counts as no cooling
+  /// at all  @param time_s  >= 0, may be infinite
   StartBounds heated(const StartBounds& from, float air_upper_C, float time_s) const noexcept {
     const float winding_C = from.winding_upper_C, body_C = from.body_upper_C;
     // All heat there was, and what a hotter winding brings along, may end up in the body; but heat alone
@@ -103,7 +106,8 @@ struct StartAssumptions {
     const float settled_C =
         detail::at_least(air_upper_C + largest_heat_W / least_conductance_W_per_K, body_C);
     const float warmed_C = body_C + largest_heat_W * time_s / least_body_J_per_K;
-    const float body_upper_C = (warmed_C < settled_C ? warmed_C : settled_C) + brought_K;
+    // NaN, where the air is not known, is no bound.
+    const float body_upper_C = (settled_C < warmed_C ? settled_C : warmed_C) + brought_K;
     // The winding gains on the hottest of its neighbours by its heat alone, and settles above the body.
     const float adiabatic_C =
         detail::at_least(winding_C, body_C) + largest_heat_W * time_s / least_winding_J_per_K;
@@ -130,7 +134,8 @@ struct StartAssumptions {
     return bounds;
   }
 
-  /// By how much an actuator can warm after its last record, for PowerUpFacts.
+  /// By how much an actuator can warm after its last record, for PowerUpFacts. Infinite where neither age nor air of
+  /// an actuator that is driven on is known.
   float unrecorded_K(const StartFacts& facts) const noexcept {
     if (!facts.has_stored) return 0.0f;
     const StartBounds recorded = {facts.stored.winding_upper_C, facts.stored.body_upper_C};
@@ -140,11 +145,12 @@ struct StartAssumptions {
   }
 
   /// The bounds to start from. No record: at the limits, or where the largest heat settles if the actuator is
-  /// driven while the controller is off.
+  /// driven while the controller is off. Air that is not known: at the limits.
   StartBounds start(const StartFacts& facts) const noexcept {
     const StartBounds limits = {hottest_winding_C, hottest_body_C};
-    if (!facts.has_stored || !detail::is_finite(facts.air_upper_C)) {
-      const float settled_C = facts.air_upper_C + largest_heat_W / least_conductance_W_per_K;
+    const float air_upper_C = facts.air_upper_C;
+    if (!facts.has_stored || !detail::is_finite(air_upper_C)) {
+      const float settled_C = air_upper_C + largest_heat_W / least_conductance_W_per_K;
       const StartBounds driven = {
           detail::at_least(limits.winding_upper_C, settled_C + largest_heat_W / least_coupling_W_per_K),
           detail::at_least(limits.body_upper_C, settled_C)};
@@ -154,9 +160,9 @@ struct StartAssumptions {
     StartBounds bounds = at_power_off(facts, recorded);
     const bool is_age_known = facts.age_s >= 0.0f && detail::is_finite(facts.age_s);
     if (!facts.is_driven_while_off && is_age_known && facts.age_s > facts.promise.longest_s)
-      bounds = cooled(bounds, facts.air_upper_C, facts.age_s - facts.promise.longest_s);
-    bounds.winding_upper_C = detail::at_least(bounds.winding_upper_C, facts.air_upper_C);
-    bounds.body_upper_C = detail::at_least(bounds.body_upper_C, facts.air_upper_C);
+      bounds = cooled(bounds, air_upper_C, facts.age_s - facts.promise.longest_s);
+    bounds.winding_upper_C = detail::at_least(bounds.winding_upper_C, air_upper_C);
+    bounds.body_upper_C = detail::at_least(bounds.body_upper_C, air_upper_C);
     return bounds;
   }
 

@@ -57,6 +57,24 @@ TEST_CASE("an axis in whole numbers") {
         125);  // a quarter of a degree of a half
 }
 
+TEST_CASE("air in whole numbers that is left out is the warmest, not 0 degC") {
+  Axis axis, warmest;
+  axis.start(25 * 8388608);
+  warmest.start(25 * 8388608);
+  //! [fixed-point air left out]
+  const Axis::Inputs without_air = {23, {}, tp::LimitReason::none};  // counts as 125 degC
+  //! [fixed-point air left out]
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    axis.prepare();
+    warmest.prepare();
+    axis.step(without_air, 117);
+    warmest.step({23, 125 * 128, tp::LimitReason::none}, 117);
+  }
+  CHECK(axis.thermal().state().motor == warmest.thermal().state().motor);
+  CHECK(axis.upper() > 25 * 128);
+  CHECK(Axis::Inputs().air == 125 * 128);
+}
+
 TEST_CASE("parts of an axis in whole numbers, alone") {
   //! [fixed-point parts]
   fp::ProgrammedLevels<fp::ThesisLevels> law;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../../fixed_point/coarse_air.hpp"
 #include "detail/composition.hpp"
 #include "gain_scheduler.hpp"
 #include "step_power_law.hpp"
@@ -16,9 +17,9 @@ namespace fixed_point {
 /// What an axis decides on.
 /// @ingroup control
 struct AxisInputs {
-  uint16_t error_units;   ///< Magnitude of the folded error in units of 360/16384 degree, 0 .. 8192.
-  CoarseTemperature air;  ///< Air temperature, -60 .. 125 degC.
-  LimitReason fault;      ///< A fault found by the caller, or `LimitReason::none`.
+  uint16_t error_units;  ///< Magnitude of the folded error in units of 360/16384 degree, 0 .. 8192.
+  CoarseAir air;         ///< Air temperature, -60 .. 125 degC; left out: the warmest.
+  LimitReason fault;     ///< A fault found by the caller, or `LimitReason::none`.
 };
 
 namespace detail {
