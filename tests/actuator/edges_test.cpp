@@ -90,15 +90,18 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "after a gap of days the temperature is the settled one, and the observer as sure as after a thousand variance steps") {
+    "after a gap of days the temperature is the settled one, and the observer as sure as its errors leave it") {
   TemperatureObserver observer(TemperatureObserverConfig::standard(motor()), 110.0f, 25.0f);
   observer.step(2.0f, 25.0f, 5.0e5f);
   CHECK(observer.state().body_C == Approx(25.0 + 2.0 / 0.2));
   CHECK(observer.state().winding_C == Approx(25.0 + 2.0 / 0.2 + 2.0 / 1.0));
+  // A fifth of the heat over what it flows through, and 2 K of air: both for good, and nothing of the start.
+  CHECK(observer.body_std_K() == Approx(std::hypot(0.4 / 0.2, 2.0)).epsilon(0.001));
+  CHECK(observer.winding_std_K() == Approx(std::hypot(0.4 / 0.2 + 0.4 / 1.0, 2.0)).epsilon(0.001));
   TemperatureObserver stepped(TemperatureObserverConfig::standard(motor()), 110.0f, 25.0f);
-  for (int i = 0; i < 1000; ++i) stepped.step(2.0f, 25.0f, 1.0f);
-  CHECK(observer.winding_std_K() == Approx(stepped.winding_std_K()).epsilon(0.01));
-  CHECK(observer.body_std_K() == Approx(stepped.body_std_K()).epsilon(0.01));
+  for (int i = 0; i < 10000; ++i) stepped.step(2.0f, 25.0f, 1.0f);
+  CHECK(observer.winding_std_K() == Approx(stepped.winding_std_K()).epsilon(0.001));
+  CHECK(observer.body_std_K() == Approx(stepped.body_std_K()).epsilon(0.001));
 }
 
 TEST_CASE("the count of believed measurements stops at its largest instead of starting again") {

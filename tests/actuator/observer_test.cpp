@@ -200,6 +200,50 @@ TEST_CASE("the variances stay positive through anything") {
   }
 }
 
+TEST_CASE("a gap makes the observer no surer than the same time in small steps, however long it is") {
+  // A body with a lag of four and a half days.
+  const TwoNodeThermalModel<float>::Config slow = {8.0f, 80000.0f, 1.0f, {0.2f}};
+  const TemperatureObserverConfig config = TemperatureObserverConfig::standard(slow);
+  for (const float gap_s : {30.0f, 999.0f, 20000.0f, 86400.0f}) {
+    INFO(gap_s << " s");
+    TemperatureObserver at_once(config, 110.0f, 25.0f), in_steps(config, 110.0f, 25.0f);
+    at_once.start(30.0f, 25.0f, 0.5f, 0.1f, 0.5f);
+    in_steps.start(30.0f, 25.0f, 0.5f, 0.1f, 0.5f);
+    at_once.step(2.0f, 25.0f, gap_s);
+    for (float passed_s = 0.0f; passed_s < gap_s; passed_s += 0.5f) in_steps.step(2.0f, 25.0f, 0.5f);
+    // Half a step of a second is early or late.
+    CHECK(at_once.winding_std_K() == Approx(in_steps.winding_std_K()).epsilon(0.02).margin(0.02));
+    CHECK(at_once.body_std_K() == Approx(in_steps.body_std_K()).epsilon(0.02).margin(0.001));
+    // What stands in the estimate is told apart from chance: a measurement afterwards counts alike.
+    const MeasuredTemperature measured = {at_once.state().body_C, 0.1f, 0.1f, true};
+    CHECK(at_once.correct_body(measured));
+    CHECK(in_steps.correct_body(measured));
+    CHECK(at_once.winding_std_K() == Approx(in_steps.winding_std_K()).epsilon(0.02).margin(0.02));
+  }
+  // One that comes while short steps are still being carried finds all of them done.
+  TemperatureObserver between(config, 110.0f, 25.0f), whole(config, 110.0f, 25.0f);
+  between.start(30.0f, 25.0f, 0.5f, 0.1f, 0.5f);
+  whole.start(30.0f, 25.0f, 0.5f, 0.1f, 0.5f);
+  float short_s = 0.0f;
+  for (; !between.is_carrying(); short_s += 0.05f) between.step(2.0f, 25.0f, 0.05f);
+  between.step(2.0f, 25.0f, 20000.0f);
+  CHECK_FALSE(between.is_carrying());
+  whole.step(2.0f, 25.0f, 20000.0f + short_s);
+  CHECK(between.winding_std_K() == Approx(whole.winding_std_K()).epsilon(1e-3));
+  CHECK(between.body_std_K() == Approx(whole.body_std_K()).epsilon(1e-3));
+  // By hand: a fifth of 2 W over 0.2 W/K and 2 K of air, as far as a body of 80 kJ/K follows them in a day.
+  TemperatureObserver observer(config, 110.0f, 25.0f);
+  observer.start(25.0f, 25.0f, 0.001f, 0.001f, 0.0f);
+  observer.step(2.0f, 25.0f, 86400.0f);
+  const double settled_s = 80008.0 / 0.2;
+  const double all_K = std::hypot(0.4 / 0.2, 2.0);
+  CHECK(observer.body_std_K() == Approx(all_K * (1.0 - std::exp(-86400.0 / settled_s))).epsilon(0.01));
+  // And for ever: all the errors that there are, and no more.
+  observer.step(2.0f, 25.0f, 1.0e9f);
+  CHECK(observer.body_std_K() == Approx(all_K).epsilon(1e-3));
+  CHECK(observer.winding_std_K() == Approx(std::hypot(0.4 / 0.2 + 0.4, 2.0)).epsilon(1e-3));
+}
+
 TEST_CASE("an observer with a wrong field is refused by name") {
   TemperatureObserverConfig config = TemperatureObserverConfig::standard(motor());
   CHECK(config.validate() == ConfigError::none);

@@ -118,9 +118,7 @@ public:
     stage_ = 0;
   }
 
-  /// Carries the estimate over a step of constant heat. @param power_W  in the winding  @param dt_s  >= 0; of a gap
-  /// longer than a thousand times `variance_s` the variances see that much: `start_unknown()` forgets what was known
-  /// before it
+  /// Carries the estimate over a step of constant heat. @param power_W  in the winding  @param dt_s  >= 0, any gap
   const State& step(float power_W, float air_C, float dt_s) noexcept {
     if (!(dt_s >= 0.0f) || !detail::is_finite(dt_s)) return state_;
     if (!(dt_s == way_s_)) {
@@ -193,6 +191,10 @@ private:
 
   // Standing errors of one standard deviation each, independent of each other.
   enum Cause : uint8_t { heat = 0, air = 1, winding_sensor = 2, body_sensor = 3, cause_count = 4 };
+  // A number of the winding and one of the body.
+  struct Pair {
+    float of_winding, of_body;
+  };
   // How much of one is in each estimate: the covariance of estimate and cause.
   struct Standing {
     float winding_K, body_K;
@@ -200,16 +202,45 @@ private:
 
   // Temperatures move in seconds: of short steps each does a fourth of the work.
   void carry_variances(float dt_s) noexcept {
-    const bool is_long_step = dt_s * 10.0f > config_.variance_s;
-    // A longer gap would take as many carries more: temperatures need none of them.
-    const float most_s = 1000.0f * config_.variance_s;
-    if (pending_s_ > most_s) {
-      pending_J_ *= most_s / pending_s_;
-      pending_s_ = most_s;
+    if (dt_s > config_.variance_s) {
+      carry_gap();
+      return;
     }
+    const bool is_long_step = dt_s * 10.0f > config_.variance_s;
     do {
       carry_stage();
     } while (is_long_step && pending_s_ >= config_.variance_s);
+  }
+  // A long step at once, by the exact way over all that is pending but half a carry: right for every length, and a long
+  // gap takes no more time than a short one.
+  void carry_gap() noexcept {
+    while (is_carrying()) carry_stage();
+    const float left_s = 0.5f * config_.variance_s, heat_W = pending_J_ / pending_s_;
+    const Transition way = transition(pending_s_ - left_s);
+    pending_s_ = left_s;
+    pending_J_ = heat_W * left_s;
+    const Pair to_winding = {1.0f + way.from_winding_to_winding, way.from_body_to_winding};
+    const Pair to_body = {way.from_winding_to_body, 1.0f + way.from_body_to_body};
+    const float winding_K2 = product(to_winding, to_winding), shared_K2 = product(to_winding, to_body);
+    state_.body_variance_K2 = product(to_body, to_body);
+    state_.winding_variance_K2 = winding_K2;
+    state_.shared_variance_K2 = shared_K2;
+    for (uint8_t cause = 0; cause < causes_; ++cause) {
+      const Pair before = {standing_[cause].winding_K, standing_[cause].body_K};
+      standing_[cause].winding_K = sum_of(to_winding, before);
+      standing_[cause].body_K = sum_of(to_body, before);
+    }
+    add_air(way);
+    add_heat(way, config_.heat_error * heat_W);
+  }
+  [[gnu::noinline]] static float sum_of(const Pair& row, const Pair& of) noexcept {
+    return row.of_winding * of.of_winding + row.of_body * of.of_body;
+  }
+  // One row, the covariances, another row.
+  [[gnu::noinline]] float product(const Pair& row, const Pair& other) const noexcept {
+    const Pair between = {sum_of(other, {state_.winding_variance_K2, state_.shared_variance_K2}),
+                          sum_of(other, {state_.shared_variance_K2, state_.body_variance_K2})};
+    return sum_of(row, between);
   }
   // x becomes F x + (what the causes add), one row of F after the other: each stage alone is a linear map of
   // estimates and causes, so that a covariance stays one.
@@ -218,8 +249,8 @@ private:
     stage_ = static_cast<uint8_t>(stage < 3 ? stage + 1 : 0);
     if (stage == 0) carry_winding();
     else if (stage == 1) carry_body();
-    else if (stage == 2) add_air();
-    else add_heat();
+    else if (stage == 2) add_air(variance_way_);
+    else add_pending_heat();
   }
   void carry_winding() noexcept {
     const float own = 1.0f + variance_way_.from_winding_to_winding,
@@ -241,12 +272,11 @@ private:
       standing_[cause].body_K = own * standing_[cause].body_K + other * standing_[cause].winding_K;
   }
   // What a step leaves of a settled rise: in the air's, both nodes take part alike.
-  void add_air() noexcept {
-    const Transition& way = variance_way_;
+  void add_air(const Transition& way) noexcept {
     add(air, -config_.air_error_K * (way.from_winding_to_winding + way.from_body_to_winding),
         -config_.air_error_K * (way.from_winding_to_body + way.from_body_to_body));
   }
-  void add_heat() noexcept {
+  void add_pending_heat() noexcept {
     // All the energy since the last time, whether that was a step more or less than a carry ago: none is lost,
     // and no division is needed. Only of a long step a part is left for the next carry.
     float energy_J = pending_J_, rest_J = 0.0f;
@@ -257,9 +287,10 @@ private:
     }
     pending_s_ = rest_s;
     pending_J_ = rest_J;
-    const float heat_W = energy_J * heat_error_per_s_;
+    add_heat(variance_way_, energy_J * heat_error_per_s_);
+  }
+  void add_heat(const Transition& way, float heat_W) noexcept {
     const float body_K = heat_W * per_conductance_, winding_K = body_K + heat_W * per_coupling_;
-    const Transition& way = variance_way_;
     add(heat, -(way.from_winding_to_winding * winding_K + way.from_body_to_winding * body_K),
         -(way.from_winding_to_body * winding_K + way.from_body_to_body * body_K));
   }
