@@ -290,9 +290,9 @@ public:
 
 private:
   // Between plans only the time and the largest count that acted are kept; of steps of one length only their
-  // number.
+  // number, which is never above `turn_`, and that is below `every_`: it fits.
   void pass(float dt_s) noexcept {
-    if (!detail::is_same(dt_s, each_s_) || steps_ == 255u) {
+    if (!detail::is_same(dt_s, each_s_)) {
       travelled_ = 0;
       pending_s_ = pending();
       each_s_ = dt_s;
