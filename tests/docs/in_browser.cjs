@@ -175,9 +175,18 @@ const attempt = async () => {
   await attempt();
   check(foreign.length === 0, 'asked of others: ' + [...new Set(foreign)].slice(0, 5).join(' '));
   check(failures.length === 0, 'scripts fail: ' + [...new Set(failures)].slice(0, 5).join(' | '));
-})().catch(error => wrong.push(String(error.stack))).finally(() => {
-  browser.kill();
-  fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5, retryDelay: 200});
+})().catch(error => wrong.push(String(error.stack))).finally(async () => {
   for (const one of wrong) console.error('WRONG: ' + one);
+  const ended = new Promise(resolve => browser.once('exit', resolve));
+  session = undefined;
+  send('Browser.close').catch(() => browser.kill());  // asked to: it ends its children before itself
+  await Promise.race([ended, new Promise(resolve => setTimeout(resolve, 5000))]);
+  browser.kill('SIGKILL');
+  // Its children may write a moment longer; what they leave in the folder for temporary files says nothing about the pages.
+  try {
+    fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5, retryDelay: 200});
+  } catch (error) {
+    console.error('left behind: ' + error.message);
+  }
   process.exit(wrong.length ? 1 : 0);
 });
