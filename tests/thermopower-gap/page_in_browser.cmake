@@ -43,6 +43,10 @@ function look() {
   check(Math.abs(value('rival1') - value('measured') - 0.25) < 0.05, 'the rival reads ' + value('rival1'));
   d.querySelector('.chart .key[data-role=rival1]').click();
   check(rivals() === 0, 'a rival is not switched off');
+  // A number of a table stands on one line.
+  const lines = e => { const r = d.createRange(); r.selectNodeContents(e); return new Set([...r.getClientRects()].map(b => Math.round(b.top))).size; };
+  const broken = [...d.querySelectorAll('.together td:not(.t)')].filter(e => e.textContent && lines(e) !== 1);
+  check(broken.length === 0, 'correlations are broken: ' + broken.map(e => e.textContent).join(' '));
   // On an axis of decades the words are numbers, not logarithms.
   const decades = d.querySelector('.chart[data-log]'), spot = decades.querySelector('.plot').getBoundingClientRect();
   decades.querySelector('.plot').dispatchEvent(new page.PointerEvent('pointermove', {clientX: spot.right - 1, clientY: spot.top + 5, bubbles: true}));

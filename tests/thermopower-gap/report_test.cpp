@@ -409,6 +409,8 @@ TEST_CASE("the page shows what estimates have in common, and each explanation th
   CHECK_THAT(html.substr(table), ContainsSubstring("1\u2002radiation.") && ContainsSubstring("\u22120.97") &&
                                      ContainsSubstring("0.25") && !ContainsSubstring("nan"));
   CHECK(html.find("1\u2002radiation") < html.find("2\u2002conductance"));
+  // Its ratios compare with "nothing is missing", whose own is 1, and not with the model as configured.
+  CHECK_THAT(html, ContainsSubstring("<th>held-out gap<small>of that with nothing missing</small></th>"));
   CHECK_THAT(html, ContainsSubstring("class=\"key switch\" data-role=\"augmented\"") &&
                        ContainsSubstring("class=\"key switch\" data-role=\"rival1\"") &&
                        ContainsSubstring("html:not(.js) .curve.rival1"));
@@ -416,7 +418,13 @@ TEST_CASE("the page shows what estimates have in common, and each explanation th
   CHECK(json["correlation"]["names"].size() == 3);
   CHECK(json["correlation"]["of"][1][0] == -0.97);
   CHECK(json["correlation"]["of"][0][2].is_null());
-  // For gap_page_in_browser: what is left has a spectrum.
+  // For gap_page_in_browser: as many parameters as there can be in one table, and what is left has a spectrum.
+  d.correlation.names.clear();
+  for (const char* const name : {"conductance", "heat_capacity", "resistance", "coupling",
+                                 "body_heat_capacity", "radiation.emissive_area_m2",
+                                 "second_thermal_mass.coupling_W_per_K", "thermometer_lag.time_constant_s"})
+    d.correlation.names.push_back(std::string(name) + (d.correlation.names.size() < 5 ? ".scale" : ""));
+  d.correlation.of = Eigen::MatrixXd::Constant(8, 8, -0.97);
   const Eigen::VectorXd exact = d.series[0].augmented;
   for (Eigen::Index i = 0; i < exact.size(); ++i) d.series[0].augmented[i] += i % 2 == 0 ? 0.1 : -0.1;
   std::ofstream(THERMOPOWER_PAGE) << io::report_html(d, "motor", {}, held_out);

@@ -619,7 +619,7 @@ private:
     if (d_.ranking.empty()) return;
     out_ +=
         "<h2>Which</h2>\n<table>\n<tr><th class=\"t\">explanation</th><th class=\"t\">probability</th>"
-        "<th>held-out gap<small>of the one as configured</small></th></tr>\n";
+        "<th>held-out gap<small>of that with nothing missing</small></th></tr>\n";
     for (std::size_t i = 0; i < std::min(most_ranked, d_.ranking.size()); ++i) explanation(d_.ranking[i]);
     out_ += "<tr><td class=\"t\">none of these</td>" + probability(d_.none_of_these) +
             "<td></td></tr>\n</table>\n";

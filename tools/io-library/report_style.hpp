@@ -60,10 +60,11 @@ html:not(.js) .curve.rival1,html:not(.js) .curve.rival2,html:not(.js) .curve.riv
 .zero{stroke:var(--soft);fill:none}.from{stroke:var(--bad);stroke-dasharray:3 3;fill:none}.shade{fill:var(--shade)}.band{fill:var(--band)}
 .no-measured .curve.measured,.no-baseline .curve.baseline,.no-recalibrated .curve.recalibrated,.no-augmented .curve.augmented,.no-effect .curve.effect,.no-input .curve.input,.no-noise .curve.noise,.no-rival1 .curve.rival1,.no-rival2 .curve.rival2,.no-rival3 .curve.rival3{display:none}
 .no-baseline .key[data-role=baseline] .curve,.no-measured .key[data-role=measured] .curve,.no-recalibrated .key[data-role=recalibrated] .curve,.no-augmented .key[data-role=augmented] .curve,.js .key[data-role^=rival] .curve{display:inline}
-.together td,.together th{padding:5px 4px;text-align:center;font-size:13px}.together td.t,.together th.t{text-align:left}
+.together td,.together th{padding:5px 4px;text-align:center;font-size:13px;white-space:nowrap}.together td:not(.t),.together th:not(.t){width:5.5em}.together td.t,.together th.t{text-align:left;white-space:normal}
 td .switch{display:block;font-weight:400;font-size:13px}.switch[aria-pressed=false]{text-decoration:none}
 footer{margin-top:52px;padding-top:14px;border-top:1px solid var(--faint);font-size:13.5px;color:var(--soft)}
 @media (max-width:600px){main{padding:24px 16px 40px}h1{font-size:25px}h2{margin-top:36px}table{font-size:13.5px}td,th{padding-left:5px;padding-right:5px}
+.together td,.together th{font-size:12px;padding:5px 1px}.together td:not(.t),.together th:not(.t){width:auto}
 .track,.wide{display:none}.plot{margin-left:44px}.gx:nth-of-type(even) b{visibility:hidden}.key em{min-width:3.4em}.keys{gap:2px 12px}.keys .yl{flex-basis:100%}}
 @media print{main{padding:0;max-width:none}body{font-size:12px}figure,.chart,.fact,tr,.next,.where,.finding{break-inside:avoid}h2,h3{break-after:avoid}.xl button{display:none}}
 )css";
