@@ -129,6 +129,24 @@ TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late 
   }
 }
 
+TEST_CASE("an encoder off its centre is found whatever the phase of its error") {
+  for (const double phase_rad : {0.0, 0.9}) {
+    CAPTURE(phase_rad);
+    const auto eccentric = [&](std::uint64_t seed) {
+      Recording r = test::SampledAxis(test::SampledAxis::Effect::none, 40.0, seed, 10).logged_each(10);
+      const Eigen::ArrayXd angle_rad = r.column("angle_deg").array() * 0.017453292519943295;
+      r.set("angle_deg",
+            Eigen::VectorXd(r.column("angle_deg").array() + 0.8 * (4.0 * angle_rad + phase_rad).sin()));
+      return r;
+    };
+    const Diagnosis diagnosis = diagnose(test::SampledAxis::model(), {eccentric(25)}, {eccentric(26)});
+    INFO(diagnosis.reason);
+    CHECK(diagnosis.verdict == Verdict::explained);
+    REQUIRE(diagnosis.cause.size() == 1);
+    CHECK(diagnosis.cause.front().effect == "encoder_eccentricity");
+  }
+}
+
 }  // namespace
 
 TEST_CASE("friction that bends before it slides is told from friction that does not") {

@@ -162,13 +162,18 @@ private:
     return text;
   }
 
+  /// How much of its signal's gap a place takes away; one that takes nothing is what the missing follows most.
+  static std::string share_of_gap(const Location& place) {
+    return place.share < 0.005 ? "where no one place takes its gap away"
+                               : percent_html(place.share) + " of its gap";
+  }
+
   void facts() {
     if (d_.verdict == Verdict::insufficient && d_.where.empty() && d_.gap.empty()) return;
     out_ += "<div class=\"facts\">\n";
     if (!d_.where.empty()) {
       const Location& first = d_.where.front();
-      std::string more =
-          escaped(signal_text(first.signal)) + ", " + percent_html(first.share) + " of its gap";
+      std::string more = escaped(signal_text(first.signal)) + ", " + share_of_gap(first);
       if (first.regime) more += "; most for " + regime_text(*first.regime);
       if (!first.only_in.empty()) more += "<br>Only in " + occurrences(first.only_in);
       fact("Where", breakable(to_string(first.submodel)), more);
@@ -545,7 +550,7 @@ private:
         "<h2>Where</h2>\n<p class=\"soft\">Found from residuals alone, before any effect is considered.</p>\n";
     for (const auto& one : d_.where) {
       out_ += "<div class=\"where\"><b>" + breakable(to_string(one.submodel)) + "</b> in " +
-              escaped(signal_text(one.signal)) + ", " + percent_html(one.share) + " of its gap";
+              escaped(signal_text(one.signal)) + ", " + share_of_gap(one);
       if (one.regime) out_ += "; most for " + regime_text(*one.regime);
       out_ += ".";
       if (!one.only_in.empty()) out_ += "<br>Only in " + occurrences(one.only_in) + ".";

@@ -60,7 +60,7 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
 }
 
 /// Whether the training data tell a parameter at all, where an effect has another one of its kind (friction forward and
-/// backward): moved by as much as the other one is, it must show. In a motion one way a friction that differs by
+/// backward): moved by as much as the largest of them is, it must show. In a motion one way a friction that differs by
 /// direction is no more than a friction.
 /// @param first  place of the effect's first parameter among the candidate's coordinates
 /// @param i      place of the parameter among the effect's
@@ -69,11 +69,14 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
   const std::vector<Parameter>& parameters = entry.info.parameters;
   const auto row = static_cast<Eigen::Index>(first + i);
   if (candidate.fit.information.rows() <= row || candidate.list[first + i].logarithmic) return true;
-  double size = 0.0;
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (k != i && parameters[k].unit == parameters[i].unit && !candidate.list[first + k].logarithmic)
-      size = std::max(size, std::abs(candidate.fit.at[static_cast<Eigen::Index>(first + k)]));
-  return !(size > 0.0) || candidate.fit.information(row, row) * size * size > 1.0;
+  double largest = 0.0;
+  bool has_another = false;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].unit != parameters[i].unit || candidate.list[first + k].logarithmic) continue;
+    has_another = has_another || k != i;
+    largest = std::max(largest, std::abs(candidate.fit.at[static_cast<Eigen::Index>(first + k)]));
+  }
+  return !has_another || !(largest > 0.0) || candidate.fit.information(row, row) * largest * largest > 1.0;
 }
 
 /// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
