@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/rows.hpp>
@@ -95,17 +96,13 @@ public:
     }
     if (std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;
     std::vector<double> without;
-    double mean = 0.0, square = 0.0;
-    const double count = static_cast<double>(blocks.size());
     for (const Normal& one : blocks) {
       Normal rest = all;
       rest.add(one, -1.0);
       const Eigen::VectorXd left = rest.solve();
       without.push_back(left[1] / left[0]);
-      mean += without.back() / count;
     }
-    for (const double one : without) square += (one - mean) * (one - mean);
-    const double share = fitted[1] / fitted[0], standard_error = std::sqrt(square * (count - 1.0) / count);
+    const double share = fitted[1] / fitted[0], standard_error = jackknife_error(without);
     if (!(standard_error < limit.precise)) return std::nullopt;
     return std::abs(share) < limit.sure * standard_error ? 0.0 : share;
   }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
@@ -67,17 +68,13 @@ public:
     }
     Sums all;
     for (const Sums& one : blocks) all.add(one, 1.0);
-    const double lag = all.lag_s(), count = static_cast<double>(blocks.size());
-    double mean = 0.0, square = 0.0;
     std::vector<double> without;
     for (const Sums& one : blocks) {
       Sums rest = all;
       rest.add(one, -1.0);
       without.push_back(rest.lag_s());
-      mean += without.back() / count;
     }
-    for (const double one : without) square += (one - mean) * (one - mean);
-    const double standard_error = std::sqrt(square * (count - 1.0) / count);
+    const double lag = all.lag_s(), standard_error = jackknife_error(without);
     const bool sure =
         std::abs(lag) > limit.sure * standard_error && standard_error < limit.precise * std::abs(lag);
     if (!sure || std::abs(lag) * std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/jackknife.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ inline std::size_t blocks_to_merge(double samples, double correlation) {
   return merge;
 }
 
-/// Delete-one-block jackknife (Efron & Tibshirani 1993, chapter 11) of a statistic of two models' residuals.
+/// Delete-one-block jackknife (jackknife_error()) of a statistic of two models' residuals.
 /// @param merge      neighbouring blocks taken as one, a divisor of SignalSums::block_count
 /// @param statistic  (a, b) -> value, of sums over some of the blocks
 template <class Statistic>
@@ -54,12 +55,7 @@ Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t
     if (any) left_out.push_back(statistic(rest_a, rest_b));
   }
   result.blocks = left_out.size();
-  if (left_out.size() < 2) return result;
-  double mean = 0.0, square = 0.0;
-  for (double one : left_out) mean += one / static_cast<double>(left_out.size());
-  for (double one : left_out) square += (one - mean) * (one - mean);
-  const double count = static_cast<double>(left_out.size());
-  result.standard_error = std::sqrt((count - 1.0) / count * square);
+  result.standard_error = jackknife_error(left_out);
   return result;
 }
 
