@@ -189,6 +189,16 @@ TEST_CASE("a sink that does not change in a run is no sink, but air of another t
   CHECK_FALSE(ends_on_bounds(one, model, 1e300, 1500.0));
 }
 
+TEST_CASE("a fit's coordinate is the value or its logarithm, there and back") {
+  Coordinate one;
+  CHECK(one.value_of(-2.5) == -2.5);
+  CHECK(one.coordinate_of(-2.5) == -2.5);
+  one.logarithmic = true;
+  CHECK(one.value_of(0.0) == 1.0);
+  CHECK(one.value_of(std::log(40.0)) == Approx(40.0));
+  CHECK(one.coordinate_of(40.0) == std::log(40.0));
+}
+
 TEST_CASE("a detail of an effect's shape is neither moved nor counted until it is looked at") {
   const Model model = axis_model();
   Explanation cogging{{standard_catalogue().find("cogging")}, {}};

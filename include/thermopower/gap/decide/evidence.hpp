@@ -46,16 +46,13 @@ inline double mean_correlation(const Weight& weight) {
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
                   std::size_t at, double travel_rad) {
   constexpr double radians_per_turn = 6.283185307179586;
-  const auto value_at = [&](std::size_t index) {
-    const double coordinate = candidate.fit.at[static_cast<Eigen::Index>(index)];
-    return candidate.list[index].logarithmic ? std::exp(coordinate) : coordinate;
-  };
   if (parameter.periods_in_travel > 0.0 &&
-      value_at(at) * travel_rad < parameter.periods_in_travel * radians_per_turn)
+      candidate.value(at) * travel_rad < parameter.periods_in_travel * radians_per_turn)
     return false;
   if (parameter.exceeds.empty()) return true;
   for (std::size_t i = 0; i < candidate.list.size(); ++i)
-    if (candidate.list[i].name == entry.info.id + "." + parameter.exceeds) return value_at(at) > value_at(i);
+    if (candidate.list[i].name == entry.info.id + "." + parameter.exceeds)
+      return candidate.value(at) > candidate.value(i);
   return true;
 }
 
@@ -114,10 +111,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
     if (all && !entry->info.parameters.empty()) return true;
     if (entry->info.slowest_s != nullptr) {
       std::vector<double> values;
-      for (std::size_t i = first; i < at; ++i) {
-        const double coordinate = candidate.fit.at[static_cast<Eigen::Index>(i)];
-        values.push_back(candidate.list[i].logarithmic ? std::exp(coordinate) : coordinate);
-      }
+      for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
       if (entry->info.slowest_s(values.data()) > 0.5 * longest_run_s) return true;
     }
   }

@@ -29,6 +29,11 @@ struct Candidate {
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
   bool idle = false;         ///< constants moved beside it that alone explain everything
+
+  /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
+  double value(std::size_t place) const {
+    return list[place].value_of(fit.at[static_cast<Eigen::Index>(place)]);
+  }
 };
 
 /// Indices into Model::calibrated() of the constants that a fit moved by more than is known of them.
@@ -291,8 +296,7 @@ private:
       for (double start : parameter.starts) {
         Eigen::VectorXd one = point;
         if (parameter.starts_relative_to != Input::none) start *= scale_of(parameter.starts_relative_to);
-        one[index] =
-            std::clamp(parameter.logarithmic ? std::log(start) : start, coordinate.lower, coordinate.upper);
+        one[index] = std::clamp(coordinate.coordinate_of(start), coordinate.lower, coordinate.upper);
         wider.push_back(one);
       }
     return wider;

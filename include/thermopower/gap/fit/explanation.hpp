@@ -28,6 +28,11 @@ struct Coordinate {
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
   bool still = false;                   ///< it stays at its start: a detail that is not looked at
   bool two_families = false;            ///< below its standard it is of another shape than above
+
+  /// The value, in `unit`, where the fit's coordinate is `at`.
+  double value_of(double at) const { return logarithmic ? std::exp(at) : at; }
+  /// The fit's coordinate of a value in `unit`; that of a logarithmic one must be above 0.
+  double coordinate_of(double value) const { return logarithmic ? std::log(value) : value; }
 };
 
 /// A set of causes: effects of the catalogue that act, and constants that are off by more than is known of them.
@@ -131,21 +136,19 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   }
   for (const CatalogueEntry* entry : explanation.effects)
     for (const Parameter& parameter : entry->info.parameters) {
-      const auto to = [&](double value) { return parameter.logarithmic ? std::log(value) : value; };
-      list.push_back({entry->info.id + "." + parameter.name,
-                      parameter.unit,
-                      to(parameter.lower),
-                      to(parameter.upper),
-                      to(parameter.starts.front()),
-                      {},
-                      parameter.logarithmic,
-                      {}});
-      Coordinate& one = list.back();
+      Coordinate& one = list.emplace_back();
+      one.name = entry->info.id + "." + parameter.name;
+      one.unit = parameter.unit;
+      one.logarithmic = parameter.logarithmic;
+      one.lower = one.coordinate_of(parameter.lower);
+      one.upper = one.coordinate_of(parameter.upper);
+      one.start = one.coordinate_of(parameter.starts.front());
       if (parameter.refines && !explanation.refined && !model.own) {
         one.still = true;
-        one.lower = one.upper = one.start = to(parameter.standard.value_or(parameter.starts.front()));
+        one.lower = one.upper = one.start =
+            one.coordinate_of(parameter.standard.value_or(parameter.starts.front()));
       } else if (parameter.standard) {
-        one.standard = to(*parameter.standard);
+        one.standard = one.coordinate_of(*parameter.standard);
       }
       one.two_families = parameter.two_families && !one.still;
     }
@@ -158,8 +161,7 @@ inline ParameterPoint point_of(const Model& model, const Explanation& explanatio
   ParameterPoint point;
   const std::size_t constants = model.calibrated().size();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const double coordinate = at[static_cast<Eigen::Index>(i)];
-    const double value = coordinates[i].logarithmic ? std::exp(coordinate) : coordinate;
+    const double value = coordinates[i].value_of(at[static_cast<Eigen::Index>(i)]);
     (i < constants ? point.factors : point.parameters).push_back(value);
     point.speed.push_back(coordinates[i].logarithmic ? value : 1.0);
   }
@@ -184,8 +186,7 @@ inline Model augmented(const Model& model, const Explanation& explanation,
   for (const CatalogueEntry* entry : explanation.effects) {
     EffectParameters& parameters = result.effects[entry->info.id];  // a law may have none
     for (const Parameter& parameter : entry->info.parameters) {
-      const bool logarithmic = coordinates[static_cast<std::size_t>(index)].logarithmic;
-      parameters[parameter.name] = logarithmic ? std::exp(at[index]) : at[index];
+      parameters[parameter.name] = coordinates[static_cast<std::size_t>(index)].value_of(at[index]);
       ++index;
     }
   }

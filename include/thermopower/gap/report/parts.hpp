@@ -79,11 +79,11 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                  reach = covariance.of.size() == 0
                              ? one.upper - one.lower
                              : covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
-    const auto shown = [&](double x) { return one.logarithmic ? std::exp(x) : x; };
     ParameterEstimate estimate;
     estimate.name = i < constants ? one.name + ".scale" : one.name;
-    estimate.value = shown(value);
-    estimate.ci95 = {shown(std::max(value - reach, one.lower)), shown(std::min(value + reach, one.upper))};
+    estimate.value = one.value_of(value);
+    estimate.ci95 = {one.value_of(std::max(value - reach, one.lower)),
+                     one.value_of(std::min(value + reach, one.upper))};
     estimate.unit = one.unit;
     estimate.at_bound = candidate.fit.at_bound[i];
     list.push_back(std::move(estimate));
