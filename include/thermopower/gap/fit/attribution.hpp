@@ -115,9 +115,7 @@ public:
   /// they take away at least `share` of what is left above the noise; else the candidate stays as it was.
   void refine(Candidate& candidate, double share, const FitOptions& options) const {
     if (!candidate.explanation.can_be_refined() || candidate.train.within(noise_)) return;
-    Candidate finer = candidate;
-    finer.explanation.refined = true;
-    finer.list = coordinates(*problem_.model, finer.explanation, *problem_.catalogue);
+    Candidate finer = with_details_free(candidate);
     const bool same = candidate.fit.starts.size() == problem_.segments.size();
     finer.fit = Fitter(problem_, finer.explanation, finer.list)
                     .minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
@@ -185,9 +183,7 @@ public:
   void refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options,
                   double share) const {
     if (other.explanation.refined && candidate.explanation.can_be_refined()) {
-      Candidate finer = candidate;
-      finer.explanation.refined = true;
-      finer.list = coordinates(*problem_.model, finer.explanation, *problem_.catalogue);
+      Candidate finer = with_details_free(candidate);
       refit_from(finer, other, options, share);
       if (takes_away(finer, candidate, share)) candidate = std::move(finer);
       return;
@@ -207,6 +203,13 @@ public:
   }
 
 private:
+  /// A candidate with the details of its effects free, where its fit ended without them.
+  Candidate with_details_free(Candidate candidate) const {
+    candidate.explanation.refined = true;
+    candidate.list = coordinates(*problem_.model, candidate.explanation, *problem_.catalogue);
+    return candidate;
+  }
+
   /// Whether one fit takes away at least so large a share of what another one leaves above the noise, if that is anything.
   static bool takes_away(const Candidate& finer, const Candidate& plain, double share) {
     if (plain.train.within(noise_)) return false;
