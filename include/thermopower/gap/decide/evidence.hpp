@@ -83,8 +83,8 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
 /// Nor is one beside which a constant went as far as it may: then the equation is another one.
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, a period longer than the travel holds, a time constant longer than half a run, a friction backward of what never moved
-/// backward.
+/// transition through standstill, a period longer than the travel holds, a time constant longer than half a run, a
+/// friction backward of what never moved backward.
 /// @param travel_rad     range of the angle in the training data; 1e300: whatever it is
 /// @param longest_run_s  of the training data; 1e300: whatever it is
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300,
