@@ -172,6 +172,25 @@ plant::Readings rolled(const gap::Model& model, plant::Inputs& inputs) {
   return readings;
 }
 
+/// A segment that carries on rolls as it did, whatever was rolled of it in between.
+void check_rolled_again(const gap::Model& model) {
+  plant::Inputs inputs;
+  rolled(model, inputs);
+  const plant::Plant& plant = plant::plant_of(model);
+  const auto rollout = plant.rollout(model, *plant.effects(), {}, {}, plant::SimulationMode::free_running);
+  const plant::Segment first{&inputs, inputs.runs[0], 0, 50, true, false, false},
+      second{&inputs, inputs.runs[0], 50, 101, true, true, false};
+  plant::Start pushed = plant::Start::Zero(2);
+  pushed[1] = 0.1;
+  plant::Readings once, moved, again;
+  rollout->roll(first, plant::Start::Zero(2), once);
+  rollout->roll(second, plant::Start::Zero(2), once);
+  rollout->roll(second, pushed, moved);
+  rollout->roll(second, plant::Start::Zero(2), again);
+  CHECK(once.value(100, 0) == again.value(100, 0));
+  CHECK(once.value(100, 0) != moved.value(100, 0));
+}
+
 void check_named(const gap::Model& model) {
   const gap::Diagnosis diagnosis = gap::diagnose(model, {recorded(12.0, 0.0, 1)}, {recorded(12.0, 0.0, 7)});
   INFO(diagnosis.reason);
@@ -222,6 +241,11 @@ TEST_CASE("a simulator behind a function call gets its derivatives by sound diff
     INFO("rounded to " << grain);
     CHECK(std::sqrt(off / size) < 0.02);
   }
+}
+
+TEST_CASE("a segment that is rolled again starts with what was carried into it the first time") {
+  check_rolled_again(carriage_model());
+  check_rolled_again(black_box(0.0));
 }
 
 TEST_CASE("a plant of one's own is diagnosed with an effect of its own") { check_named(carriage_model()); }

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/carried_on.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/plant_info.hpp>
 
@@ -123,10 +124,8 @@ public:
                   catalogue),
         starts_from_(point.directions() - directions.first),
         directions_(directions.count),
-        isolated_(mode == SimulationMode::measured_inputs) {
-    const Scalar still = constant<Scalar>(0.0);
-    carried_ = carried_in_ = {still, still, still, still, {}};
-  }
+        isolated_(mode == SimulationMode::measured_inputs),
+        carried_(at_rest()) {}
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
     out.reset(segment.begin, segment.end, 2, directions_);
@@ -226,23 +225,25 @@ private:
                 });
   }
 
+  /// An axis without twist, whose effects' own states are none.
+  static AxisState<Scalar> at_rest() {
+    const Scalar still = constant<Scalar>(0.0);
+    return {still, still, still, still, {}};
+  }
+
   void roll_axis(const Segment& segment, const std::array<Scalar, 2>& start, Readings& out) {
     // Without a state that nobody measures there is nothing to bring about.
     if (segment.warm_up && !instance_.axis_structure.compliant && instance_.own_states == 0) return;
     const Inputs& inputs = *segment.inputs;
     const AxisRollout<Scalar> rollout(instance_, inputs);
-    // A segment that is rolled again starts with what was carried into it the first time.
-    if (rolled_ == &inputs && rolled_begin_ == segment.begin) carried_ = carried_in_;
-    rolled_ = &inputs;
-    rolled_begin_ = segment.begin;
-    carried_in_ = carried_;
+    const AxisState<Scalar>& carried = carried_.into(segment);
     AxisState<Scalar> state = measured_start(rollout, inputs, segment.run, segment.begin);
     state.angle_rad += start[0] * rad_per_deg;
     state.rate_rad_per_s += start[1] * rad_per_deg;
     if (segment.carries_on) {
-      state.twist_rad = carried_.twist_rad;
-      state.twist_rate_rad_per_s = carried_.twist_rate_rad_per_s;
-      state.own = carried_.own;
+      state.twist_rad = carried.twist_rad;
+      state.twist_rate_rad_per_s = carried.twist_rate_rad_per_s;
+      state.own = carried.own;
     }
     rollout.window(segment.run, segment.begin, segment.end, state,
                    [&](Eigen::Index row, const AxisReadings<Scalar>& read) {
@@ -250,10 +251,10 @@ private:
                      out.put(row, 1, read.rate_dps);
                    });
     // What is carried on depends on the parameters, and on the starts of other segments, which stay out.
-    carried_ = state;
-    forget(carried_.twist_rad, starts_from_);
-    forget(carried_.twist_rate_rad_per_s, starts_from_);
-    for (int i = 0; i < carried_.own.count; ++i) forget(carried_.own.at[i], starts_from_);
+    forget(state.twist_rad, starts_from_);
+    forget(state.twist_rate_rad_per_s, starts_from_);
+    for (int i = 0; i < state.own.count; ++i) forget(state.own.at[i], starts_from_);
+    carried_.leave(state);
   }
 
   /// The measured state of the axis at a row; an unrecorded rate is the angle's difference, an unrecorded
@@ -277,9 +278,7 @@ private:
   int starts_from_;  ///< direction of the first coordinate of a start
   int directions_;
   bool isolated_;
-  AxisState<Scalar> carried_, carried_in_;  ///< out of the last segment, and into it
-  const Inputs* rolled_ = nullptr;          ///< of the last segment
-  Eigen::Index rolled_begin_ = 0;
+  CarriedOn<AxisState<Scalar>> carried_;
 };
 
 }  // namespace detail

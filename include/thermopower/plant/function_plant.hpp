@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/carried_on.hpp>
 #include <thermopower/plant/own_plant.hpp>
 
 #include <Eigen/Core>
@@ -123,7 +124,7 @@ public:
     call.inputs.resize(asked, static_cast<Eigen::Index>(info.inputs.size()));
     for (Eigen::Index i = 0; i < call.inputs.cols(); ++i)
       call.inputs.col(i) = inputs.own_inputs[static_cast<std::size_t>(i)].segment(segment.begin, asked);
-    call.start = plant_.measured_start(segment, carried_);
+    call.start = plant_.measured_start(segment, carried_.into(segment));
     for (std::size_t i = 0; i < call.start.size(); ++i) call.start[i] += start[static_cast<Eigen::Index>(i)];
     out.reset(segment.begin, segment.end, signals, static_cast<int>(moved_.size()));
     const SimulatorAnswer answer = simulator_(call);
@@ -152,7 +153,7 @@ public:
         for (int k = 0; k < signals; ++k)
           out.put_slope(segment.begin + row, k, static_cast<int>(d), slope(row, k) * one.speed);
     }
-    carried_ = answer.end;
+    carried_.leave(answer.end);
   }
 
   std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
@@ -168,7 +169,7 @@ private:
   Simulator simulator_;
   SimulatorCall at_;
   std::vector<Moved> moved_;
-  std::vector<double> carried_;
+  CarriedOn<std::vector<double>> carried_;
 };
 
 /// A simulator behind a function call as the engine asks it.

@@ -125,7 +125,8 @@ public:
   virtual ~Rollout() = default;
 
   /// Simulates a segment and leaves its readings, and their derivatives in the directions of this rollout, in
-  /// `out`. Segments of one recording are to be given in order: states that nobody measures are carried on.
+  /// `out`. Segments of one recording are to be given in order: states that nobody measures are carried on. The segment
+  /// that was rolled last may be rolled again, as with other starts: what was carried into it is carried into it again.
   /// @param start  how far the segment's start is from the measured one, as many as Plant::start_size()
   virtual void roll(const Segment& segment, const Start& start, Readings& out) = 0;
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/carried_on.hpp>
 #include <thermopower/plant/own_plant.hpp>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -126,8 +128,7 @@ public:
         advance(state, fed.data(), inputs.t_s[row + 1] - inputs.t_s[row], deepest);
     }
     for (Scalar& one : state) forget(one, starts_from_);
-    carried_ = state;
-    carries_ = true;
+    carried_.leave(state);
   }
 
   std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
@@ -142,7 +143,8 @@ private:
   using States = std::array<Scalar, largest_start>;
   static constexpr int deepest = 12;  ///< an interval is halved so often at most
 
-  States started(const Segment& segment, const Start& start) const {
+  States started(const Segment& segment, const Start& start) {
+    const std::optional<States>& carried = carried_.into(segment);
     const std::vector<double> measured = plant_.measured_start(segment, {});
     States state;
     state.fill(constant<Scalar>(0.0));
@@ -150,7 +152,7 @@ private:
       const int by = info_.states[i].measured_by;
       const bool known = by >= 0 && segment.inputs->judged(static_cast<Signal>(by));
       state[i] = constant<Scalar>(measured[i]);
-      if (!known && segment.carries_on && carries_) state[i] = carried_[i];
+      if (!known && segment.carries_on && carried) state[i] = (*carried)[i];
       Scalar off = constant<Scalar>(start[static_cast<Eigen::Index>(i)]);
       const int direction = starts_from_ + static_cast<int>(i);
       if (direction >= 0 && direction < directions_) seed(off, direction);
@@ -199,8 +201,7 @@ private:
   std::vector<Scalar> constants_;
   ActingEffects<Scalar, Effects...> effects_;
   int directions_, starts_from_;
-  States carried_{};
-  bool carries_ = false;
+  CarriedOn<std::optional<States>> carried_;
 };
 
 /// A state-space plant of one's own as the engine asks it.
