@@ -261,9 +261,7 @@ TEST_CASE("a part that lacks its columns is not judged, and the diagnosis says s
   const auto blind = [](std::uint64_t seed) {
     Recording recording = bench_inputs(300, 2.0, seed, true);
     measure(recording, bench_model(), seed + 2);
-    recording.columns.erase(std::remove_if(recording.columns.begin(), recording.columns.end(),
-                                           [](const Column& one) { return one.name == "current_A"; }),
-                            recording.columns.end());
+    recording.remove("current_A");
     return recording;
   };
   const Diagnosis diagnosis = diagnose(bench_model(), {blind(3)}, {blind(4)});

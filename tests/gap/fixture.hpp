@@ -234,7 +234,7 @@ inline Recording recorded(const Trial& trial, std::uint64_t seed) {
       trial.axis ? axis_inputs(1500, 0.01, seed) : bench_inputs(600, 2.0, seed, trial.id != "supply_sag");
   if (truth.has_servo()) {  // what was a current, is a target in degrees
     const Eigen::VectorXd target = 100.0 * recording.column("drive_A");
-    recording.columns.erase(recording.columns.begin());
+    recording.remove("drive_A");
     recording.set("target_deg", target);
   }
   measure(recording, truth, seed + 1);

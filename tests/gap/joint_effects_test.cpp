@@ -108,9 +108,7 @@ TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late 
   const test::SampledAxis train(Effect::none, 40.0, 21, 10), held_out(Effect::none, 30.0, 22, 10),
       rough_train(Effect::friction, 40.0, 23, 10), rough_held_out(Effect::friction, 30.0, 24, 10);
   const auto angle_alone = [](Recording r) {
-    r.columns.erase(std::remove_if(r.columns.begin(), r.columns.end(),
-                                   [](const Column& one) { return one.name == "rate_dps"; }),
-                    r.columns.end());
+    r.remove("rate_dps");
     return r;
   };
   const auto late_rate = [](const Recording& r) { return test::filtered(r, "rate_dps", 0.03); };

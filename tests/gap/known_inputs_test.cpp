@@ -202,10 +202,7 @@ TEST_CASE("a recorded torque from outside is an input, and without it there is a
   INFO(known.reason);
   CHECK(known.verdict == Verdict::no_gap);
   Recording blind = train, blind_held_out = held_out;
-  for (Recording* one : {&blind, &blind_held_out})
-    one->columns.erase(std::remove_if(one->columns.begin(), one->columns.end(),
-                                      [](const Column& column) { return column.name == "torque_Nm"; }),
-                       one->columns.end());
+  for (Recording* one : {&blind, &blind_held_out}) one->remove("torque_Nm");
   const Diagnosis unknown = diagnosed(axis_model(), blind, blind_held_out);
   INFO(unknown.reason);
   CHECK(unknown.verdict != Verdict::no_gap);
@@ -244,7 +241,7 @@ TEST_CASE("a recorded heat stands in the place of the winding's") {
 TEST_CASE("what lacks its column is not judged, and the report says which") {
   Recording commanded = record({}, 300, 3);
   commanded.set("drive_A", commanded.column("voltage_V"));
-  commanded.columns.erase(commanded.columns.begin());
+  commanded.remove("voltage_V");
   const DataReport report = check_data(brushed_model(), {commanded});
   REQUIRE_FALSE(report.not_judged.empty());
   CHECK_THAT(report.not_judged.front(), ContainsSubstring("voltage_V"));

@@ -264,7 +264,7 @@ TEST_CASE("a plant of one's own that holds has no gap") {
 
 TEST_CASE("what a plant of one's own lacks is said by name") {
   gap::Recording blind = recorded(0.0, 0.0, 1);
-  blind.columns.erase(blind.columns.begin());  // force_N
+  blind.remove("force_N");
   const gap::Diagnosis diagnosis = gap::diagnose(carriage_model(), {blind});
   CHECK(diagnosis.verdict == gap::Verdict::insufficient);
   REQUIRE(!diagnosis.not_judged.empty());

@@ -154,9 +154,7 @@ TEST_CASE("time is when something was measured, where all messages tell") {
   Recording with_command =
       io::read_mcap(folder + "stamped_lz4.mcap", choices(without_command(of_mcap))).recording;
   Recording cleaned = expected;
-  cleaned.columns.erase(std::remove_if(cleaned.columns.begin(), cleaned.columns.end(),
-                                       [](const Column& one) { return one.name == "amps"; }),
-                        cleaned.columns.end());
+  cleaned.remove("amps");
   check_same(cleaned, with_command);
 }
 #endif

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -79,6 +80,16 @@ struct Recording {
       }
     }
     columns.push_back({std::string(column_name), std::move(values)});
+  }
+
+  /// Removes the column of that name, as if it had not been recorded; where there is none, nothing changes.
+  /// @return whether there was one
+  bool remove(std::string_view column_name) {
+    const auto kept = std::remove_if(columns.begin(), columns.end(),
+                                     [&](const Column& one) { return one.name == column_name; });
+    const bool found = kept != columns.end();
+    columns.erase(kept, columns.end());
+    return found;
   }
 
   /// The runs, or the whole recording as one run where none are given.

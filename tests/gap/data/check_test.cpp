@@ -515,3 +515,17 @@ TEST_CASE("rows of a part count in the whole recording") {
       CHECK(one.row_count() == 1);
     }
 }
+
+TEST_CASE("a column that is removed was never recorded, and one that is not there cannot be removed") {
+  Recording r = bench();
+  const std::size_t columns = r.columns.size();
+  REQUIRE(r.has("motor_C"));
+  CHECK(r.remove("motor_C"));
+  CHECK(r.columns.size() == columns - 1);
+  CHECK(r.find("motor_C") == nullptr);
+  CHECK_FALSE(r.is_empty("motor_C"));
+  CHECK(r.has("current_A"));
+  CHECK_FALSE(r.remove("motor_C"));
+  CHECK_FALSE(r.remove("motor"));
+  CHECK(r.columns.size() == columns - 1);
+}

@@ -11,8 +11,6 @@
 #include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
-#include <algorithm>
-
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
 
@@ -28,9 +26,7 @@ std::optional<double> share_of(const Recording& r) {
 
 /// Without one of its columns.
 Recording without(Recording r, const char* column) {
-  r.columns.erase(std::remove_if(r.columns.begin(), r.columns.end(),
-                                 [&](const Column& one) { return one.name == column; }),
-                  r.columns.end());
+  r.remove(column);
   return r;
 }
 

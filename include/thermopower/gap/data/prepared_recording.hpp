@@ -46,9 +46,7 @@ public:
   }
   /// Leaves an output out. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
-    std::vector<Column>& all = believed_.columns;
-    all.erase(std::remove_if(all.begin(), all.end(), [&](const Column& one) { return one.name == column; }),
-              all.end());
+    believed_.remove(column);
     inputs_ = prepare(model, believed_);
     for (std::string& note : inputs_.not_judged)
       if (note.rfind(column + " ", 0) == 0) note = sentence;
@@ -98,10 +96,8 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
     if (!recorded.has(column.name)) {
       list.add(FindingKind::empty_column, Severity::warning, column.name, "is there, but has no sample");
       believed_.empty_columns.push_back(column.name);
+      believed_.remove(column.name);
     }
-  believed_.columns.erase(std::remove_if(believed_.columns.begin(), believed_.columns.end(),
-                                         [&](const Column& one) { return !recorded.has(one.name); }),
-                          believed_.columns.end());
   RowMask starts(unknown_.size(), 0);
   check_stamps(list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts);
