@@ -11,19 +11,11 @@
 #include <thermopower/motors/bgm2606_90t.hpp>
 
 #include "../catch.hpp"
+#include "robot.hpp"
 
 using namespace thermopower;
 
 namespace {
-
-struct Robot {
-  static constexpr double supply_V() { return 24.0; }
-  static constexpr double resistance_ohm() { return 1.2; }
-  static constexpr double reference_C() { return 25.0; }
-  static constexpr double tempco_per_K() { return 0.00393; }
-  static constexpr double heat_capacity_J_per_K() { return 180.0; }
-  static constexpr double conductance_W_per_K() { return 0.9; }
-};
 
 /// dT/dt by heating as a source of the fixed-point models states it: (p1 T + p0) / (c1 T + c0).
 template <class Source>

@@ -11,6 +11,7 @@
 #include <thermopower/motors/bgm5208_200_12.hpp>
 
 #include "../catch.hpp"
+#include "robot.hpp"
 
 using namespace thermopower;
 
@@ -41,15 +42,6 @@ struct Laws {
   }
   static double cooling_per_s() { return Motor::template cooling_law<double>().cooling_per_s; }
   typedef fixed_point::ThesisMotor<Motor> Source;
-};
-
-struct Robot {
-  static constexpr double supply_V() { return 24.0; }
-  static constexpr double resistance_ohm() { return 1.2; }
-  static constexpr double reference_C() { return 25.0; }
-  static constexpr double tempco_per_K() { return 0.00393; }
-  static constexpr double heat_capacity_J_per_K() { return 180.0; }
-  static constexpr double conductance_W_per_K() { return 0.9; }
 };
 
 struct RobotLaws {
