@@ -4,6 +4,7 @@
 #include <thermopower/io/column_choice.hpp>
 
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/plant/radians.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -25,7 +26,6 @@ struct Quantity {
   std::vector<Unit> units;
 };
 
-constexpr double deg_per_rad = 57.29577951308232;
 constexpr double ice_K = 273.15, ice_F = 32.0;
 
 const std::vector<Quantity>& quantities() {
@@ -41,14 +41,14 @@ const std::vector<Quantity>& quantities() {
       {"_dps",
        {{"deg/s", 1.0, 0.0},
         {"dps", 1.0, 0.0},
-        {"rad/s", deg_per_rad, 0.0},
+        {"rad/s", plant::deg_per_rad, 0.0},
         {"rpm", 6.0, 0.0},
         {"rev/s", 360.0, 0.0}}},
       {"_mps", {{"m/s", 1.0, 0.0}, {"km/h", 1.0 / 3.6, 0.0}}},
       {"_deg",
        {{"deg", 1.0, 0.0},
-        {"rad", deg_per_rad, 0.0},
-        {"mrad", 1e-3 * deg_per_rad, 0.0},
+        {"rad", plant::deg_per_rad, 0.0},
+        {"mrad", 1e-3 * plant::deg_per_rad, 0.0},
         {"rev", 360.0, 0.0}}},
       {"_Nm", {{"Nm", 1.0, 0.0}, {"mNm", 1e-3, 0.0}, {"Ncm", 1e-2, 0.0}}},
       {"_A", {{"A", 1.0, 0.0}, {"mA", 1e-3, 0.0}, {"uA", 1e-6, 0.0}}},

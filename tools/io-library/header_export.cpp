@@ -11,6 +11,7 @@
 #include <thermopower/plant/derivative.hpp>
 #include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/own_plant.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 #include <algorithm>
@@ -28,8 +29,6 @@ using plant::GivenExpression;
 using plant::NotTraceable;
 using plant::Trace;
 using Hooks = plant::detail::Hooks<Expression>;
-
-constexpr double deg_per_rad = 57.29577951308232;
 
 std::string literal(double value) { return number_text(value, Spelling::firmware); }
 
@@ -169,7 +168,7 @@ private:
                                const OhmicCurrentModel* ohmic) {
     plant::ElectricalTerms<Expression> terms;
     terms.t_s = GivenExpression(trace.symbol("t_s"));
-    terms.rate_dps = GivenExpression(trace.symbol("rate_rad_s") * deg_per_rad);
+    terms.rate_dps = GivenExpression(trace.symbol("rate_rad_s") * plant::deg_per_rad);
     terms.winding_C = trace.symbol("winding_C");
     terms.charge_Ah = trace.symbol("charge_Ah");
     terms.supply_V = trace.symbol("supply_V");
@@ -211,7 +210,7 @@ private:
     terms.t_s = GivenExpression(trace.symbol("t_s"));
     terms.airspeed_mps = GivenExpression(trace.symbol("airspeed_mps"));
     terms.neighbour_C = GivenExpression(trace.symbol("neighbour_C"));
-    terms.rate_dps = GivenExpression(trace.symbol("rate_rad_s") * deg_per_rad);
+    terms.rate_dps = GivenExpression(trace.symbol("rate_rad_s") * plant::deg_per_rad);
     terms.measured_ambient_C = GivenExpression(trace.symbol("air_C"));
     terms.winding_C = trace.symbol("motor_C");
     terms.surface_C = trace.symbol(two_nodes_ ? "surface_C" : "motor_C");

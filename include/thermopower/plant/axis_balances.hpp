@@ -149,7 +149,7 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
     // A torque that repeats n times a turn, as far as travel and rows show such a period.
-    constexpr double turn_rad = 6.283185307179586, rows_per_period = 4.2;
+    constexpr double rows_per_period = 4.2;
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "", [a, sampled](double count) {
                        Eigen::MatrixXd columns(a->angle.size(), 2);
                        columns << (count * a->angle.array()).sin(), (count * a->angle.array()).cos();
@@ -157,7 +157,8 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
                      }};
     const double travel = a->angle.maxCoeff() - a->angle.minCoeff(), pace = a->rate.cwiseAbs().mean();
     for (int count = 2; count <= 64; ++count)
-      if (travel * count >= turn_rad && count * a->rows()->interval_s * pace <= turn_rad / rows_per_period)
+      if (travel * count >= rad_per_turn &&
+          count * a->rows()->interval_s * pace <= rad_per_turn / rows_per_period)
         periodic.scan.push_back(count);
     periodic.penalty = 2;
     periodic.words_at = [](double count) {
@@ -172,7 +173,7 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
   // A second inertia that follows the measured motion through a spring.
   constexpr double damping = 0.04, lowest_Hz = 1.5, highest_Hz = 40.0, of_sampling = 0.3;
   Freedom spring{Submodel::mechanical_structure, "acceleration_rad_per_s2", "", [a](double hertz) {
-                   const double w = 6.283185307179586 * hertz;
+                   const double w = rad_per_turn * hertz;
                    const SpringTwist twist(a->rate, *a->rows(), w, damping);
                    return std::vector<Direction>{further_store(twist.rate_rad_per_s),
                                                  flow_sampled(w * w * twist.angle_rad)};
@@ -236,18 +237,17 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   detail::add_friction_freedoms(b, a, direction, drive_Nm);
   detail::add_drive_freedoms(b, a, drive_Nm);
   detail::add_load_freedoms(b, a);
-  constexpr double deg = 1.0 / rad_per_deg;
   const std::string name = a->command_name(), unit = name == "voltage_V" ? "V" : "A";
   const Eigen::VectorXd& commanded = a->command();
   b.variables = {
-      {"rate_dps", "deg/s", a->rate * deg, OrderingVariable::Kind::sampled, Signal::rate_dps},
+      {"rate_dps", "deg/s", a->rate * deg_per_rad, OrderingVariable::Kind::sampled, Signal::rate_dps},
       {name, unit, commanded, OrderingVariable::Kind::held},
       {name + "_per_s", unit + "/s", commanded, OrderingVariable::Kind::derivative},
       {"acceleration_rad_per_s2", "rad/s2", a->rate, OrderingVariable::Kind::derivative, Signal::rate_dps},
       {"t_s", "s", in.t_s}};
   if (a->has_angle)
     b.variables.push_back(
-        {"angle_deg", "deg", a->angle * deg, OrderingVariable::Kind::sampled, Signal::angle_deg});
+        {"angle_deg", "deg", a->angle * deg_per_rad, OrderingVariable::Kind::sampled, Signal::angle_deg});
   if (in.covariate_motor_C.size() > 0) b.variables.push_back({"motor_C", "degC", in.covariate_motor_C});
   for (const Covariate& covariate : covariates) {
     const auto z = std::make_shared<const Eigen::VectorXd>(
@@ -296,10 +296,9 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
 
 /// The angle against the rate, two instruments that must agree: deg/s.
 inline Balance instrument_balance(const AxisAtRows& a) {
-  constexpr double deg = 1.0 / rad_per_deg;
   const Eigen::Index n = a.rate.size();
   const auto angle = std::make_shared<const Eigen::VectorXd>(a.angle);
-  const auto rate_dps = std::make_shared<const Eigen::VectorXd>(a.rate * deg);
+  const auto rate_dps = std::make_shared<const Eigen::VectorXd>(a.rate * deg_per_rad);
   Balance b;
   b.quantity = Quantity::angle_slope_minus_rate;
   b.unit = "deg/s";
@@ -309,10 +308,10 @@ inline Balance instrument_balance(const AxisAtRows& a) {
   b.given = "With angle and rate held against each other";
   b.form = BalanceForm::weak;
   b.rows = a.rows();
-  b.measured = a.raw_angle * deg;
-  b.state = a.angle * deg;
+  b.measured = a.raw_angle * deg_per_rad;
+  b.state = a.angle * deg_per_rad;
   b.flow_sampled = *rate_dps;
-  b.flow_measured = a.raw_rate * deg;
+  b.flow_measured = a.raw_rate * deg_per_rad;
   b.half_widths = {16};
   b.picture_half_width = 16;
   b.reads = {Signal::rate_dps};
@@ -331,9 +330,10 @@ inline Balance instrument_balance(const AxisAtRows& a) {
                               flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().sin()))),
                               flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().cos())))};
                         }});
-  b.variables = {{"rate_dps", "deg/s", *rate_dps, OrderingVariable::Kind::sampled, Signal::rate_dps},
-                 {"angle_deg", "deg", a.angle * deg, OrderingVariable::Kind::sampled, Signal::angle_deg},
-                 {"t_s", "s", a.inputs().t_s}};
+  b.variables = {
+      {"rate_dps", "deg/s", *rate_dps, OrderingVariable::Kind::sampled, Signal::rate_dps},
+      {"angle_deg", "deg", a.angle * deg_per_rad, OrderingVariable::Kind::sampled, Signal::angle_deg},
+      {"t_s", "s", a.inputs().t_s}};
   return b;
 }
 

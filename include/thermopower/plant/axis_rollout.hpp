@@ -64,8 +64,7 @@ public:
                    drive(commanded - 1, run, begin, inputs_.t_s[begin] - start_s));
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;
-      sink(row, read(t_s, Scalar(state.angle_rad * (1.0 / rad_per_deg)),
-                     Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))));
+      sink(row, read(t_s, Scalar(state.angle_rad * deg_per_rad), Scalar(state.rate_rad_per_s * deg_per_rad)));
       if (row + 1 < run.end)
         interval(row, t_s, inputs_.t_s[row + 1] - start_s, start_s, commanded, run, state);
     }
@@ -124,8 +123,7 @@ private:
   std::pair<Scalar, Scalar> seen(Eigen::Index row, const RunSpan& run, double angle_deg,
                                  double rate_dps) const {
     const AxisState<Scalar> state = start(row, inputs_.t_s[run.begin], angle_deg, rate_dps);
-    return {Scalar(state.angle_rad * (1.0 / rad_per_deg)),
-            Scalar(state.rate_rad_per_s * (1.0 / rad_per_deg))};
+    return {Scalar(state.angle_rad * deg_per_rad), Scalar(state.rate_rad_per_s * deg_per_rad)};
   }
 
   /// Newton's steps to the angle whose reading is the measured one, for readings that bend.
@@ -133,7 +131,7 @@ private:
     constexpr double near_deg = 1e-9, apart_deg = 1e-4;
     bool there = instance_.axis_readings.empty();
     for (int step = 0; step < 12 && !there; ++step) {
-      const Scalar at_deg = state.angle_rad * (1.0 / rad_per_deg), rate_dps = constant<Scalar>(0.0);
+      const Scalar at_deg = state.angle_rad * deg_per_rad, rate_dps = constant<Scalar>(0.0);
       const AxisReadings<Scalar> here = read(t_s, at_deg, rate_dps);
       const double off_deg = value_of(here.angle_deg) - angle_deg;
       if (step == 0 && std::abs(off_deg) < near_deg) return;
@@ -166,8 +164,7 @@ private:
       step_.settle(state, inputs_.t_s[begin] - start_s,
                    drive(servo.command_A(), begin, inputs_.t_s[begin] - start_s));
     const auto sense = [&] {
-      return std::pair<Scalar, Scalar>(state.angle_rad * (1.0 / rad_per_deg),
-                                       state.rate_rad_per_s * (1.0 / rad_per_deg));
+      return std::pair<Scalar, Scalar>(state.angle_rad * deg_per_rad, state.rate_rad_per_s * deg_per_rad);
     };
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/plant/invalid_input.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/signal.hpp>
 
 #include <Eigen/Core>
@@ -13,9 +14,6 @@
 #include <vector>
 
 namespace thermopower::plant {
-
-/// Radians per degree.
-inline constexpr double rad_per_deg = 0.017453292519943295;
 
 /// A missing sample.
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();

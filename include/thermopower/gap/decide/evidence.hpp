@@ -45,9 +45,8 @@ inline double mean_correlation(const Weight& weight) {
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
                   std::size_t at, double travel_rad) {
-  constexpr double radians_per_turn = 6.283185307179586;
   if (parameter.periods_in_travel > 0.0 &&
-      candidate.value(at) * travel_rad < parameter.periods_in_travel * radians_per_turn)
+      candidate.value(at) * travel_rad < parameter.periods_in_travel * rad_per_turn)
     return false;
   if (parameter.exceeds.empty()) return true;
   for (std::size_t i = 0; i < candidate.list.size(); ++i)

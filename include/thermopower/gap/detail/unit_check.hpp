@@ -237,9 +237,9 @@ private:
       scaled("drive_A", "mA", 1e-3, "is in milliamperes where amperes are expected");
       scaled("voltage_V", "mV", 1e-3, "is in millivolts where volts are expected");
       if (model.has_servo() && !recording_.has("drive_A")) {
-        const double deg = 1.0 / rad_per_deg;
-        scaled("target_deg", "rad", deg, "is in radians where degrees are expected");
-        scaled("target_dps", "rad/s", deg, "is in radians per second where degrees per second are expected");
+        scaled("target_deg", "rad", deg_per_rad, "is in radians where degrees are expected");
+        scaled("target_dps", "rad/s", deg_per_rad,
+               "is in radians per second where degrees per second are expected");
         turned("target_deg", "deg", "has the wrong sign: the axis moves the other way");
         turned("target_dps", "deg/s", "has the wrong sign: the axis moves the other way");
       }
@@ -253,21 +253,21 @@ private:
 
   void motion() {
     constexpr double rpm = 6.0;  // deg/s in one turn a minute
-    const double deg = 1.0 / rad_per_deg;
     const bool rate = recording_.has("rate_dps"), angle = recording_.has("angle_deg");
     if (rate && angle)
       list_.push_back({FindingKind::wrong_unit, "rate_dps",
                        "and angle_deg are in radians where degrees are expected",
                        option("rate_dps", "rad/s") + " " + option("angle_deg", "rad"),
-                       [deg](Recording& r) {
-                         scale(r, "rate_dps", deg);
-                         scale(r, "angle_deg", deg);
+                       [](Recording& r) {
+                         scale(r, "rate_dps", deg_per_rad);
+                         scale(r, "angle_deg", deg_per_rad);
                        },
-                       UnitThresholds().off_by_factor * deg});
-    scaled("rate_dps", "rad/s", deg, "is in radians per second where degrees per second are expected");
+                       UnitThresholds().off_by_factor * deg_per_rad});
+    scaled("rate_dps", "rad/s", deg_per_rad,
+           "is in radians per second where degrees per second are expected");
     scaled("rate_dps", "rpm", rpm, "is in turns per minute where degrees per second are expected");
     // With a rate beside it, an angle that is off by a factor is a cause (angle_scale) and no finding.
-    if (!rate) scaled("angle_deg", "rad", deg, "is in radians where degrees are expected");
+    if (!rate) scaled("angle_deg", "rad", deg_per_rad, "is in radians where degrees are expected");
     turned("rate_dps", "deg/s", "has the wrong sign against drive and angle");
     turned("angle_deg", "deg", "has the wrong sign: it falls where the axis is driven and turns forwards");
   }

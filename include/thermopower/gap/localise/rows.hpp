@@ -56,7 +56,7 @@ inline double half_power_period(const Eigen::VectorXd& residual, double interval
   std::vector<double> power;
   double total = 0.0;
   for (Eigen::Index k = 1; k <= n / 2; ++k) {
-    const double w = 2.0 * 3.14159265358979323846 * static_cast<double>(k) / static_cast<double>(n);
+    const double w = rad_per_turn * static_cast<double>(k) / static_cast<double>(n);
     double re = 0.0, im = 0.0;
     const double cw = std::cos(w), sw = std::sin(w);
     double c = 1.0, s = 0.0;

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 namespace thermopower::plant {
@@ -32,7 +33,7 @@ struct BackEmf {
   /// Sets a voltage against the drive.
   template <class Scalar>
   static void act(const Scalar* p, ElectricalTerms<Scalar>& terms) {
-    const auto rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
+    const auto rate_rad_per_s = terms.rate_dps * rad_per_deg;
     terms.counter_V += p[V_s_per_rad] * magnitude(rate_rad_per_s);
   }
 };

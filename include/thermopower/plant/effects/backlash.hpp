@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 namespace thermopower::plant {
@@ -50,7 +51,7 @@ struct Backlash {
     shape.compliant = true;
     shape.gapped = true;
     shape.far_share = p[far_share];
-    shape.spring_rad_per_s = p[contact_Hz] * 6.283185307179586;
+    shape.spring_rad_per_s = p[contact_Hz] * rad_per_turn;
     shape.spring_damping = p[damping];
     shape.gap_rad = p[gap_rad];
   }

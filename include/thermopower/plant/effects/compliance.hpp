@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 namespace thermopower::plant {
@@ -42,7 +43,7 @@ struct Compliance {
   static void act(const Scalar* p, AxisStructure<Scalar>& shape) {
     shape.compliant = true;
     shape.far_share = p[far_share];
-    shape.spring_rad_per_s = p[frequency_Hz] * 6.283185307179586;
+    shape.spring_rad_per_s = p[frequency_Hz] * rad_per_turn;
     shape.spring_damping = p[damping];
   }
 };

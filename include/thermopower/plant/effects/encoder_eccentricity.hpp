@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 #include <cmath>
@@ -44,8 +45,7 @@ struct EncoderEccentricity {
   static void act(const Scalar* p, AxisReadings<Scalar>& read) {
     using std::cos;
     using std::sin;
-    constexpr double rad_of_deg = 0.017453292519943295;
-    const Scalar phase_rad = read.angle_deg * p[cycles_per_turn] * rad_of_deg;
+    const Scalar phase_rad = read.angle_deg * p[cycles_per_turn] * rad_per_deg;
     read.angle_deg += p[sin_deg] * sin(phase_rad) + p[cos_deg] * cos(phase_rad);
   }
 };

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 namespace thermopower::plant {
@@ -46,7 +47,7 @@ struct IronLoss {
   /// Adds the heat to the surface node.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    const auto rate_rad_per_s = magnitude(terms.rate_dps * 0.017453292519943295);
+    const auto rate_rad_per_s = magnitude(terms.rate_dps * rad_per_deg);
     terms.extra_loss_W -= p[hysteresis_W_s_per_rad] * rate_rad_per_s +
                           p[eddy_W_s2_per_rad2] * (rate_rad_per_s * rate_rad_per_s);
   }

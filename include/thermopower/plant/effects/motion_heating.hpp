@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
+#include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>
 
 namespace thermopower::plant {
@@ -32,7 +33,7 @@ struct MotionHeating {
   /// Adds heat that grows with the square of the rate.
   template <class Scalar>
   static void act(const Scalar* p, ThermalTerms<Scalar>& terms) {
-    const auto rate_rad_per_s = terms.rate_dps * 0.017453292519943295;
+    const auto rate_rad_per_s = terms.rate_dps * rad_per_deg;
     terms.heat_W += p[W_s2_per_rad2] * (rate_rad_per_s * rate_rad_per_s);
   }
 };
