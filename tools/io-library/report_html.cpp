@@ -162,10 +162,10 @@ private:
     return text;
   }
 
-  /// How much of its signal's gap a place takes away; one that takes nothing is what the missing follows most.
+  /// How much of its signal's gap a place takes away.
   static std::string share_of_gap(const Location& place) {
-    return place.share < 0.005 ? "where no one place takes its gap away"
-                               : percent_html(place.share) + " of its gap";
+    return takes_gap_away(place) ? percent_html(place.share) + " of its gap"
+                                 : "where no one place takes its gap away";
   }
 
   void facts() {

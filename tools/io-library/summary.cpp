@@ -110,10 +110,9 @@ std::string summary(const Diagnosis& diagnosis) {
   out += findings_text(diagnosis.findings, Severity::warning);
   bool first = true;
   for (const auto& where : diagnosis.where) {
-    // A place that takes nothing away by itself is the one that what is missing follows most.
     std::string text =
         to_string(where.signal) + ", " + to_string(where.submodel) + " (" +
-        (where.share < 0.005 ? "no one place takes the gap away" : percent(where.share) + " of the gap") +
+        (takes_gap_away(where) ? percent(where.share) + " of the gap" : "no one place takes the gap away") +
         ")";
     if (where.regime) {
       text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +

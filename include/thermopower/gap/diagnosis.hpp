@@ -76,6 +76,10 @@ struct Location {
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
 };
 
+/// Whether a place takes anything of its signal's gap away, half a per cent or more. Of places that take nothing away by
+/// themselves the one that is named is what the missing follows most.
+inline bool takes_gap_away(const Location& place) { return !(place.share < 0.005); }
+
 /// A fitted parameter of an effect.
 struct ParameterEstimate {
   std::string name;       ///< as the effect declares it, with the unit as its ending
