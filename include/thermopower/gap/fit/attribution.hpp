@@ -105,8 +105,7 @@ public:
   /// Goes on from where a fit stopped, possibly on other data.
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
-    const bool same = candidate.fit.starts.size() == problem_.segments.size();
-    candidate.fit = fitter.minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
+    candidate.fit = fitter.minimise(candidate.fit.at, options, starts_of(candidate));
     if (options.iterations > 2) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
@@ -116,9 +115,8 @@ public:
   void refine(Candidate& candidate, double share, const FitOptions& options) const {
     if (!candidate.explanation.can_be_refined() || candidate.train.within(noise_)) return;
     Candidate finer = with_details_free(candidate);
-    const bool same = candidate.fit.starts.size() == problem_.segments.size();
     finer.fit = Fitter(problem_, finer.explanation, finer.list)
-                    .minimise(candidate.fit.at, options, same ? &candidate.fit.starts : nullptr);
+                    .minimise(candidate.fit.at, options, starts_of(candidate));
     finer.train = sums(finer, problem_, finer.fit.starts);
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
@@ -129,9 +127,8 @@ public:
     FitOptions look;
     look.iterations = 0;
     look.curvature = true;
-    const bool same = candidate.fit.starts.size() == problem_.segments.size();
     candidate.fit = Fitter(problem_, candidate.explanation, candidate.list)
-                        .minimise(candidate.fit.at, look, same ? &candidate.fit.starts : nullptr);
+                        .minimise(candidate.fit.at, look, starts_of(candidate));
   }
 
   /// What is fitted to.
@@ -194,15 +191,19 @@ public:
         if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k))
           from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.at[static_cast<Eigen::Index>(k)],
                                                           candidate.list[i].lower, candidate.list[i].upper);
-    const std::vector<Start>* starts =
-        other.fit.starts.size() == problem_.segments.size() ? &other.fit.starts : nullptr;
-    FitResult again = Fitter(problem_, candidate.explanation, candidate.list).minimise(from, options, starts);
+    FitResult again =
+        Fitter(problem_, candidate.explanation, candidate.list).minimise(from, options, starts_of(other));
     if (!(again.cost < candidate.fit.cost)) return;
     candidate.fit = std::move(again);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
 private:
+  /// The starts that a fit ended with, where it was of as many segments; else null: a fit then begins at the measured ones.
+  const std::vector<Start>* starts_of(const Candidate& candidate) const {
+    return candidate.fit.starts.size() == problem_.segments.size() ? &candidate.fit.starts : nullptr;
+  }
+
   /// A candidate with the details of its effects free, where its fit ended without them.
   Candidate with_details_free(Candidate candidate) const {
     candidate.explanation.refined = true;
