@@ -93,7 +93,7 @@ Eigen::MatrixXd sound_difference(const Values& values, const Eigen::MatrixXd& at
 }
 
 /// A simulator under way.
-class FunctionRollout : public Rollout {
+class FunctionRollout : public OwnRollout {
 public:
   /// One number that a direction moves.
   struct Moved {
@@ -110,7 +110,7 @@ public:
   };
 
   FunctionRollout(const OwnPlant& plant, Simulator simulator, SimulatorCall at, std::vector<Moved> moved)
-      : plant_(plant), simulator_(std::move(simulator)), at_(std::move(at)), moved_(std::move(moved)) {}
+      : OwnRollout(plant), simulator_(std::move(simulator)), at_(std::move(at)), moved_(std::move(moved)) {}
 
   void roll(const Segment& segment, const Start& start, Readings& out) override {
     const Inputs& inputs = *segment.inputs;
@@ -156,16 +156,7 @@ public:
     carried_.leave(answer.end);
   }
 
-  std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
-    return plant_.hidden_starts(segment);
-  }
-  Start measured_start_sd(const Segment& segment,
-                          const std::array<double, signal_count>& sigma) const override {
-    return plant_.measured_start_sd(segment, sigma);
-  }
-
 private:
-  const OwnPlant& plant_;
   Simulator simulator_;
   SimulatorCall at_;
   std::vector<Moved> moved_;

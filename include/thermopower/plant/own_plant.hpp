@@ -188,4 +188,26 @@ private:
   std::vector<Signal> signals_;
 };
 
+namespace detail {
+
+/// A plant of one's own under way, however its equations are given: its starts.
+class OwnRollout : public Rollout {
+public:
+  std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
+    return plant_.hidden_starts(segment);
+  }
+  Start measured_start_sd(const Segment& segment,
+                          const std::array<double, signal_count>& sigma) const override {
+    return plant_.measured_start_sd(segment, sigma);
+  }
+
+protected:
+  /// @param plant  whose it is; must outlive it
+  explicit OwnRollout(const OwnPlant& plant) : plant_(plant) {}
+
+  const OwnPlant& plant_;  ///< whose it is
+};
+
+}  // namespace detail
+
 }  // namespace thermopower::plant

@@ -99,12 +99,12 @@ constexpr bool effect_fits() {
 
 /// A state-space plant under way.
 template <class P, class Scalar, class... Effects>
-class StateRollout : public Rollout {
+class StateRollout : public OwnRollout {
 public:
   /// @param constants, states  as many as the plant has
   StateRollout(const OwnPlant& plant, std::vector<Scalar> constants, const Directions& directions,
                int starts_from)
-      : plant_(plant),
+      : OwnRollout(plant),
         info_(*plant.info()),
         constants_(std::move(constants)),
         directions_(directions.count),
@@ -129,14 +129,6 @@ public:
     }
     for (Scalar& one : state) forget(one, starts_from_);
     carried_.leave(state);
-  }
-
-  std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
-    return plant_.hidden_starts(segment);
-  }
-  Start measured_start_sd(const Segment& segment,
-                          const std::array<double, signal_count>& sigma) const override {
-    return plant_.measured_start_sd(segment, sigma);
   }
 
 private:
@@ -196,7 +188,6 @@ private:
       state[i] += (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) * (h_s / 6.0);
   }
 
-  const OwnPlant& plant_;
   const PlantInfo& info_;
   std::vector<Scalar> constants_;
   ActingEffects<Scalar, Effects...> effects_;
