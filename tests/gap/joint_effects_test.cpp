@@ -80,11 +80,11 @@ Diagnosis diagnosed(const Joint& joint) {
   return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
 }
 
-TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz and at 50 Hz") {
+TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz, at 50 Hz and at 20 Hz") {
   using Effect = test::SampledAxis::Effect;
   const test::SampledAxis train(Effect::none, 30.0, 15), held_out(Effect::none, 20.0, 16),
       rough_train(Effect::friction, 30.0, 17), rough_held_out(Effect::friction, 20.0, 18);
-  for (const int kept : {1, 5, 20}) {
+  for (const int kept : {1, 5, 20, 50}) {
     CAPTURE(kept);
     const Diagnosis sound =
         diagnose(test::SampledAxis::model(), {train.logged_each(kept)}, {held_out.logged_each(kept)});
@@ -101,6 +101,26 @@ TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz and a
     };
     CHECK(has_sampled(rough) == (kept > 1 ? 2 : 0));  // of either recording
   }
+}
+
+TEST_CASE("a measured current in the place of the command makes no gap of its noise, and hides no cause") {
+  using Effect = test::SampledAxis::Effect;
+  const auto recorded = [](Effect effect, double length_s, std::uint64_t seed) {
+    return test::with_noise(test::SampledAxis(effect, length_s, seed).logged_each(10), "drive_A", 0.03,
+                            seed + 100);
+  };
+  const Diagnosis sound = diagnose(test::SampledAxis::model(), {recorded(Effect::none, 60.0, 41)},
+                                   {recorded(Effect::none, 40.0, 42)});
+  CHECK(sound.verdict == Verdict::no_gap);
+  CHECK(std::count_if(sound.findings.begin(), sound.findings.end(), [](const Finding& finding) {
+          return finding.kind == FindingKind::noisy_command;
+        }) == 2);  // of either recording
+  const Diagnosis rough = diagnose(test::SampledAxis::model(), {recorded(Effect::friction, 60.0, 43)},
+                                   {recorded(Effect::friction, 40.0, 44)});
+  CHECK(rough.verdict == Verdict::explained);
+  REQUIRE(rough.cause.size() == 1);
+  CHECK(rough.cause.front().effect == "coulomb_friction");
+  CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.05));
 }
 
 TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late does not spoil it") {

@@ -36,6 +36,7 @@ enum class FindingKind {
   clock_shift,      ///< an input stamped by another clock than the outputs
   lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate; it is not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
+  noisy_command,    ///< a command with noise that no motion follows; the noise floor counts it
   // The experiment.
   sampled_too_slowly,     ///< hardly a row in each window of the horizon
   never_driven,           ///< an input that is 0 throughout
@@ -92,6 +93,8 @@ inline const char* to_string(FindingKind kind) {
       return "lagging_output";
     case FindingKind::sampled_command:
       return "sampled_command";
+    case FindingKind::noisy_command:
+      return "noisy_command";
     case FindingKind::sampled_too_slowly:
       return "sampled_too_slowly";
     case FindingKind::never_driven:

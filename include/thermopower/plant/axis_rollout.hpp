@@ -27,7 +27,10 @@ class AxisRollout {
 public:
   /// Keeps references to both arguments: they must outlive this object.
   AxisRollout(const Instance<Scalar>& instance, const Inputs& inputs)
-      : instance_(instance), inputs_(inputs), step_(instance) {}
+      : instance_(instance),
+        inputs_(inputs),
+        parts_(std::max<Eigen::Index>(1, inputs.command_within.cols())),
+        step_(instance) {}
 
   /// The state in which the readings at `row` are these; the spring is relaxed. A reading must grow with what it is of.
   AxisState<Scalar> start(Eigen::Index row, double run_start_s, double angle_deg, double rate_dps) const {
@@ -55,9 +58,9 @@ public:
     }
     const double delay_s =
         instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
-    // Row whose command reaches the drive now; before its first row a run is idle.
-    Eigen::Index commanded = begin;
-    while (commanded >= run.begin && inputs_.t_s[commanded] + delay_s > inputs_.t_s[begin]) --commanded;
+    // The command that reaches the drive now; before its first row a run is idle.
+    Eigen::Index commanded = begin * parts_;
+    while (commanded >= run.begin * parts_ && set_s(commanded) + delay_s > inputs_.t_s[begin]) --commanded;
     // What is not carried on starts as the command before has left it.
     if (state.own.count != instance_.own_states)
       step_.settle(state, inputs_.t_s[begin] - start_s,
@@ -70,9 +73,10 @@ public:
     }
   }
 
-  /// The drive at a row, from the command of row `commanded` (of none where that lies before the run).
+  /// The drive at a row, from a command of the run (of none where that lies before it).
+  /// @param commanded  row of the command; where it goes on between the rows, its place among all their parts
   AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
-    const double value = commanded >= run.begin ? command(inputs_, instance_.voltage_driven)[commanded] : 0.0;
+    const double value = commanded >= run.begin * parts_ ? commanded_value(commanded) : 0.0;
     if (instance_.voltage_driven) return drive(Scalar(value / instance_.motor_ohm), row, t_s);
     return drive(constant<Scalar>(value), row, t_s);
   }
@@ -181,14 +185,18 @@ private:
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,
                 const RunSpan& run, AxisState<Scalar>& state) const {
     if (!instance_.axis_structure.delayed) {
-      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), drive(row, run, row, from_s));
+      const double length_s = (to_s - from_s) / static_cast<double>(parts_);
+      for (Eigen::Index part = 0; part < parts_; ++part) {
+        const double now_s = from_s + length_s * static_cast<double>(part);
+        step_.advance(state, now_s, constant<Scalar>(length_s), drive(row * parts_ + part, run, row, now_s));
+      }
       return;
     }
     // The command switches inside the interval, at its stamp plus the delay: any delay acts smoothly.
     const Scalar& delay_s = instance_.axis_structure.delay_s;
     Scalar now_s = constant<Scalar>(from_s);
-    while (commanded + 1 < run.end) {
-      const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
+    while (commanded + 1 < run.end * parts_) {
+      const Scalar switch_s = delay_s + (set_s(commanded + 1) - start_s);
       if (!(value_of(switch_s) < to_s)) break;
       step_.advance(state, value_of(now_s), Scalar(switch_s - now_s),
                     drive(commanded, run, row, value_of(now_s)));
@@ -198,8 +206,22 @@ private:
     step_.advance(state, value_of(now_s), Scalar(to_s - now_s), drive(commanded, run, row, value_of(now_s)));
   }
 
+  /// When a command is set. Where commands go on between the rows, each row has as many as its interval has parts.
+  double set_s(Eigen::Index commanded) const {
+    const Eigen::Index row = commanded / parts_, part = commanded % parts_;
+    if (part == 0 || row + 1 >= inputs_.rows()) return inputs_.t_s[row];
+    return inputs_.t_s[row] + (inputs_.t_s[row + 1] - inputs_.t_s[row]) * static_cast<double>(part) /
+                                  static_cast<double>(parts_);
+  }
+
+  double commanded_value(Eigen::Index commanded) const {
+    if (inputs_.command_within.size() == 0) return command(inputs_, instance_.voltage_driven)[commanded];
+    return inputs_.command_within(commanded / parts_, commanded % parts_);
+  }
+
   const Instance<Scalar>& instance_;
   const Inputs& inputs_;
+  const Eigen::Index parts_;  ///< of an interval between rows, each with a command of its own
   AxisStep<Scalar> step_;
 };
 

@@ -73,7 +73,11 @@ struct Inputs {
   std::vector<Eigen::VectorXd> own_inputs;  ///< of a plant of one's own, in its order; held, complete
   bool own = false;                         ///< the signals are those of a plant of one's own
   Eigen::VectorXd repeats;                  ///< samples averaged in each row; empty: one
-  HeatSource heat = HeatSource::none;       ///< what drives the thermal model
+  Eigen::MatrixXd
+      command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
+                       ///< rows x parts; empty: it holds
+  double command_noise = 0.0;          ///< standard deviation of what is noise in the command, in its unit
+  HeatSource heat = HeatSource::none;  ///< what drives the thermal model
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   std::vector<std::string> not_judged;                 ///< one sentence each
 

@@ -11,6 +11,8 @@
 #include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
+#include <random>
+
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
 
@@ -22,6 +24,43 @@ std::optional<double> share_of(const Recording& r) {
   CommandBetweenRows between;
   between.add(inputs, inputs.drive_A);
   return between.share();
+}
+
+/// Standard deviation of what is noise in the command.
+double noise_of(const Recording& r) {
+  const Inputs inputs = prepare(test::SampledAxis::model(), r);
+  CommandBetweenRows between;
+  between.add(inputs, inputs.drive_A);
+  return between.noise();
+}
+
+/// An axis that follows a command which is rough from row to row through a drive with a time constant, in steps of 0.1 ms.
+Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  constexpr Eigen::Index rows = 6000;
+  constexpr int inner = 100;
+  constexpr double step_s = 0.01;
+  Recording r;
+  r.name = "slow drive";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  double rad = 0.0, radps = 0.0, torque_Nm = 0.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    r.t_s[k] = step_s * static_cast<double>(k);
+    drive[k] = smooth_A * std::sin(3.0 * r.t_s[k]) + 0.1 * normal(random);
+    angle[k] = 57.29578 * rad + 0.03 * normal(random);
+    rate[k] = 57.29578 * radps + 0.2 * normal(random);
+    for (int i = 0; i < inner; ++i) {
+      torque_Nm += (0.09 * drive[k] - torque_Nm) * (1.0 - std::exp(-step_s / inner / time_constant_s));
+      radps += (torque_Nm - 0.002 * radps) / 0.002 * step_s / inner;
+      rad += radps * step_s / inner;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
 }
 
 /// Without one of its columns.
@@ -62,6 +101,66 @@ TEST_CASE("a command that holds from row to row is left as it is, and one that c
   const CheckedRecordings checked =
       check(test::SampledAxis::model(), {late}, {}, {}, thermopower::plant::standard_catalogue());
   CHECK(checked.train.front().recording().column("drive_A") == early);
+}
+
+TEST_CASE("between rows a smooth command is followed along its cubic, and one in steps as it holds") {
+  // x^3 - 2 x + 3 in rows: the mean of each third of an interval is the integral's difference.
+  const auto sum = [](double x) { return 0.25 * x * x * x * x - x * x + 3.0 * x; };
+  Eigen::VectorXd cubic(8);
+  for (Eigen::Index i = 0; i < cubic.size(); ++i) {
+    const double x = static_cast<double>(i);
+    cubic[i] = x * x * x - 2.0 * x + 3.0;
+  }
+  const Eigen::MatrixXd means = command_within(cubic, {{0, 8, ""}}, 0.5, true, 3);
+  for (Eigen::Index row = 1; row < 6; ++row)
+    for (Eigen::Index part = 0; part < 3; ++part) {
+      const double from = static_cast<double>(row) + static_cast<double>(part) / 3.0;
+      CHECK(means(row, part) == Approx(3.0 * (sum(from + 1.0 / 3.0) - sum(from))).epsilon(1e-9));
+    }
+  const Eigen::MatrixXd straight = command_within(cubic, {{0, 8, ""}}, 0.4, false, 1);
+  for (Eigen::Index row = 0; row < 7; ++row)
+    CHECK(straight(row, 0) == Approx(cubic[row] + 0.4 * (cubic[row + 1] - cubic[row])));
+  CHECK(straight(7, 0) == cubic[7]);
+}
+
+TEST_CASE("noise in a command is told by what no motion follows") {
+  using Effect = test::SampledAxis::Effect;
+  for (const auto effect : {Effect::none, Effect::friction, Effect::cogging}) {
+    for (const int set_each : {1, 10}) {  // between the rows, and held from row to row
+      CAPTURE(set_each);
+      const Recording clean = test::SampledAxis(effect, 60.0, 31, set_each).logged_each(10);
+      CHECK(noise_of(clean) == 0.0);
+      for (const double sd : {0.01, 0.03, 0.1})
+        CHECK(noise_of(test::with_noise(clean, "drive_A", sd, 32)) == Approx(sd).epsilon(0.1));
+      const Recording noisy = test::with_noise(clean, "drive_A", 0.03, 33);
+      REQUIRE(share_of(noisy));
+      CHECK(*share_of(noisy) == Approx(set_each == 1 ? 0.45 : 0.0).margin(0.1));
+    }
+  }
+  const Recording noisy =
+      test::with_noise(test::SampledAxis(Effect::none, 60.0, 34).logged_each(10), "drive_A", 0.03, 35);
+  CHECK(noise_of(without(noisy, "angle_deg")) == Approx(0.03).epsilon(0.1));
+}
+
+TEST_CASE("a rough command that the motion follows late or slowly is no noise") {
+  for (const double smooth_A : {0.0, 0.5})
+    for (const double time_constant_s : {0.001, 0.005, 0.02, 0.05, 0.2}) {
+      CAPTURE(smooth_A, time_constant_s);
+      const Recording r = driven_slowly(time_constant_s, smooth_A, 36);
+      CHECK(noise_of(r) == 0.0);
+      Recording late = r;
+      Eigen::VectorXd early = r.column("drive_A");
+      for (Eigen::Index i = 0; i + 5 < early.size(); ++i) early[i] = early[i + 5];
+      late.set("drive_A", early);
+      CHECK(noise_of(late) == 0.0);
+    }
+}
+
+TEST_CASE("a command that the motion does not follow at all is no noise, but a wrong column") {
+  const Recording r = test::SampledAxis(test::SampledAxis::Effect::none, 60.0, 37).logged_each(10);
+  Recording other = r;
+  other.set("drive_A", Eigen::VectorXd::Zero(r.rows()));
+  CHECK(noise_of(test::with_noise(other, "drive_A", 0.1, 38)) == 0.0);
 }
 
 }  // namespace

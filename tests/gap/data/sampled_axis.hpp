@@ -85,6 +85,17 @@ private:
   std::vector<double> t_s_, drive_A_, angle_deg_, rate_dps_;
 };
 
+/// With white noise added to one of its columns.
+inline thermopower::gap::Recording with_noise(thermopower::gap::Recording recording, const char* column,
+                                              double sd, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, sd);
+  Eigen::VectorXd values = recording.column(column);
+  for (double& value : values) value += normal(random);
+  recording.set(column, values);
+  return recording;
+}
+
 /// With one of its columns behind a filter of the first order.
 inline thermopower::gap::Recording filtered(thermopower::gap::Recording recording, const char* column,
                                             double time_constant_s) {

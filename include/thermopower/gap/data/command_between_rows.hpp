@@ -2,110 +2,52 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/jackknife.hpp>
-#include <thermopower/gap/data/robust.hpp>
-#include <thermopower/plant/axis_rollout.hpp>
-#include <thermopower/plant/rows.hpp>
+#include <thermopower/gap/data/command_noise.hpp>
+#include <thermopower/gap/data/motion_regression.hpp>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 /// @file command_between_rows.hpp
-/// What a command did between the rows. A row's command holds until the next one: so says the format, and so it is where
-/// the loop that commands also logs. Where a log keeps each twentieth command of a faster loop, holding it is half a row
-/// late, and half a row late looks like compliance or a slow drive. The motion tells which.
+/// What a command did between the rows, and how much of it is noise. A row's command holds until the next one: so says the
+/// format, and so it is where the loop that commands also logs. Where a log keeps each twentieth command of a faster loop,
+/// holding it is half a row late, and half a row late looks like compliance or a slow drive. Where a log keeps the current
+/// that a sensor measured, its noise is no torque. The motion tells which.
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of the question what a command did between the rows.
+/// Thresholds of the questions what a command did between the rows, and whether it is noisy.
 struct CommandThresholds {
-  std::size_t least_rows = 300;   ///< that move: fewer do not tell
-  std::size_t most_rows = 30000;  ///< that are looked at
-  std::size_t blocks = 20;        ///< of the jackknife
-  double moving = 0.05;           ///< of the rate's 95th percentile: slower rows may be stuck
-  double least_share = 0.2;       ///< every second command logged is felt by a quarter
-  double most_share = 0.65;       ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;              ///< standard errors that the share differs from 0 by
-  double precise = 0.08;          ///< largest standard error of the share
-  double matters = 0.2;           ///< noise scales of what half a row changes: less is nobody's concern
-  int periods = 2;                ///< of the angle that are taken away
-  int most_cogs = 60;             ///< a turn
+  double least_share = 0.2;   ///< every second command logged is felt by a quarter
+  double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
+  double sure = 5.0;          ///< standard errors that a share differs from 0 by
+  double precise = 0.08;      ///< largest standard error of the share
+  double matters = 0.2;       ///< noise scales of what half a row changes: less is nobody's concern
+  double bend_known = 0.015;  ///< largest standard error of a bend that is believed
+  double angle_off = 0.1;     ///< noise scales of the angle that a command held at its mean may cost
+  double most_pieces = 8.0;   ///< that an interval is cut into
+  double wander = 0.3;        ///< noise scales that a simulation wanders by: less is nobody's concern
 };
 
-/// Regresses the acceleration between rows on the command, on how much of its next step is felt already, and on what
-/// else turns an axis.
+/// Asks the motion of axes what their command did.
 class CommandBetweenRows {
 public:
-  /// Adds a recording whose axis is driven by `command`.
+  /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
-    const bool rate = inputs.judged(Signal::rate_dps), angle = inputs.judged(Signal::angle_deg);
-    if (command.size() == 0 || (!rate && !angle)) return;
-    const Eigen::VectorXd none;
-    const Eigen::VectorXd& dps = rate ? inputs.of(Signal::rate_dps) : none;
-    const Eigen::VectorXd& deg = angle ? inputs.of(Signal::angle_deg) : none;
-    noise_dps_ = std::max(noise_dps_, rate ? white_scale(dps, inputs.runs) : 0.0);
-    for (const RunSpan& run : inputs.runs)
-      for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k) {
-        const double step_s = inputs.t_s[k + 1] - inputs.t_s[k], before_s = inputs.t_s[k] - inputs.t_s[k - 1];
-        Row row;
-        double middle_deg = angle ? deg[k] : 0.0;
-        if (rate) {
-          row.response = (dps[k + 1] - dps[k]) / step_s;
-          row.dps = 0.5 * (dps[k] + dps[k + 1]);
-          row.held = command[k];
-          row.next = command[k + 1] - command[k];
-          if (angle) middle_deg = 0.5 * (deg[k] + deg[k + 1]);
-        } else {
-          const double after = (deg[k + 1] - deg[k]) / step_s, before = (deg[k] - deg[k - 1]) / before_s;
-          row.response = 2.0 * (after - before) / (step_s + before_s);
-          row.dps = 0.5 * (after + before);
-          row.held = 0.5 * (command[k - 1] + command[k]);
-          row.next = 0.5 * (command[k + 1] - command[k - 1]);
-        }
-        row.rad = middle_deg * rad_per_deg;
-        row.step_s = step_s;
-        if (std::isfinite(row.response) && std::isfinite(row.rad) && std::isfinite(row.dps))
-          rows_.push_back(row);
-      }
+    motion_.add(inputs, command);
+    recordings_.push_back({&inputs, &command});
   }
 
   /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
   /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
   /// tell.
-  std::optional<double> share() const {
-    constexpr CommandThresholds limit;
-    const std::vector<Row> rows = moving_rows();
-    if (rows.size() < limit.least_rows) return std::nullopt;
-    const std::vector<int> cogs = cogging_of(rows);
-    std::vector<Normal> blocks(limit.blocks, Normal(cogs));
-    for (std::size_t i = 0; i < rows.size(); ++i) blocks[i * limit.blocks / rows.size()].add(rows[i]);
-    Normal all(cogs);
-    for (const Normal& one : blocks) all.add(one, 1.0);
-    const Eigen::VectorXd fitted = all.solve();
-    if (!fitted.allFinite() || fitted[0] == 0.0) return std::nullopt;
-    double squares = 0.0;
-    for (const Row& row : rows) {
-      const double half_dps = 0.5 * fitted[0] * row.held * row.step_s;
-      squares += half_dps * half_dps / static_cast<double>(rows.size());
-    }
-    if (std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;
-    std::vector<double> without;
-    for (const Normal& one : blocks) {
-      Normal rest = all;
-      rest.add(one, -1.0);
-      const Eigen::VectorXd left = rest.solve();
-      without.push_back(left[1] / left[0]);
-    }
-    const double share = fitted[1] / fitted[0], standard_error = jackknife_error(without);
-    if (!(standard_error < limit.precise)) return std::nullopt;
-    return std::abs(share) < limit.sure * standard_error ? 0.0 : share;
-  }
+  std::optional<double> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
 
   /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
   std::optional<double> steady() const {
@@ -114,106 +56,164 @@ public:
     return found && *found > limit.least_share && *found < limit.most_share ? found : std::nullopt;
   }
 
+  /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
+  bool bends() const {
+    constexpr CommandThresholds limit;
+    if (noise() > 0.0) return false;
+    const auto fit = motion_.fit([](const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+      if (k - 1 < run.begin || k + 2 >= run.end) return Terms();
+      return terms({c[k], c[k + 1] - c[k], c[k - 1] - c[k] - c[k + 1] + c[k + 2]});
+    });
+    if (!fit) return false;
+    const auto [bend, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[2] / of[0]; });
+    // The mean of the cubic through four rows, between the two in the middle.
+    constexpr double smooth = -1.0 / 24.0;
+    return error < limit.bend_known && std::abs(bend - smooth) < std::abs(bend);
+  }
+
+  /// Parts of an interval that a steady command must be followed in, so that holding the mean in each costs no angle
+  /// that anybody sees.
+  int pieces() const {
+    constexpr CommandThresholds limit;
+    const double noise_deg = motion_.noise(Signal::angle_deg), response = this->response();
+    double costs_deg = 0.0;
+    for (const Driven& one : recordings_) {
+      const double step_s = median_step_s(*one.inputs);
+      const Eigen::VectorXd& c = *one.command;
+      const double spread =
+          c.size() > 0 ? std::sqrt((c.array() - c.mean()).square().mean() * 2.0) : 0.0;  // of end and start
+      costs_deg = std::max(costs_deg, response * spread * step_s * step_s / 12.0);
+    }
+    if (!(noise_deg > 0.0)) return 1;
+    return static_cast<int>(
+        std::clamp(std::ceil(std::sqrt(costs_deg / (limit.angle_off * noise_deg))), 1.0, limit.most_pieces));
+  }
+
+  /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
+  /// follows. 0 where there is none, where it moves no simulation over `horizon_s`, or where nobody can tell.
+  double noise(double horizon_s = 0.5) const {
+    if (!noise_) noise_ = find_noise(horizon_s);
+    return *noise_;
+  }
+
 private:
-  struct Row {
-    double response = 0.0, held = 0.0, next = 0.0, dps = 0.0, rad = 0.0, step_s = 0.0;
+  using Terms = MotionRegression::Terms;
+  struct Driven {
+    const Inputs* inputs;
+    const Eigen::VectorXd* command;
   };
 
-  /// Sums of a linear regression on the command, its next step, and what turns most axes: friction, a spring, an
-  /// imbalance, a constant, and cogs.
-  class Normal {
-  public:
-    explicit Normal(const std::vector<int>& cogs)
-        : cogs_(cogs),
-          square_(Eigen::MatrixXd::Zero(terms(), terms())),
-          product_(Eigen::VectorXd::Zero(terms())) {}
+  static constexpr Eigen::Index around = 4;  ///< rows before, and after, of a mean that noise hardly moves
 
-    void add(const Row& row) {
-      const Eigen::VectorXd x = regressors(row);
-      square_.selfadjointView<Eigen::Lower>().rankUpdate(x);
-      product_ += x * row.response;
-    }
-
-    void add(const Normal& other, double weight) {
-      square_ += weight * other.square_;
-      product_ += weight * other.product_;
-    }
-
-    Eigen::VectorXd solve() const {
-      return Eigen::MatrixXd(square_.selfadjointView<Eigen::Lower>())
-          .completeOrthogonalDecomposition()
-          .solve(product_);
-    }
-
-    Eigen::VectorXd regressors(const Row& row) const {
-      Eigen::VectorXd x(terms());
-      x.head(9) << row.held, row.next, row.dps, std::abs(row.dps), row.dps > 0.0 ? 1.0 : -1.0, row.rad,
-          std::sin(row.rad), std::cos(row.rad), 1.0;
-      Eigen::Index at = 9;
-      for (const int cogs : cogs_) {
-        x[at++] = std::sin(cogs * row.rad);
-        x[at++] = std::cos(cogs * row.rad);
-      }
-      return x;
-    }
-
-  private:
-    Eigen::Index terms() const { return 9 + 2 * static_cast<Eigen::Index>(cogs_.size()); }
-
-    std::vector<int> cogs_;
-    Eigen::MatrixXd square_;
-    Eigen::VectorXd product_;
-  };
-
-  /// Rows that move, at most as many as are needed.
-  std::vector<Row> moving_rows() const {
-    constexpr CommandThresholds limit;
-    std::vector<double> speeds;
-    for (const Row& row : rows_) speeds.push_back(std::abs(row.dps));
-    const double slowest = limit.moving * quantile_of(speeds, 0.95);
-    std::vector<Row> moving;
-    for (const Row& row : rows_)
-      if (std::abs(row.dps) > slowest) moving.push_back(row);
-    const std::size_t stride = moving.size() / limit.most_rows + 1;
-    for (std::size_t i = 0; i * stride < moving.size(); ++i) moving[i] = moving[i * stride];
-    moving.resize((moving.size() + stride - 1) / stride);
-    return moving;
+  template <std::size_t count>
+  static Terms terms(const double (&values)[count]) {
+    Terms list(static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i) list[static_cast<Eigen::Index>(i)] = values[i];
+    return list;
   }
 
-  /// Cogs a turn of the two strongest periods of the angle in what the rest leaves.
-  static std::vector<int> cogging_of(const std::vector<Row>& rows) {
-    constexpr CommandThresholds limit;
-    std::vector<int> cogs;
-    for (int round = 0; round < limit.periods; ++round) {
-      Normal all(cogs);
-      for (const Row& row : rows) all.add(row);
-      const Eigen::VectorXd fitted = all.solve();
-      std::vector<std::complex<double>> sums(static_cast<std::size_t>(limit.most_cogs) + 1);
-      for (const Row& row : rows) {
-        const double left = row.response - all.regressors(row).dot(fitted);
-        const std::complex<double> turn = std::polar(1.0, row.rad);
-        std::complex<double> at = left * turn;
-        for (std::complex<double>& sum : sums) sum += at *= turn;  // from two cogs on: one is an imbalance
-      }
-      const auto strongest = std::max_element(
-          sums.begin(), sums.end(), [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
-      cogs.push_back(static_cast<int>(strongest - sums.begin()) + 2);
-    }
-    return cogs;
+  static double median_step_s(const Inputs& inputs) {
+    std::vector<double> steps;
+    for (const RunSpan& run : inputs.runs)
+      for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
+        steps.push_back(inputs.t_s[i] - inputs.t_s[i - 1]);
+    return median_of(steps);
   }
 
-  std::vector<Row> rows_;
-  double noise_dps_ = 0.0;
+  static Terms held_and_next(const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+    return k + 1 < run.end ? terms({c[k], c[k + 1] - c[k]}) : Terms();
+  }
+
+  /// Mean and slope of a row of a command around an interval.
+  static Terms around_and_slope(const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+    if (k + 1 - around < run.begin || k + around >= run.end) return Terms();
+    const double before = c.segment(k + 1 - around, around).mean(), after = c.segment(k + 1, around).mean();
+    return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
+  }
+
+  std::optional<double> share_of_clean() const {
+    constexpr CommandThresholds limit;
+    const auto fit = motion_.fit(held_and_next);
+    if (!fit || fit->value[0] == 0.0) return std::nullopt;
+    if (0.5 * fit->first_dps < limit.matters * motion_.noise(Signal::rate_dps)) return std::nullopt;
+    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
+  }
+
+  /// From means of the rows around: the noise of single ones would make every share a half.
+  std::optional<double> share_of_noisy() const {
+    const auto fit = motion_.fit(around_and_slope);
+    if (!fit || fit->value[0] == 0.0) return std::nullopt;
+    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
+  }
+
+  static std::optional<double> sure_of(const std::pair<double, double>& share) {
+    constexpr CommandThresholds limit;
+    if (!(share.second < limit.precise)) return std::nullopt;
+    return std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first;
+  }
+
+  /// What the command turns the rate by, deg/s^2 for each of its unit.
+  double response() const {
+    const auto fit = motion_.fit(around_and_slope);
+    return fit ? std::abs(fit->value[0]) : 0.0;
+  }
+
+  double find_noise(double horizon_s) const {
+    constexpr CommandThresholds limit;
+    double step_s = 0.0;
+    for (const Driven& one : recordings_) {
+      step_s = std::max(step_s, median_step_s(*one.inputs));
+    }
+    const auto fit = motion_.fit(around_and_slope);
+    if (!fit) return 0.0;
+    const double response = std::abs(fit->value[0]);
+    CommandNoise spectra;
+    for (const Driven& one : recordings_) spectra.add(*one.inputs, *one.command);
+    const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
+    // A random walk of the rate, and its sum.
+    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s),
+                 wander_deg = wander_dps * horizon_s / std::sqrt(3.0);
+    const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
+    const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
+                         (noise_deg > 0.0 && wander_deg > limit.wander * noise_deg);
+    return matters ? sd : 0.0;
+  }
+
+  MotionRegression motion_;
+  std::vector<Driven> recordings_;
+  mutable std::optional<double> noise_;
 };
 
-/// The means of a command between each row and the next of its run; a run's last row keeps its own.
-/// @param share  of the next row's command in the mean
-inline Eigen::VectorXd mean_until_next(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
-                                       double share) {
-  Eigen::VectorXd means = command;
+/// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.
+///
+/// Between two rows it goes straight, or along the cubic through the two before and after; a run's last row holds.
+/// @param share  of the next row's command in the mean of an interval: 0.5 where it was set all the time, less where each
+///               step of a loop holds a while
+/// @param bends  along the cubic
+/// @param parts  of an interval, 1 or more
+inline Eigen::MatrixXd command_within(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
+                                      double share, bool bends, int parts) {
+  Eigen::MatrixXd means = command.replicate(1, parts);
+  const double late = 0.5 - share;  // rows
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row)
-      means[row] += share * (command[row + 1] - command[row]);
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
+      const double step = command[row + 1] - command[row];
+      const bool has_four = bends && row > run.begin && row + 2 < run.end;
+      // With x from row to row: the straight line, and x (x - 1) times what the neighbours bend it by.
+      const double bend =
+          has_four ? 0.25 * (command[row - 1] - command[row] - command[row + 1] + command[row + 2]) : 0.0;
+      const double skew =
+          has_four ? (command[row + 2] - command[row - 1] - 3.0 * step) / 6.0 : 0.0;  // third difference
+      const auto sum = [&](double x) {  // of the cubic from 0 to x
+        const double straight = command[row] * x + 0.5 * step * x * x, bent = x * x * (x / 3.0 - 0.5),
+                     skewed = x * x * (0.25 * x * x - 0.5 * x + 0.25);
+        return straight + bend * bent + skew * skewed;
+      };
+      for (int part = 0; part < parts; ++part) {
+        const double from = static_cast<double>(part) / parts - late, to = from + 1.0 / parts;
+        means(row, part) = (sum(to) - sum(from)) * parts;
+      }
+    }
   return means;
 }
 

@@ -39,11 +39,15 @@ public:
   const std::vector<Eigen::Index>& source_rows() const { return source_rows_; }
   /// Median interval between rows in s.
   double interval_s() const { return interval_s_; }
-  /// Takes other values of a command than were recorded. @param values  one for each row of recording()
-  void take_command(const Model& model, const std::string& column, Eigen::VectorXd values) {
-    believed_.set(column, std::move(values));
+  /// Takes other values of a command than were recorded.
+  /// @param within  its means in equal parts of the intervals, rows of recording() x parts
+  void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within) {
+    believed_.set(column, within.rowwise().mean());
     inputs_ = prepare(model, believed_);
+    if (within.cols() > 1) inputs_.command_within = std::move(within);
   }
+  /// Says how noisy the command is. @param sd  standard deviation, in its unit
+  void set_command_noise(double sd) { inputs_.command_noise = sd; }
   /// Leaves an output out. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);

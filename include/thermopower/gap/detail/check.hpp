@@ -57,23 +57,35 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked,
   };
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) between.add(one.inputs(), command_of(one));
+  const double noise = between.noise();
   const std::optional<double> share = between.steady();
-  if (!share) return;
+  if (!share && !(noise > 0.0)) return;
+  const bool bends = share && between.bends();
+  const int parts = share ? between.pieces() : 1;
   for (auto* all : {&checked.train, &checked.held_out})
     for (PreparedRecording& one : *all) {
       if (!is_commanded(one)) continue;
       const std::string column = command_column(one.inputs());
-      findings.push_back(
-          {FindingKind::sampled_command,
-           Severity::note,
-           one.recording().name,
-           column,
-           "went on between the rows, as the motion shows: its mean until the next row is taken, " +
-               short_number(100.0 * *share) + " % of the way to that one's",
-           "log the command at the rate it is set, or the mean of it between the rows",
-           FindingAction::none,
-           {}});
-      one.take_command(model, column, mean_until_next(command_of(one), one.recording().spans(), *share));
+      const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
+        findings.push_back(
+            {kind, Severity::note, one.recording().name, column, message, mend, FindingAction::none, {}});
+      };
+      if (share) {
+        note(FindingKind::sampled_command,
+             "went on between the rows, as the motion shows: its mean until the next row is taken, " +
+                 short_number(100.0 * *share) + " % of the way to that one's",
+             "log the command at the rate it is set, or the mean of it between the rows");
+        one.take_command(model, column,
+                         command_within(command_of(one), one.recording().spans(), *share, bends, parts));
+      }
+      if (noise > 0.0) {
+        const char* unit = model.axis->voltage_driven() ? " V" : " A";
+        note(FindingKind::noisy_command,
+             "has noise of " + short_number(noise) + unit +
+                 " that no motion follows: what a simulation wanders by it counts as noise",
+             "log the command that was sent, not the current that was measured");
+        one.set_command_noise(noise);
+      }
     }
 }
 

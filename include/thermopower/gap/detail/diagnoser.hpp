@@ -134,7 +134,7 @@ private:
     std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
     if (problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
       for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], problem.sigma[i]);
-    const std::array<double, signal_count> floor = noise_floor(calibrated, full, sigma, catalogue_);
+    const std::array<double, signal_count> floor = floor_of(calibrated, errors, sigma, full, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > relevant * floor[i]) return false;
     return true;
@@ -257,12 +257,18 @@ private:
   void measure_noise(FitProblem& problem, const Candidate& candidate) {
     std::array<std::vector<bool>, signal_count> gaps;
     const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
+    const std::array<double, signal_count> wander =
+        wander_of_command(augmented(model_, candidate.explanation, candidate.list, candidate.fit.at),
+                          problem.segments, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i) {
       if (residuals[i].empty()) continue;
       const double quantum = problem.segments.front().inputs->repeats.size() > 0
                                  ? 0.0
                                  : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / problem.sigma[i];
-      problem.sigma[i] = std::max(noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i], 1e-9);
+      double squares = 0.0;
+      for (const double one : residuals[i]) squares += one * one / static_cast<double>(residuals[i].size());
+      const double sd = noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i];
+      problem.sigma[i] = std::max(with_wander(sd, wander[i], std::sqrt(squares) * problem.sigma[i]), 1e-9);
     }
   }
 
@@ -417,7 +423,7 @@ private:
     const Model best = model_of(Search::best(candidates));
     const Errors errors = errors_of(best, segments, catalogue_);
     const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_inputs_),
-                                           floor = noise_floor(best, segments, sigma, catalogue_);
+                                           floor = floor_of(best, errors, sigma, segments, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
     // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its

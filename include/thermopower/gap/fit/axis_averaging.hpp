@@ -127,6 +127,8 @@ private:
       picked(*values);
     // The value of a parabola at its middle has 9/4 times the variance of a mean.
     thin.repeats = Eigen::VectorXd::Constant(count, std::max(1.0, 4.0 / 9.0 * static_cast<double>(rows)));
+    thin.command_within.resize(0, 0);
+    thin.command_noise = full_.command_noise / std::sqrt(static_cast<double>(rows));
     for (Eigen::VectorXd Inputs::*input : {&Inputs::drive_A, &Inputs::voltage_V, &Inputs::torque_Nm})
       if ((full_.*input).size() > 0) thin.*input = held_means(full_.*input, thin);
     for (std::size_t k = 0; k < thin.measured.size(); ++k) {

@@ -279,7 +279,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   // The augmented model is the fitted one where there is a cause, else the model as configured.
   const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
-      noise_floor(fitted, segments, noise_of(best, segments, inputs), catalogue);
+      floor_of(fitted, best, noise_of(best, segments, inputs), segments, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -67,6 +68,73 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
   return errors;
 }
 
+/// Small, fast and the same everywhere: the generator of draws (SplitMix64).
+class BlockDice {
+public:
+  /// Equal seeds give equal sequences, on every platform.
+  explicit BlockDice(std::uint64_t seed) : state_(seed) {}
+
+  /// A whole number in [0, count).
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
+
+  /// A number with a normal distribution, mean 0 and variance 1 (Box and Muller).
+  double normal() {
+    constexpr double per_step = 1.0 / 9007199254740992.0, turn = 6.283185307179586;
+    const double above_0 = (static_cast<double>(bits() >> 11) + 1.0) * per_step,
+                 angle = static_cast<double>(bits() >> 11) * per_step * turn;
+    return std::sqrt(-2.0 * std::log(above_0)) * std::cos(angle);
+  }
+
+private:
+  std::uint64_t bits() {
+    state_ += 0x9e3779b97f4a7c15u;
+    std::uint64_t mixed = state_;
+    mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
+    mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
+    return mixed ^ (mixed >> 31);
+  }
+
+  std::uint64_t state_;
+};
+
+/// How far a simulation wanders from itself because the command of the axis was measured with noise: root mean squares by
+/// signal, 0 where no command is noisy. One draw of the noise, the same each time.
+inline std::array<double, signal_count> wander_of_command(const Model& model,
+                                                          const std::vector<Segment>& segments,
+                                                          const Catalogue& catalogue) {
+  std::array<double, signal_count> wander{};
+  std::map<const Inputs*, Inputs> noisy;
+  BlockDice dice(1);
+  for (const Segment& segment : segments) {
+    const Inputs& inputs = *segment.inputs;
+    if (!(inputs.command_noise > 0.0) || noisy.count(&inputs) > 0) continue;
+    Inputs& copy = noisy[&inputs] = inputs;
+    for (Eigen::Index row = 0; row < inputs.rows(); ++row) {
+      const double by = inputs.command_noise * dice.normal();
+      if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
+      if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
+      if (copy.command_within.size() > 0) copy.command_within.row(row).array() += by;
+    }
+  }
+  if (noisy.empty()) return wander;
+  std::vector<Segment> others = segments;
+  for (Segment& segment : others)
+    if (const auto found = noisy.find(segment.inputs); found != noisy.end()) segment.inputs = &found->second;
+  const Errors plain = errors_of(model, segments, catalogue), moved = errors_of(model, others, catalogue);
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    double squares = 0.0;
+    const std::size_t count = std::min(plain.of[i].size(), moved.of[i].size());
+    for (std::size_t k = 0; k < count; ++k) squares += std::pow(moved.of[i][k] - plain.of[i][k], 2.0);
+    wander[i] = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+  }
+  return wander;
+}
+
+/// Noise with what a noisy command adds to it, at most `rms`, which the best simulation leaves: that has both.
+inline double with_wander(double noise, double wander, double rms) {
+  return wander > 0.0 ? std::max(noise, std::min(std::hypot(noise, wander), rms)) : noise;
+}
+
 /// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
 /// from, carried through the model.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
@@ -103,24 +171,18 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   return floor;
 }
 
-/// Small, fast and the same everywhere: the generator of the bootstrap (SplitMix64).
-class BlockDice {
-public:
-  /// Equal seeds give equal sequences, on every platform.
-  explicit BlockDice(std::uint64_t seed) : state_(seed) {}
-
-  /// A whole number in [0, count).
-  std::size_t below(std::size_t count) {
-    state_ += 0x9e3779b97f4a7c15u;
-    std::uint64_t mixed = state_;
-    mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
-    mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
-    return static_cast<std::size_t>((mixed ^ (mixed >> 31)) % count);
-  }
-
-private:
-  std::uint64_t state_;
-};
+/// What a perfect model would score where a command may be noisy, too.
+/// @param errors  of the best simulation  @param sigma  noise of the signals
+inline std::array<double, signal_count> floor_of(const Model& best, const Errors& errors,
+                                                 const std::array<double, signal_count>& sigma,
+                                                 const std::vector<Segment>& segments,
+                                                 const Catalogue& catalogue) {
+  std::array<double, signal_count> floor = noise_floor(best, segments, sigma, catalogue);
+  const std::array<double, signal_count> wander = wander_of_command(best, segments, catalogue);
+  for (std::size_t i = 0; i < signal_count; ++i)
+    floor[i] = with_wander(floor[i], wander[i], errors.rms(static_cast<Signal>(i)));
+  return floor;
+}
 
 /// 95 % interval of 1 - rms(after) / rms(before), for recordings like this one, by a paired block bootstrap.
 ///

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/inputs.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+/// @file command_noise.hpp
+/// What of a command is noise. A log often keeps the current that a sensor measured, not the one that was asked for: its
+/// noise turns nothing, and a simulation that is driven by it wanders.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the question whether a command is noisy.
+struct CommandNoiseThresholds {
+  double flat = 1.6;            ///< largest ratio to the lowest band of a spectrum that is its floor
+  std::size_t least_bins = 24;  ///< of the floor, and of what tells: less may be a shape of the command
+  std::size_t least_windows = 20;
+  double not_followed = 0.5;  ///< share of what a band's noise leaves: bands above it are no witnesses
+  double mostly = 0.7;        ///< of a band without noise that the motion must follow
+  double error = 0.1;   ///< standard error of what is followed in a band from which on the band tells nothing
+  double match = 0.12;  ///< what is followed may differ by from what the noise leaves
+};
+
+/// Compares how strong a command is at each frequency with how much of that the acceleration follows.
+///
+/// White noise of variance N under a command with the spectrum S leaves 1 - N / S of it to be followed (the gain of errors in
+/// a regressor: Fuller 1987, section 1.1; by frequency: Bendat & Piersol 2010, section 6.1). A drive that is slow or late
+/// follows less, too, but with another phase and whatever the spectrum.
+class CommandNoise {
+public:
+  /// Adds a recording of an axis that is driven by `command`.
+  void add(const Inputs& inputs, const Eigen::VectorXd& command) {
+    if (command.size() == 0 || !inputs.axis()) return;
+    const bool by_rate = inputs.judged(Signal::rate_dps);
+    const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
+    for (const RunSpan& run : inputs.runs)
+      for (Eigen::Index from = run.begin + 1; from + length + 1 < run.end; from += length / 2) {
+        Eigen::Matrix<double, length, 1> response, driven;
+        for (Eigen::Index i = 0; i < length; ++i) {
+          const Eigen::Index k = from + i;
+          const double step_s = inputs.t_s[k + 1] - inputs.t_s[k],
+                       after = (values[k + 1] - values[k]) / step_s;
+          const double before_s = inputs.t_s[k] - inputs.t_s[k - 1];
+          response[i] =
+              by_rate ? after : 2.0 * (after - (values[k] - values[k - 1]) / before_s) / (step_s + before_s);
+          driven[i] = command[k];
+        }
+        if (response.allFinite() && driven.allFinite()) take(response, driven);
+      }
+    before_rows_ = by_rate ? 0.0 : 0.5;
+  }
+
+  /// Standard deviation of what is noise in the command, in its unit; 0 where nothing is, or nobody can tell.
+  /// @param response  what the command turns the rate by, deg/s^2 for each of its unit
+  /// @param share     rows by which the motion is ahead of the rows' commands: 0 where they hold, 0.5 where they go on
+  double sd(double response, double share) const {
+    constexpr CommandNoiseThresholds limit;
+    if (windows_ < limit.least_windows || !(response > 0.0)) return 0.0;
+    std::array<Band, bands> all{};
+    double lowest = 1e300;
+    for (std::size_t b = 0; b < bands; ++b) {
+      for (std::size_t bin = std::size_t{1} << b; bin < std::size_t{2} << b; ++bin) {
+        all[b].command += spectrum_[bin].command / count();
+        all[b].response += spectrum_[bin].response / count();
+        // A second difference of angles lies around a row, the difference of two rates after it.
+        all[b].cross += spectrum_[bin].cross / count() *
+                        std::polar(1.0, -(share - before_rows_) * turn * static_cast<double>(bin) / length);
+        ++all[b].bins;
+      }
+      lowest = std::min(lowest, all[b].command / all[b].bins);
+    }
+    double floor = 0.0, bins = 0.0;
+    for (const Band& one : all)
+      if (one.command / one.bins < limit.flat * lowest) floor += one.command, bins += one.bins;
+    if (bins < static_cast<double>(limit.least_bins)) return 0.0;
+    floor /= bins;
+    if (!(floor > 0.0)) return 0.0;
+    bool is_followed = false;
+    double witnesses = 0.0;
+    for (const Band& one : all) {
+      const double left = std::max(0.0, 1.0 - floor / (one.command / one.bins));
+      const std::complex<double> followed = one.cross / (response * one.command);
+      const double error =
+          std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response;
+      is_followed = is_followed || (left > limit.mostly && followed.real() > limit.mostly);
+      if (left > limit.not_followed) continue;
+      if (error > limit.error) continue;
+      if (std::abs(followed - left) > limit.match + 3.0 * error) return 0.0;
+      witnesses += one.bins;
+    }
+    return is_followed && witnesses >= static_cast<double>(limit.least_bins) ? std::sqrt(floor) : 0.0;
+  }
+
+private:
+  static constexpr Eigen::Index length = 128;  ///< rows of a window
+  static constexpr std::size_t bands = 6;      ///< octaves
+  static constexpr double turn = 6.283185307179586;
+  static constexpr double independent = 0.5;  ///< windows that overlap by a half, under a bell
+  struct Band {
+    double command = 0.0, response = 0.0, bins = 0.0;
+    std::complex<double> cross = 0.0;
+  };
+
+  double count() const { return static_cast<double>(windows_); }
+
+  void take(const Eigen::Matrix<double, length, 1>& response,
+            const Eigen::Matrix<double, length, 1>& driven) {
+    ++windows_;
+    Eigen::Matrix<double, length, 1> bell;
+    for (Eigen::Index i = 0; i < length; ++i)
+      bell[i] = 0.5 - 0.5 * std::cos(turn * (static_cast<double>(i) + 0.5) / length);
+    const double unit = 1.0 / bell.norm();
+    const double mean = driven.mean(), mean_response = response.mean();
+    for (std::size_t bin = 1; bin < spectrum_.size(); ++bin) {
+      const double radians = turn * static_cast<double>(bin) / length;
+      const std::complex<double> step = std::polar(1.0, -radians);
+      std::complex<double> at = 1.0, command = 0.0, acceleration = 0.0;
+      for (Eigen::Index i = 0; i < length; ++i, at *= step) {
+        command += at * (bell[i] * (driven[i] - mean) * unit);
+        acceleration += at * (bell[i] * (response[i] - mean_response) * unit);
+      }
+      spectrum_[bin].command += std::norm(command);
+      spectrum_[bin].response += std::norm(acceleration);
+      spectrum_[bin].cross += acceleration * std::conj(command);
+    }
+  }
+
+  std::array<Band, 64> spectrum_;
+  std::size_t windows_ = 0;
+  double before_rows_ = 0.0;
+};
+
+}  // namespace thermopower::gap::engine

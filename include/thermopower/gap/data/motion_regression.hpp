@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/rows.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+/// @file motion_regression.hpp
+/// What of a command the motion follows, before any model: the acceleration between rows, regressed on terms of the command
+/// and on what else turns most axes.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of a regression of the motion on its command.
+struct MotionThresholds {
+  std::size_t least_rows = 300;   ///< that move: fewer do not tell
+  std::size_t most_rows = 30000;  ///< that are looked at
+  std::size_t blocks = 20;        ///< of the jackknife
+  double moving = 0.05;           ///< of the rate's 95th percentile: slower rows may be stuck
+  int periods = 2;                ///< of the angle that are taken away
+  int most_cogs = 60;             ///< a turn
+};
+
+/// Coefficients of a command's terms, with those that are found when a block of the rows is left out.
+struct MotionFit {
+  Eigen::VectorXd value;                 ///< deg/s^2 for each unit of a term
+  std::vector<Eigen::VectorXd> without;  ///< the same without a block each
+  double first_dps = 0.0;  ///< root mean square of what the first term changes the rate by between two rows
+
+  /// A number made of the coefficients, and its standard error.
+  template <class Of>
+  std::pair<double, double> estimate(Of&& of) const {
+    std::vector<double> left_out;
+    for (const Eigen::VectorXd& one : without) left_out.push_back(of(one));
+    return {of(value), jackknife_error(left_out)};
+  }
+};
+
+/// Regresses the acceleration between rows on terms of the command beside friction, a spring, an imbalance, a constant and
+/// cogs.
+class MotionRegression {
+public:
+  /// Terms of a command over the interval from row `row` of a run to the next: at most fourteen; none where the run does not hold
+  /// the rows that they are made of.
+  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
+  /// Makes the terms of a command.
+  using TermsOf = std::function<Terms(const Eigen::VectorXd& command, const RunSpan& run, Eigen::Index row)>;
+
+  /// Adds a recording of an axis that is driven by `command`. Keeps references to both: they must outlive this object.
+  void add(const Inputs& inputs, const Eigen::VectorXd& command) {
+    if (command.size() > 0 && inputs.axis()) recordings_.push_back({&inputs, &command});
+  }
+
+  /// Noise scale of a signal in the worst recording; 0 where none is judged.
+  double noise(Signal signal) const {
+    double scale = 0.0;
+    for (const Driven& one : recordings_)
+      if (one.inputs->judged(signal))
+        scale = std::max(scale, white_scale(one.inputs->of(signal), one.inputs->runs));
+    return scale;
+  }
+
+  /// The coefficients; nothing where too few rows move.
+  std::optional<MotionFit> fit(const TermsOf& terms_of) const {
+    constexpr MotionThresholds limit;
+    const std::vector<Row> rows = moving_rows(terms_of);
+    if (rows.size() < limit.least_rows) return std::nullopt;
+    const std::vector<int> cogs = cogging_of(rows);
+    const Eigen::Index terms = rows.front().terms.size();
+    std::vector<Sums> blocks(limit.blocks, Sums(terms, cogs));
+    for (std::size_t i = 0; i < rows.size(); ++i) blocks[i * limit.blocks / rows.size()].add(rows[i]);
+    Sums all(terms, cogs);
+    for (const Sums& one : blocks) all.add(one, 1.0);
+    MotionFit fit;
+    fit.value = all.solve().head(terms);
+    if (!fit.value.allFinite()) return std::nullopt;
+    for (const Sums& one : blocks) {
+      Sums rest = all;
+      rest.add(one, -1.0);
+      fit.without.push_back(rest.solve().head(terms));
+    }
+    double squares = 0.0;
+    for (const Row& row : rows) {
+      const double by_dps = fit.value[0] * row.terms[0] * row.step_s;
+      squares += by_dps * by_dps / static_cast<double>(rows.size());
+    }
+    fit.first_dps = std::sqrt(squares);
+    return fit;
+  }
+
+private:
+  struct Driven {
+    const Inputs* inputs;
+    const Eigen::VectorXd* command;
+  };
+  struct Row {
+    double response = 0.0, dps = 0.0, rad = 0.0, step_s = 0.0;
+    Terms terms;
+  };
+
+  /// Sums of the regression.
+  class Sums {
+  public:
+    Sums(Eigen::Index terms, const std::vector<int>& cogs)
+        : terms_(terms), cogs_(cogs), square_(Eigen::MatrixXd::Zero(all(), all())), product_(all()) {
+      product_.setZero();
+    }
+
+    void add(const Row& row) {
+      const Eigen::VectorXd x = regressors(row);
+      square_.selfadjointView<Eigen::Lower>().rankUpdate(x);
+      product_ += x * row.response;
+    }
+
+    void add(const Sums& other, double weight) {
+      square_ += weight * other.square_;
+      product_ += weight * other.product_;
+    }
+
+    Eigen::VectorXd solve() const {
+      return Eigen::MatrixXd(square_.selfadjointView<Eigen::Lower>())
+          .completeOrthogonalDecomposition()
+          .solve(product_);
+    }
+
+    Eigen::VectorXd regressors(const Row& row) const {
+      Eigen::VectorXd x(all());
+      x.head(terms_) = row.terms;
+      x.segment(terms_, others) << row.dps, std::abs(row.dps), row.dps > 0.0 ? 1.0 : -1.0, row.rad,
+          std::sin(row.rad), std::cos(row.rad), 1.0;
+      Eigen::Index at = terms_ + others;
+      for (const int cogs : cogs_) {
+        x[at++] = std::sin(cogs * row.rad);
+        x[at++] = std::cos(cogs * row.rad);
+      }
+      return x;
+    }
+
+  private:
+    static constexpr Eigen::Index others = 7;
+    Eigen::Index all() const { return terms_ + others + 2 * static_cast<Eigen::Index>(cogs_.size()); }
+
+    Eigen::Index terms_;
+    std::vector<int> cogs_;
+    Eigen::MatrixXd square_;
+    Eigen::VectorXd product_;
+  };
+
+  /// Hands each row with an acceleration to `use(driven, run, row, acceleration in deg/s^2, deg/s)`.
+  template <class Use>
+  void for_each_row(Use&& use) const {
+    for (const Driven& one : recordings_) {
+      const Inputs& inputs = *one.inputs;
+      const bool by_rate = inputs.judged(Signal::rate_dps);
+      const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
+      for (const RunSpan& run : inputs.runs)
+        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k) {
+          const double step_s = inputs.t_s[k + 1] - inputs.t_s[k],
+                       after = (values[k + 1] - values[k]) / step_s;
+          if (by_rate) {
+            use(one, run, k, after, 0.5 * (values[k] + values[k + 1]));
+          } else {
+            const double before_s = inputs.t_s[k] - inputs.t_s[k - 1],
+                         before = (values[k] - values[k - 1]) / before_s;
+            use(one, run, k, 2.0 * (after - before) / (step_s + before_s), 0.5 * (after + before));
+          }
+        }
+    }
+  }
+
+  /// Rows that move, at most as many as are needed.
+  std::vector<Row> moving_rows(const TermsOf& terms_of) const {
+    constexpr MotionThresholds limit;
+    std::vector<double> speeds;
+    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, double, double dps) {
+      if (std::isfinite(dps)) speeds.push_back(std::abs(dps));
+    });
+    const double slowest = limit.moving * quantile_of(speeds, 0.95);
+    const auto fast =
+        std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > slowest; });
+    const std::size_t stride = static_cast<std::size_t>(fast) / limit.most_rows + 1;
+    std::vector<Row> moving;
+    std::size_t count = 0;
+    for_each_row([&](const Driven& one, const RunSpan& run, Eigen::Index k, double response, double dps) {
+      if (!(std::abs(dps) > slowest) || count++ % stride != 0) return;
+      const Inputs& inputs = *one.inputs;
+      const bool by_rate = inputs.judged(Signal::rate_dps), angle = inputs.judged(Signal::angle_deg);
+      Row row;
+      row.response = response;
+      row.dps = dps;
+      row.step_s = inputs.t_s[k + 1] - inputs.t_s[k];
+      if (angle) {
+        const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
+        row.rad = (by_rate ? 0.5 * (deg[k] + deg[k + 1]) : deg[k]) * rad_per_deg;
+      }
+      row.terms = terms_of(*one.command, run, k);
+      if (!by_rate && row.terms.size() > 0) {  // a second difference: of the intervals before and after
+        const Terms before = terms_of(*one.command, run, k - 1);
+        if (before.size() == 0) return;
+        row.terms = 0.5 * (row.terms + before);
+      }
+      if (row.terms.size() > 0 && row.terms.allFinite() && std::isfinite(row.response) &&
+          std::isfinite(row.rad))
+        moving.push_back(row);
+    });
+    return moving;
+  }
+
+  /// Cogs a turn of the two strongest periods of the angle in what the rest leaves.
+  static std::vector<int> cogging_of(const std::vector<Row>& rows) {
+    constexpr MotionThresholds limit;
+    std::vector<int> cogs;
+    for (int round = 0; round < limit.periods; ++round) {
+      Sums all(rows.front().terms.size(), cogs);
+      for (const Row& row : rows) all.add(row);
+      const Eigen::VectorXd fitted = all.solve();
+      std::vector<std::complex<double>> sums(static_cast<std::size_t>(limit.most_cogs) + 1);
+      for (const Row& row : rows) {
+        const double left = row.response - all.regressors(row).dot(fitted);
+        const std::complex<double> turn = std::polar(1.0, row.rad);
+        std::complex<double> at = left * turn;
+        for (std::complex<double>& sum : sums) sum += at *= turn;  // from two cogs on: one is an imbalance
+      }
+      const auto strongest = std::max_element(
+          sums.begin(), sums.end(), [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
+      cogs.push_back(static_cast<int>(strongest - sums.begin()) + 2);
+    }
+    return cogs;
+  }
+
+  std::vector<Driven> recordings_;
+};
+
+}  // namespace thermopower::gap::engine
