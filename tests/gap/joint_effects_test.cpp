@@ -123,6 +123,64 @@ TEST_CASE("a measured current in the place of the command makes no gap of its no
   CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.05));
 }
 
+TEST_CASE("slow sensors, rows of their own for each, and stamps that count from 1970 change no answer") {
+  using Effect = test::SampledAxis::Effect;
+  const auto updated_each_third = [](Recording r) {
+    for (const char* column : {"angle_deg", "rate_dps"}) {
+      Eigen::VectorXd values = r.column(column);
+      for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = values[i - i % 3];
+      r.set(column, values);
+    }
+    return r;
+  };
+  const auto in_turn = [](Recording r) {
+    Eigen::VectorXd angle = r.column("angle_deg"), rate = r.column("rate_dps");
+    for (Eigen::Index i = 0; i < angle.size(); ++i) (i % 2 == 0 ? angle : rate)[i] = std::nan("");
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    return r;
+  };
+  const auto since_1970 = [](Recording r) {
+    r.t_s.array() += 1.7637e9;
+    return r;
+  };
+  int number = 0;
+  for (const std::function<Recording(Recording)>& logged :
+       {std::function<Recording(Recording)>(updated_each_third), std::function<Recording(Recording)>(in_turn),
+        std::function<Recording(Recording)>(since_1970)}) {
+    CAPTURE(number++);
+    const auto recorded = [&](Effect effect, double length_s, std::uint64_t seed) {
+      return logged(test::SampledAxis(effect, length_s, seed, 10).logged_each(10));
+    };
+    const Diagnosis sound = diagnose(test::SampledAxis::model(), {recorded(Effect::none, 40.0, 51)},
+                                     {recorded(Effect::none, 30.0, 52)});
+    CHECK(sound.verdict == Verdict::no_gap);
+    CHECK(sound.gap.size() == 2);  // both signals are judged
+    const Diagnosis rough = diagnose(test::SampledAxis::model(), {recorded(Effect::friction, 40.0, 53)},
+                                     {recorded(Effect::friction, 30.0, 54)});
+    CHECK(rough.verdict == Verdict::explained);
+    REQUIRE(rough.cause.size() == 1);
+    CHECK(rough.cause.front().effect == "coulomb_friction");
+    CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.03));
+  }
+}
+
+TEST_CASE("where no window can start there is no verdict") {
+  const auto never_together = [](std::uint64_t seed) {
+    Recording r = test::SampledAxis(test::SampledAxis::Effect::none, 20.0, seed, 10).logged_each(10);
+    Eigen::VectorXd angle = r.column("angle_deg"), rate = r.column("rate_dps");
+    angle.head(angle.size() / 2).setConstant(std::nan(""));
+    rate.tail(rate.size() / 2).setConstant(std::nan(""));
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    return r;
+  };
+  const Diagnosis diagnosis =
+      diagnose(test::SampledAxis::model(), {never_together(55)}, {never_together(56)});
+  CHECK(diagnosis.verdict == Verdict::insufficient);
+  CHECK(diagnosis.reason.find("no row has a reading of each signal") != std::string::npos);
+}
+
 TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late does not spoil it") {
   using Effect = test::SampledAxis::Effect;
   const test::SampledAxis train(Effect::none, 40.0, 21, 10), held_out(Effect::none, 30.0, 22, 10),

@@ -17,13 +17,15 @@ enum class FindingKind {
   jittering_stamps,  ///< stamps stray around a clock by which the outputs were read; its ticks are used
   gap_in_stamps,     ///< rows are missing: what the inputs did meanwhile is unknown
   // One column.
-  empty_column,        ///< a column without a sample; it counts as absent
-  constant_column,     ///< an output that never changes
-  missing_samples,     ///< empty cells of an output or covariate
-  unknown_input,       ///< empty cells of an input between values that differ
-  spiked_samples,      ///< isolated samples far from their neighbours
-  glitched_samples,    ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
-  repeated_frames,     ///< rows that repeat the outputs of the row before them
+  empty_column,      ///< a column without a sample; it counts as absent
+  constant_column,   ///< an output that never changes
+  missing_samples,   ///< empty cells of an output or covariate
+  unknown_input,     ///< empty cells of an input between values that differ
+  spiked_samples,    ///< isolated samples far from their neighbours
+  glitched_samples,  ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
+  repeated_frames,   ///< rows that repeat the outputs of the row before them
+  held_samples,  ///< an output that repeats the last word of a sensor slower than the rows; only what is new counts
+  separate_samples,  ///< an angle and a rate that never stand in one row; windows start between samples
   frozen_samples,      ///< an output that stands still where it cannot
   clipped_samples,     ///< an output cut off at the end of its sensor's range
   impossible_samples,  ///< outside what the quantity can be
@@ -71,6 +73,10 @@ inline const char* to_string(FindingKind kind) {
       return "glitched_samples";
     case FindingKind::repeated_frames:
       return "repeated_frames";
+    case FindingKind::held_samples:
+      return "held_samples";
+    case FindingKind::separate_samples:
+      return "separate_samples";
     case FindingKind::frozen_samples:
       return "frozen_samples";
     case FindingKind::clipped_samples:

@@ -262,9 +262,9 @@ private:
   static AxisState<Scalar> measured_start(const AxisRollout<Scalar>& rollout, const Inputs& inputs,
                                           const RunSpan& run, Eigen::Index row) {
     double angle_deg = 0.0, rate_dps = 0.0;
-    if (inputs.judged(Signal::angle_deg)) angle_deg = inputs.of(Signal::angle_deg)[row];
+    if (inputs.judged(Signal::angle_deg)) angle_deg = inputs.start_of(Signal::angle_deg, row);
     if (inputs.judged(Signal::rate_dps)) {
-      rate_dps = inputs.of(Signal::rate_dps)[row];
+      rate_dps = inputs.start_of(Signal::rate_dps, row);
     } else if (run.size() > 1) {
       const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
       const Eigen::VectorXd& angle = inputs.of(Signal::angle_deg);

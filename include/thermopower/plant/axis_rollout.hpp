@@ -230,13 +230,12 @@ inline std::vector<Eigen::Index> window_starts(const Inputs& inputs, const RunSp
   std::vector<Eigen::Index> starts;
   const auto usable = [&](Eigen::Index row) {
     for (Signal signal : {Signal::angle_deg, Signal::rate_dps})
-      if (inputs.judged(signal) && !std::isfinite(inputs.of(signal)[row])) return false;
+      if (inputs.judged(signal) && !std::isfinite(inputs.start_of(signal, row))) return false;
     return true;
   };
   double next_s = -1e300;
   for (Eigen::Index row = run.begin; row < run.end; ++row) {
-    // A stamp that is short of the grid by rounding belongs to the next window.
-    if (inputs.t_s[row] < next_s - 1e-9 * (1.0 + std::abs(next_s)) || !usable(row)) continue;
+    if (inputs.t_s[row] < next_s - stamp_rounding_s(next_s, inputs.t_s[run.begin]) || !usable(row)) continue;
     starts.push_back(row);
     if (!(horizon_s > 0.0) || !std::isfinite(horizon_s)) break;
     next_s = inputs.t_s[row] + horizon_s;

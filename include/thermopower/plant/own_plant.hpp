@@ -52,7 +52,7 @@ public:
         if (windows) {
           end = begin + 1;
           const double until_s = inputs.t_s[begin] + horizon_s;
-          const double rounding_s = 1e-9 * (1.0 + std::abs(until_s));
+          const double rounding_s = stamp_rounding_s(until_s, inputs.t_s[run.begin]);
           while (end < run.end && (inputs.t_s[end] < until_s - rounding_s || !measured_at(inputs, end)))
             ++end;
         }

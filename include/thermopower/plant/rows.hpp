@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -17,6 +18,12 @@ namespace thermopower::plant {
 
 /// A missing sample.
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+/// What a stamp may be short of a grid by, and belong to its next point: rounding of the stamp, which may count from 1970, and of
+/// the seconds since a run began.
+inline double stamp_rounding_s(double at_s, double run_start_s) {
+  return 4e-16 * std::abs(at_s) + 1e-9 * (1.0 + std::abs(at_s - run_start_s));
+}
 
 /// Half-open range of rows [begin, end) that belong to one run; the model's state starts anew at `begin`.
 ///
@@ -79,7 +86,10 @@ struct Inputs {
   double command_noise = 0.0;          ///< standard deviation of what is noise in the command, in its unit
   HeatSource heat = HeatSource::none;  ///< what drives the thermal model
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
-  std::vector<std::string> not_judged;                 ///< one sentence each
+  /// By Signal: readings between samples, for the starts of windows where another signal stands alone; NaN or empty where
+  /// there are none. Nothing is judged by them.
+  std::array<Eigen::VectorXd, signal_count> between_samples;
+  std::vector<std::string> not_judged;  ///< one sentence each
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }
@@ -87,6 +97,12 @@ struct Inputs {
   bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
   /// Measured values of a judged signal.
   const Eigen::VectorXd& of(Signal signal) const { return measured[static_cast<std::size_t>(signal)]; }
+  /// What a window that starts at a row starts from: the measured value, else one between samples; NaN without either.
+  double start_of(Signal signal, Eigen::Index row) const {
+    const auto at = static_cast<std::size_t>(signal);
+    const double value = measured[at][row];
+    return std::isfinite(value) || between_samples[at].size() == 0 ? value : between_samples[at][row];
+  }
   /// Whether temperature or current is judged.
   bool bench() const { return !own && (judged(Signal::current_A) || judged(Signal::motor_C)); }
   /// Whether angle or rate is judged.

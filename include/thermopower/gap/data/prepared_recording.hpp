@@ -8,6 +8,7 @@
 #include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
+#include <thermopower/gap/data/slow_sensors.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +44,15 @@ public:
   /// @param within  its means in equal parts of the intervals, rows of recording() x parts
   void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within) {
     believed_.set(column, within.rowwise().mean());
-    inputs_ = prepare(model, believed_);
+    renew_inputs(model);
     if (within.cols() > 1) inputs_.command_within = std::move(within);
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
-  /// Leaves an output out. @param sentence  why it is not judged
+  /// Leaves an output out. Comes before what is said of the command. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);
-    inputs_ = prepare(model, believed_);
+    renew_inputs(model);
     for (std::string& note : inputs_.not_judged)
       if (note.rfind(column + " ", 0) == 0) note = sentence;
   }
@@ -59,20 +60,31 @@ public:
   Eigen::Index recorded_rows() const { return recorded_rows_; }
 
 private:
+  /// Prepares what is believed.
+  void renew_inputs(const Model& model) {
+    inputs_ = prepare(model, believed_);
+    if (!starts_between_samples_) return;
+    for (const Signal signal : {Signal::angle_deg, Signal::rate_dps})
+      if (inputs_.judged(signal))
+        inputs_.between_samples[static_cast<std::size_t>(signal)] =
+            between_samples(inputs_.t_s, inputs_.runs, inputs_.of(signal));
+  }
   bool is_output(const std::string& name) const;
   void read_the_clock(FindingList& list);
   void mask_outputs(const Recording& recorded, FindingList& list);
   void mask_output(const Recording& recorded, const std::string& name, Eigen::VectorXd& values,
                    FindingList& list);
+  void find_starts(FindingList& list);
   void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
   void fill_inputs(const Recording& recorded, FindingList& list);
   void keep_known_rows();
   std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power) const;
   Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A) const;
 
-  bool moves_ = false;              ///< angle and rate are outputs of an axis, and no covariates
-  bool electrical_ = false;         ///< the supply drives what is judged
-  bool drives_by_current_ = false;  ///< current_A is an input: nothing else tells the heat
+  bool moves_ = false;                   ///< angle and rate are outputs of an axis, and no covariates
+  bool electrical_ = false;              ///< the supply drives what is judged
+  bool starts_between_samples_ = false;  ///< angle and rate never stand in one row
+  bool drives_by_current_ = false;       ///< current_A is an input: nothing else tells the heat
   Recording believed_;
   RowMask unknown_;
   Inputs inputs_;
@@ -123,7 +135,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
     findings_ = list.take();
   }
   keep_known_rows();
-  inputs_ = prepare(model, believed_);
+  renew_inputs(model);
 }
 
 /// Whether a column is measured of what the model simulates.
@@ -146,6 +158,18 @@ inline void PreparedRecording::read_the_clock(FindingList& list) {
 }
 
 inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
+  for (Column& column : believed_.columns) {
+    // A current holds because the power does.
+    if (!is_output(column.name) || (column.name == "current_A" && electrical_)) continue;
+    const std::optional<HeldColumn> held = held_between_updates(column.values, believed_.runs);
+    if (!held) continue;
+    take_away(column.values, held->repeats);
+    list.add_rows(FindingKind::held_samples, Severity::note, column.name, held->repeats,
+                  FindingAction::masked,
+                  "repeat the reading of a sensor that speaks every " + std::to_string(held->rows_apart) +
+                      " rows: only what is new is used",
+                  "log each reading when it comes, or leave the cells between two empty");
+  }
   std::vector<const Eigen::VectorXd*> outputs;
   // A slow column in coarse steps repeats by itself, and tells of no frame.
   const auto shows_frames = [&](const Eigen::VectorXd& values) {
@@ -190,6 +214,17 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   list.add_rows(FindingKind::glitched_samples, Severity::warning, "", lost, FindingAction::masked,
                 "read what the sensors read when they say nothing", "look at what reads the sensors");
   for (Column* column : lossy) take_away(column->values, lost);
+  find_starts(list);
+}
+
+/// Finds starts for windows where angle and rate never stand in one row.
+inline void PreparedRecording::find_starts(FindingList& list) {
+  if (!moves_ || !believed_.has("angle_deg") || !believed_.has("rate_dps")) return;
+  if (!are_apart(believed_.column("angle_deg"), believed_.column("rate_dps"))) return;
+  starts_between_samples_ = true;
+  list.add(
+      FindingKind::separate_samples, Severity::note, "angle_deg",
+      "hardly ever stands in a row with rate_dps: windows start from what the one is between its samples");
 }
 
 /// Rows of a constant power that a spike can be told in.
@@ -356,7 +391,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
                   "repeat the value before them where noise or motion would show",
                   "look at what reads the sensor");
-    if (still.equal_share() > 0.999999 && recorded.rows() > 20)
+    if (still.equal_share() > 0.999999 && present > 20)
       list.add(FindingKind::constant_column, Severity::note, name, "never changes");
   }
   const double quantum = quantum_of(values);

@@ -5,7 +5,9 @@
 #include <thermopower/gap/recording.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 /// @file robust.hpp
@@ -33,14 +35,40 @@ inline std::vector<double> finite_samples(const Eigen::VectorXd& values) {
   return list;
 }
 
+/// Hands the rows of `count` finite samples that follow on each other inside a run to `use(const Eigen::Index* rows)`: rows next
+/// to each other, or, where a sensor speaks in so few rows that hardly any are, its samples in order.
+template <std::size_t count, class Use>
+void for_each_in_order(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs, Use&& use) {
+  constexpr double hardly_any = 0.1;
+  double finite = 0.0, together = 0.0;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      if (!std::isfinite(values[i])) continue;
+      finite += 1.0;
+      together += i + 1 < run.end && std::isfinite(values[i + 1]) ? 1.0 : 0.0;
+    }
+  const bool skips = together < hardly_any * finite;
+  for (const RunSpan& run : runs) {
+    std::array<Eigen::Index, count> rows{};
+    std::size_t known = 0;
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      if (!std::isfinite(values[i])) {
+        if (!skips) known = 0;
+        continue;
+      }
+      std::rotate(rows.begin(), rows.begin() + 1, rows.end());
+      rows.back() = i;
+      if (++known >= count) use(rows.data());
+    }
+  }
+}
+
 /// Magnitudes of the steps between finite neighbours inside the runs.
 inline std::vector<double> step_sizes(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   std::vector<double> list;
-  for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
-      const double step = std::abs(values[i] - values[i - 1]);
-      if (std::isfinite(step)) list.push_back(step);
-    }
+  for_each_in_order<2>(values, runs, [&](const Eigen::Index* rows) {
+    list.push_back(std::abs(values[rows[1]] - values[rows[0]]));
+  });
   return list;
 }
 
@@ -54,11 +82,9 @@ inline double equal_share_of(const std::vector<double>& steps) {
 /// the noise for a score (coloured noise is larger), but what an isolated bad sample is measured against.
 inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   std::vector<double> list;
-  for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
-      const double second = std::abs(values[i - 1] - 2.0 * values[i] + values[i + 1]);
-      if (std::isfinite(second)) list.push_back(second);
-    }
+  for_each_in_order<3>(values, runs, [&](const Eigen::Index* rows) {
+    list.push_back(std::abs(values[rows[0]] - 2.0 * values[rows[1]] + values[rows[2]]));
+  });
   constexpr double normal_median = 0.6745, gain = 2.449489742783178;  // sqrt(1 + 4 + 1)
   return median_of(list) / (normal_median * gain);
 }

@@ -200,6 +200,14 @@ private:
         return false;
       }
     }
+    for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
+      const std::vector<Segment> segments = cut(*all, options_.horizon_s, plant_of(model_));
+      if (!segments.empty()) continue;
+      result_.verdict = Verdict::insufficient;
+      result_.reason =
+          "no row has a reading of each signal that the model judges, so that no simulation can start there";
+      return false;
+    }
     return true;
   }
 

@@ -48,9 +48,10 @@ public:
   }
 
 private:
-  /// The parabola through the samples of a block, at the block's mean stamp.
+  /// The parabola through the samples of a block, at the block's mean stamp; missing where it has at most half as many as
+  /// usual. @param known  share of the rows with a sample
   static double at_centre(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s, Eigen::Index begin,
-                          Eigen::Index end, double centre_s) {
+                          Eigen::Index end, double centre_s, double known) {
     // Sums of powers of the stamps about the centre, in units of the block's length.
     const double unit_s = std::max(t_s[end - 1] - t_s[begin], 1e-300);
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -64,12 +65,18 @@ private:
       right += powers * values[i];
       ++count;
     }
-    if (2 * count <= end - begin) return missing;
+    if (2.0 * static_cast<double>(count) <= known * static_cast<double>(end - begin)) return missing;
     if (count < 4) {  // too few for a parabola: a straight line
       if (count < 2) return right[0] / static_cast<double>(std::max<Eigen::Index>(count, 1));
       return normal.topLeftCorner<2, 2>().ldlt().solve(right.head<2>())[0];
     }
     return normal.ldlt().solve(right)[0];
+  }
+
+  /// Share of the rows with a sample.
+  static double known_share(const Eigen::VectorXd& values) {
+    return static_cast<double>(values.array().isFinite().count()) /
+           static_cast<double>(std::max<Eigen::Index>(1, values.size()));
   }
 
   double centre_of(Eigen::Index begin, Eigen::Index end) const {
@@ -83,13 +90,14 @@ private:
       if (!full_.judged(signal)) continue;
       const Eigen::VectorXd& values = full_.of(signal);
       const double scale = white_scale(values, full_.runs) + quantum_of(values) / std::sqrt(12.0);
+      const double known = known_share(values);
       std::vector<double> left;
       const Eigen::Index stride = std::max(rows, full_.rows() / looked_at);
       for (const RunSpan& run : full_.runs)
         for (Eigen::Index begin = run.begin; begin + rows <= run.end; begin += stride) {
           const Eigen::Index middle = begin + rows / 2;
           const double off =
-              values[middle] - at_centre(values, full_.t_s, begin, begin + rows, full_.t_s[middle]);
+              values[middle] - at_centre(values, full_.t_s, begin, begin + rows, full_.t_s[middle], known);
           if (std::isfinite(off)) left.push_back(std::abs(off));
         }
       std::vector<double> again = left;
@@ -128,6 +136,7 @@ private:
     // The value of a parabola at its middle has 9/4 times the variance of a mean.
     thin.repeats = Eigen::VectorXd::Constant(count, std::max(1.0, 4.0 / 9.0 * static_cast<double>(rows)));
     thin.command_within.resize(0, 0);
+    for (Eigen::VectorXd& values : thin.between_samples) values.resize(0);
     thin.command_noise = full_.command_noise / std::sqrt(static_cast<double>(rows));
     for (Eigen::VectorXd Inputs::*input : {&Inputs::drive_A, &Inputs::voltage_V, &Inputs::torque_Nm})
       if ((full_.*input).size() > 0) thin.*input = held_means(full_.*input, thin);
@@ -140,9 +149,11 @@ private:
         continue;
       }
       thin.measured[k].resize(count);
+      const double known = known_share(full_.measured[k]);
       for (Eigen::Index i = 0; i < count; ++i) {
         const auto& block = blocks[static_cast<std::size_t>(i)];
-        thin.measured[k][i] = at_centre(full_.measured[k], full_.t_s, block.first, block.second, thin.t_s[i]);
+        thin.measured[k][i] =
+            at_centre(full_.measured[k], full_.t_s, block.first, block.second, thin.t_s[i], known);
       }
     }
     return thin;
