@@ -28,8 +28,9 @@ struct Joint {
 constexpr double period_s = 0.005;
 
 /// @param with_drive  the current is recorded, too
+/// @param moving      the target is set anew for each sample of the servo, of which there are two in a row
 Recording record(const Joint& joint, const Gains& servo, int rows, std::uint64_t seed,
-                 bool with_drive = false) {
+                 bool with_drive = false, bool moving = false) {
   test::Noise noise(seed), faces(seed + 100);
   Recording r;
   r.name = "servo";
@@ -42,13 +43,18 @@ Recording record(const Joint& joint, const Gains& servo, int rows, std::uint64_t
   for (int i = 0; i < rows; ++i) {
     r.t_s[i] = 0.01 * i;
     const double t = r.t_s[i];
-    if (i % 60 == 0) level = 8.0 * faces();
-    target[i] = servo.velocity ? 10.0 * level * std::sin(0.9 * t) + 40.0 * std::sin(5.0 * t)
-                               : level + 12.0 * std::sin(2.7 * t) + 5.0 * std::sin(7.1 * t + 1.0);
+    if (i % 60 == 0 && !moving) level = 8.0 * faces();
+    const auto target_at = [&](double now_s) {
+      return servo.velocity ? 10.0 * level * std::sin(0.9 * now_s) + 40.0 * std::sin(5.0 * now_s)
+                            : level + 12.0 * std::sin(2.7 * now_s) + 5.0 * std::sin(7.1 * now_s + 1.0) +
+                                  (moving ? 2.0 * std::sin(19.0 * now_s) + std::sin(31.0 * now_s) : 0.0);
+    };
+    target[i] = target_at(t);
     angle[i] = theta * deg + 0.02 * noise();
     rate[i] = omega * deg + 0.15 * noise();
     for (int k = 0; k < samples; ++k) {
-      const double error = target[i] - (servo.velocity ? omega : theta) * deg;
+      const double error =
+          (moving ? target_at(t + k * period_s) : target[i]) - (servo.velocity ? omega : theta) * deg;
       sum += error * period_s;
       command = servo.kp * error + servo.ki * sum - (servo.velocity ? 0.0 : servo.kd * omega * deg);
       command = std::clamp(command, -servo.limit, servo.limit);
@@ -127,6 +133,30 @@ TEST_CASE("a servo that is as its file says has no gap, at any gains") {
     CHECK(diagnosis.verdict == Verdict::no_gap);
     REQUIRE(diagnosis.gap.size() == 2);
     for (const GapScore& gap : diagnosis.gap) CHECK(gap.before < 1.15 * gap.noise_floor);
+  }
+}
+
+TEST_CASE("a target that moves between the rows is read from the motion, and makes no gap of its own") {
+  Joint rubbing;
+  rubbing.coulomb_Nm = 0.012;
+  for (const Gains& servo : {Gains{0.02, 0.001, 0.0}, Gains{0.04, 0.002, 0.0}, Gains{0.05, 0.0025, 0.2}}) {
+    CAPTURE(servo.kp);
+    const auto diagnosed_moving = [&](const Joint& joint) {
+      Options options;
+      options.effects_at_once = 1;
+      return diagnose(model_with(servo), {record(joint, servo, 4000, 5, false, true)},
+                      {record(joint, servo, 2000, 6, false, true)}, options);
+    };
+    const Diagnosis sound = diagnosed_moving({});
+    INFO(sound.reason);
+    CHECK(sound.verdict == Verdict::no_gap);
+    CHECK(sound.cause.empty());
+    CHECK(std::count_if(sound.findings.begin(), sound.findings.end(), [](const Finding& finding) {
+            return finding.kind == FindingKind::sampled_command;
+          }) == 2);  // of either recording
+    const Diagnosis rough = diagnosed_moving(rubbing);
+    REQUIRE(rough.cause.size() == 1);
+    CHECK(rough.cause.front().effect == "coulomb_friction");
   }
 }
 

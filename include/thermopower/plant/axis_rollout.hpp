@@ -101,10 +101,11 @@ public:
   /// What the servo makes of the motion measured around a row, its delay left out.
   double servo_A(Eigen::Index row, const RunSpan& run) const {
     const auto at = [&](Eigen::Index i) {
+      const double part = i > row ? 1.0 : 0.0;
       const auto [angle_deg, rate_dps] = seen(i, run, inputs_.seen_deg[i], inputs_.seen_dps[i]);
       return value_of(instance_.servo.command_A(
-          angle_deg, rate_dps, inputs_.target_deg.size() > 0 ? inputs_.target_deg[row] : 0.0,
-          inputs_.target_dps.size() > 0 ? inputs_.target_dps[row] : 0.0,
+          angle_deg, rate_dps, target_between(inputs_, inputs_.target_deg, run, row, part),
+          target_between(inputs_, inputs_.target_dps, run, row, part),
           constant<Scalar>(inputs_.servo_integral[std::min(i + 1, run.end - 1)])));
     };
     if (row + 1 >= run.end) return at(row);

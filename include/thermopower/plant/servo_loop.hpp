@@ -91,6 +91,16 @@ inline long samples_until(double t_s, double period_s) {
   return std::max(0L, static_cast<long>(std::floor(t_s / period_s + rounding)) + 1);
 }
 
+/// A servo's target a part of the way from a row to the next one of its run; 0 where none is recorded.
+/// @param values  `target_deg` or `target_dps` of the inputs
+/// @param part    0 at the row, 1 at the next one
+inline double target_between(const Inputs& inputs, const Eigen::VectorXd& values, const RunSpan& run,
+                             Eigen::Index row, double part) {
+  if (values.size() == 0) return 0.0;
+  if (!inputs.target_moves || row + 1 >= run.end) return values[row];
+  return values[row] + (part + inputs.target_lead) * (values[row + 1] - values[row]);
+}
+
 /// What a servo made of the motion that was measured: where a window starts, its memory is known from that.
 ///
 /// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and
@@ -107,8 +117,6 @@ inline void replay_servo(const Model& model, Inputs& inputs) {
       inputs.servo_integral[row] = accumulated;
       const double from_s = inputs.t_s[row] - start_s;
       const double to_s = row + 1 < run.end ? inputs.t_s[row + 1] - start_s : from_s + gains.period_s;
-      const double target_deg = inputs.target_deg.size() > 0 ? inputs.target_deg[row] : 0.0,
-                   target_dps = inputs.target_dps.size() > 0 ? inputs.target_dps[row] : 0.0;
       double sum = 0.0;
       long count = 0;
       const long end = std::max(first_sample(from_s, gains.period_s), first_sample(to_s, gains.period_s));
@@ -118,6 +126,8 @@ inline void replay_servo(const Model& model, Inputs& inputs) {
         const Eigen::Index next = std::min(row + 1, run.end - 1);
         const double angle = inputs.seen_deg[row] + share * (inputs.seen_deg[next] - inputs.seen_deg[row]),
                      rate = inputs.seen_dps[row] + share * (inputs.seen_dps[next] - inputs.seen_dps[row]);
+        const double target_deg = target_between(inputs, inputs.target_deg, run, row, share),
+                     target_dps = target_between(inputs, inputs.target_dps, run, row, share);
         gains.integrate(accumulated, angle, rate, target_deg, target_dps);
         sum += command = gains.command_A(angle, rate, target_deg, target_dps, accumulated);
       }
@@ -168,8 +178,8 @@ public:
           seen(row, inputs_.seen_deg[row] + share * (inputs_.seen_deg[after] - inputs_.seen_deg[row]),
                inputs_.seen_dps[row] + share * (inputs_.seen_dps[after] - inputs_.seen_dps[row]));
       pending_.push_back(
-          {delay_s_ + sample_s, gains_.command_A(angle_deg, rate_dps, target(inputs_.target_deg, row),
-                                                 target(inputs_.target_dps, row),
+          {delay_s_ + sample_s, gains_.command_A(angle_deg, rate_dps, target(inputs_.target_deg, row, share),
+                                                 target(inputs_.target_dps, row, share),
                                                  constant<Scalar>(inputs_.servo_integral[after]))});
     }
   }
@@ -201,8 +211,9 @@ public:
           now_s = constant<Scalar>(sample_s);
         }
         const auto [angle_deg, rate_dps] = sense();
-        const double target_deg = target(inputs_.target_deg, row),
-                     target_dps = target(inputs_.target_dps, row);
+        const double part = std::clamp((sample_s - from_s) / (to_s - from_s), 0.0, 1.0);
+        const double target_deg = target(inputs_.target_deg, row, part),
+                     target_dps = target(inputs_.target_dps, row, part);
         gains_.integrate(accumulated_, angle_deg, rate_dps, target_deg, target_dps);
         pending_.push_back({delay_s_ + sample_s,
                             gains_.command_A(angle_deg, rate_dps, target_deg, target_dps, accumulated_)});
@@ -220,8 +231,8 @@ private:
     Scalar from_s, command_A;
   };
 
-  static double target(const Eigen::VectorXd& values, Eigen::Index row) {
-    return values.size() > 0 ? values[row] : 0.0;
+  double target(const Eigen::VectorXd& values, Eigen::Index row, double part) const {
+    return target_between(inputs_, values, run_, row, part);
   }
 
   const ServoGains<Scalar>& gains_;

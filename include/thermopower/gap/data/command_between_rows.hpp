@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/command_noise.hpp>
 #include <thermopower/gap/data/motion_regression.hpp>
+#include <thermopower/plant/servo_loop.hpp>
 
 #include <Eigen/Dense>
 
@@ -24,7 +25,9 @@ namespace thermopower::gap::engine {
 
 /// Thresholds of the questions what a command did between the rows, and whether it is noisy.
 struct CommandThresholds {
-  double least_share = 0.2;   ///< every second command logged is felt by a quarter
+  double least_share = 0.2;  ///< every second command logged is felt by a quarter
+  double least_target_share =
+      0.12;                   ///< of a servo that takes two targets in a row's time: a quarter, less is none
   double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
   double sure = 5.0;          ///< standard errors that a share differs from 0 by
   double precise = 0.08;      ///< largest standard error of the share
@@ -50,20 +53,35 @@ public:
   std::optional<double> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
 
   /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
-  std::optional<double> steady() const {
-    constexpr CommandThresholds limit;
-    const std::optional<double> found = share();
-    return found && *found > limit.least_share && *found < limit.most_share ? found : std::nullopt;
+  std::optional<double> steady() const { return steady_share(share(), CommandThresholds().least_share); }
+
+  /// The same of a servo's target: what the motion shows of what the servo makes of its next step. An axis that follows a smooth target
+  /// closely moves as that steps: then nobody can tell it from damping.
+  std::optional<double> steady_target(const ServoGains<double>& gains) const {
+    const auto fit = motion_.fit(
+        [&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run, Eigen::Index k) {
+          constexpr double saturated = 0.98;  // of the limit
+          if (k + 1 >= run.end || std::abs(servo_A[k]) > saturated * gains.limit_A) return Terms();
+          const auto step = [&](const Eigen::VectorXd& target) {
+            return target.size() > 0 ? target[k + 1] - target[k] : 0.0;
+          };
+          const double next = gains.position ? gains.proportional * step(inputs.target_deg) +
+                                                   gains.derivative * step(inputs.target_dps)
+                                             : gains.proportional * step(inputs.target_dps);
+          return terms({servo_A[k], next});
+        });
+    return fit ? steady_share(share_of(*fit), CommandThresholds().least_target_share) : std::nullopt;
   }
 
   /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
   bool bends() const {
     constexpr CommandThresholds limit;
     if (noise() > 0.0) return false;
-    const auto fit = motion_.fit([](const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
-      if (k - 1 < run.begin || k + 2 >= run.end) return Terms();
-      return terms({c[k], c[k + 1] - c[k], c[k - 1] - c[k] - c[k + 1] + c[k + 2]});
-    });
+    const auto fit =
+        motion_.fit([](const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+          if (k - 1 < run.begin || k + 2 >= run.end) return Terms();
+          return terms({c[k], c[k + 1] - c[k], c[k - 1] - c[k] - c[k + 1] + c[k + 2]});
+        });
     if (!fit) return false;
     const auto [bend, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[2] / of[0]; });
     // The mean of the cubic through four rows, between the two in the middle.
@@ -120,23 +138,33 @@ private:
     return median_of(steps);
   }
 
-  static Terms held_and_next(const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+  static Terms held_and_next(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
     return k + 1 < run.end ? terms({c[k], c[k + 1] - c[k]}) : Terms();
   }
 
   /// Mean and slope of a row of a command around an interval.
-  static Terms around_and_slope(const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+  static Terms around_and_slope(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
     if (k + 1 - around < run.begin || k + around >= run.end) return Terms();
     const double before = c.segment(k + 1 - around, around).mean(), after = c.segment(k + 1, around).mean();
     return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
   }
 
   std::optional<double> share_of_clean() const {
-    constexpr CommandThresholds limit;
     const auto fit = motion_.fit(held_and_next);
-    if (!fit || fit->value[0] == 0.0) return std::nullopt;
-    if (0.5 * fit->first_dps < limit.matters * motion_.noise(Signal::rate_dps)) return std::nullopt;
-    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
+    return fit ? share_of(*fit) : std::nullopt;
+  }
+
+  /// Of the next step of what the first term is.
+  std::optional<double> share_of(const MotionFit& fit) const {
+    constexpr CommandThresholds limit;
+    if (fit.value[0] == 0.0 || 0.5 * fit.first_dps < limit.matters * motion_.noise(Signal::rate_dps))
+      return std::nullopt;
+    return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
+  }
+
+  static std::optional<double> steady_share(const std::optional<double>& share, double least) {
+    constexpr CommandThresholds limit;
+    return share && *share > least && *share < limit.most_share ? share : std::nullopt;
   }
 
   /// From means of the rows around: the noise of single ones would make every share a half.

@@ -56,7 +56,8 @@ public:
   /// the rows that they are made of.
   using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
   /// Makes the terms of a command.
-  using TermsOf = std::function<Terms(const Eigen::VectorXd& command, const RunSpan& run, Eigen::Index row)>;
+  using TermsOf = std::function<Terms(const Inputs& inputs, const Eigen::VectorXd& command,
+                                      const RunSpan& run, Eigen::Index row)>;
 
   /// Adds a recording of an axis that is driven by `command`. Keeps references to both: they must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
@@ -205,9 +206,9 @@ private:
         const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
         row.rad = (by_rate ? 0.5 * (deg[k] + deg[k + 1]) : deg[k]) * rad_per_deg;
       }
-      row.terms = terms_of(*one.command, run, k);
+      row.terms = terms_of(inputs, *one.command, run, k);
       if (!by_rate && row.terms.size() > 0) {  // a second difference: of the intervals before and after
-        const Terms before = terms_of(*one.command, run, k - 1);
+        const Terms before = terms_of(inputs, *one.command, run, k - 1);
         if (before.size() == 0) return;
         row.terms = 0.5 * (row.terms + before);
       }

@@ -4,6 +4,7 @@
 
 #include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/clock.hpp>
+#include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
@@ -46,6 +47,25 @@ public:
     believed_.set(column, within.rowwise().mean());
     renew_inputs(model);
     if (within.cols() > 1) inputs_.command_within = std::move(within);
+  }
+  /// Lets a servo's target go on between the rows. @param share  of the way to the next row's, on average
+  void take_targets_between(const Model& model, double share) {
+    const Eigen::VectorXd deg = inputs_.target_deg, dps = inputs_.target_dps;
+    for (const char* column : {"target_deg", "target_dps"})
+      if (believed_.has(column))
+        believed_.set(column,
+                      command_within(believed_.column(column), believed_.runs, share, false, 1).col(0));
+    renew_inputs(model);
+    inputs_.target_deg = deg;
+    inputs_.target_dps = dps;
+    inputs_.target_moves = true;
+    // A servo that takes the target every so often holds it for half that long on average, whatever the target does.
+    constexpr double told_apart = 0.1;  // rows
+    const double period_s =
+        plant::servo_gains<double>(model, [](const char*, double value) { return value; }).period_s;
+    const double of_samples = 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s_, period_s));
+    if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
+    replay_servo(model, inputs_);
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }

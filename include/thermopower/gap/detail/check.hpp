@@ -44,6 +44,35 @@ inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
     }
 }
 
+/// Lets the target of a servo go on between the rows where the training recordings say that it did.
+inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
+                                      std::vector<Finding>& findings) {
+  if (!model.has_axis() || !model.has_servo()) return;
+  CommandBetweenRows between;
+  const auto is_closed = [](const PreparedRecording& one) {
+    return one.inputs().axis() && one.inputs().closed_loop;
+  };
+  for (const PreparedRecording& one : checked.train)
+    if (is_closed(one)) between.add(one.inputs(), one.inputs().servo_A);
+  const std::optional<double> share = between.steady_target(
+      plant::servo_gains<double>(model, [](const char*, double value) { return value; }));
+  if (!share) return;
+  for (auto* all : {&checked.train, &checked.held_out})
+    for (PreparedRecording& one : *all) {
+      if (!is_closed(one)) continue;
+      findings.push_back({FindingKind::sampled_command,
+                          Severity::note,
+                          one.recording().name,
+                          one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
+                          "went on between the rows, as the motion shows: the servo is given what lies " +
+                              short_number(100.0 * *share) + " % of the way to the next row's, on average",
+                          "log the target at the rate it is set",
+                          FindingAction::none,
+                          {}});
+      one.take_targets_between(model, *share);
+    }
+}
+
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
 inline void read_between_rows(const Model& model, CheckedRecordings& checked,
                               std::vector<Finding>& findings) {
@@ -108,6 +137,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
   if (!options.as_recorded) {
     leave_out_what_lags(model, result, others);
     read_between_rows(model, result, others);
+    read_targets_between_rows(model, result, others);
   }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
     others.push_back(std::move(finding));
