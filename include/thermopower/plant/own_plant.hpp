@@ -148,6 +148,58 @@ protected:
     return result;
   }
 
+  /// Constants and parameters of effects at a point, each varying with its direction.
+  template <class Scalar>
+  struct AtPoint {
+    std::vector<Scalar> constants;  ///< in the order of the info
+    /// Parameters of the effects that act, each by its place among the plant's effects.
+    std::vector<std::pair<std::size_t, std::vector<Scalar>>> effects;
+  };
+  /// A model at a point, as a rollout in these directions takes it.
+  template <class Scalar>
+  AtPoint<Scalar> at_point(const Model& model, const ParameterPoint& point,
+                           const Directions& directions) const {
+    const auto moving = [&](double value, double speed, int index) {
+      Scalar result = constant<Scalar>(value);
+      if (index < directions.first || index >= directions.first + directions.count) return result;
+      Scalar unit = constant<Scalar>(0.0);
+      seed(unit, index - directions.first);
+      result += unit * speed;
+      return result;
+    };
+    const auto speed = [&](std::size_t index) { return point.speed.empty() ? 1.0 : point.speed[index]; };
+    const Constants given = constants_of(model, point);
+    AtPoint<Scalar> result;
+    for (std::size_t i = 0; i < given.value.size(); ++i) {
+      const int index = given.index[i];
+      result.constants.push_back(moving(
+          given.value[i], index < 0 ? 0.0 : given.per_factor[i] * speed(static_cast<std::size_t>(index)),
+          index < 0 ? -1 : index));
+    }
+    for (const auto& effect : model.effects) {
+      const std::size_t place = place_of(effect.first);
+      const std::vector<double> values = parameters_of(model, effects_.entries()[place].info);
+      result.effects.emplace_back(place, std::vector<Scalar>(values.begin(), values.end()));
+    }
+    std::size_t at = 0;
+    for (const CatalogueEntry* entry : point.effects) {
+      std::vector<Scalar> parameters;
+      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i, ++at) {
+        const std::size_t index = point.factors.size() + at;
+        parameters.push_back(moving(point.parameters[at], speed(index), static_cast<int>(index)));
+      }
+      result.effects.emplace_back(place_of(entry->info.id), std::move(parameters));
+    }
+    return result;
+  }
+
+  /// Place of an effect among the plant's. @throws InvalidInput where it has none of that id
+  std::size_t place_of(const std::string& id) const {
+    for (std::size_t i = 0; i < effects_.entries().size(); ++i)
+      if (effects_.entries()[i].info.id == id) return i;
+    throw InvalidInput("plant '" + info_.type + "' has no effect '" + id + "'");
+  }
+
   /// Parameters of an effect of the model in the effect's order.
   static std::vector<double> parameters_of(const Model& model, const EffectInfo& info) {
     const EffectParameters& given = model.effects.at(info.id);

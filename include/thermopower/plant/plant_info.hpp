@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/model.hpp>
+#include <thermopower/plant/quantity.hpp>
 #include <thermopower/plant/segment.hpp>
 #include <thermopower/plant/signal.hpp>
 
@@ -14,12 +15,22 @@
 
 namespace thermopower::plant {
 
+/// What makes a missing quantity of a missing rate of a signal: the balance of a heat, a torque, a flow.
+struct PlantBalance {
+  std::string
+      constant;  ///< of the plant, by its name: the rate times it is the quantity, as with a heat capacity
+  QuantityName quantity;  ///< `Quantity::missing_heat`, or one of one's own
+  std::string unit;       ///< of the quantity, as reports spell it
+};
+
 /// What a plant of one's own shows: a column of the recording that a diagnosis judges.
 struct PlantSignal {
   std::string name;  ///< of the column, ends in its unit, as in `level_m`
   std::string unit;  ///< as reports spell it
   std::string
       submodel;  ///< who is at fault where the signal does not move as the equations say: `tank.outflow`
+  std::optional<PlantBalance> balance = {};  ///< none: what is missing is told as a rate of the signal
+  std::string note = {};  ///< how it is judged, for the evidence; empty: nothing to be said
 };
 
 /// What a plant of one's own is fed with: a column of the recording, held from its row to the next one.
@@ -65,6 +76,13 @@ struct PlantInfo {
         refuse("state '" + state.name + "' names a signal that there is not");
       if (!(state.spread > 0.0) || !std::isfinite(state.spread) || !std::isfinite(state.initial))
         refuse("state '" + state.name + "': expected a spread above 0 and a finite initial value");
+    }
+    for (const PlantSignal& signal : signals) {
+      if (!signal.balance) continue;
+      bool known = false;
+      for (const PlantConstant& constant : constants)
+        known = known || constant.name == signal.balance->constant;
+      if (!known) refuse("signal '" + signal.name + "': its balance names a constant that there is not");
     }
     for (const PlantConstant& constant : constants)
       if (constant.block.empty() || constant.name.empty()) refuse("a constant has no block or no name");

@@ -253,48 +253,11 @@ private:
   template <class Scalar>
   std::unique_ptr<Rollout> made(const Model& model, const ParameterPoint& point,
                                 const Directions& directions) const {
-    const auto moving = [&](double value, double speed, int index) {
-      Scalar result = constant<Scalar>(value);
-      if (index < directions.first || index >= directions.first + directions.count) return result;
-      Scalar unit = constant<Scalar>(0.0);
-      seed(unit, index - directions.first);
-      result += unit * speed;
-      return result;
-    };
-    const auto speed = [&](std::size_t index) { return point.speed.empty() ? 1.0 : point.speed[index]; };
-    const Constants given = constants_of(model, point);
-    std::vector<Scalar> constants;
-    for (std::size_t i = 0; i < given.value.size(); ++i) {
-      const int index = given.index[i];
-      constants.push_back(moving(
-          given.value[i], index < 0 ? 0.0 : given.per_factor[i] * speed(static_cast<std::size_t>(index)),
-          index < 0 ? -1 : index));
-    }
-    auto rollout = std::make_unique<StateRollout<P, Scalar, Effects...>>(
-        *this, std::move(constants), directions, point.size() - directions.first);
-    for (const auto& effect : model.effects) {
-      const std::size_t place = place_of(effect.first);
-      std::vector<Scalar> parameters;
-      for (double value : parameters_of(model, effects_.entries()[place].info))
-        parameters.push_back(constant<Scalar>(value));
-      rollout->set(place, std::move(parameters));
-    }
-    std::size_t at = 0;
-    for (const CatalogueEntry* entry : point.effects) {
-      std::vector<Scalar> parameters;
-      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i, ++at) {
-        const std::size_t index = point.factors.size() + at;
-        parameters.push_back(moving(point.parameters[at], speed(index), static_cast<int>(index)));
-      }
-      rollout->set(place_of(entry->info.id), std::move(parameters));
-    }
+    const AtPoint<Scalar> at = at_point<Scalar>(model, point, directions);
+    auto rollout = std::make_unique<StateRollout<P, Scalar, Effects...>>(*this, at.constants, directions,
+                                                                         point.size() - directions.first);
+    for (const auto& [place, parameters] : at.effects) rollout->set(place, parameters);
     return rollout;
-  }
-
-  std::size_t place_of(const std::string& id) const {
-    for (std::size_t i = 0; i < effects_.entries().size(); ++i)
-      if (effects_.entries()[i].info.id == id) return i;
-    throw InvalidInput("plant '" + info_.type + "' has no effect '" + id + "'");
   }
 };
 

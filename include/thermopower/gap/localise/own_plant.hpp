@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -106,10 +107,11 @@ inline double noise_of_smooth(const Eigen::VectorXd& values, const std::vector<R
 struct MissingRates {
   /// Of one signal.
   struct Samples {
-    std::vector<double> rate;                    ///< in the signal's unit per second
+    std::vector<double> rate;                    ///< in the signal's unit per second, or in its balance's
     std::vector<std::vector<double>> variables;  ///< as many values each, in the order of `names`
     double interval_s = 0.0;                     ///< length of the last window
     double noise = 0.0;                          ///< standard deviation of the measured signal
+    double quantity = 1.0;                       ///< what a rate is times, where a balance says so
   };
   std::vector<Samples> of;         ///< by signal
   std::vector<std::string> names;  ///< of the variables: inputs, signals, time
@@ -131,6 +133,8 @@ inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue
   for (const PlantSignal& one : info.signals) names.push_back(one.name), units.push_back(one.unit);
   names.push_back("t_s"), units.push_back("s");
   for (Samples& one : of) one.variables.resize(names.size());
+  for (std::size_t k = 0; k < signals; ++k)
+    if (info.signals[k].balance) of[k].quantity = model.get(info.signals[k].balance->constant);
   for (const Inputs& inputs : recordings) {
     const Eigen::Index length = std::max<Eigen::Index>(1, inputs.rows() / own_plant_thresholds.windows);
     const auto rollout = plant.rollout(model, catalogue, {}, {}, SimulationMode::free_running);
@@ -153,7 +157,7 @@ inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue
           const double missed = inputs.of(signal)[end] - readings.value(end, static_cast<int>(k));
           if (!std::isfinite(missed)) continue;
           Samples& samples = of[k];
-          samples.rate.push_back(missed / lasts_s);
+          samples.rate.push_back(missed / lasts_s * samples.quantity);
           samples.interval_s = lasts_s;
           std::size_t at = 0;
           const auto put = [&](double value) { samples.variables[at++].push_back(value); };
@@ -191,7 +195,7 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     if (samples.rate.size() < 30) continue;
     double squares = 0.0;
     for (double rate : samples.rate) squares += rate * rate;
-    const double expected = samples.noise * std::sqrt(2.0) / samples.interval_s;
+    const double expected = samples.noise * std::sqrt(2.0) / samples.interval_s * samples.quantity;
     const double seen = std::sqrt(squares / static_cast<double>(samples.rate.size()));
     if (seen < own_plant_thresholds.noise_factor * expected) continue;
     std::size_t best = names.size() - 1;
@@ -203,8 +207,10 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     }
     MissingQuantity picture;
     picture.signal = plant::SignalName(info.signals[k].name);
-    picture.quantity = plant::QuantityName("missing rate of " + info.signals[k].name);
-    picture.unit = info.signals[k].unit + "/s";
+    const std::optional<plant::PlantBalance>& balance = info.signals[k].balance;
+    picture.quantity =
+        balance ? balance->quantity : plant::QuantityName("missing rate of " + info.signals[k].name);
+    picture.unit = balance ? balance->unit : info.signals[k].unit + "/s";
     picture.variable = names[best];
     picture.variable_unit = units[best];
     OrderedRate(samples.rate, samples.variables[best], own_plant_thresholds.bins).draw(picture);
@@ -226,6 +232,7 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
       std::snprintf(text, sizeof text, " nothing recorded orders it.");
     }
     location.evidence += text;
+    if (!info.signals[k].note.empty()) location.evidence += " It is " + info.signals[k].note + ".";
     found.where.push_back(std::move(location));
     found.quantities.push_back(std::move(picture));
   }
