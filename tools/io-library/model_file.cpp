@@ -4,6 +4,9 @@
 #include <thermopower/io/model_file.hpp>
 
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/plant/network_plant.hpp>
+
+#include "json_place.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -54,10 +57,11 @@ public:
 
   Model read(const std::string& text) {
     const Json root = parse(text);
+    text_ = text;
     if (!root.is_object())
       fail("", std::string(root.type_name()) + " at the top; expected an object with \"format\": \"" +
                    format_id + "\"");
-    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "effects"});
+    only(root, "", {"format", "name", "supply", "current", "thermal", "axis", "servo", "network", "effects"});
     if (!root.contains("format")) fail("/format", std::string("is missing; expected \"") + format_id + "\"");
     if (!root["format"].is_string() || root["format"].get<std::string>() != format_id) {
       fail("/format", "is " + shown(root["format"]) + "; expected \"" + format_id + "\"");
@@ -72,6 +76,7 @@ public:
     if (root.contains("thermal")) read_thermal(root["thermal"], model);
     if (root.contains("axis")) read_axis(root["axis"], model);
     if (root.contains("servo")) read_servo(root["servo"], model);
+    if (root.contains("network")) read_network(root, model);
     if (root.contains("effects")) read_effects(root["effects"], model);
     for (const char* block : {"supply", "current", "thermal", "axis", "servo"})
       if (root.contains(block)) read_uncertainty(root[block], std::string("/") + block, block, model);
@@ -81,7 +86,9 @@ public:
 
 private:
   [[noreturn]] void fail(const std::string& pointer, const std::string& what) const {
-    throw InputError(file_ + ": " + (pointer.empty() ? "" : pointer + ": ") + what);
+    if (pointer.empty()) throw InputError(file_ + ": " + what);
+    throw InputError(file_ + ": " + pointer + ": " + what + " (line " +
+                     std::to_string(line_of_pointer(text_, pointer)) + ")");
   }
 
   static std::string shown(const Json& value) {
@@ -346,15 +353,125 @@ private:
     }
   }
 
+  std::string text(const Json& block, const std::string& pointer, const char* key) const {
+    const std::string here = below(pointer, key);
+    if (!block.contains(key)) fail(here, "is missing; expected text");
+    if (!block[key].is_string()) fail(here, "is " + shown(block[key]) + "; expected text");
+    return block[key].get<std::string>();
+  }
+
+  /// Calls read(item, pointer, key) for every item of a list, which may be left out.
+  template <class Read>
+  void each(const Json& block, const std::string& pointer, const char* key, bool named, Read&& read) const {
+    if (!block.contains(key)) return;
+    const std::string here = below(pointer, key);
+    const Json& list = block[key];
+    if (named) object(list, here);
+    else if (!list.is_array()) fail(here, "is " + shown(list) + "; expected an array");
+    for (const auto& item : list.items()) {
+      object(item.value(), below(here, item.key()));
+      read(item.value(), below(here, item.key()), item.key());
+    }
+  }
+
+  /// A thermal network. What is no network is said with the pointer to what is wrong in it.
+  void read_network(const Json& root, Model& model) const {
+    const std::string here = "/network";
+    for (const char* other : {"supply", "current", "thermal", "axis", "servo"})
+      if (root.contains(other)) fail(below("", other), "stands beside a network; expected one or the other");
+    const Json& block = root["network"];
+    object(block, here);
+    only(block, here, {"nodes", "given", "links", "heat"});
+    plant::ThermalNetwork network;
+    each(block, here, "nodes", true, [&](const Json& one, const std::string& at, const std::string& name) {
+      only(one, at, {"heat_capacity_J_per_K", "column", "initial_C", "uncertainty"});
+      plant::NetworkNode node{name, number(one, at, "heat_capacity_J_per_K", Allowed::positive)};
+      if (one.contains("column")) node.column = text(one, at, "column");
+      if (one.contains("initial_C")) node.initial_C = number(one, at, "initial_C", Allowed::any);
+      network.nodes.push_back(std::move(node));
+    });
+    each(block, here, "given", true, [&](const Json& one, const std::string& at, const std::string& name) {
+      only(one, at, {"column", "otherwise_C"});
+      plant::GivenTemperature given{name, text(one, at, "column")};
+      if (one.contains("otherwise_C")) given.otherwise_C = number(one, at, "otherwise_C", Allowed::any);
+      network.given.push_back(std::move(given));
+    });
+    each(block, here, "links", false, [&](const Json& one, const std::string& at, const std::string&) {
+      only(one, at, {"from", "to", "conductance_W_per_K", "uncertainty"});
+      network.links.push_back({text(one, at, "from"), text(one, at, "to"),
+                               number(one, at, "conductance_W_per_K", Allowed::positive)});
+    });
+    each(block, here, "heat", false, [&](const Json& one, const std::string& at, const std::string&) {
+      const bool wound = one.contains("resistance_ohm") || one.contains("node");
+      std::vector<std::string> keys{"column", "shares"};
+      if (wound)
+        keys.insert(keys.end(), {"node", "resistance_ohm", "tempco_per_K", "reference_C", "uncertainty"});
+      only(one, at, keys);
+      plant::NetworkHeat heat{text(one, at, "column"), {}};
+      if (wound) {
+        plant::NetworkWinding winding{text(one, at, "node"),
+                                      number(one, at, "resistance_ohm", Allowed::positive)};
+        winding.tempco_per_K = number_or(one, at, "tempco_per_K", Allowed::any, 0.0);
+        winding.reference_C = number_or(one, at, "reference_C", Allowed::any, 25.0);
+        heat.winding = winding;
+      }
+      if (one.contains("shares")) {
+        object(one["shares"], below(at, "shares"));
+        for (const auto& share : one["shares"].items())
+          heat.shares[share.key()] =
+              number(one["shares"], below(at, "shares"), share.key().c_str(), Allowed::not_negative);
+      } else if (wound) {
+        heat.shares[heat.winding->node] = 1.0;
+      } else {
+        fail(below(at, "shares"), "is missing; expected the nodes that the heat warms, and their shares");
+      }
+      network.heat.push_back(std::move(heat));
+    });
+    if (const auto problem = network.validate()) fail(here + "/" + problem->where, problem->what);
+    std::string name = std::move(model.name);
+    model = plant::network_model(network, std::move(name));
+    read_network_uncertainty(block, network, model);
+  }
+
+  /// How well its constants are known: each is called after its node or link in the model.
+  void read_network_uncertainty(const Json& block, const plant::ThermalNetwork& network, Model& model) const {
+    const auto take = [&](const Json& one, const std::string& at, const std::string& field,
+                          const std::string& constant) {
+      Model read;
+      read_uncertainty(one, at, "", read);
+      const auto found = read.uncertainty.find("." + field);
+      if (found != read.uncertainty.end()) model.uncertainty[constant] = found->second;
+      for (const auto& other : read.uncertainty)
+        if (other.first != "." + field && field != "resistance_ohm" && field != "tempco_per_K")
+          fail(below(below(at, "uncertainty"), other.first.substr(1)), "is no constant; expected " + field);
+    };
+    each(block, "/network", "nodes", true,
+         [&](const Json& one, const std::string& at, const std::string& name) {
+           take(one, at, "heat_capacity_J_per_K", "nodes." + name + "_J_per_K");
+         });
+    std::size_t next = 0;
+    each(block, "/network", "links", false, [&](const Json& one, const std::string& at, const std::string&) {
+      const plant::NetworkLink& link = network.links[next++];
+      take(one, at, "conductance_W_per_K", "links." + link.from + "_to_" + link.to + "_W_per_K");
+    });
+    each(block, "/network", "heat", false, [&](const Json& one, const std::string& at, const std::string&) {
+      for (const char* field : {"resistance_ohm", "tempco_per_K"})
+        take(one, at, field, std::string("heat.") + field);
+    });
+  }
+
   void read_effects(const Json& block, Model& model) const {
     object(block, "/effects");
+    const Catalogue* own = model.own ? model.own->equations->effects() : nullptr;
     for (const auto& item : block.items()) {
       const std::string here = below("/effects", item.key());
-      const auto& list = catalogue_.list();
+      const auto& list = own != nullptr ? own->list() : catalogue_.list();
       const auto info =
           std::find_if(list.begin(), list.end(), [&](const EffectInfo& one) { return one.id == item.key(); });
       if (info == list.end())
-        fail(here, "no such effect in the catalogue; expected an id that 'thermopower-gap effects' lists");
+        fail(here,
+             std::string("no such effect in the catalogue; expected an id that 'thermopower-gap effects") +
+                 (own != nullptr ? " --model' lists" : "' lists"));
       object(item.value(), here);
       std::vector<std::string> names;
       for (const auto& parameter : info->parameters) names.push_back(parameter.name);
@@ -377,8 +494,48 @@ private:
   }
 
   std::string file_;
+  std::string text_;  ///< all of it, once it is known to be JSON
   const Catalogue& catalogue_;
 };
+
+/// The block of a thermal network, with a model's constants.
+Json network_block(const plant::ThermalNetwork& network, const std::map<std::string, double>& uncertainty) {
+  const auto known = [&](Json& block, const char* field, const std::string& constant) {
+    const auto found = uncertainty.find(constant);
+    if (found != uncertainty.end()) block["uncertainty"][field] = found->second;
+  };
+  Json block = Json::object();
+  for (const plant::NetworkNode& node : network.nodes) {
+    Json one{{"heat_capacity_J_per_K", node.heat_capacity_J_per_K}};
+    if (!node.column.empty()) one["column"] = node.column;
+    if (node.initial_C) one["initial_C"] = *node.initial_C;
+    known(one, "heat_capacity_J_per_K", "nodes." + node.name + "_J_per_K");
+    block["nodes"][node.name] = std::move(one);
+  }
+  for (const plant::GivenTemperature& given : network.given) {
+    block["given"][given.name]["column"] = given.column;
+    if (given.otherwise_C) block["given"][given.name]["otherwise_C"] = *given.otherwise_C;
+  }
+  for (const plant::NetworkLink& link : network.links) {
+    Json one{{"from", link.from}, {"to", link.to}, {"conductance_W_per_K", link.conductance_W_per_K}};
+    known(one, "conductance_W_per_K", "links." + link.from + "_to_" + link.to + "_W_per_K");
+    block["links"].push_back(std::move(one));
+  }
+  for (const plant::NetworkHeat& heat : network.heat) {
+    Json one{{"column", heat.column}};
+    for (const auto& [node, share] : heat.shares) one["shares"][node] = share;
+    if (heat.winding) {
+      one["node"] = heat.winding->node;
+      one["resistance_ohm"] = heat.winding->resistance_ohm;
+      one["tempco_per_K"] = heat.winding->tempco_per_K;
+      one["reference_C"] = heat.winding->reference_C;
+      known(one, "resistance_ohm", "heat.resistance_ohm");
+      known(one, "tempco_per_K", "heat.tempco_per_K");
+    }
+    block["heat"].push_back(std::move(one));
+  }
+  return block;
+}
 
 }  // namespace
 
@@ -412,7 +569,11 @@ std::string to_json(const Model& model) {
   if (model.axis) root["axis"]["law"] = model.axis->voltage_driven() ? "voltage" : "rigid";
   if (std::holds_alternative<PositionPidServo>(model.servo)) root["servo"]["law"] = "position_pid";
   if (std::holds_alternative<VelocityPiServo>(model.servo)) root["servo"]["law"] = "velocity_pi";
-  for (const auto& constant : model.constants()) root[constant.block][constant.name] = constant.value;
+  const auto* network =
+      model.own ? dynamic_cast<const plant::NetworkPlant*>(model.own->equations.get()) : nullptr;
+  if (network != nullptr) root["network"] = network_block(network->network_of(model), model.uncertainty);
+  else
+    for (const auto& constant : model.constants()) root[constant.block][constant.name] = constant.value;
   for (const auto& [id, parameters] : model.effects) {
     root["effects"][id] = Json::object();
     for (const auto& [name, value] : parameters) root["effects"][id][name] = value;
@@ -421,7 +582,7 @@ std::string to_json(const Model& model) {
     const std::size_t dot = name.rfind('.');
     const std::string block = name.substr(0, dot), constant = name.substr(dot + 1);
     if (block.rfind("effects.", 0) == 0) root["effects"][block.substr(8)]["uncertainty"][constant] = share;
-    else root[block]["uncertainty"][constant] = share;
+    else if (network == nullptr) root[block]["uncertainty"][constant] = share;
   }
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

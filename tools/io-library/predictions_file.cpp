@@ -6,11 +6,14 @@
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/text_table.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace thermopower::io {
 namespace {
@@ -35,9 +38,36 @@ struct Start {
   double value;
 };
 
+// The same for a plant of one's own: what nobody measured starts as warm as the first temperature that is given, other
+// quantities at their initial value.
+Recording with_own_starts(Recording recording, const plant::PlantInfo& info,
+                          const std::map<std::string, double>& starts) {
+  const auto air = std::find_if(info.inputs.begin(), info.inputs.end(), [&](const plant::PlantInput& one) {
+    return one.unit == "degC" && recording.has(one.name);
+  });
+  for (const plant::PlantState& state : info.states) {
+    if (state.measured_by < 0) continue;
+    const plant::PlantSignal& signal = info.signals[static_cast<std::size_t>(state.measured_by)];
+    const auto given = starts.find(signal.name);
+    if (recording.has(signal.name) && given == starts.end()) continue;
+    const bool warm = signal.unit == "degC" && air != info.inputs.end();
+    Eigen::VectorXd values =
+        recording.has(signal.name)
+            ? recording.column(signal.name)
+            : Eigen::VectorXd::Constant(recording.rows(), std::numeric_limits<double>::quiet_NaN());
+    for (const RunSpan& run : recording.spans())
+      values[run.begin] = given != starts.end() ? given->second
+                          : warm                ? recording.column(air->name)[run.begin]
+                                                : state.initial;
+    recording.set(signal.name, values);
+  }
+  return recording;
+}
+
 }  // namespace
 
 Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
+  if (model.own) return with_own_starts(std::move(recording), *model.own->equations->info(), starts);
   const bool powered = recording.has("power_param") && (model.supply || recording.has("supply_V"));
   const bool heated = (model.has_current() && powered) || recording.has("current_A") ||
                       recording.has("drive_A") || recording.has("heat_W");

@@ -7,6 +7,7 @@
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
 
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
@@ -65,7 +66,8 @@ struct Result {
 
   std::string report() const { return io::report_json(diagnosis); }
   std::string html() const {
-    return io::report_html(diagnosis, model_name, gap::standard_catalogue().list(), held_out);
+    return io::report_html(diagnosis, model_name,
+                           gap::catalogue_of(diagnosis.augmented, gap::standard_catalogue()).list(), held_out);
   }
   std::string augmented() const { return io::to_json(diagnosis.augmented); }
   std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }

@@ -9,6 +9,8 @@
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/plant_info.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 #include <thermopower/version.hpp>
 
@@ -176,7 +178,8 @@ void refuse_overlaps(const Arguments& arguments) {
 void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalogue) {
   for (const auto& id : ids) {
     if (id.rfind("calibration.", 0) == 0 || catalogue.find(id) != nullptr) continue;
-    throw UsageError("--without: there is no effect '" + id + "'; 'thermopower-gap effects' lists them");
+    throw UsageError("--without: there is no effect '" + id +
+                     "'; 'thermopower-gap effects --model' lists them");
   }
 }
 
@@ -229,7 +232,6 @@ int export_model(const Arguments& arguments) {
 int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
-  check_ids(arguments.without, catalogue);
   const std::vector<io::ColumnChoice> choices = column_choices(arguments);
   io::OutputFiles outputs;
   for (const auto* path : arguments.outputs()) {
@@ -240,6 +242,7 @@ int diagnose(const Arguments& arguments) {
   {
     Progress progress;
     model = read_model(arguments, catalogue);
+    check_ids(arguments.without, gap::catalogue_of(model, catalogue));
     std::vector<gap::Finding> findings;
     std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
     std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
@@ -264,7 +267,8 @@ int diagnose(const Arguments& arguments) {
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, io::report_json(diagnosis));
     if (!arguments.html.empty())
-      outputs.put(arguments.html, io::report_html(diagnosis, model.name, catalogue.list(), held_out));
+      outputs.put(arguments.html, io::report_html(diagnosis, model.name,
+                                                  gap::catalogue_of(model, catalogue).list(), held_out));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
                   io::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s, catalogue));
@@ -303,16 +307,24 @@ int check(const Arguments& arguments) {
   return gap::deciding(report.findings) != nullptr ? too_little_data : made;
 }
 
-std::map<std::string, double> starts_of(const std::vector<std::string>& texts) {
+std::map<std::string, double> starts_of(const std::vector<std::string>& texts, const gap::Model& model) {
+  std::vector<std::string> names{"motor_C", "angle_deg", "rate_dps"};
+  if (model.own) {
+    names.clear();
+    for (const auto& signal : model.own->equations->info()->signals) names.push_back(signal.name);
+  }
+  std::string expected;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    expected += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i] + "=";
   std::map<std::string, double> starts;
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
     double value = 0.0;
-    const bool known = name == "motor_C" || name == "angle_deg" || name == "rate_dps";
+    const bool known = std::find(names.begin(), names.end(), name) != names.end();
     if (!known || equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(equals + 1), value) ||
         !std::isfinite(value))
-      throw UsageError("--start " + text + ": expected motor_C=, angle_deg= or rate_dps= with a number");
+      throw UsageError("--start " + text + ": expected " + expected + " with a number");
     if (!starts.emplace(name, value).second) throw UsageError("--start " + name + " is given twice");
   }
   return starts;
@@ -327,13 +339,21 @@ int predict(const Arguments& arguments) {
   std::vector<gap::Finding> findings;
   std::vector<gap::Recording> recordings =
       read_all(arguments.recordings, column_choices(arguments), findings);
-  const std::map<std::string, double> starts = starts_of(arguments.starts);
+  const std::map<std::string, double> starts = starts_of(arguments.starts, augmented);
   for (gap::Recording& one : recordings) one = io::with_starts(std::move(one), augmented, starts);
   gap::Model bare = augmented;
   bare.effects.clear();
   outputs.put(arguments.predictions,
               io::predictions_csv(bare, augmented, recordings, arguments.horizon_s, catalogue));
   outputs.commit();
+  return made;
+}
+
+int list_effects(const std::string& model_path) {
+  const gap::Catalogue& standard = gap::standard_catalogue();
+  gap::Model model;
+  if (!model_path.empty()) model = io::read_model(model_path, standard);
+  std::fputs(io::catalogue_text(gap::catalogue_of(model, standard).list()).c_str(), stdout);
   return made;
 }
 
@@ -503,6 +523,8 @@ int run(int count, char** values) {
       many->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(positive);
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
+  listing->add_option("--model", arguments.model,
+                      "a model with effects of its own, such as a network (JSON)");
 
   for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; }))
     for (CLI::Option* const option : subcommand->get_options([](const CLI::Option*) { return true; }))
@@ -513,10 +535,7 @@ int run(int count, char** values) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? made : wrong_usage;
   }
-  if (*listing) {
-    std::fputs(io::catalogue_text(gap::standard_catalogue().list()).c_str(), stdout);
-    return made;
-  }
+  if (*listing) return list_effects(arguments.model);
   if (*checking) return check(arguments);
   if (*many) {
     check_ids(arguments.without, gap::standard_catalogue());

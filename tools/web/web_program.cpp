@@ -11,6 +11,7 @@
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/summary.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 
 #include <nlohmann/json.hpp>
@@ -91,12 +92,13 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
   gap::Diagnosis diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
   diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
-  return {{"verdict", to_string(diagnosis.verdict)},
-          {"rows", rows},
-          {"seconds", seconds},
-          {"summary", io::summary(diagnosis)},
-          {"report", io::report_json(diagnosis)},
-          {"html", io::report_html(diagnosis, model.name, catalogue.list(), held_out)}};
+  return {
+      {"verdict", to_string(diagnosis.verdict)},
+      {"rows", rows},
+      {"seconds", seconds},
+      {"summary", io::summary(diagnosis)},
+      {"report", io::report_json(diagnosis)},
+      {"html", io::report_html(diagnosis, model.name, gap::catalogue_of(model, catalogue).list(), held_out)}};
 }
 
 std::string answer;

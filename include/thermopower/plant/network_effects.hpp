@@ -155,7 +155,7 @@ private:
         {node(a) + "_to_" + to + "_link",
          SubmodelName(balance(a)),
          "loss of " + node(a) + " += G (T_" + node(a) + " - T_" + to + ")",
-         "The part " + node(a) + " gives heat to " + to + ", which the network lacks.",
+         "Node " + node(a) + " gives heat to " + to + ", which the network lacks.",
          {W_per_K()},
          {},
          "a long hold and a long cooling, with a thermometer on " + node(a)});
@@ -167,7 +167,7 @@ private:
         {node(a) + "_radiation",
          SubmodelName(balance(a)),
          "loss of " + node(a) + " += sigma A eps (T^4 - T_" + to + "^4), in kelvin",
-         "The part " + node(a) + " radiates: hot, it loses more than in proportion to its temperature rise.",
+         "Node " + node(a) + " radiates: hot, it loses more than in proportion to its temperature rise.",
          {parameter(0, "emissive_area_m2").unit("m^2").within(0.0, 10.0).starts({0.0})},
          {},
          "long holds at the highest and at a low temperature"});
