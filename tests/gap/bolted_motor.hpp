@@ -21,7 +21,8 @@ struct BoltedMotor {
   double resistance_ohm = 0.8, tempco_per_K = 0.00393;
   // What the simulation knows nothing of.
   double winding_to_frame_W_per_K = 0.0, frame_radiates_m2 = 0.0, behind_frame_J_per_K = 0.0,
-         behind_frame_W_per_K = 0.0, air_drift_K_per_h = 0.0, air_bias_K = 0.0, stator_share = 0.0;
+         behind_frame_W_per_K = 0.0, air_drift_K_per_h = 0.0, air_bias_K = 0.0, stator_share = 0.0,
+         stator_to_air_W_per_K = 0.0, frame_thermometer_K = 0.0;
   bool stator_is_measured = false;
 
   /// What is logged of it in two hours: steps of the current, every 5 s, thermometers with noise and 0.1 K steps.
@@ -46,7 +47,7 @@ struct BoltedMotor {
       const auto read = [&](double C) { return std::round(10.0 * (C + 0.05 * noise(random))) / 10.0; };
       winding[i] = read(T[0]);
       stator[i] = read(T[1]);
-      frame[i] = read(T[2]);
+      frame[i] = read(T[2] + frame_thermometer_K);
       for (int step = 0; step < 10; ++step)
         walk(T, A, air_C + air_bias_K + air_drift_K_per_h * r.t_s[i] / 3600.0, interval_s / 10.0);
     }
@@ -69,7 +70,8 @@ private:
     const double radiated =
         5.670374419e-8 * frame_radiates_m2 * (std::pow(T[2] + 273.15, 4.0) - std::pow(air_C + 273.15, 4.0));
     return {((1.0 - stator_share) * heat - to_stator - past_stator) / winding_J_per_K,
-            (stator_share * heat + to_stator - to_frame) / stator_J_per_K,
+            (stator_share * heat + to_stator - to_frame - stator_to_air_W_per_K * (T[1] - air_C)) /
+                stator_J_per_K,
             (to_frame + past_stator - to_mount - behind - radiated - frame_to_air_W_per_K * (T[2] - air_C)) /
                 frame_J_per_K,
             (to_mount - mount_to_air_W_per_K * (T[3] - air_C)) / mount_J_per_K,

@@ -89,6 +89,7 @@ private:
         inputs_.between_samples[static_cast<std::size_t>(signal)] =
             between_samples(inputs_.t_s, inputs_.runs, inputs_.of(signal));
   }
+  bool is_temperature(const std::string& name) const;
   bool is_output(const std::string& name) const;
   void read_the_clock(FindingList& list);
   void mask_outputs(const Recording& recorded, FindingList& list);
@@ -101,10 +102,11 @@ private:
   std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power) const;
   Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A) const;
 
-  bool moves_ = false;                   ///< angle and rate are outputs of an axis, and no covariates
-  bool electrical_ = false;              ///< the supply drives what is judged
-  bool starts_between_samples_ = false;  ///< angle and rate never stand in one row
-  bool drives_by_current_ = false;       ///< current_A is an input: nothing else tells the heat
+  const plant::PlantInfo* own_ = nullptr;  ///< of a plant of one's own, while the recording is prepared
+  bool moves_ = false;                     ///< angle and rate are outputs of an axis, and no covariates
+  bool electrical_ = false;                ///< the supply drives what is judged
+  bool starts_between_samples_ = false;    ///< angle and rate never stand in one row
+  bool drives_by_current_ = false;         ///< current_A is an input: nothing else tells the heat
   Recording believed_;
   RowMask unknown_;
   Inputs inputs_;
@@ -137,6 +139,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   RowMask starts(unknown_.size(), 0);
   check_stamps(list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts);
+  if (model.own) own_ = model.own->equations->info();
   moves_ = model.has_axis();
   read_the_clock(list);
   electrical_ = model.has_current() && recorded.has("power_param");
@@ -156,10 +159,20 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   }
   keep_known_rows();
   renew_inputs(model);
+  own_ = nullptr;
 }
 
-/// Whether a column is measured of what the model simulates.
+/// Whether a column is a temperature that the model simulates: what it stores heat in cannot jump.
+inline bool PreparedRecording::is_temperature(const std::string& name) const {
+  if (own_ == nullptr) return name == "motor_C";
+  return std::any_of(own_->signals.begin(), own_->signals.end(),
+                     [&](const plant::PlantSignal& one) { return one.name == name && one.unit == "degC"; });
+}
+
+/// Whether a column is measured of what the model simulates; of a plant of one's own, whether it is one that the checks
+/// know something of: a temperature.
 inline bool PreparedRecording::is_output(const std::string& name) const {
+  if (own_ != nullptr) return is_temperature(name);
   return name == "current_A" || name == "motor_C" || (moves_ && (name == "angle_deg" || name == "rate_dps"));
 }
 
@@ -337,7 +350,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
              std::to_string(recorded.rows() - present) + " of " + std::to_string(recorded.rows()) +
                  " samples are missing (" + short_number(100.0 * share) + " %)");
   }
-  if (name == "motor_C") {
+  if (is_temperature(name)) {
     std::vector<double> list_of = finite_samples(values);
     const double typical = median_of(list_of);
     constexpr PossibleTemperature possible;
@@ -362,7 +375,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     }
   }
   ColumnTraits traits;
-  traits.cannot_jump = name == "motor_C";
+  traits.cannot_jump = is_temperature(name);
   traits.zero_is_rest = name == "rate_dps" || name == "current_A" || name == "angle_deg";
   traits.t_s = &believed_.t_s;
   if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
