@@ -14,10 +14,12 @@
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/exchange_step.hpp>
 #include <thermopower/plant/gimbal_joints.hpp>
+#include <thermopower/plant/network_plant.hpp>
 #include <thermopower/plant/network_step.hpp>
 #include <thermopower/plant/servo_loop.hpp>
 #include <thermopower/plant/state_plant.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gap = thermopower::gap;
@@ -251,6 +253,47 @@ TEST_CASE("steps of exchanging nodes, and the matrix of three joints") {
   CHECK(accelerations[0] == Approx(1.0));
   CHECK(accelerations[1] == Approx(-2.0));
   CHECK(accelerations[2] == Approx(3.0));
+}
+
+TEST_CASE("a motor on a frame as a network of its parts") {
+  //! [thermal network]
+  plant::ThermalNetwork body;
+  body.nodes = {{"winding", 22.0, "winding_C"},  // J/K, and the column of its thermometer
+                {"stator", 95.0},                // nobody measures it
+                {"frame", 420.0, "frame_C"},
+                {"mount", 1500.0}};
+  body.given = {{"air", "ambient_C"}};       // what the body does not change
+  body.links = {{"winding", "stator", 0.9},  // W/K
+                {"stator", "frame", 1.6},
+                {"frame", "mount", 1.1},
+                {"frame", "air", 0.35},
+                {"mount", "air", 1.3}};
+  // I^2 R of the winding's temperature: 90 % where the wire is, the rest in the teeth.
+  body.heat = {
+      {"current_A", {{"winding", 0.9}, {"stator", 0.1}}, plant::NetworkWinding{"winding", 0.8, 0.00393}}};
+  const plant::Model model = plant::network_model(body, "motor on a frame");  // throws where it is no network
+  //! [thermal network]
+  CHECK(model.get("stator_to_frame_W_per_K") == 1.6);
+  CHECK_FALSE(body.validate());
+
+  //! [network effects]
+  std::vector<std::string> ids;
+  for (const plant::NetworkEffect& effect : plant::network_effects(body)) ids.push_back(effect.info.id);
+  //! [network effects]
+  for (const char* id :
+       {"winding_to_frame_link", "stator_to_air_link", "frame_radiation", "frame_natural_convection",
+        "frame_hidden_mass", "winding_thermometer_bias", "air_bias", "air_drift", "frame_share_of_current_A"})
+    CHECK(std::count(ids.begin(), ids.end(), id) == 1);
+  CHECK(std::count(ids.begin(), ids.end(), "winding_to_stator_link") == 0);  // the network has it
+
+  // The equations by themselves: 5 A for a second, from 25 degC everywhere.
+  const std::vector<double> constants{22.0, 95.0, 420.0, 1500.0, 0.9, 1.6, 1.1, 0.35, 1.3, 0.8, 0.00393};
+  const plant::NetworkTerms<double> terms = plant::network_terms(body, constants);
+  plant::NetworkIntegrator<double> integrator(terms);
+  plant::NetworkIntegrator<double>::Nodes node_C{25.0, 25.0, 25.0, 25.0};
+  const double inputs[] = {25.0, 5.0};  // air, current
+  integrator.advance(node_C, inputs, 0.0, 1.0);
+  CHECK(node_C[0] == Approx(25.0 + 0.9 * 20.0 / 22.0).epsilon(2e-3));
 }
 
 TEST_CASE("a gimbal's joints, and what its simulation may lack") {
