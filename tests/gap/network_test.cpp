@@ -3,6 +3,7 @@
 #include "../catch.hpp"
 #include "bolted_motor.hpp"
 
+#include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/plant/network_plant.hpp>
 
@@ -199,4 +200,26 @@ TEST_CASE(
   WARN(right << " right, " << in_class << " in a class, " << wrong << " wrong, of " << all << "\n" << others);
   CHECK(right + in_class >= 0.9 * all);
   CHECK(wrong <= 0.05 * all);
+}
+
+TEST_CASE("before a diagnosis the check says what the columns of a network can show and determine") {
+  test::BoltedMotor real;
+  const auto looked_at = [&] {
+    return gap::check_data(plant::network_model(test::network_of(real), "motor on a frame"),
+                           {real.recorded(1)});
+  };
+  const auto visible = [](const gap::DataReport& report, const std::string& id) {
+    for (const gap::EffectReport& one : report.effects)
+      if (one.effect == id) return one.visible;
+    return std::nan("");
+  };
+  const gap::DataReport report = looked_at();
+  REQUIRE(report.signals.size() == 2);
+  CHECK(report.signals[0].signal == "winding_C");
+  CHECK(report.signals[0].unit == "degC");
+  CHECK(report.constants.size() == 11);  // four capacities, five conductances, resistance and tempco
+  CHECK(visible(report, "winding_to_frame_link") > 3.0);
+  CHECK(std::isnan(visible(report, "stator_thermometer_bias")));  // there is no thermometer on it
+  real.stator_is_measured = true;
+  CHECK(visible(looked_at(), "stator_thermometer_bias") > 3.0);
 }

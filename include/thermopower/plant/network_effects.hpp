@@ -128,13 +128,13 @@ private:
     list_.push_back({std::move(info), kind, place, other});
   }
 
-  /// Where fits of a conductance begin: from nothing, and from as much as the network's largest one.
+  /// A conductance, and where fits of it begin: at a part of the network's largest one, and near nothing.
   ParameterBuilder W_per_K() const {
     const double largest = largest_W_per_K();
     return parameter(0, "W_per_K")
         .unit("W/K")
         .within(0.0, 100.0 * largest)
-        .starts({0.03 * largest, 0.5 * largest});
+        .starts({0.3 * largest, 0.03 * largest});
   }
 
   void add_link(std::size_t a, std::size_t b) {
@@ -264,7 +264,7 @@ private:
            "heat of " + node(a) + " = (1 - s) what it was + s " + heat.column +
                "; of the others (1 - s) what it was",
            "More of a heat warms " + node(a) + " than the network says" + (share > 0.0 ? ", or less." : "."),
-           {parameter(0, "share").unit("1").within(least, 1.0).starts({0.05})},
+           {parameter(0, "share").unit("1").within(least, 1.0).starts({0.15})},
            {},
            "short strong pulses of the heat: what they warm at once is where it goes"});
     }

@@ -8,6 +8,7 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/simulate.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
 
 #include <Eigen/Dense>
 
@@ -47,6 +48,9 @@ public:
       report.signal = to_string(signal.signal);
       const auto known = signal.signal.known();
       if (known) report.unit = unit_of(*known);
+      else if (const plant::PlantInfo* own = plant_of(model).info())
+        for (const plant::PlantSignal& one : own->signals)
+          if (one.name == report.signal) report.unit = one.unit;
       std::vector<double> errors;
       std::vector<bool> gaps;
       const Eigen::VectorXd* power = sample.find("power_param");
@@ -269,8 +273,9 @@ inline void judge_effects(const Model& model, const Recording& recording, const 
 
 THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vector<Recording>& train,
                                              const std::vector<Recording>& held_out, const Options& options,
-                                             const Catalogue& catalogue) {
+                                             const Catalogue& given) {
   options.validate();
+  const Catalogue& catalogue = catalogue_of(model, given);
   if (const auto problem = model.validate()) throw InvalidInput("model '" + model.name + "': " + *problem);
   if (train.empty()) throw InvalidInput("there is no recording to look at");
   engine::CheckedRecordings checked =
