@@ -67,7 +67,8 @@ struct Result {
   std::string report() const { return io::report_json(diagnosis); }
   std::string html() const {
     return io::report_html(diagnosis, model_name,
-                           gap::catalogue_of(diagnosis.augmented, gap::standard_catalogue()).list(), held_out);
+                           gap::catalogue_of(diagnosis.augmented, gap::standard_catalogue()).list(),
+                           held_out);
   }
   std::string augmented() const { return io::to_json(diagnosis.augmented); }
   std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }

@@ -91,9 +91,12 @@ inline PlantInfo network_info(const ThermalNetwork& network) {
     for (std::size_t k = 0; k < network.nodes.size(); ++k)
       if (at.signal[k] < 0 && network.linked(i, k))
         unmeasured += (unmeasured.empty() ? "" : " and ") + network.nodes[k].name;
-    if (unmeasured.empty())
+    if (unmeasured.empty()) {
       signal.balance = PlantBalance{node.name + "_J_per_K", Quantity::missing_heat, "W"};
-    else signal.note = "judged by simulation, as nobody measures " + unmeasured;
+      for (const NetworkLink& link : network.links)
+        if (link.from == node.name || link.to == node.name)
+          signal.balance->leaves_by.push_back(link.from + "_to_" + link.to + "_W_per_K");
+    } else signal.note = "judged by simulation, as nobody measures " + unmeasured;
     info.signals.push_back(std::move(signal));
   }
   for (const std::size_t node : at.starts) {

@@ -26,18 +26,20 @@ using NetworkExchange = NetworkStep<Scalar, most_nodes_in_step>;
 ///
 /// @tparam Scalar  `double`, a Dual in fits, an Expression where they are written down
 ///
-/// @snippet plant_examples.cpp thermal network
+/// @snippet plant_examples.cpp network equations
 /// How to: @ref motor_on_a_frame.
 template <class Scalar>
 struct NetworkTerms {
   /// Heat between two nodes.
   struct Link {
-    std::size_t from, to;  ///< nodes
-    Scalar W_per_K;        ///< conductance
+    std::size_t from;  ///< a node
+    std::size_t to;    ///< another one
+    Scalar W_per_K;    ///< conductance
   };
   /// Heat from a node to a given temperature.
   struct Loss {
-    std::size_t node, given;  ///< places in their lists
+    std::size_t node;         ///< that loses it
+    std::size_t given;        ///< place of the given temperature in its list
     Scalar W_per_K;           ///< conductance; at `reference_K` where it grows with the difference
     bool natural = false;     ///< it grows with the difference, by `exponent`
     Scalar exponent{0.0};     ///< of natural convection
@@ -45,13 +47,15 @@ struct NetworkTerms {
   };
   /// Radiation from a node to surroundings of a given temperature.
   struct Radiated {
-    std::size_t node, given;  ///< places in their lists
+    std::size_t node;         ///< that loses it
+    std::size_t given;        ///< place of the given temperature in its list
     Scalar emissive_area_m2;  ///< emissivity times area
   };
   /// An error of a given temperature: how much warmer it is than what is recorded.
   struct GivenError {
     std::size_t given;  ///< place in the list
-    Scalar K, K_per_s;  ///< constant part, and what it gains since the run's start
+    Scalar K;           ///< constant part
+    Scalar K_per_s;     ///< what it gains since the run's start
   };
   /// A heat, and the nodes that it warms.
   struct Source {
@@ -129,7 +133,7 @@ struct NetworkTerms {
 /// Steps a network through intervals of held inputs by the Rosenbrock rule of NetworkStep: of any length, however fast
 /// nodes exchange, cut until the second stage moves the nodes little.
 ///
-/// @snippet plant_examples.cpp thermal network
+/// @snippet plant_examples.cpp network equations
 /// How to: @ref motor_on_a_frame.
 template <class Scalar>
 class NetworkIntegrator {

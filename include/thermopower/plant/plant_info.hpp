@@ -21,6 +21,10 @@ struct PlantBalance {
       constant;  ///< of the plant, by its name: the rate times it is the quantity, as with a heat capacity
   QuantityName quantity;  ///< `Quantity::missing_heat`, or one of one's own
   std::string unit;       ///< of the quantity, as reports spell it
+  /// Constants, conductances of a node, whose sum over `constant` is how fast what was missing leaves again, 1/s, while
+  /// its neighbours stay as they are: what shows at the end of an interval is less than what was missing in it.
+  /// None: it stays.
+  std::vector<std::string> leaves_by = {};
 };
 
 /// What a plant of one's own shows: a column of the recording that a diagnosis judges.
@@ -79,10 +83,14 @@ struct PlantInfo {
     }
     for (const PlantSignal& signal : signals) {
       if (!signal.balance) continue;
-      bool known = false;
-      for (const PlantConstant& constant : constants)
-        known = known || constant.name == signal.balance->constant;
-      if (!known) refuse("signal '" + signal.name + "': its balance names a constant that there is not");
+      std::vector<std::string> named = signal.balance->leaves_by;
+      named.push_back(signal.balance->constant);
+      for (const std::string& name : named) {
+        bool known = false;
+        for (const PlantConstant& constant : constants) known = known || constant.name == name;
+        if (!known)
+          refuse("signal '" + signal.name + "': its balance names '" + name + "', which is no constant");
+      }
     }
     for (const PlantConstant& constant : constants)
       if (constant.block.empty() || constant.name.empty()) refuse("a constant has no block or no name");

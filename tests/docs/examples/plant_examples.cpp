@@ -271,7 +271,8 @@ TEST_CASE("a motor on a frame as a network of its parts") {
   // I^2 R of the winding's temperature: 90 % where the wire is, the rest in the teeth.
   body.heat = {
       {"current_A", {{"winding", 0.9}, {"stator", 0.1}}, plant::NetworkWinding{"winding", 0.8, 0.00393}}};
-  const plant::Model model = plant::network_model(body, "motor on a frame");  // throws where it is no network
+  const plant::Model model =
+      plant::network_model(body, "motor on a frame");  // of a NetworkPlant; throws where it is no network
   //! [thermal network]
   CHECK(model.get("stator_to_frame_W_per_K") == 1.6);
   CHECK_FALSE(body.validate());
@@ -287,12 +288,14 @@ TEST_CASE("a motor on a frame as a network of its parts") {
   CHECK(std::count(ids.begin(), ids.end(), "winding_to_stator_link") == 0);  // the network has it
 
   // The equations by themselves: 5 A for a second, from 25 degC everywhere.
+  //! [network equations]
   const std::vector<double> constants{22.0, 95.0, 420.0, 1500.0, 0.9, 1.6, 1.1, 0.35, 1.3, 0.8, 0.00393};
   const plant::NetworkTerms<double> terms = plant::network_terms(body, constants);
   plant::NetworkIntegrator<double> integrator(terms);
   plant::NetworkIntegrator<double>::Nodes node_C{25.0, 25.0, 25.0, 25.0};
   const double inputs[] = {25.0, 5.0};  // air, current
   integrator.advance(node_C, inputs, 0.0, 1.0);
+  //! [network equations]
   CHECK(node_C[0] == Approx(25.0 + 0.9 * 20.0 / 22.0).epsilon(2e-3));
 }
 

@@ -111,7 +111,14 @@ struct MissingRates {
     std::vector<std::vector<double>> variables;  ///< as many values each, in the order of `names`
     double interval_s = 0.0;                     ///< length of the last window
     double noise = 0.0;                          ///< standard deviation of the measured signal
-    double quantity = 1.0;                       ///< what a rate is times, where a balance says so
+    double storage = 1.0;                        ///< what makes a quantity of a rate, where a balance says so
+    double leaves_per_s = 0.0;                   ///< how fast what was missing leaves again
+
+    /// What was missing all along a window, of what is missed at its end, in the signal's unit.
+    double quantity(double missed, double lasts_s) const {
+      const double leaves = leaves_per_s * lasts_s;
+      return missed / lasts_s * storage * (leaves > 1e-6 ? leaves / -std::expm1(-leaves) : 1.0);
+    }
   };
   std::vector<Samples> of;         ///< by signal
   std::vector<std::string> names;  ///< of the variables: inputs, signals, time
@@ -134,7 +141,11 @@ inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue
   names.push_back("t_s"), units.push_back("s");
   for (Samples& one : of) one.variables.resize(names.size());
   for (std::size_t k = 0; k < signals; ++k)
-    if (info.signals[k].balance) of[k].quantity = model.get(info.signals[k].balance->constant);
+    if (const auto& balance = info.signals[k].balance) {
+      of[k].storage = model.get(balance->constant);
+      for (const std::string& name : balance->leaves_by)
+        of[k].leaves_per_s += model.get(name) / of[k].storage;
+    }
   for (const Inputs& inputs : recordings) {
     const Eigen::Index length = std::max<Eigen::Index>(1, inputs.rows() / own_plant_thresholds.windows);
     const auto rollout = plant.rollout(model, catalogue, {}, {}, SimulationMode::free_running);
@@ -157,7 +168,7 @@ inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue
           const double missed = inputs.of(signal)[end] - readings.value(end, static_cast<int>(k));
           if (!std::isfinite(missed)) continue;
           Samples& samples = of[k];
-          samples.rate.push_back(missed / lasts_s * samples.quantity);
+          samples.rate.push_back(samples.quantity(missed, lasts_s));
           samples.interval_s = lasts_s;
           std::size_t at = 0;
           const auto put = [&](double value) { samples.variables[at++].push_back(value); };
@@ -195,7 +206,7 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     if (samples.rate.size() < 30) continue;
     double squares = 0.0;
     for (double rate : samples.rate) squares += rate * rate;
-    const double expected = samples.noise * std::sqrt(2.0) / samples.interval_s * samples.quantity;
+    const double expected = samples.quantity(samples.noise * std::sqrt(2.0), samples.interval_s);
     const double seen = std::sqrt(squares / static_cast<double>(samples.rate.size()));
     if (seen < own_plant_thresholds.noise_factor * expected) continue;
     std::size_t best = names.size() - 1;
