@@ -319,6 +319,31 @@ TEST_CASE("hidden nodes start where their neighbours leave them, or where the ne
   CHECK(said[1] == Approx((3.0 * (62.0 - 40.0) + 2.0 * (25.0 - 40.0)) / 300.0).epsilon(1e-3));
 }
 
+TEST_CASE("a segment that is rolled again gives what it gave before, hidden nodes carried into it") {
+  plant::ThermalNetwork network;
+  network.nodes = {{"winding", 12.0, "winding_C"}, {"frame", 300.0}};
+  network.given = {{"air", "ambient_C"}};
+  network.links = {{"winding", "frame", 1.0}, {"frame", "air", 0.3}};
+  network.heat = {{"heat_W", {{"winding", 1.0}}}};
+  const gap::Model model = plant::network_model(network, "network");
+  plant::Inputs inputs;
+  inputs.own = true;
+  inputs.t_s = Eigen::VectorXd::LinSpaced(40, 0.0, 390.0);
+  inputs.runs = {{0, 40, ""}};
+  inputs.own_inputs = {Eigen::VectorXd::Constant(40, 20.0), Eigen::VectorXd::Constant(40, 9.0)};
+  inputs.measured[0] = Eigen::VectorXd::Constant(40, 50.0);
+  const plant::Segment first{&inputs, inputs.runs[0], 0, 20, true, false, false},
+      second{&inputs, inputs.runs[0], 20, 40, true, true, false};
+  const plant::Plant& plant = *model.own->equations;
+  const auto rollout = plant.rollout(model, *plant.effects(), {}, {}, plant::SimulationMode::free_running);
+  const plant::Start start = plant::Start::Zero(plant.start_size(first));
+  plant::Readings once, again;
+  rollout->roll(first, start, once);
+  rollout->roll(second, start, once);
+  rollout->roll(second, start, again);
+  for (Eigen::Index row = 20; row < 40; ++row) CHECK(again.value(row, 0) == once.value(row, 0));
+}
+
 TEST_CASE("what is no network is refused in a sentence that says where") {
   plant::ThermalNetwork good;
   good.nodes = {{"winding", 12.0, "winding_C"}, {"stator", 70.0}, {"frame", 300.0, "frame_C"}};

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/carried_on.hpp>
 #include <thermopower/plant/network_effects.hpp>
 #include <thermopower/plant/network_terms.hpp>
 #include <thermopower/plant/own_plant.hpp>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -163,11 +165,11 @@ namespace detail {
 
 /// A network under way.
 template <class Scalar>
-class NetworkRollout : public Rollout {
+class NetworkRollout : public OwnRollout {
 public:
   NetworkRollout(const OwnPlant& plant, const ThermalNetwork& network, NetworkTerms<Scalar> terms,
                  const Directions& directions, int starts_from)
-      : plant_(plant),
+      : OwnRollout(plant),
         network_(network),
         at_(network),
         terms_(std::move(terms)),
@@ -192,8 +194,7 @@ public:
                           inputs.t_s[row + 1] - inputs.t_s[row]);
     }
     for (std::size_t i = 0; i < terms_.count(); ++i) forget(node_C[i], starts_from_);
-    carried_ = node_C;
-    carries_ = true;
+    carried_.leave(node_C);
   }
 
   std::vector<HiddenStart> hidden_starts(const Segment& segment) const override {
@@ -206,10 +207,6 @@ public:
       list.push_back(one);
     }
     return list;
-  }
-  Start measured_start_sd(const Segment& segment,
-                          const std::array<double, signal_count>& sigma) const override {
-    return plant_.measured_start_sd(segment, sigma);
   }
 
 private:
@@ -240,7 +237,8 @@ private:
   }
 
   /// Temperatures of all nodes at a segment's begin: measured, said, carried on, or where the others leave them.
-  Nodes started(const Segment& segment, const Start& start, const std::vector<Scalar>& fed) const {
+  Nodes started(const Segment& segment, const Start& start, const std::vector<Scalar>& fed) {
+    const std::optional<Nodes>& carried = carried_.into(segment);
     Nodes node_C;
     node_C.fill(constant<Scalar>(0.0));
     std::vector<bool> known(terms_.count(), false);
@@ -249,7 +247,7 @@ private:
       if (is_measured(segment, i))
         node_C[i] =
             segment.inputs->of(static_cast<Signal>(at_.signal[i]))[segment.begin] - terms_.reading_error_K[i];
-      else if (segment.carries_on && carries_) node_C[i] = carried_[i];
+      else if (segment.carries_on && carried) node_C[i] = (*carried)[i];
       else if (i < network_.nodes.size() && network_.nodes[i].initial_C)
         node_C[i] = constant<Scalar>(*network_.nodes[i].initial_C);
       else known[i] = false;
@@ -305,14 +303,12 @@ private:
     }
   }
 
-  const OwnPlant& plant_;
   const ThermalNetwork& network_;
   NetworkPlaces at_;
   NetworkTerms<Scalar> terms_;
   NetworkIntegrator<Scalar> integrator_;
   int directions_, starts_from_;
-  Nodes carried_{};
-  bool carries_ = false;
+  CarriedOn<std::optional<Nodes>> carried_;
 };
 
 }  // namespace detail
