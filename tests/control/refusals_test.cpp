@@ -205,3 +205,29 @@ TEST_CASE("a record of a field of each width comes back as it was") {
   Swapped swapped;
   CHECK(read_config(swapped, 3, bytes, 21).error == ConfigRecordError::other_layout);
 }
+
+TEST_CASE("air that is left out of what an axis or a gimbal is told is not 0 degC") {
+  // Said to be nothing among facts in braces: warnings as errors refuse a list that ends before it.
+  const AxisFacts facts = {255, 60.0f, 50.0f, 0.0f, {}, 13.0f, 0.0f, 0.0f, LimitReason::none};
+  CHECK(std::isnan(static_cast<float>(facts.air_C)));
+  // Glass between body and air: at 0 degC it would be taken for colder than it may be.
+  NodeLimiter::Config glass = NodeLimiter::Config::standard();
+  glass.node[NodeLimiter::bracket] = {55.0f, 0.5f};
+  NodeLimiter told(glass), left_out(glass);
+  told.step({255, 60.0f, 50.0f, 0.0f});
+  left_out.step(NodeLimiter::read(facts));
+  CHECK(told.state().node_C[NodeLimiter::bracket] == 25.0f);
+  CHECK(left_out.state().node_C[NodeLimiter::bracket] == 50.0f);  // as warm as the body
+  CHECK(left_out.step(NodeLimiter::read(facts)).power < told.step({255, 60.0f, 50.0f, 0.0f}).power);
+  // Thermometers that never said anything but 0 are none that were read.
+  typedef AxisController<motors::Bgm2606_90t> Axis;
+  typedef GimbalController<Axis> Gimbal;
+  Gimbal gimbal(GimbalConfig::standard(), Axis::Config::with_gain({24.0f, 4.0f}));
+  Gimbal::Inputs inputs = {};
+  inputs.error_deg[0] = 0.5f;
+  inputs.supply_V = 12.6f;
+  const auto& command = gimbal.step(inputs, 0.03f);
+  CHECK(std::isnan(gimbal.state().air_C));
+  CHECK(command.power[0] == least_power());
+  CHECK(command.reason[0] == LimitReason::air_implausible);
+}

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "../detail/numeric.hpp"
 #include "limit_reason.hpp"
 
@@ -22,7 +23,7 @@ struct AxisFacts {
   float motor_C;            ///< Estimated temperature of the hottest node.
   float body_C;             ///< Estimated temperature of the coolest node that the thermal model has.
   float rate_K_per_s;       ///< dT/dt of the hottest node.
-  float air_C;              ///< Air temperature.
+  AirCelsius<float> air_C;  ///< Air temperature; left out: NaN, not known.
   float supply_V;           ///< Supply.
   float error_deg;          ///< Folded position error.
   float pose_deg;           ///< Where the axis stands, in degrees of the caller's choice.
