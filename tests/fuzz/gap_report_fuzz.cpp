@@ -153,7 +153,9 @@ Diagnosis diagnosis_of(Source& from) {
     missing.x = from.values(rows);
     missing.value = from.values(rows);
     missing.spread = from.values(rows);
+    missing.effect_x = from.values(rows);
     missing.effect = from.values(rows);
+    missing.effect_freedom = from.number();
     d.missing_quantities.push_back(missing);
   }
   d.constants.push_back({from.text(), from.number(), from.number(), from.number()});

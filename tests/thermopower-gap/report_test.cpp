@@ -5,13 +5,18 @@
 
 #include <thermopower/io/output_files.hpp>
 #include "chart.hpp"
+#include "html_text.hpp"
 #include <thermopower/io/header_export.hpp>
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
 #include "residual_statistics.hpp"
 #include <thermopower/io/summary.hpp>
 
+#include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include "../gap/plants.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -249,6 +254,75 @@ TEST_CASE("runs are told apart by their names, with what drove them, also where 
     CHECK_THAT(html, ContainsSubstring(row));
   // Without the recordings a run begins where stamps fall.
   CHECK_THAT(io::report_html(d, "motor", {}), ContainsSubstring("drive.<wbr>csv, run 3"));
+}
+
+TEST_CASE("whatever a balance of the library's plants may be drawn against has words and a unit") {
+  const auto check = [](const std::string& name) {
+    CAPTURE(name);
+    CHECK(io::variable_text(name).in_words);
+    CHECK_FALSE(io::variable_text(name).unit.empty());
+  };
+  int variables = 0;
+  const std::vector<Recording> recordings[] = {{test::bench_recording({}, 400, 3)},
+                                               {test::axis_recording({}, 400, 3)}};
+  const Model models[] = {test::bench_model(), test::axis_model()};
+  for (int i = 0; i < 2; ++i) {
+    const engine::RecordedBalances balances(models[i], recordings[i], standard_catalogue());
+    REQUIRE_FALSE(balances.sources().empty());
+    for (const auto& source : balances.sources())
+      for (const auto& one :
+           source.make(thermopower::plant::ReadingOffsets(thermopower::plant::actuator_signal_count, 0.0))
+               .variables) {
+        check(one.name);
+        ++variables;
+      }
+  }
+  CHECK(variables > 12);
+  // What an axis is commanded by, and its change.
+  for (const char* name :
+       {"drive_A", "servo_A", "voltage_V", "drive_A_per_s", "servo_A_per_s", "voltage_V_per_s"})
+    check(name);
+}
+
+TEST_CASE(
+    "the missing quantity is drawn as points with their intervals, and the effect as a line of its own places") {
+  Diagnosis d = four_runs().first;
+  MissingQuantity q;
+  q.signal = Signal::motor_C;
+  q.quantity = thermopower::plant::QuantityName("missing heat");
+  q.unit = "W";
+  q.variable = "motor_C";
+  q.variable_unit = "degC";
+  q.x = Eigen::VectorXd::LinSpaced(5, 20.0, 60.0);
+  q.value = Eigen::VectorXd::LinSpaced(5, 0.0, 4.0);
+  q.spread = Eigen::VectorXd::Constant(5, 0.5);
+  q.effect_x = Eigen::VectorXd::LinSpaced(201, 20.0, 60.0);
+  q.effect = (q.effect_x.array() - 20.0).square() / 400.0;
+  q.effect_freedom = 3.14;
+  d.missing_quantities = {q};
+  const std::string html = io::report_html(d, "motor", {});
+  const std::string picture = html.substr(html.find("<h2>The missing quantity</h2>"));
+  CHECK_THAT(picture,
+             ContainsSubstring("missing heat / W") && ContainsSubstring("motor temperature / \u00b0C"));
+  CHECK_THAT(picture, ContainsSubstring("The curve is a smoothing spline with 3.1 degrees of freedom."));
+  CHECK(occurrences_of(
+            "h0", picture.substr(picture.find("dots missing", picture.find("class=\"plot\"")), 400)) >= 5);
+  // From 20 to 60 degC over the width; 0 to 4 W and the intervals of 0.98 W, and 6 % more on both ends, over the height.
+  const auto line = points_of(picture, "curve effect");
+  REQUIRE(line.size() == 201);
+  const double top = 4.98 + 0.06 * 5.96, height = 5.96 * 1.12;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double share = static_cast<double>(i) / 200.0, watts = 4.0 * share * share;
+    CHECK(static_cast<double>(line[i].first) == Approx(100000.0 * share).margin(1.0));
+    CHECK(static_cast<double>(line[i].second) == Approx(10000.0 * (top - watts) / height).margin(1.0));
+  }
+  // Without a cause there is nothing to draw through the points.
+  d.missing_quantities[0].effect_x.resize(0);
+  d.missing_quantities[0].effect.resize(0);
+  const std::string alone = io::report_html(d, "motor", {});
+  CHECK_THAT(alone, ContainsSubstring("<h2>The missing quantity</h2>") &&
+                        !ContainsSubstring("smoothing spline") &&
+                        !ContainsSubstring("class=\"curve effect\""));
 }
 
 TEST_CASE("a thinned curve keeps its highest peak, in its place") {

@@ -50,6 +50,11 @@ constexpr Words words[] = {
     {"rate_dps", "angular rate", "\u00b0/s"},
     {"rate_rad_per_s", "angular rate", "rad/s"},
     {"acceleration_rad_per_s2", "angular acceleration", "rad/s\u00b2"},
+    {"drive_A_per_s", "change of the drive current", "A/s"},
+    {"servo_A", "current that the servo asks for", "A"},
+    {"servo_A_per_s", "change of the current that the servo asks for", "A/s"},
+    {"voltage_V_per_s", "change of the voltage", "V/s"},
+    {"law_A", "current by the law", "A"},
     {"rise_K", "temperature above the air", "K"},
     {"dT_dt", "rate of heating", "K/s"},
 };

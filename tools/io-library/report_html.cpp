@@ -506,7 +506,10 @@ private:
         out_ +=
             "<h2>The missing quantity</h2>\n<p class=\"soft\">What would have to be added to the model's equation to make it follow the "
             "recording, inferred from measurements alone" +
-            std::string(has_cause() ? ", and what the effect found supplies.</p>\n" : ".</p>\n");
+            std::string(
+                has_cause()
+                    ? ", and what the model supplies of it with the effect found and its constants refitted.</p>\n"
+                    : ".</p>\n");
         first = false;
       }
       Chart chart;
@@ -529,18 +532,23 @@ private:
                               numbers(q.value),
                               {},
                               {}});
-      if (q.effect.size() == q.x.size()) {
+      std::string said;
+      if (q.effect.size() > 1 && q.effect.size() == q.effect_x.size()) {
         std::vector<std::string> ids;
         for (const auto& cause : d_.cause) ids.push_back(cause.effect);
         chart.series.push_back(
-            {joined(ids), "effect", Series::Style::line, numbers(q.x), numbers(q.effect), {}, {}});
+            {joined(ids), "effect", Series::Style::line, numbers(q.effect_x), numbers(q.effect), {}, {}});
+        if (q.effect_freedom > 0.0)
+          said = "The curve is a smoothing spline with " + readable(q.effect_freedom, 2) +
+                 " degrees of freedom.";
       }
       for (const auto& where : d_.where) {
         if (where.signal == q.signal && where.regime && where.regime->variable == q.variable)
           chart.shade = {where.regime->from, where.regime->to};
       }
+      if (chart.shade) said = "Shaded: where it is largest." + std::string(said.empty() ? "" : " ") + said;
       out_ += "<figure>\n" + to_html(chart) +
-              (chart.shade ? "<figcaption>Shaded: where it is largest.</figcaption>\n" : "") + "</figure>\n";
+              (said.empty() ? "" : "<figcaption>" + said + "</figcaption>\n") + "</figure>\n";
     }
   }
 

@@ -138,7 +138,11 @@ struct MissingQuantity {
   Eigen::VectorXd x;             ///< abscissa of the binned samples
   Eigen::VectorXd value;         ///< missing quantity there
   Eigen::VectorXd spread;        ///< its standard error
-  Eigen::VectorXd effect;        ///< what the chosen causes supply there; empty where there are none
+  Eigen::VectorXd effect_x;      ///< abscissae of the curve `effect`, ascending and evenly spaced
+  /// What the model with the chosen causes supplies at `effect_x`, as a smooth curve; empty where there are
+  /// none.
+  Eigen::VectorXd effect;
+  double effect_freedom = 0.0;  ///< effective degrees of freedom of that curve: 2 is a straight line
 };
 
 /// How alike two explanations look to this recording.

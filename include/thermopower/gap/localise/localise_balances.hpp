@@ -340,7 +340,7 @@ inline Localisation localise_balances(const std::vector<plant::BalanceSource>& s
 }
 
 /// Fills MissingQuantity::effect: what the baseline's balances lack in recordings that an augmented model
-/// simulated, in the bins of what they lack in the measured ones.
+/// simulated, as a smooth curve over the range of what they lack in the measured ones.
 /// @param sources the baseline's balances of the simulated recordings
 /// @param signals number of signals of the plant
 inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int signals,
@@ -364,15 +364,7 @@ inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int 
     const Observed observed = observe(*balance, restated, limit);
     const OrderingAxis* axis = observed.find(q.variable);
     if (axis == nullptr) continue;
-    std::vector<double> edges{q.x[0] - 0.5 * (q.x[1] - q.x[0])};
-    for (Eigen::Index i = 0; i + 1 < q.x.size(); ++i) edges.push_back(0.5 * (q.x[i] + q.x[i + 1]));
-    edges.push_back(q.x[q.x.size() - 1] + 0.5 * (q.x[q.x.size() - 1] - q.x[q.x.size() - 2]));
-    const MissingQuantity drawn = binned(observed, *axis, edges);
-    q.effect = Eigen::VectorXd::Constant(q.x.size(), missing);
-    for (Eigen::Index i = 0; i < drawn.x.size(); ++i) {
-      const auto k = std::upper_bound(edges.begin(), edges.end(), drawn.x[i]) - edges.begin() - 1;
-      if (k >= 0 && k < q.effect.size()) q.effect[k] = drawn.value[i];
-    }
+    set_effect(q, axis->values, observed.value);
   }
 }
 

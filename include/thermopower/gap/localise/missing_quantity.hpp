@@ -5,6 +5,7 @@
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/localise/projection.hpp>
 #include <thermopower/gap/localise/rows.hpp>
+#include <thermopower/gap/localise/smooth_curve.hpp>
 #include <thermopower/gap/localise/thresholds.hpp>
 
 #include <algorithm>
@@ -178,6 +179,16 @@ inline MissingQuantity binned(const Observed& o, const OrderingAxis& axis, const
   q.value = vector(qy);
   q.spread = vector(qs);
   return q;
+}
+
+/// Draws what a simulation with the causes supplies of a missing quantity, over the range in which that is drawn.
+/// @param variable, supplied  samples in the order in which they were recorded
+inline void set_effect(MissingQuantity& q, const Eigen::VectorXd& variable, const Eigen::VectorXd& supplied) {
+  if (q.x.size() < 2) return;
+  SmoothCurve curve = smooth_curve(variable, supplied, q.x.minCoeff(), q.x.maxCoeff());
+  q.effect_x = std::move(curve.x);
+  q.effect = std::move(curve.value);
+  q.effect_freedom = curve.freedom;
 }
 
 /// The contiguous range of the axis in which the missing quantity is largest: around the largest bin, while

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/plant_info.hpp>
@@ -259,21 +260,15 @@ inline void draw_own_effect(const Model& baseline, const Catalogue& catalogue,
   const PlantInfo& info = *plant_of(baseline).info();
   const MissingRates rates = missing_rates(baseline, catalogue, simulated);
   for (MissingQuantity& picture : quantities) {
-    const Eigen::Index bins = picture.x.size();
     const auto variable = std::find(rates.names.begin(), rates.names.end(), picture.variable);
     for (std::size_t k = 0; k < info.signals.size() && variable != rates.names.end(); ++k) {
       if (to_string(picture.signal) != info.signals[k].name) continue;
       const auto& values = rates.of[k].variables[static_cast<std::size_t>(variable - rates.names.begin())];
-      Eigen::VectorXd sum = Eigen::VectorXd::Zero(bins), count = Eigen::VectorXd::Zero(bins);
-      for (std::size_t i = 0; i < values.size() && bins > 0; ++i) {
-        Eigen::Index nearest = 0;
-        (picture.x.array() - values[i]).abs().minCoeff(&nearest);
-        sum[nearest] += rates.of[k].rate[i];
-        count[nearest] += 1.0;
-      }
-      picture.effect = Eigen::VectorXd::Constant(bins, missing);
-      for (Eigen::Index bin = 0; bin < bins; ++bin)
-        if (count[bin] > 0.0) picture.effect[bin] = sum[bin] / count[bin];
+      const auto vector = [](const std::vector<double>& list) {
+        return Eigen::VectorXd(
+            Eigen::Map<const Eigen::VectorXd>(list.data(), static_cast<Eigen::Index>(list.size())));
+      };
+      set_effect(picture, vector(values), vector(rates.of[k].rate));
     }
   }
 }
