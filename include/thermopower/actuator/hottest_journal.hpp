@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "../fixed_point/units.hpp"
+#include "detail/memory.hpp"
 
 /// @file hottest_journal.hpp
 /// The hottest of several actuators through resets and losses of power, for a small chip without a clock:
@@ -45,6 +46,10 @@ struct StandardJournal {
 /// How to: @ref explain_observer.
 template <class Memory, class Constants = StandardJournal>
 class HottestJournal {
+  static_assert(
+      detail::IsMemory<Memory>::value,
+      "thermopower: the first parameter of HottestJournal must be a memory: a type with uint8_t read(size_t) "
+      "and void write(size_t, uint8_t)");
   static_assert(Constants::slots() >= 2 && Constants::slots() <= 120 && Constants::change_K() >= 1,
                 "thermopower: a HottestJournal has 2 to 120 slots, and records changes of at least 1 K");
 

@@ -7,6 +7,7 @@
 
 #include "../detail/crc16.hpp"
 #include "../detail/probe.hpp"
+#include "detail/memory.hpp"
 
 /// @file record_ring.hpp
 /// Records through a loss of power: a ring of slots in a memory that keeps them, and one record in a memory
@@ -15,15 +16,6 @@
 namespace thermopower {
 
 namespace detail {
-
-template <class Memory>
-auto is_memory_ready(Memory& memory, int) noexcept -> decltype(memory.is_ready()) {
-  return memory.is_ready();
-}
-template <class Memory>
-bool is_memory_ready(Memory&, long) noexcept {
-  return true;
-}
 
 /// A record: how many bytes, and whether they are whole.
 template <class Candidate, class = int>
@@ -49,6 +41,15 @@ struct IsRecord<Candidate, typename Exists<decltype(Candidate::size()),
 /// How to: @ref explain_observer.
 template <class Memory, class Record>
 class RecordRing {
+  static_assert(
+      detail::IsMemory<Memory>::value,
+      "thermopower: the first parameter of RecordRing must be a memory: a type with uint8_t read(size_t) and "
+      "void write(size_t, uint8_t)");
+  static_assert(
+      detail::IsRecord<Record>::value,
+      "thermopower: the second parameter of RecordRing must be a record: a type with static size(), "
+      "read(bytes) and write(bytes), such as StoredState");
+
 public:
   /// Touches nothing yet.
   /// @param memory  where the records lie; must outlive this object

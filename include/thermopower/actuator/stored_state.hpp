@@ -134,6 +134,11 @@ struct RecordPromise {
 /// How to: @ref explain_observer.
 template <class Memory>
 class StateJournal {
+  static_assert(
+      detail::IsMemory<Memory>::value,
+      "thermopower: the parameter of StateJournal must be a memory: a type with uint8_t read(size_t) and "
+      "void write(size_t, uint8_t)");
+
 public:
   /// What one tunes.
   struct Config {

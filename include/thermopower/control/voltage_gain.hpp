@@ -4,6 +4,7 @@
 
 #include "../detail/check.hpp"
 #include "axis_facts.hpp"
+#include "detail/composition.hpp"
 
 /// @file voltage_gain.hpp
 /// The proportional gain from the torque that is really there: the drive's voltage, winding resistance and torque
@@ -55,6 +56,10 @@ struct SineDrive {
 /// @ingroup control
 template <class Drive>
 class BasicVoltageGain {
+  static_assert(detail::IsDrive<Drive>::value,
+                "thermopower: the parameter of BasicVoltageGain must be a drive: a type with static "
+                "voltage_ratio(power_ratio), such as SwitchedDrive or SineDrive");
+
 public:
   /// What one tunes.
   struct Config {

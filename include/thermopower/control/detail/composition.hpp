@@ -139,11 +139,22 @@ struct IsLimiter {
                                 (TakesInputs<Candidate>::value || TakesFactsAlone<Candidate>::value);
 };
 
-/// A gain turns a power into a gain, with the axis's facts or without.
+/// A gain turns a power into a gain, with the axis's facts or without. What takes a broken number takes an error: a law.
 template <class Candidate>
 struct IsGain {
   static constexpr bool value =
-      HasConfig<Candidate>::value && (TakesNumber<Candidate>::value || TakesPowerAndFacts<Candidate>::value);
+      HasConfig<Candidate>::value && (TakesPowerAndFacts<Candidate>::value ||
+                                      (TakesNumber<Candidate>::value && !TakesError<Candidate>::value));
+};
+
+/// A drive of BasicVoltageGain: `voltage_ratio(power_ratio)`.
+template <class Candidate, class = int>
+struct IsDrive {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsDrive<Candidate, typename Exists<decltype(Candidate::voltage_ratio(0.5f) + 0.0f)>::Type> {
+  static constexpr bool value = true;
 };
 
 /// A rule of StepPowerLaw: `power(magnitude_deg, config, state)`.
