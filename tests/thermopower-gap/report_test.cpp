@@ -194,6 +194,22 @@ TEST_CASE("a report survives names that are no UTF-8") {
                        !ContainsSubstring("<b>.csv") && !ContainsSubstring("<i>"));
 }
 
+TEST_CASE(
+    "what is no UTF-8 is replaced, byte by byte, and what is stays: the ends of each range of RFC 3629") {
+  for (const char* good : {"\x7f", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+                           "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+    CHECK(io::escaped(good) == good);
+  const std::string replaced = "\xef\xbf\xbd";
+  // Longer than need be, halves of pairs, beyond the last, cut off, alone.
+  for (const char* bad :
+       {"\xc0\xaf", "\xc1\xbf", "\xe0\x9f\xbf", "\xe0\x80\x8b", "\xed\xa0\x80", "\xed\xbf\xbf",
+        "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\x80", "\xff"}) {
+    std::string expected;
+    for (const char* byte = bad; *byte != '\0'; ++byte) expected += replaced;
+    CHECK(io::escaped(bad) == expected);
+  }
+}
+
 TEST_CASE("the HTML report is one file that asks for nothing, small besides its curves") {
   const std::string html = io::report_html(example(), "motor", {});
   CHECK(html.size() < 1000000);

@@ -10,9 +10,11 @@
 namespace thermopower::io {
 namespace {
 
-// Length of the UTF-8 sequence at `i`; 0 where there is none.
+// Length of the UTF-8 sequence at `i`; 0 where there is none. Neither longer than it need be, nor half a pair of
+// UTF-16, nor above U+10FFFF (RFC 3629): browsers and JSON take none of these.
 std::size_t sequence_at(const std::string& text, std::size_t i) {
-  const unsigned char byte = static_cast<unsigned char>(text[i]);
+  const auto byte_at = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char byte = byte_at(i);
   const std::size_t length = byte < 0x80                   ? 1
                              : byte >= 0xc2 && byte < 0xe0 ? 2
                              : byte >= 0xe0 && byte < 0xf0 ? 3
@@ -20,7 +22,9 @@ std::size_t sequence_at(const std::string& text, std::size_t i) {
                                                            : 0;
   if (length == 1 && byte < 0x20 && byte != '\n' && byte != '\t') return 0;
   for (std::size_t k = 1; k < length; ++k)
-    if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return 0;
+    if (i + k >= text.size() || (byte_at(i + k) & 0xc0) != 0x80) return 0;
+  if ((byte == 0xe0 && byte_at(i + 1) < 0xa0) || (byte == 0xed && byte_at(i + 1) >= 0xa0)) return 0;
+  if ((byte == 0xf0 && byte_at(i + 1) < 0x90) || (byte == 0xf4 && byte_at(i + 1) >= 0x90)) return 0;
   return length;
 }
 
