@@ -41,6 +41,9 @@ struct CommandThresholds {
 /// Asks the motion of axes what their command did.
 class CommandBetweenRows {
 public:
+  /// @param horizon_s  over which simulations will run: what noise matters is asked over it; not positive: whole runs
+  explicit CommandBetweenRows(double horizon_s = 0.5) : horizon_s_(horizon_s > 0.0 ? horizon_s : 1e9) {}
+
   /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
     motion_.add(inputs, command);
@@ -108,9 +111,9 @@ public:
   }
 
   /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
-  /// follows. 0 where there is none, where it moves no simulation over `horizon_s`, or where nobody can tell.
-  double noise(double horizon_s = 0.5) const {
-    if (!noise_) noise_ = find_noise(horizon_s);
+  /// follows. 0 where there is none, where it moves no simulation over the horizon, or where nobody can tell.
+  double noise() const {
+    if (!noise_) noise_ = find_noise();
     return *noise_;
   }
 
@@ -186,12 +189,10 @@ private:
     return fit ? std::abs(fit->value[0]) : 0.0;
   }
 
-  double find_noise(double horizon_s) const {
+  double find_noise() const {
     constexpr CommandThresholds limit;
     double step_s = 0.0;
-    for (const Driven& one : recordings_) {
-      step_s = std::max(step_s, median_step_s(*one.inputs));
-    }
+    for (const Driven& one : recordings_) step_s = std::max(step_s, median_step_s(*one.inputs));
     const auto fit = motion_.fit(around_and_slope);
     if (!fit) return 0.0;
     const double response = std::abs(fit->value[0]);
@@ -199,17 +200,18 @@ private:
     for (const Driven& one : recordings_) spectra.add(*one.inputs, *one.command);
     const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
     // A random walk of the rate, and its sum.
-    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s),
-                 wander_deg = wander_dps * horizon_s / std::sqrt(3.0);
+    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
+                 wander_deg = wander_dps * horizon_s_ / std::sqrt(3.0);
     const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
     const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
                          (noise_deg > 0.0 && wander_deg > limit.wander * noise_deg);
     return matters ? sd : 0.0;
   }
 
+  double horizon_s_;
   MotionRegression motion_;
   std::vector<Driven> recordings_;
-  mutable std::optional<double> noise_;
+  mutable std::optional<double> noise_;  ///< once it was asked for
 };
 
 /// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.

@@ -20,11 +20,12 @@ namespace thermopower::gap::engine {
 
 /// Thresholds of the question whether a command is noisy.
 struct CommandNoiseThresholds {
-  double flat = 1.6;            ///< largest ratio to the lowest band of a spectrum that is its floor
-  std::size_t least_bins = 24;  ///< of the floor, and of what tells: less may be a shape of the command
-  std::size_t least_windows = 20;
-  double not_followed = 0.5;  ///< share of what a band's noise leaves: bands above it are no witnesses
-  double mostly = 0.7;        ///< of a band without noise that the motion must follow
+  double flat = 1.6;                ///< largest ratio to the lowest band of a spectrum that is its floor
+  std::size_t least_bins = 24;      ///< of the floor, and of what tells: less may be a shape of the command
+  std::size_t least_windows = 20;   ///< fewer tell nothing
+  Eigen::Index most_windows = 600;  ///< of a recording
+  double not_followed = 0.5;        ///< share of what a band's noise leaves: bands above it are no witnesses
+  double mostly = 0.7;              ///< of a band without noise that the motion must follow
   double error = 0.1;   ///< standard error of what is followed in a band from which on the band tells nothing
   double match = 0.12;  ///< what is followed may differ by from what the noise leaves
 };
@@ -41,8 +42,11 @@ public:
     if (command.size() == 0 || !inputs.axis()) return;
     const bool by_rate = inputs.judged(Signal::rate_dps);
     const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
+    // Windows that overlap by a half, or fewer of a long recording.
+    const Eigen::Index stride =
+        std::max<Eigen::Index>(length / 2, inputs.rows() / CommandNoiseThresholds().most_windows);
     for (const RunSpan& run : inputs.runs)
-      for (Eigen::Index from = run.begin + 1; from + length + 1 < run.end; from += length / 2) {
+      for (Eigen::Index from = run.begin + 1; from + length + 1 < run.end; from += stride) {
         Eigen::Matrix<double, length, 1> response, driven;
         for (Eigen::Index i = 0; i < length; ++i) {
           const Eigen::Index k = from + i;

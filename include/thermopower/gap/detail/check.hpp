@@ -74,10 +74,10 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
 }
 
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
-inline void read_between_rows(const Model& model, CheckedRecordings& checked,
+inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
-  CommandBetweenRows between;
+  CommandBetweenRows between(horizon_s);
   const auto is_commanded = [](const PreparedRecording& one) {
     return one.inputs().axis() && !one.inputs().closed_loop;
   };
@@ -136,7 +136,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
   take(held_out, result.held_out);
   if (!options.as_recorded) {
     leave_out_what_lags(model, result, others);
-    read_between_rows(model, result, others);
+    read_between_rows(model, result, options.horizon_s, others);
     read_targets_between_rows(model, result, others);
   }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
