@@ -117,12 +117,15 @@ TEST_CASE("README and the first diagnosis quote what the program says of the kno
   check_quotes("docs/learn/first-diagnosis.md", 6, said);
 }
 
-TEST_CASE("the motor on a frame is diagnosed as its page says, with and without its first cause") {
+TEST_CASE(
+    "the motor on a frame is diagnosed as its page says, as a whole, without its first cause, and part by part") {
   const std::string here = THERMOPOWER_JOINTS;
   const std::string files =
       recorded(here + "/frame.json", here + "/frame_train.csv", here + "/frame_heldout.csv");
-  check_quotes("docs/how-to/motor-on-a-frame.md", 5,
-               diagnosed(files) + diagnosed(files + " --without contact_resistance"));
+  check_quotes("docs/how-to/motor-on-a-frame.md", 8,
+               diagnosed(files) + diagnosed(files + " --without contact_resistance") +
+                   diagnosed(recorded(here + "/bolted.json", here + "/bolted_train.csv",
+                                      here + "/bolted_heldout.csv")));
 }
 
 TEST_CASE("the table and the quotation of the thesis's motors are what the program says of them") {

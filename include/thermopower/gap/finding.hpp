@@ -25,7 +25,7 @@ enum class FindingKind {
   glitched_samples,  ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
   repeated_frames,   ///< rows that repeat the outputs of the row before them
   held_samples,  ///< an output that repeats the last word of a sensor slower than the rows; only what is new counts
-  separate_samples,  ///< an angle and a rate that never stand in one row; windows start between samples
+  separate_samples,    ///< an angle and a rate that never stand in one row; windows start between samples
   frozen_samples,      ///< an output that stands still where it cannot
   clipped_samples,     ///< an output cut off at the end of its sensor's range
   impossible_samples,  ///< outside what the quantity can be

@@ -26,6 +26,13 @@ inline double quantile_of(std::vector<double>& values, double share) {
 /// The median of finite values, 0 of none; reorders them.
 inline double median_of(std::vector<double>& values) { return quantile_of(values, 0.5); }
 
+/// Root mean square; 0 of none.
+inline double rms_of(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double value : values) squares += value * value;
+  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
+}
+
 /// The finite samples of a column, run after run.
 inline std::vector<double> finite_samples(const Eigen::VectorXd& values) {
   std::vector<double> list;

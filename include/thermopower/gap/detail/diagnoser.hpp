@@ -200,9 +200,10 @@ private:
         return false;
       }
     }
-    for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
-      const std::vector<Segment> segments = cut(*all, options_.horizon_s, plant_of(model_));
-      if (!segments.empty()) continue;
+    const auto can_start = [&](const std::vector<Inputs>& all) {
+      return !cut(all, options_.horizon_s, plant_of(model_)).empty();
+    };
+    if (!can_start(train_inputs_) || !can_start(held_out_inputs_)) {
       result_.verdict = Verdict::insufficient;
       result_.reason =
           "no row has a reading of each signal that the model judges, so that no simulation can start there";
@@ -245,21 +246,10 @@ private:
         list.push_back({{&entry}, {}});
     const std::vector<CalibratedConstant> constants = model_.calibrated();
     for (std::size_t i = 0; i < constants.size(); ++i)
-      if (constants[i].may_be_cause && !removed("calibration." + constants[i].id) && acts(constants[i]))
+      if (constants[i].may_be_cause && !removed("calibration." + constants[i].id) &&
+          can_be_judged(constants[i], model_, train_inputs_))
         list.push_back({{}, {static_cast<int>(i)}});
     return list;
-  }
-
-  /// Whether the constant's block is judged.
-  bool acts(const CalibratedConstant& constant) const {
-    if (!constant.effect().empty() || model_.own) return true;
-    for (const Inputs& one : train_inputs_)
-      if (constant.block == "axis"      ? one.axis()
-          : constant.block == "servo"   ? one.closed_loop
-          : constant.block == "thermal" ? one.judged(Signal::motor_C)
-                                        : one.bench())
-        return true;
-    return false;
   }
 
   void measure_noise(FitProblem& problem, const Candidate& candidate) {
@@ -273,10 +263,9 @@ private:
       const double quantum = problem.segments.front().inputs->repeats.size() > 0
                                  ? 0.0
                                  : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / problem.sigma[i];
-      double squares = 0.0;
-      for (const double one : residuals[i]) squares += one * one / static_cast<double>(residuals[i].size());
-      const double sd = noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i];
-      problem.sigma[i] = std::max(with_wander(sd, wander[i], std::sqrt(squares) * problem.sigma[i]), 1e-9);
+      const double sd = noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i],
+                   rms = rms_of(residuals[i]) * problem.sigma[i];
+      problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
     }
   }
 
@@ -355,7 +344,7 @@ private:
     searching.refit_rivals(candidates);
     name_moved_constants(candidates, model_);
     attempt.weight = correlation_of(Search::best(candidates), problem);
-    attempt.weight.travel_rad = travel_rad();
+    attempt.weight.travel_rad = travel_rad(train_inputs_);
     attempt.weight.longest_run_s = longest_run_s(train_inputs_);
     attempt.recalibrated = recalibrate(candidates, fine);
     judge(attempt, fine);
@@ -382,16 +371,6 @@ private:
     for (const Location& one : result_.where)
       if (std::find(found.begin(), found.end(), one.submodel) == found.end()) found.push_back(one.submodel);
     return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
-  }
-
-  /// Range of the angle in the training data; without an angle any.
-  double travel_rad() const {
-    double low = 1e300, high = -1e300;
-    for (const Inputs& one : train_inputs_)
-      if (one.judged(Signal::angle_deg))
-        for (double angle : one.of(Signal::angle_deg))
-          if (std::isfinite(angle)) low = std::min(low, angle), high = std::max(high, angle);
-    return high > low ? (high - low) * rad_per_deg : 1e300;
   }
 
   /// The model with its constants refitted: the best explanation by constants alone, or as configured where that

@@ -334,6 +334,18 @@ private:
   const FitProblem& problem_;
 };
 
+/// Whether recordings tell of the block that a constant belongs to.
+inline bool can_be_judged(const CalibratedConstant& constant, const Model& model,
+                          const std::vector<Inputs>& recordings) {
+  if (!constant.effect().empty() || model.own) return true;
+  return std::any_of(recordings.begin(), recordings.end(), [&](const Inputs& one) {
+    return constant.block == "axis"      ? one.axis()
+           : constant.block == "servo"   ? one.closed_loop
+           : constant.block == "thermal" ? one.judged(Signal::motor_C)
+                                         : one.bench();
+  });
+}
+
 /// Whether model and recordings have what an effect needs.
 inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
                           const std::vector<Inputs>& recordings) {

@@ -29,6 +29,16 @@ inline double longest_run_s(const std::vector<Inputs>& inputs) {
   return longest_s;
 }
 
+/// Range of the angle in rad; without an angle any (1e300).
+inline double travel_rad(const std::vector<Inputs>& inputs) {
+  double low = 1e300, high = -1e300;
+  for (const Inputs& one : inputs)
+    if (one.judged(Signal::angle_deg))
+      for (double angle : one.of(Signal::angle_deg))
+        if (std::isfinite(angle)) low = std::min(low, angle), high = std::max(high, angle);
+  return high > low ? (high - low) * rad_per_deg : 1e300;
+}
+
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 
 #include <array>
@@ -22,12 +23,7 @@ struct Errors {
   std::array<std::vector<Eigen::Index>, signal_count> row;  ///< row in the recording of that segment
 
   /// Root mean square of a signal's errors; 0 without any.
-  double rms(Signal signal) const {
-    const std::vector<double>& errors = of[static_cast<std::size_t>(signal)];
-    double sum = 0.0;
-    for (double error : errors) sum += error * error;
-    return errors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(errors.size()));
-  }
+  double rms(Signal signal) const { return rms_of(of[static_cast<std::size_t>(signal)]); }
 };
 
 /// Simulates a model as a gap is judged and subtracts what was measured. The rows where the axis restarts
