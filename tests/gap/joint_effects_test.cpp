@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 // Bristles, the rise of friction near standstill and gears with play, stepped here apart from the library's equations: each is found, and
 // none is taken for its neighbour.
@@ -80,46 +81,53 @@ Diagnosis diagnosed(const Joint& joint) {
   return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
 }
 
+/// Sound recordings have no gap, and recordings with friction are explained by it. Returns both diagnoses, the sound one first.
+/// @param recorded  (effect, 0 for training and 1 for held-out data) -> recording
+template <class Recorded>
+std::pair<Diagnosis, Diagnosis> check_sound_and_rough(Recorded&& recorded) {
+  using Effect = test::SampledAxis::Effect;
+  const auto of = [&](Effect effect) {
+    return diagnose(test::SampledAxis::model(), {recorded(effect, 0)}, {recorded(effect, 1)});
+  };
+  const Diagnosis sound = of(Effect::none), rough = of(Effect::friction);
+  CHECK(sound.verdict == Verdict::no_gap);
+  CHECK(rough.verdict == Verdict::explained);
+  REQUIRE(rough.cause.size() == 1);
+  CHECK(rough.cause.front().effect == "coulomb_friction");
+  return {sound, rough};
+}
+
+/// How many findings of a kind there are.
+std::ptrdiff_t count_of(const Diagnosis& diagnosis, FindingKind kind) {
+  return std::count_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                       [&](const Finding& finding) { return finding.kind == kind; });
+}
+
 TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz, at 50 Hz and at 20 Hz") {
   using Effect = test::SampledAxis::Effect;
   const test::SampledAxis train(Effect::none, 30.0, 15), held_out(Effect::none, 20.0, 16),
       rough_train(Effect::friction, 30.0, 17), rough_held_out(Effect::friction, 20.0, 18);
   for (const int kept : {1, 5, 20, 50}) {
     CAPTURE(kept);
-    const Diagnosis sound =
-        diagnose(test::SampledAxis::model(), {train.logged_each(kept)}, {held_out.logged_each(kept)});
-    CHECK(sound.verdict == Verdict::no_gap);
-    const Diagnosis rough = diagnose(test::SampledAxis::model(), {rough_train.logged_each(kept)},
-                                     {rough_held_out.logged_each(kept)});
-    CHECK(rough.verdict == Verdict::explained);
-    REQUIRE(rough.cause.size() == 1);
-    CHECK(rough.cause.front().effect == "coulomb_friction");
-    const auto has_sampled = [](const Diagnosis& one) {
-      return std::count_if(one.findings.begin(), one.findings.end(), [](const Finding& finding) {
-        return finding.kind == FindingKind::sampled_command;
-      });
-    };
-    CHECK(has_sampled(rough) == (kept > 1 ? 2 : 0));  // of either recording
+    const auto both = check_sound_and_rough([&](Effect effect, int part) {
+      const bool is_rough = effect == Effect::friction;
+      return (part == 0  ? is_rough ? rough_train : train
+              : is_rough ? rough_held_out
+                         : held_out)
+          .logged_each(kept);
+    });
+    CHECK(count_of(both.second, FindingKind::sampled_command) == (kept > 1 ? 2 : 0));  // of either recording
   }
 }
 
 TEST_CASE("a measured current in the place of the command makes no gap of its noise, and hides no cause") {
   using Effect = test::SampledAxis::Effect;
-  const auto recorded = [](Effect effect, double length_s, std::uint64_t seed) {
-    return test::with_noise(test::SampledAxis(effect, length_s, seed).logged_each(10), "drive_A", 0.03,
-                            seed + 100);
-  };
-  const Diagnosis sound = diagnose(test::SampledAxis::model(), {recorded(Effect::none, 60.0, 41)},
-                                   {recorded(Effect::none, 40.0, 42)});
-  CHECK(sound.verdict == Verdict::no_gap);
-  CHECK(std::count_if(sound.findings.begin(), sound.findings.end(), [](const Finding& finding) {
-          return finding.kind == FindingKind::noisy_command;
-        }) == 2);  // of either recording
-  const Diagnosis rough = diagnose(test::SampledAxis::model(), {recorded(Effect::friction, 60.0, 43)},
-                                   {recorded(Effect::friction, 40.0, 44)});
-  CHECK(rough.verdict == Verdict::explained);
-  REQUIRE(rough.cause.size() == 1);
-  CHECK(rough.cause.front().effect == "coulomb_friction");
+  const auto [sound, rough] = check_sound_and_rough([](Effect effect, int part) {
+    const std::uint64_t seed = (effect == Effect::none ? 41u : 43u) + static_cast<std::uint64_t>(part);
+    return test::with_noise(test::SampledAxis(effect, part == 0 ? 60.0 : 40.0, seed).logged_each(10),
+                            "drive_A", 0.03, seed + 100);
+  });
+  CHECK(count_of(sound, FindingKind::noisy_command) == 2);  // of either recording
   CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.05));
 }
 
@@ -149,18 +157,11 @@ TEST_CASE("slow sensors, rows of their own for each, and stamps that count from 
        {std::function<Recording(Recording)>(updated_each_third), std::function<Recording(Recording)>(in_turn),
         std::function<Recording(Recording)>(since_1970)}) {
     CAPTURE(number++);
-    const auto recorded = [&](Effect effect, double length_s, std::uint64_t seed) {
-      return logged(test::SampledAxis(effect, length_s, seed, 10).logged_each(10));
-    };
-    const Diagnosis sound = diagnose(test::SampledAxis::model(), {recorded(Effect::none, 40.0, 51)},
-                                     {recorded(Effect::none, 30.0, 52)});
-    CHECK(sound.verdict == Verdict::no_gap);
+    const auto [sound, rough] = check_sound_and_rough([&](Effect effect, int part) {
+      const std::uint64_t seed = (effect == Effect::none ? 51u : 53u) + static_cast<std::uint64_t>(part);
+      return logged(test::SampledAxis(effect, part == 0 ? 40.0 : 30.0, seed, 10).logged_each(10));
+    });
     CHECK(sound.gap.size() == 2);  // both signals are judged
-    const Diagnosis rough = diagnose(test::SampledAxis::model(), {recorded(Effect::friction, 40.0, 53)},
-                                     {recorded(Effect::friction, 30.0, 54)});
-    CHECK(rough.verdict == Verdict::explained);
-    REQUIRE(rough.cause.size() == 1);
-    CHECK(rough.cause.front().effect == "coulomb_friction");
     CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.03));
   }
 }
@@ -193,15 +194,14 @@ TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late 
   for (const std::function<Recording(const Recording&)>& seen :
        {std::function<Recording(const Recording&)>(angle_alone),
         std::function<Recording(const Recording&)>(late_rate)}) {
-    const Diagnosis sound =
-        diagnose(test::SampledAxis::model(), {seen(train.logged_each(10))}, {seen(held_out.logged_each(10))});
-    CHECK(sound.verdict == Verdict::no_gap);
-    const Diagnosis rough = diagnose(test::SampledAxis::model(), {seen(rough_train.logged_each(10))},
-                                     {seen(rough_held_out.logged_each(10))});
-    CHECK(rough.verdict == Verdict::explained);
-    REQUIRE(rough.cause.size() == 1);
-    CHECK(rough.cause.front().effect == "coulomb_friction");
-    CHECK(rough.not_judged.size() == 1);
+    const auto both = check_sound_and_rough([&](Effect effect, int part) {
+      const bool is_rough = effect == Effect::friction;
+      return seen((part == 0  ? is_rough ? rough_train : train
+                   : is_rough ? rough_held_out
+                              : held_out)
+                      .logged_each(10));
+    });
+    CHECK(both.second.not_judged.size() == 1);
   }
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "../catch.hpp"
+#include "input_error_of.hpp"
 
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/column_list.hpp>
@@ -25,12 +26,7 @@ CsvTable parse(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const io::InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::input_error_of([&] { parse(text); });
 }
 
 }  // namespace

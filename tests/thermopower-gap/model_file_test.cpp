@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "../catch.hpp"
+#include "input_error_of.hpp"
 
-#include <thermopower/io/input_error.hpp>
 #include <thermopower/io/model_file.hpp>
 
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -24,12 +24,7 @@ std::string model_text(const std::string& body) {
 Model parse(const std::string& text) { return io::parse_model("model.json", text, standard_catalogue()); }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const io::InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::input_error_of([&] { parse(text); });
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 
 // A thermal network as a file: read, written, refused, and written down as firmware.
 #include "../catch.hpp"
+#include "input_error_of.hpp"
 
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/io/header_export.hpp>
-#include <thermopower/io/input_error.hpp>
 #include <thermopower/io/model_file.hpp>
 #include <thermopower/io/predictions_file.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -52,12 +52,7 @@ std::string with(const std::string& part, const std::string& by) {
 Model parse(const std::string& text) { return io::parse_model("model.json", text, standard_catalogue()); }
 
 std::string error_of(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const io::InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::input_error_of([&] { parse(text); });
 }
 
 }  // namespace

@@ -78,6 +78,11 @@ ServoGains<Scalar> servo_gains(const Model& model, Factor&& factor) {
   return gains;
 }
 
+/// The gains as a model has them.
+inline ServoGains<double> servo_gains(const Model& model) {
+  return servo_gains<double>(model, [](const char*, double value) { return value; });
+}
+
 /// Number of the first sample of a servo at or after an instant of a run; samples are taken at multiples of the
 /// period from the run's first row on.
 inline long first_sample(double t_s, double period_s) {
@@ -106,8 +111,7 @@ inline double target_between(const Inputs& inputs, const Eigen::VectorXd& values
 /// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and
 /// `inputs.servo_integral`, what was accumulated before each row. Motion and targets must be without holes.
 inline void replay_servo(const Model& model, Inputs& inputs) {
-  const ServoGains<double> gains =
-      servo_gains<double>(model, [](const char*, double value) { return value; });
+  const ServoGains<double> gains = servo_gains(model);
   const Eigen::Index rows = inputs.rows();
   inputs.servo_A = inputs.servo_integral = Eigen::VectorXd::Zero(rows);
   for (const RunSpan& run : inputs.runs) {

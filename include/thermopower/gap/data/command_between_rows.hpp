@@ -45,10 +45,7 @@ public:
   explicit CommandBetweenRows(double horizon_s = 0.5) : horizon_s_(horizon_s > 0.0 ? horizon_s : 1e9) {}
 
   /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
-  void add(const Inputs& inputs, const Eigen::VectorXd& command) {
-    motion_.add(inputs, command);
-    recordings_.push_back({&inputs, &command});
-  }
+  void add(const Inputs& inputs, const Eigen::VectorXd& command) { motion_.add(inputs, command); }
 
   /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
   /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
@@ -98,11 +95,10 @@ public:
     constexpr CommandThresholds limit;
     const double noise_deg = motion_.noise(Signal::angle_deg), response = this->response();
     double costs_deg = 0.0;
-    for (const Driven& one : recordings_) {
-      const double step_s = median_step_s(*one.inputs);
+    for (const auto& one : motion_.recordings()) {
+      const double step_s = median_step_s(one.inputs->t_s, one.inputs->runs);
       const Eigen::VectorXd& c = *one.command;
-      const double spread =
-          c.size() > 0 ? std::sqrt((c.array() - c.mean()).square().mean() * 2.0) : 0.0;  // of end and start
+      const double spread = std::sqrt((c.array() - c.mean()).square().mean() * 2.0);  // of end and start
       costs_deg = std::max(costs_deg, response * spread * step_s * step_s / 12.0);
     }
     if (!(noise_deg > 0.0)) return 1;
@@ -119,11 +115,6 @@ public:
 
 private:
   using Terms = MotionRegression::Terms;
-  struct Driven {
-    const Inputs* inputs;
-    const Eigen::VectorXd* command;
-  };
-
   static constexpr Eigen::Index around = 4;  ///< rows before, and after, of a mean that noise hardly moves
 
   template <std::size_t count>
@@ -131,14 +122,6 @@ private:
     Terms list(static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) list[static_cast<Eigen::Index>(i)] = values[i];
     return list;
-  }
-
-  static double median_step_s(const Inputs& inputs) {
-    std::vector<double> steps;
-    for (const RunSpan& run : inputs.runs)
-      for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
-        steps.push_back(inputs.t_s[i] - inputs.t_s[i - 1]);
-    return median_of(steps);
   }
 
   static Terms held_and_next(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
@@ -172,7 +155,7 @@ private:
 
   /// From means of the rows around: the noise of single ones would make every share a half.
   std::optional<double> share_of_noisy() const {
-    const auto fit = motion_.fit(around_and_slope);
+    const std::optional<MotionFit>& fit = smooth();
     if (!fit || fit->value[0] == 0.0) return std::nullopt;
     return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
   }
@@ -183,21 +166,26 @@ private:
     return std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first;
   }
 
-  /// What the command turns the rate by, deg/s^2 for each of its unit.
-  double response() const {
-    const auto fit = motion_.fit(around_and_slope);
-    return fit ? std::abs(fit->value[0]) : 0.0;
+  /// What of the command around each row the motion follows.
+  const std::optional<MotionFit>& smooth() const {
+    if (!smooth_) smooth_ = motion_.fit(around_and_slope);
+    return *smooth_;
   }
+
+  /// What the command turns the rate by, deg/s^2 for each of its unit; 0 where nobody knows.
+  double response() const { return smooth() ? std::abs(smooth()->value[0]) : 0.0; }
 
   double find_noise() const {
     constexpr CommandThresholds limit;
-    double step_s = 0.0;
-    for (const Driven& one : recordings_) step_s = std::max(step_s, median_step_s(*one.inputs));
-    const auto fit = motion_.fit(around_and_slope);
+    const std::optional<MotionFit>& fit = smooth();
     if (!fit) return 0.0;
-    const double response = std::abs(fit->value[0]);
+    const double response = this->response();
+    double step_s = 0.0;
     CommandNoise spectra;
-    for (const Driven& one : recordings_) spectra.add(*one.inputs, *one.command);
+    for (const auto& one : motion_.recordings()) {
+      step_s = std::max(step_s, median_step_s(one.inputs->t_s, one.inputs->runs));
+      spectra.add(*one.inputs, *one.command);
+    }
     const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
     // A random walk of the rate, and its sum.
     const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
@@ -210,8 +198,8 @@ private:
 
   double horizon_s_;
   MotionRegression motion_;
-  std::vector<Driven> recordings_;
-  mutable std::optional<double> noise_;  ///< once it was asked for
+  mutable std::optional<double> noise_;                     ///< once it was asked for
+  mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
 };
 
 /// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.

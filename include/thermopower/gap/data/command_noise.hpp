@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/motion_regression.hpp>
 
 #include <Eigen/Core>
 
@@ -37,11 +37,8 @@ struct CommandNoiseThresholds {
 /// follows less, too, but with another phase and whatever the spectrum.
 class CommandNoise {
 public:
-  /// Adds a recording of an axis that is driven by `command`.
+  /// Adds a recording of an axis that is driven by `command`, one for each row.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
-    if (command.size() == 0 || !inputs.axis()) return;
-    const bool by_rate = inputs.judged(Signal::rate_dps);
-    const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
     // Windows that overlap by a half, or fewer of a long recording.
     const Eigen::Index stride =
         std::max<Eigen::Index>(length / 2, inputs.rows() / CommandNoiseThresholds().most_windows);
@@ -49,17 +46,12 @@ public:
       for (Eigen::Index from = run.begin + 1; from + length + 1 < run.end; from += stride) {
         Eigen::Matrix<double, length, 1> response, driven;
         for (Eigen::Index i = 0; i < length; ++i) {
-          const Eigen::Index k = from + i;
-          const double step_s = inputs.t_s[k + 1] - inputs.t_s[k],
-                       after = (values[k + 1] - values[k]) / step_s;
-          const double before_s = inputs.t_s[k] - inputs.t_s[k - 1];
-          response[i] =
-              by_rate ? after : 2.0 * (after - (values[k] - values[k - 1]) / before_s) / (step_s + before_s);
-          driven[i] = command[k];
+          response[i] = MeasuredMotion(inputs, from + i).acceleration_dps2;
+          driven[i] = command[from + i];
         }
         if (response.allFinite() && driven.allFinite()) take(response, driven);
       }
-    before_rows_ = by_rate ? 0.0 : 0.5;
+    before_rows_ = inputs.judged(Signal::rate_dps) ? 0.0 : 0.5;
   }
 
   /// Standard deviation of what is noise in the command, in its unit; 0 where nothing is, or nobody can tell.
@@ -95,8 +87,7 @@ public:
       const double error =
           std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response;
       is_followed = is_followed || (left > limit.mostly && followed.real() > limit.mostly);
-      if (left > limit.not_followed) continue;
-      if (error > limit.error) continue;
+      if (left > limit.not_followed || error > limit.error) continue;
       if (std::abs(followed - left) > limit.match + 3.0 * error) return 0.0;
       witnesses += one.bins;
     }

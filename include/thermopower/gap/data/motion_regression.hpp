@@ -23,6 +23,30 @@
 
 namespace thermopower::gap::engine {
 
+/// How an axis moves at a row, as it was measured: the acceleration from its rate over the interval after the row, or without
+/// a rate from its angle over the intervals before and after.
+struct MeasuredMotion {
+  double acceleration_dps2;  ///< deg/s^2
+  double rate_dps;           ///< mean over the same, deg/s
+
+  /// @param row  neither the first nor the last of its run
+  MeasuredMotion(const Inputs& inputs, Eigen::Index row) {
+    const bool by_rate = inputs.judged(Signal::rate_dps);
+    const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
+    const double step_s = inputs.t_s[row + 1] - inputs.t_s[row],
+                 after = (values[row + 1] - values[row]) / step_s;
+    if (by_rate) {
+      acceleration_dps2 = after;
+      rate_dps = 0.5 * (values[row] + values[row + 1]);
+      return;
+    }
+    const double before_s = inputs.t_s[row] - inputs.t_s[row - 1],
+                 before = (values[row] - values[row - 1]) / before_s;
+    acceleration_dps2 = 2.0 * (after - before) / (step_s + before_s);
+    rate_dps = 0.5 * (after + before);
+  }
+};
+
 /// Thresholds of a regression of the motion on its command.
 struct MotionThresholds {
   std::size_t least_rows = 300;   ///< that move: fewer do not tell
@@ -59,10 +83,19 @@ public:
   using TermsOf = std::function<Terms(const Inputs& inputs, const Eigen::VectorXd& command,
                                       const RunSpan& run, Eigen::Index row)>;
 
-  /// Adds a recording of an axis that is driven by `command`. Keeps references to both: they must outlive this object.
+  /// A recording and its command.
+  struct Driven {
+    const Inputs* inputs;            ///< of the recording
+    const Eigen::VectorXd* command;  ///< one for each row
+  };
+
+  /// Adds a recording of an axis that is driven by `command`; of what is none nothing. Keeps references to both: they must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) {
     if (command.size() > 0 && inputs.axis()) recordings_.push_back({&inputs, &command});
   }
+
+  /// What was added.
+  const std::vector<Driven>& recordings() const { return recordings_; }
 
   /// Noise scale of a signal in the worst recording; 0 where none is judged.
   double noise(Signal signal) const {
@@ -102,10 +135,6 @@ public:
   }
 
 private:
-  struct Driven {
-    const Inputs* inputs;
-    const Eigen::VectorXd* command;
-  };
   struct Row {
     double response = 0.0, dps = 0.0, rad = 0.0, step_s = 0.0;
     Terms terms;
@@ -159,25 +188,14 @@ private:
     Eigen::VectorXd product_;
   };
 
-  /// Hands each row with an acceleration to `use(driven, run, row, acceleration in deg/s^2, deg/s)`.
+  /// Hands each row with an acceleration to `use(driven, run, row, motion)`.
   template <class Use>
   void for_each_row(Use&& use) const {
     for (const Driven& one : recordings_) {
       const Inputs& inputs = *one.inputs;
-      const bool by_rate = inputs.judged(Signal::rate_dps);
-      const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
       for (const RunSpan& run : inputs.runs)
-        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k) {
-          const double step_s = inputs.t_s[k + 1] - inputs.t_s[k],
-                       after = (values[k + 1] - values[k]) / step_s;
-          if (by_rate) {
-            use(one, run, k, after, 0.5 * (values[k] + values[k + 1]));
-          } else {
-            const double before_s = inputs.t_s[k] - inputs.t_s[k - 1],
-                         before = (values[k] - values[k - 1]) / before_s;
-            use(one, run, k, 2.0 * (after - before) / (step_s + before_s), 0.5 * (after + before));
-          }
-        }
+        for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k)
+          use(one, run, k, MeasuredMotion(inputs, k));
     }
   }
 
@@ -185,8 +203,8 @@ private:
   std::vector<Row> moving_rows(const TermsOf& terms_of) const {
     constexpr MotionThresholds limit;
     std::vector<double> speeds;
-    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, double, double dps) {
-      if (std::isfinite(dps)) speeds.push_back(std::abs(dps));
+    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, const MeasuredMotion& motion) {
+      if (std::isfinite(motion.rate_dps)) speeds.push_back(std::abs(motion.rate_dps));
     });
     const double slowest = limit.moving * quantile_of(speeds, 0.95);
     const auto fast =
@@ -194,13 +212,13 @@ private:
     const std::size_t stride = static_cast<std::size_t>(fast) / limit.most_rows + 1;
     std::vector<Row> moving;
     std::size_t count = 0;
-    for_each_row([&](const Driven& one, const RunSpan& run, Eigen::Index k, double response, double dps) {
-      if (!(std::abs(dps) > slowest) || count++ % stride != 0) return;
+    for_each_row([&](const Driven& one, const RunSpan& run, Eigen::Index k, const MeasuredMotion& motion) {
+      if (!(std::abs(motion.rate_dps) > slowest) || count++ % stride != 0) return;
       const Inputs& inputs = *one.inputs;
       const bool by_rate = inputs.judged(Signal::rate_dps), angle = inputs.judged(Signal::angle_deg);
       Row row;
-      row.response = response;
-      row.dps = dps;
+      row.response = motion.acceleration_dps2;
+      row.dps = motion.rate_dps;
       row.step_s = inputs.t_s[k + 1] - inputs.t_s[k];
       if (angle) {
         const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);

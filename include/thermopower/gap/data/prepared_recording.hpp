@@ -2,9 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/clock.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
+#include <thermopower/gap/data/current_masks.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
@@ -61,8 +61,7 @@ public:
     inputs_.target_moves = true;
     // A servo that takes the target every so often holds it for half that long on average, whatever the target does.
     constexpr double told_apart = 0.1;  // rows
-    const double period_s =
-        plant::servo_gains<double>(model, [](const char*, double value) { return value; }).period_s;
+    const double period_s = plant::servo_gains(model).period_s;
     const double of_samples = 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s_, period_s));
     if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
     replay_servo(model, inputs_);
@@ -99,8 +98,6 @@ private:
   void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
   void fill_inputs(const Recording& recorded, FindingList& list);
   void keep_known_rows();
-  std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power) const;
-  Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A) const;
 
   const plant::PlantInfo* own_ = nullptr;  ///< of a plant of one's own, while the recording is prepared
   bool moves_ = false;                     ///< angle and rate are outputs of an axis, and no covariates
@@ -260,85 +257,6 @@ inline void PreparedRecording::find_starts(FindingList& list) {
       "hardly ever stands in a row with rate_dps: windows start from what the one is between its samples");
 }
 
-/// Rows of a constant power that a spike can be told in.
-inline constexpr Eigen::Index shortest_steady = 7;
-
-/// The runs cut wherever the power steps.
-inline std::vector<RunSpan> PreparedRecording::steady_runs(const Eigen::VectorXd& power) const {
-  RowMask starts(unknown_.size(), 0);
-  for (Eigen::Index i = 1; i < power.size(); ++i)
-    starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
-  return cut_at(believed_.runs, starts);
-}
-
-/// The current without what the voltage at the motor does to it at once: the steps of the power are gone. What flows at
-/// a voltage is told by the rows before and after whose voltage is nearest, whatever the law between the two; missing where no
-/// rows are near.
-inline Eigen::VectorXd PreparedRecording::detrended_current(const Eigen::VectorXd& current_A) const {
-  constexpr Eigen::Index around = 40;    // rows before and after
-  constexpr std::ptrdiff_t nearest = 7;  // rows: three bad ones do no harm
-  constexpr double near_share = 0.08,
-                   least_share = 0.1;  // of the largest voltage: beyond the one a row tells nothing of
-                                       // another's, below the other a ratio is mostly noise
-  const Eigen::VectorXd* power = believed_.find("power_param");
-  if (power == nullptr) return current_A;
-  const Eigen::VectorXd* supply = believed_.find("supply_V");
-  Eigen::VectorXd volts(current_A.size());
-  for (Eigen::Index i = 0; i < volts.size(); ++i) {
-    const double on = std::isfinite((*power)[i]) ? std::clamp((*power)[i], 0.0, 255.0) : 0.0;
-    const double open_V = supply != nullptr && std::isfinite((*supply)[i]) ? (*supply)[i] : 1.0;
-    volts[i] = on > 0.0 ? v_rms_from_duty<double>(open_V, duty_from_power(on)) : 0.0;
-  }
-  const double near = near_share * volts.maxCoeff(), least = least_share * volts.maxCoeff();
-  Eigen::VectorXd result = current_A;
-  std::vector<std::pair<double, Eigen::Index>> rows;  // by distance in volts
-  std::vector<double> list;
-  for (const RunSpan& run : believed_.runs)
-    for (Eigen::Index i = run.begin; i < run.end; ++i) {
-      rows.clear();
-      list.clear();
-      for (Eigen::Index k = std::max(run.begin, i - around); k < std::min(run.end, i + around + 1); ++k) {
-        if (k == i || !std::isfinite(current_A[k])) continue;
-        if (volts[k] > least) list.push_back(current_A[k] / volts[k]);
-        if (std::abs(volts[k] - volts[i]) <= near) rows.push_back({std::abs(volts[k] - volts[i]), k});
-      }
-      if (static_cast<std::ptrdiff_t>(rows.size()) < nearest) {
-        result[i] = missing;
-        continue;
-      }
-      const double conductance = median_of(list);
-      std::nth_element(rows.begin(), rows.begin() + nearest - 1, rows.end());
-      list.clear();
-      for (auto row = rows.begin(); row != rows.begin() + nearest; ++row)
-        list.push_back(current_A[row->second] + conductance * (volts[i] - volts[row->second]));
-      result[i] -= median_of(list);
-    }
-  return result;
-}
-
-/// Exact zeros of the current at a power at which current flows otherwise.
-inline RowMask lost_current(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power, double scale_A) {
-  constexpr double clearly = 10.0, mostly = 0.5;  // noise scales of a current that flows; share of its rows
-  constexpr int bands = 26;                       // of ten counts
-  std::vector<std::vector<double>> flowing(bands);
-  const auto band = [](double counts) {
-    return static_cast<std::size_t>(std::clamp(counts / 10.0, 0.0, 25.0));
-  };
-  RowMask mask(static_cast<std::size_t>(current_A.size()), 0);
-  for (Eigen::Index i = 0; i < current_A.size(); ++i)
-    if (power[i] > 0.0 && std::isfinite(current_A[i])) flowing[band(power[i])].push_back(current_A[i]);
-  std::vector<double> typical(bands, 0.0);
-  for (std::size_t k = 0; k < flowing.size(); ++k) {
-    const auto zeros = std::count(flowing[k].begin(), flowing[k].end(), 0.0);
-    if (static_cast<double>(zeros) > mostly * static_cast<double>(flowing[k].size())) continue;
-    typical[k] = std::abs(quantile_of(flowing[k], 0.25));
-  }
-  for (Eigen::Index i = 0; i < current_A.size(); ++i)
-    if (power[i] > 0.0 && current_A[i] == 0.0 && typical[band(power[i])] > clearly * std::max(scale_A, 1e-12))
-      mask[static_cast<std::size_t>(i)] = 1;
-  return mask;
-}
-
 inline void PreparedRecording::mask_output(const Recording& recorded, const std::string& name,
                                            Eigen::VectorXd& values, FindingList& list) {
   const std::vector<RunSpan>& runs = believed_.runs;
@@ -381,7 +299,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
   if (name == "rate_dps") traits.integral = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
-  const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power) : runs;
+  const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
   SampleMasks masks(values, steady, traits);
   if (power != nullptr) {
     const RowMask lost = lost_current(values, *power, masks.scale());
@@ -394,7 +312,9 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   // Where the power steps too often to be looked at in between: what it leaves.
   const auto is_short = [](const RunSpan& run) { return run.size() < shortest_steady; };
   if (power != nullptr && std::any_of(steady.begin(), steady.end(), is_short)) {
-    const RowMask others = SampleMasks(detrended_current(masks.values()), runs, traits).spikes();
+    const RowMask others =
+        SampleMasks(detrended_current(masks.values(), *power, believed_.find("supply_V"), runs), runs, traits)
+            .spikes();
     for (const RunSpan& run : steady)
       for (Eigen::Index i = run.begin; is_short(run) && i < run.end; ++i)
         spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];

@@ -96,13 +96,17 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
   return median_of(list) / (normal_median * gain);
 }
 
-/// Median interval between the rows of a run in s; 0 where no run has two rows.
-inline double median_interval_s(const Recording& recording) {
+/// Median step between the stamps of rows inside runs, in s; 0 where no run has two rows.
+inline double median_step_s(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
   std::vector<double> steps;
-  for (const RunSpan& run : recording.spans())
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
-      steps.push_back(recording.t_s[i] - recording.t_s[i - 1]);
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(t_s[i] - t_s[i - 1]);
   return median_of(steps);
+}
+
+/// The same of a recording.
+inline double median_interval_s(const Recording& recording) {
+  return median_step_s(recording.t_s, recording.spans());
 }
 
 /// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a

@@ -54,8 +54,7 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
   };
   for (const PreparedRecording& one : checked.train)
     if (is_closed(one)) between.add(one.inputs(), one.inputs().servo_A);
-  const std::optional<double> share = between.steady_target(
-      plant::servo_gains<double>(model, [](const char*, double value) { return value; }));
+  const std::optional<double> share = between.steady_target(plant::servo_gains(model));
   if (!share) return;
   for (auto* all : {&checked.train, &checked.held_out})
     for (PreparedRecording& one : *all) {

@@ -36,10 +36,7 @@ public:
 
   /// The shorter recording, or the full one where it is not faster than needed.
   Inputs run(double horizon_s) const {
-    std::vector<double> steps;
-    for (const RunSpan& run : full_.runs)
-      for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(full_.t_s[i] - full_.t_s[i - 1]);
-    const double interval_s = median_of(steps);
+    const double interval_s = median_step_s(full_.t_s, full_.runs);
     if (!(interval_s > 0.0)) return full_;
     if (full_.closed_loop) return full_;  // a servo answers each sample
     auto rows = static_cast<Eigen::Index>(horizon_s / (AveragingThresholds().rows_per_horizon * interval_s));

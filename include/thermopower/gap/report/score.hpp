@@ -65,10 +65,10 @@ inline Errors errors_of(const Model& model, const std::vector<Segment>& segments
 }
 
 /// Small, fast and the same everywhere: the generator of draws (SplitMix64).
-class BlockDice {
+class Dice {
 public:
   /// Equal seeds give equal sequences, on every platform.
-  explicit BlockDice(std::uint64_t seed) : state_(seed) {}
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
 
   /// A whole number in [0, count).
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
@@ -100,7 +100,7 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
                                                           const Catalogue& catalogue) {
   std::array<double, signal_count> wander{};
   std::map<const Inputs*, Inputs> noisy;
-  BlockDice dice(1);
+  Dice dice(1);
   for (const Segment& segment : segments) {
     const Inputs& inputs = *segment.inputs;
     if (!(inputs.command_noise > 0.0) || noisy.count(&inputs) > 0) continue;
@@ -205,7 +205,7 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
   const auto half_log = [least](double above, double below) {
     return 0.5 * std::log(std::max(above, least) / std::max(below, least));
   };
-  BlockDice dice(seed);
+  Dice dice(seed);
   constexpr int draws = 1000;
   std::vector<double> ratios;
   ratios.reserve(draws);
