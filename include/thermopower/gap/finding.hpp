@@ -25,6 +25,7 @@ enum class FindingKind {
   glitched_samples,  ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
   repeated_frames,   ///< rows that repeat the outputs of the row before them
   held_samples,  ///< an output that repeats the last word of a sensor slower than the rows; only what is new counts
+  interpolated_samples,  ///< an output with straight lines between the readings of a slower sensor; only those count
   separate_samples,    ///< an angle and a rate that never stand in one row; windows start between samples
   frozen_samples,      ///< an output that stands still where it cannot
   clipped_samples,     ///< an output cut off at the end of its sensor's range
@@ -73,6 +74,8 @@ inline const char* to_string(FindingKind kind) {
       return "glitched_samples";
     case FindingKind::repeated_frames:
       return "repeated_frames";
+    case FindingKind::interpolated_samples:
+      return "interpolated_samples";
     case FindingKind::held_samples:
       return "held_samples";
     case FindingKind::separate_samples:

@@ -104,6 +104,10 @@ public:
         body(instance, rollout, electrical, i, t_s, step_s, winding_C, hidden, v);
       }
     }
+    if (inputs_.next_share.size() > 0)
+      for (const RunSpan& run : inputs_.runs)
+        for (Eigen::Index i = run.begin; i + 1 < run.end; ++i)
+          v.heat_W[i] += inputs_.next_share[i] * (v.heat_W[i + 1] - v.heat_W[i]);
     if (instance.thermal_structure.lagged) {
       // Behind a thermometer that lags everything is a lag later: a linear body's balance holds for it again.
       const double lag_s = std::max(instance.thermal_structure.thermometer_lag_s, 1e-9);

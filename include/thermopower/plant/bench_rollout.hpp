@@ -58,7 +58,7 @@ public:
       }
       for (const auto& effect : instance_.bench_readings) effect(read);
       sink(row, read);
-      if (row + 1 < end) step(row, t_s, inputs_.t_s[row + 1] - inputs_.t_s[row], state);
+      if (row + 1 < end) follow(row, t_s, inputs_.t_s[row + 1] - inputs_.t_s[row], state);
     }
   }
 
@@ -246,6 +246,13 @@ private:
     const double recorded =
         inputs_.heat == HeatSource::drive ? inputs_.drive_A[row] : inputs_.held_current_A[row];
     return driven_by(row, t_s, recorded, state.winding_C, state.charge_Ah);
+  }
+
+  /// An interval, with the inputs of its row and those of the next one for as long as each is in force.
+  void follow(Eigen::Index row, double t_s, double dt_s, BenchState<Scalar>& state) const {
+    const double next_s = inputs_.next_share.size() > 0 ? inputs_.next_share[row] * dt_s : 0.0;
+    if (next_s < dt_s) step(row, t_s, dt_s - next_s, state);
+    if (next_s > 0.0) step(row + 1, t_s + dt_s - next_s, next_s, state);
   }
 
   Slope slope(Eigen::Index row, double t_s, const BenchState<Scalar>& state) const {

@@ -87,6 +87,10 @@ struct Inputs {
                        ///< rows x parts; empty: it holds
   double command_noise = 0.0;          ///< standard deviation of what is noise in the command, in its unit
   HeatSource heat = HeatSource::none;  ///< what drives the thermal model
+  Eigen::VectorXd
+      next_share;  ///< of a bench: part of the interval after each row in which the next row's inputs are in
+                   ///< force already, 0..1; empty: they hold until that row
+  bool switched_anytime = false;  ///< `next_share` is what it is on average, and of one interval unknown
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   /// By Signal: readings between samples, for the starts of windows where another signal stands alone; NaN or empty where
   /// there are none. Nothing is judged by them.

@@ -6,8 +6,10 @@
 
 #include <thermopower/gap/data/slow_sensors.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
@@ -43,7 +45,7 @@ TEST_CASE("a column that a slower clock updates counts where it is new, and nowh
     REQUIRE(found);
     CHECK(found->rows_apart == apart);
     for (Eigen::Index i = 0; i < rows; ++i)
-      if ((found->repeats[static_cast<std::size_t>(i)] != 0) != (i % apart != 0)) FAIL("row " << i);
+      if ((found->between[static_cast<std::size_t>(i)] != 0) != (i % apart != 0)) FAIL("row " << i);
   }
   // 30 readings a second in 100 rows a second: three rows apart, and four now and then.
   const auto odd = held_between_updates(held([](Eigen::Index i) { return i % 3 == 2 ? 4 : 3; }), one_run);
@@ -62,6 +64,64 @@ TEST_CASE("what is new in each row, coarse, steady, or repeated by accident is n
   CHECK_FALSE(held_between_updates(
       held([&](Eigen::Index) { return 1 + static_cast<Eigen::Index>(random() % 9); }), one_run));
   CHECK_FALSE(held_between_updates(Eigen::VectorXd::Constant(rows, 3.0), one_run));
+}
+
+/// What a merge of two streams makes of such readings: straight lines between them, at the rows of the faster stream.
+Eigen::VectorXd drawn(double rows_apart, double from, double unit) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  std::vector<double> readings;
+  for (double at = from - rows_apart; at < static_cast<double>(rows) + 2.0 * rows_apart; at += rows_apart)
+    readings.push_back(20.0 * std::sin(0.02 * at) + noise(random));
+  Eigen::VectorXd values(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double at = (static_cast<double>(i) - from) / rows_apart + 1.0;
+    const auto before = static_cast<std::size_t>(at);
+    const double share = at - static_cast<double>(before);
+    values[i] = (1.0 - share) * readings[before] + share * readings[before + 1];
+    if (unit > 0.0) values[i] = std::round(values[i] / unit) * unit;
+  }
+  return values;
+}
+
+TEST_CASE("straight lines between the readings of a slower sensor are seen, and no other line") {
+  const Eigen::VectorXd t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 0.01 * (rows - 1));
+  const auto found_in = [&](const Eigen::VectorXd& values) {
+    return straight_between_updates(t_s, values, one_run);
+  };
+  for (const double unit : {0.0, 1e-4}) {
+    CAPTURE(unit);
+    for (const int apart : {2, 5, 20}) {
+      const auto found = found_in(drawn(apart, 0.0, unit));
+      REQUIRE(found);
+      CHECK(found->rows_apart == apart);
+      Eigen::Index lost = 0;
+      for (Eigen::Index i = 1; i + 1 < rows; ++i) {  // at the ends nobody can tell
+        const bool masked = found->between[static_cast<std::size_t>(i)] != 0;
+        if (!masked && i % apart != 0) FAIL("row " << i);
+        lost += masked && i % apart == 0 ? 1 : 0;
+      }
+      CHECK(lost * apart < rows / 100);  // by chance a reading lies on the line, too
+    }
+    // Readings between the rows: one row for each.
+    const auto found = found_in(drawn(5.3, 1.7, unit));
+    REQUIRE(found);
+    const auto kept = std::count(found->between.begin(), found->between.end(), 0);
+    CHECK(kept == Approx(rows / 5.3).margin(4.0));
+  }
+  CHECK_FALSE(found_in(drawn(1.0, 0.0, 1e-4)));
+  CHECK_FALSE(found_in(drawn(1.0, 0.0, 1.0)));
+  CHECK_FALSE(found_in(Eigen::VectorXd::LinSpaced(rows, 0.0, 300.0)));
+  CHECK_FALSE(found_in(Eigen::VectorXd::LinSpaced(rows, 0.0, 300.0).array().floor()));
+  CHECK_FALSE(found_in(Eigen::VectorXd::Constant(rows, 3.0)));
+  // A body warming and cooling without noise, written with four digits.
+  Eigen::VectorXd smooth(rows);
+  double body_C = 20.0;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    body_C += ((i / 100) % 2 == 0 ? 0.02 : 0.0) - 0.001 * (body_C - 20.0);
+    smooth[i] = std::round(body_C * 1e4) * 1e-4;
+  }
+  CHECK_FALSE(found_in(smooth));
 }
 
 TEST_CASE("columns are apart where they hardly ever stand in one row") {

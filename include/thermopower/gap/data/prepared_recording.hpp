@@ -68,6 +68,12 @@ public:
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
+  /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row  @param varies
+  /// it is that on average, and of one interval unknown
+  void take_next_before_it(Eigen::VectorXd share, bool varies) {
+    inputs_.next_share = std::move(share);
+    inputs_.switched_anytime = varies;
+  }
   /// Leaves an output out. Comes before what is said of the command. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);
@@ -96,6 +102,7 @@ private:
                    FindingList& list);
   void find_starts(FindingList& list);
   void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
+  double stands_between_samples(const Recording& recorded, const std::string& name) const;
   void fill_inputs(const Recording& recorded, FindingList& list);
   void keep_known_rows();
 
@@ -191,12 +198,16 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   for (Column& column : believed_.columns) {
     // A current holds because the power does.
     if (!is_output(column.name) || (column.name == "current_A" && electrical_)) continue;
-    const std::optional<HeldColumn> held = held_between_updates(column.values, believed_.runs);
-    if (!held) continue;
-    take_away(column.values, held->repeats);
-    list.add_rows(FindingKind::held_samples, Severity::note, column.name, held->repeats,
-                  FindingAction::masked,
-                  "repeat the reading of a sensor that speaks every " + std::to_string(held->rows_apart) +
+    const std::optional<SlowColumn> held = held_between_updates(column.values, believed_.runs);
+    const std::optional<SlowColumn> straight =
+        held ? std::nullopt : straight_between_updates(believed_.t_s, column.values, believed_.runs);
+    if (!held && !straight) continue;
+    const SlowColumn& slow = held ? *held : *straight;
+    take_away(column.values, slow.between);
+    list.add_rows(held ? FindingKind::held_samples : FindingKind::interpolated_samples, Severity::note,
+                  column.name, slow.between, FindingAction::masked,
+                  (held ? "repeat the reading" : "lie on straight lines between the readings") +
+                      std::string(" of a sensor that speaks every ") + std::to_string(slow.rows_apart) +
                       " rows: only what is new is used",
                   "log each reading when it comes, or leave the cells between two empty");
   }
@@ -376,6 +387,18 @@ inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::V
                 "lie far from all around them");
 }
 
+/// How long an input may stand between two samples because it is logged in rows of its own: what a merge of streams makes. 0
+/// where it is not.
+inline double PreparedRecording::stands_between_samples(const Recording& recorded,
+                                                        const std::string& name) const {
+  const Eigen::VectorXd& values = *recorded.find(name);
+  const auto is_apart = [&](const Column& column) {
+    return is_output(column.name) && are_apart(values, column.values);
+  };
+  if (std::none_of(recorded.columns.begin(), recorded.columns.end(), is_apart)) return 0.0;
+  return SlowSensorThresholds().nearest * median_distance_s(believed_.t_s, believed_.runs, values);
+}
+
 inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingList& list) {
   std::vector<InputColumn> inputs = input_columns();
   if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
@@ -386,7 +409,8 @@ inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingLis
     if (found == nullptr || found->values.array().isFinite().all()) continue;
     const Eigen::Index holes = recorded.rows() - recorded.find(input.name)->array().isFinite().count();
     RowMask mask(unknown_.size(), 0);
-    found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask);
+    found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask,
+                                stands_between_samples(recorded, input.name));
     for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",

@@ -149,10 +149,11 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
+/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ
 /// @return the column with known holes filled
 inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
-                                   RowMask& unknown) {
+                                   RowMask& unknown, double stands_s = 0.0) {
   constexpr SegmentThresholds limit;
   Eigen::VectorXd filled = values;
   const CommandRange range(values);
@@ -175,6 +176,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
         known = (inside &&
                  (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
                 (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
+      known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s);
       for (Eigen::Index i = row; i < end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         if (!known) unknown[at] = 1;

@@ -13,8 +13,8 @@
 #include <vector>
 
 /// @file slow_sensors.hpp
-/// Sensors that speak less often than a log has rows: those whose last word is repeated until the next, and an angle and a
-/// rate that never stand in the same row.
+/// Sensors that speak less often than a log has rows: those whose last word is repeated until the next, those between whose
+/// words somebody drew straight lines, and an angle and a rate that never stand in the same row.
 
 namespace thermopower::gap::engine {
 
@@ -26,35 +26,64 @@ struct SlowSensorThresholds {
   Eigen::Index most_rows = 40;  ///< between updates: slower, and it may be what it is driven by that holds
   double by_one_quantum =
       0.3;  ///< largest share of updates by one quantum, as something steady changes in a coarse reading
-  double apart = 0.1;    ///< share of the sparser of two columns that stands in a row with the other one
-  double nearest = 3.0;  ///< usual distances between samples that are neighbours
+  double on_line =
+      0.3;  ///< share of rows on the line between their neighbours that straight lines leave at least
+  double kink = 5.0;      ///< roundings that most kinks are larger than
+  double one_size = 0.3;  ///< largest share of kinks of the same size, as coarse steps are
+  double apart = 0.1;     ///< share of the sparser of two columns that stands in a row with the other one
+  double nearest = 3.0;   ///< usual distances between samples that are neighbours
 };
 
 /// A column whose sensor is slower than the rows.
-struct HeldColumn {
-  RowMask repeats;          ///< rows that repeat the last update
+struct SlowColumn {
+  RowMask between;          ///< rows that say nothing new
   Eigen::Index rows_apart;  ///< between most updates
 };
 
+/// How many rows most updates lie apart.
+class UpdateClock {
+public:
+  /// Counts a distance between two updates.
+  void add(Eigen::Index rows) { ++apart_[rows], ++updates_; }
+  /// Distances counted.
+  std::size_t updates() const { return updates_; }
+  /// The distance of most; 0 where they do not come as a clock does, or faster than every second row, or very seldom.
+  Eigen::Index rows_apart() const {
+    constexpr SlowSensorThresholds limit;
+    if (updates_ < limit.least_updates) return 0;
+    const auto most = std::max_element(apart_.begin(), apart_.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    const Eigen::Index rows = most->first;
+    const auto of = [&](Eigen::Index at) { return apart_.count(at) > 0 ? apart_.at(at) : std::size_t{0}; };
+    const std::size_t regular = most->second + std::max(of(rows - 1), of(rows + 1));
+    // Two rows apart now and then is what chance does to a reading that is new in each row.
+    const bool by_clock = static_cast<double>(regular) >= limit.regular * static_cast<double>(updates_);
+    return by_clock && rows >= 2 && rows <= limit.most_rows ? rows : 0;
+  }
+
+private:
+  std::map<Eigen::Index, std::size_t> apart_;
+  std::size_t updates_ = 0;
+};
+
 /// Finds a column that is updated every second row or less often, by a clock, and repeats its value in between.
-inline std::optional<HeldColumn> held_between_updates(const Eigen::VectorXd& values,
+inline std::optional<SlowColumn> held_between_updates(const Eigen::VectorXd& values,
                                                       const std::vector<RunSpan>& runs) {
   constexpr SlowSensorThresholds limit;
-  HeldColumn held{RowMask(static_cast<std::size_t>(values.size()), 0), 1};
+  SlowColumn held{RowMask(static_cast<std::size_t>(values.size()), 0), 1};
   const double quantum = quantum_of(values);
-  std::map<Eigen::Index, std::size_t> apart;
-  std::size_t updates = 0, repeats = 0, by_quantum = 0;
+  UpdateClock clock;
+  std::size_t repeats = 0, by_quantum = 0;
   for (const RunSpan& run : runs) {
     Eigen::Index last = -1, updated = -1;
     for (Eigen::Index i = run.begin; i < run.end; ++i) {
       if (!std::isfinite(values[i])) continue;
       if (last >= 0 && values[i] == values[last]) {
-        held.repeats[static_cast<std::size_t>(i)] = 1;
+        held.between[static_cast<std::size_t>(i)] = 1;
         ++repeats;
       } else if (last >= 0) {
         if (updated >= 0) {
-          ++updates;
-          ++apart[i - updated];
+          clock.add(i - updated);
           by_quantum += std::abs(values[i] - values[last]) < 1.5 * quantum ? 1 : 0;
         }
         updated = i;
@@ -62,21 +91,92 @@ inline std::optional<HeldColumn> held_between_updates(const Eigen::VectorXd& val
       last = i;
     }
   }
-  if (updates < limit.least_updates ||
-      static_cast<double>(repeats) < limit.repeated * static_cast<double>(updates))
-    return std::nullopt;
-  const auto most = std::max_element(apart.begin(), apart.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
-  held.rows_apart = most->first;
-  const auto of = [&](Eigen::Index rows) { return apart.count(rows) > 0 ? apart.at(rows) : std::size_t{0}; };
-  const std::size_t regular = most->second + std::max(of(held.rows_apart - 1), of(held.rows_apart + 1));
-  const double count = static_cast<double>(updates);
-  // Two rows apart now and then is what chance does to a reading that is new in each row.
-  if (held.rows_apart < 2 || held.rows_apart > limit.most_rows ||
-      static_cast<double>(regular) < limit.regular * count ||
-      static_cast<double>(by_quantum) > limit.by_one_quantum * count)
+  held.rows_apart = clock.rows_apart();
+  const double updates = static_cast<double>(clock.updates());
+  if (held.rows_apart == 0 || static_cast<double>(repeats) < limit.repeated * updates ||
+      static_cast<double>(by_quantum) > limit.by_one_quantum * updates)
     return std::nullopt;
   return held;
+}
+
+/// What the values of a column are rounded to: a power of ten for all from one power of ten to the next, since who
+/// writes six digits rounds 99.9 and 100.1 differently; or what a double holds.
+class Rounding {
+public:
+  /// Looks at the finite values.
+  explicit Rounding(const Eigen::VectorXd& values) {
+    std::map<int, std::vector<double>> decades;
+    for (const double value : values)
+      if (std::isfinite(value) && value != 0.0) decades[decade_of(value)].push_back(value);
+    for (const auto& [decade, of] : decades) units_[decade] = unit_of(of);
+  }
+
+  /// Of a value that was looked at.
+  double operator()(double value) const { return value != 0.0 ? units_.at(decade_of(value)) : 0.0; }
+
+private:
+  static int decade_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+  static double unit_of(const std::vector<double>& values) {
+    const double largest = std::abs(values.front());
+    for (double unit = 10.0; unit > 1e-9 * largest; unit *= 0.1) {
+      const auto is_multiple = [unit](double value) {
+        return std::abs(value / unit - std::round(value / unit)) < 1e-6;
+      };
+      if (std::all_of(values.begin(), values.end(), is_multiple)) return unit;
+    }
+    return 1e-9 * largest;
+  }
+
+  std::map<int, double> units_;
+};
+
+/// Finds a column of a sensor slower than the rows between whose readings straight lines were drawn, as who merges two
+/// streams of data does: most rows then lie on the line between their neighbours, and the others are apart by a clock.
+inline std::optional<SlowColumn> straight_between_updates(const Eigen::VectorXd& t_s,
+                                                          const Eigen::VectorXd& values,
+                                                          const std::vector<RunSpan>& runs) {
+  constexpr SlowSensorThresholds limit;
+  SlowColumn straight{RowMask(static_cast<std::size_t>(values.size()), 0), 1};
+  const Rounding rounding(values);
+  UpdateClock clock;
+  std::vector<double> kinks;
+  double rows = 0.0, on_line = 0.0, coarsest = 0.0;
+  for (const RunSpan& run : runs) {
+    Eigen::Index kink = -1;
+    for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
+      const double share = (t_s[i] - t_s[i - 1]) / (t_s[i + 1] - t_s[i - 1]);
+      const double off = std::abs(values[i] - values[i - 1] - share * (values[i + 1] - values[i - 1]));
+      if (!std::isfinite(off)) continue;
+      const double rounded =
+          2.0 * std::max({rounding(values[i - 1]), rounding(values[i]), rounding(values[i + 1])});
+      ++rows;
+      if (off <= rounded) {
+        straight.between[static_cast<std::size_t>(i)] = 1;
+        ++on_line;
+        continue;
+      }
+      kinks.push_back(off);
+      coarsest = std::max(coarsest, rounded);
+      // A reading between two rows bends the line at both.
+      const bool second = i > run.begin + 1 && kink == i - 1;
+      if (second) {
+        straight.between[static_cast<std::size_t>(i)] = 1;
+        continue;
+      }
+      if (kink >= 0) clock.add(i - kink);
+      kink = i;
+    }
+  }
+  straight.rows_apart = clock.rows_apart();
+  if (straight.rows_apart == 0 || on_line < limit.on_line * rows) return std::nullopt;
+  const double usual = median_of(kinks);
+  const auto same_size = std::count_if(kinks.begin(), kinks.end(),
+                                       [&](double one) { return std::abs(one - usual) < 0.01 * usual; });
+  if (usual < limit.kink * coarsest ||
+      static_cast<double>(same_size) > limit.one_size * static_cast<double>(kinks.size()))
+    return std::nullopt;
+  return straight;
 }
 
 /// Whether two columns hardly ever stand in one row.
@@ -88,15 +188,21 @@ inline bool are_apart(const Eigen::VectorXd& first, const Eigen::VectorXd& secon
                           limit.apart * static_cast<double>(fewer);
 }
 
+/// Usual distance between a column's samples in s; 0 where there are no two in a run.
+inline double median_distance_s(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
+                                const Eigen::VectorXd& values) {
+  std::vector<double> distances;
+  for_each_in_order<2>(values, runs,
+                       [&](const Eigen::Index* rows) { distances.push_back(t_s[rows[1]] - t_s[rows[0]]); });
+  return median_of(distances);
+}
+
 /// What a column is in the rows in which it has no sample: on the cubic through two samples before and two after, inside a run.
 /// @return NaN where there are no such samples, and where they lie further apart than usual
 inline Eigen::VectorXd between_samples(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
                                        const Eigen::VectorXd& values) {
   constexpr SlowSensorThresholds limit;
-  std::vector<double> distances;
-  for_each_in_order<2>(values, runs,
-                       [&](const Eigen::Index* rows) { distances.push_back(t_s[rows[1]] - t_s[rows[0]]); });
-  const double longest_s = limit.nearest * median_of(distances);
+  const double longest_s = limit.nearest * median_distance_s(t_s, runs, values);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(values.size(), missing);
   for_each_in_order<4>(values, runs, [&](const Eigen::Index* rows) {
     if (t_s[rows[3]] - t_s[rows[0]] > 3.0 * longest_s) return;

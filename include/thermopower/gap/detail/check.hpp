@@ -5,6 +5,7 @@
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/experiment.hpp>
+#include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
@@ -117,6 +118,45 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
     }
 }
 
+/// Lets the power of a bench be switched when the training recordings say that it was, in all recordings.
+inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
+                               std::vector<Finding>& findings) {
+  if (model.own || !model.has_thermal()) return;
+  const auto heat_of = [&](const PreparedRecording& one) {
+    const Inputs& inputs = one.inputs();
+    const plant::HeatTold told = inputs.heat_W.size() > 0         ? plant::HeatTold::by_record
+                                 : inputs.heat == HeatSource::law ? plant::HeatTold::by_law
+                                                                  : plant::HeatTold::by_current;
+    return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(told).heat_W;
+  };
+  const auto is_heated = [](const PreparedRecording& one) { return one.inputs().judged(Signal::motor_C); };
+  HeatBetweenRows between;
+  for (const PreparedRecording& one : checked.train)
+    if (is_heated(one)) between.add(one.inputs(), heat_of(one));
+  const std::optional<double> share = between.share();
+  if (!share) return;
+  const bool late = *share == 1.0;
+  for (auto* all : {&checked.train, &checked.held_out})
+    for (PreparedRecording& one : *all) {
+      if (!is_heated(one)) continue;
+      findings.push_back(
+          {FindingKind::sampled_command,
+           Severity::note,
+           one.recording().name,
+           heat_column(one.inputs()),
+           late ? "is that of the interval before its row, as motor_C shows: it is used for that"
+                : "was switched between the rows, as motor_C shows: the next row's is in force for " +
+                      short_number(100.0 * *share) +
+                      " % of an interval on average, and what a simulation wanders by not knowing more "
+                      "counts as noise",
+           late ? "log the power that is set until the next row"
+                : "log the power when it is switched, or its mean between the rows",
+           FindingAction::none,
+           {}});
+      one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share), !late);
+    }
+}
+
 THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::vector<Recording>& train,
                                                const std::vector<Recording>& held_out,
                                                const CheckOptions& options, const Catalogue& catalogue) {
@@ -137,6 +177,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
     leave_out_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);
     read_targets_between_rows(model, result, others);
+    read_when_switched(model, result, catalogue, others);
   }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))
     others.push_back(std::move(finding));

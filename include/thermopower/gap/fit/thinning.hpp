@@ -65,6 +65,7 @@ public:
     if (block_ < 5) return full_;
     Inputs thin = full_;
     thin.runs.clear();
+    thin.next_share.resize(0);  // what the baseline gains by it is made up for
     for (const RunSpan& span : full_.runs) {
       const Eigen::Index begin = static_cast<Eigen::Index>(rows_.size());
       for (Eigen::Index row = span.begin; row < span.end;) row = add_block(span, row);
@@ -266,13 +267,16 @@ private:
 
   void observe(Signal signal, Inputs& thin) const {
     if (!full_.judged(signal)) return;
+    // A sensor slower than the rows is in some of them only.
+    const double usual =
+        static_cast<double>(full_.of(signal).array().isFinite().count()) / static_cast<double>(full_.rows());
     Eigen::VectorXd& to = thin.measured[static_cast<std::size_t>(signal)];
     to = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows_.size()), missing);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       double asked = 0.0;
       for_observed(rows_[i], signal, [&](Eigen::Index) { asked += 1.0; });
       const Mean mean = mean_of(rows_[i], signal, full_.of(signal));
-      if (mean.count <= 0.0 || 3.0 * mean.count < 2.0 * asked) continue;
+      if (mean.count <= 0.0 || 3.0 * mean.count < 2.0 * usual * asked) continue;
       to[static_cast<Eigen::Index>(i)] = mean.value;
       // Rows carry one weight for both signals: they have the same number of samples wherever both are
       // observed, but for mixed blocks, where the temperature's is the larger and the current's counts.

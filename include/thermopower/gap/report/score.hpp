@@ -73,6 +73,9 @@ public:
   /// A whole number in [0, count).
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
 
+  /// A number in [0, 1).
+  double share() { return static_cast<double>(bits() >> 11) * (1.0 / 9007199254740992.0); }
+
   /// A number with a normal distribution, mean 0 and variance 1 (Box and Muller).
   double normal() {
     constexpr double per_step = 1.0 / 9007199254740992.0, turn = 6.283185307179586;
@@ -93,8 +96,8 @@ private:
   std::uint64_t state_;
 };
 
-/// How far a simulation wanders from itself because the command of the axis was measured with noise: root mean squares by
-/// signal, 0 where no command is noisy. One draw of the noise, the same each time.
+/// How far a simulation wanders from itself because the command of the axis was measured with noise, or the power of the
+/// bench switched at any time between two rows: root mean squares by signal, 0 where neither is so. One draw, the same each time.
 inline std::array<double, signal_count> wander_of_command(const Model& model,
                                                           const std::vector<Segment>& segments,
                                                           const Catalogue& catalogue) {
@@ -103,9 +106,12 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
   Dice dice(1);
   for (const Segment& segment : segments) {
     const Inputs& inputs = *segment.inputs;
-    if (!(inputs.command_noise > 0.0) || noisy.count(&inputs) > 0) continue;
+    if ((!(inputs.command_noise > 0.0) && !inputs.switched_anytime) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
-    for (Eigen::Index row = 0; row < inputs.rows(); ++row) {
+    if (inputs.switched_anytime)
+      for (double& share : copy.next_share)  // of its mean; within the interval
+        share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
+    for (Eigen::Index row = 0; row < inputs.rows() && inputs.command_noise > 0.0; ++row) {
       const double by = inputs.command_noise * dice.normal();
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;

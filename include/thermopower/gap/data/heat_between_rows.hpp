@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/bench_at_rows.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// @file heat_between_rows.hpp
+/// When a power that differs from row to row was switched. A row's power holds until the next one: so says the format, and
+/// so it is where the loop that sets it also logs. A logger of its own sees the power some time after it was switched, and
+/// a loop that sets, waits and then logs writes the power of the interval that is over. The temperature tells which.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the question when a power was switched.
+struct HeatThresholds {
+  Eigen::Index block_rows = 17;
+  std::size_t parts = 20;        ///< of the blocks, for the jackknife
+  std::size_t least_blocks = 6;  ///< in which the heat changes
+  double least_share = 0.25;     ///< switched at any time is a half
+  double most_share = 1.25;      ///< of the interval that is over is one
+  double whole = 0.8;            ///< from here on it is the interval that is over
+  double sure = 4.0;      ///< standard errors that the share differs from 0 by: one in 2000, of 20 parts
+  double agree = 2.5;     ///< standard errors that few and all bodies may differ by
+  double precise = 0.12;  ///< largest standard error of the share
+};
+
+/// Asks temperatures when the heat changed.
+///
+/// In a block of some rows a temperature is a straight line and what the heat does to it: its sum over time, and that of what
+/// bodies with some time constants still hold of it, since the run began; and, where a change to the next row's heat came
+/// earlier than that row, what it did until there: (q_{k+1} - q_k) dt_k, summed up. Nothing that a body or a thermometer
+/// does later makes the coefficient of that positive. No term is made of temperatures: their noise would bias it.
+class HeatBetweenRows {
+public:
+  /// Adds a recording. @param heat_W  of each row, by the model's law
+  void add(const Inputs& inputs, const Eigen::VectorXd& heat_W) {
+    if (!inputs.judged(Signal::motor_C) || heat_W.size() == 0) return;
+    constexpr HeatThresholds limit;
+    const double usual_s = median_step_s(inputs.t_s, inputs.runs);
+    for (const RunSpan& run : inputs.runs) {
+      const Eigen::MatrixXd did = heat_until(inputs, heat_W, run, usual_s);
+      for (Eigen::Index begin = run.begin; begin + limit.block_rows <= run.end;
+           begin += limit.block_rows - 1) {
+        const auto heat = heat_W.segment(begin, limit.block_rows);
+        if (heat.maxCoeff() - heat.minCoeff() > 1e-6 * heat.cwiseAbs().maxCoeff())
+          add_block(inputs, did.middleRows(begin - run.begin, limit.block_rows), begin);
+      }
+    }
+  }
+
+  /// Part of an interval in which the next row's heat is there already: a half where it is switched at any time, 1 where
+  /// rows are written after their interval; nothing where it holds or where nobody knows.
+  std::optional<double> share() const {
+    constexpr HeatThresholds limit;
+    // One body tells more where it suffices (Hausman 1978, Econometrica 46).
+    const Estimate few = estimate(terms - 2), all = estimate(terms);
+    const bool suffices = std::abs(few.value - all.value) < limit.agree * all.error;
+    const Estimate& best = suffices && few.error < all.error ? few : all;
+    if (!(best.error < limit.precise) || !(best.value > limit.sure * best.error)) return std::nullopt;
+    if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
+    return best.value > limit.whole ? 1.0 : best.value;
+  }
+
+private:
+  static constexpr std::size_t bodies = 3;
+  static constexpr Eigen::Index terms = bodies + 2;  ///< what came earlier, the sum, and the bodies
+
+  struct Sums {
+    Eigen::Matrix<double, terms, terms> square = Eigen::Matrix<double, terms, terms>::Zero();
+    Eigen::Matrix<double, terms, 1> product = Eigen::Matrix<double, terms, 1>::Zero();
+
+    void add(const Sums& other, double weight) {
+      square += weight * other.square;
+      product += weight * other.product;
+    }
+
+    /// Of the heat's earlier change in the heat, which all terms but the first are given at once.
+    /// @param used  terms, from the first on
+    double share(Eigen::Index used) const {
+      const Eigen::VectorXd fitted =
+          square.topLeftCorner(used, used).completeOrthogonalDecomposition().solve(product.head(used));
+      const double at_once = fitted.tail(used - 1).sum();
+      return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
+    }
+  };
+
+  struct Estimate {
+    double value = plant::missing, error = 1e9;
+  };
+
+  Estimate estimate(Eigen::Index used) const {
+    constexpr HeatThresholds limit;
+    if (blocks_.size() < limit.least_blocks) return {};
+    const std::size_t parts = std::min(limit.parts, blocks_.size());
+    std::vector<Sums> sums(parts);
+    Sums all;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
+      all.add(blocks_[i], 1.0);
+    }
+    std::vector<double> without;
+    for (const Sums& one : sums) {
+      Sums rest = all;
+      rest.add(one, -1.0);
+      without.push_back(rest.share(used));
+    }
+    const double error = jackknife_error(without);
+    if (!std::isfinite(error)) return {};
+    return {all.share(used), error};
+  }
+
+  /// What the heat of a run did until each of its rows, in J: a row of terms for each.
+  static Eigen::MatrixXd heat_until(const Inputs& inputs, const Eigen::VectorXd& heat_W, const RunSpan& run,
+                                    double usual_s) {
+    constexpr std::array<double, bodies> hold{30.0, 6.0, 1.5};  // intervals
+    Eigen::MatrixXd did(run.size(), terms);
+    Eigen::Matrix<double, 1, terms> now = Eigen::Matrix<double, 1, terms>::Zero();
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      did.row(row - run.begin) = now;
+      if (row + 1 == run.end) break;
+      const double step_s = inputs.t_s[row + 1] - inputs.t_s[row];
+      now[0] += (heat_W[row + 1] - heat_W[row]) * step_s;
+      now[1] += heat_W[row] * step_s;
+      for (std::size_t k = 0; k < bodies; ++k) {
+        const double time_constant_s = hold[k] * usual_s, kept = std::exp(-step_s / time_constant_s);
+        double& held_J = now[static_cast<Eigen::Index>(k) + 2];
+        held_J = kept * held_J + (1.0 - kept) * time_constant_s * heat_W[row];
+      }
+    }
+    return did;
+  }
+
+  void add_block(const Inputs& inputs, const Eigen::Ref<const Eigen::MatrixXd>& did, Eigen::Index begin) {
+    const Eigen::VectorXd& motor_C = inputs.of(Signal::motor_C);
+    const Eigen::Index rows = did.rows();
+    Eigen::MatrixXd all(rows, terms + 1), line(rows, 2);
+    Eigen::Index used = 0;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      if (!std::isfinite(motor_C[begin + i])) continue;
+      all.row(used) << did.row(i), motor_C[begin + i];
+      line.row(used++) << 1.0, inputs.t_s[begin + i] - inputs.t_s[begin];
+    }
+    if (2 * used < rows) return;
+    const Eigen::MatrixXd lines = line.topRows(used), given = all.topRows(used);
+    const Eigen::MatrixXd left = given - lines * lines.colPivHouseholderQr().solve(given);
+    Sums block;
+    block.square = left.leftCols(terms).transpose() * left.leftCols(terms);
+    block.product = left.leftCols(terms).transpose() * left.col(terms);
+    blocks_.push_back(block);
+  }
+
+  std::vector<Sums> blocks_;
+};
+
+/// Part of each interval in which the next row's inputs are in force: `share` where they make another heat, else 0.
+inline Eigen::VectorXd switched_share(const Inputs& inputs, const Eigen::VectorXd& heat_W, double share) {
+  constexpr double other = 0.01;  // of the range of the heat: less is as well held
+  const double least_W = other * (heat_W.maxCoeff() - heat_W.minCoeff());
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(inputs.rows());
+  for (const RunSpan& run : inputs.runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row)
+      if (std::abs(heat_W[row + 1] - heat_W[row]) > least_W) shares[row] = share;
+  return shares;
+}
+
+/// The column that tells the heat.
+inline std::string heat_column(const Inputs& inputs) {
+  if (inputs.heat_W.size() > 0) return "heat_W";
+  if (inputs.heat == HeatSource::law) return "power_param";
+  return inputs.heat == HeatSource::drive ? "drive_A" : "current_A";
+}
+
+}  // namespace thermopower::gap::engine

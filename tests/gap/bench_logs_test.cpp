@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// Temperatures as people log them: a power that is switched between the rows or written after its interval, rows ten
+// seconds apart, lines drawn between the readings. None of it is a gap, and none hides one.
+#include "../catch.hpp"
+#include "data/switched_bench.hpp"
+
+#include <thermopower/gap/diagnose.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace thermopower;
+using namespace thermopower::gap;
+using Log = test::SwitchedBench::Log;
+
+namespace {
+
+Diagnosis answer_to(const test::SwitchedBench& bench, double lasts_s, unsigned seed) {
+  return diagnose(test::SwitchedBench::model(), {bench.recording(lasts_s, seed)},
+                  {bench.recording(lasts_s, seed + 100)});
+}
+
+/// Says so where a sound motor has a gap, or one with a winding has another cause.
+void check_sound_and_wound(test::SwitchedBench bench, double lasts_s, unsigned seed) {
+  CAPTURE(bench.rows_s);
+  const Diagnosis sound = answer_to(bench, lasts_s, seed);
+  CHECK(sound.verdict == Verdict::no_gap);
+  bench.has_winding = true;
+  const Diagnosis wound = answer_to(bench, lasts_s, seed);
+  CHECK(wound.verdict == Verdict::explained);
+  REQUIRE(wound.cause.size() == 1);
+  CHECK(wound.cause[0].effect == "second_thermal_mass");
+}
+
+TEST_CASE("a power that is switched between the rows makes no gap, and hides none") {
+  test::SwitchedBench bench;
+  for (const double rows_s : {1.0, 5.0, 10.0}) {
+    bench.rows_s = rows_s;
+    check_sound_and_wound(bench, 7200.0, 11);
+  }
+}
+
+TEST_CASE("a power that is written after its interval makes no gap, and hides none") {
+  test::SwitchedBench bench;
+  bench.log = Log::afterwards;
+  for (const double rows_s : {1.0, 5.0}) {
+    bench.rows_s = rows_s;
+    check_sound_and_wound(bench, 7200.0, 12);
+  }
+}
+
+constexpr double late = 0.4;  // of an interval
+
+/// Puts each temperature into a row of its own, when it was read.
+Recording in_rows_of_their_own(Recording r) {
+  Recording result;
+  result.name = r.name;
+  const Eigen::Index rows = r.rows();
+  result.t_s.resize(2 * rows - 1);
+  for (Eigen::Index i = 0; i + 1 < rows; ++i) {
+    result.t_s[2 * i] = r.t_s[i];
+    result.t_s[2 * i + 1] = (1.0 - late) * r.t_s[i] + late * r.t_s[i + 1];
+  }
+  result.t_s[2 * rows - 2] = r.t_s[rows - 1];
+  for (const Column& column : r.columns) {
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(2 * rows - 1, plant::missing);
+    const Eigen::Index later = column.name == "motor_C" ? 1 : 0;
+    for (Eigen::Index i = 0; i + 1 < rows; ++i) values[2 * i + later] = column.values[i];
+    result.set(column.name, values);
+  }
+  return result;
+}
+
+/// Keeps every fifth temperature, and draws straight lines between those.
+Recording with_lines_drawn(Recording r) {
+  constexpr Eigen::Index apart = 5;
+  Eigen::VectorXd motor = r.column("motor_C");
+  for (Eigen::Index i = 0; i + apart < r.rows(); i += apart)
+    for (Eigen::Index k = 1; k < apart; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(apart);
+      motor[i + k] = (1.0 - share) * motor[i] + share * motor[i + apart];
+    }
+  r.set("motor_C", motor);
+  return r;
+}
+
+TEST_CASE("rows of their own for each stream, and lines drawn between readings, make no gap and hide none") {
+  for (const auto change : {in_rows_of_their_own, with_lines_drawn}) {
+    CAPTURE(change == in_rows_of_their_own);
+    test::SwitchedBench bench;
+    bench.log = Log::at_rows;
+    if (change == in_rows_of_their_own) bench.read_late = late;
+    const auto answer = [&] {
+      return diagnose(test::SwitchedBench::model(), {change(bench.recording(7200.0, 13))},
+                      {change(bench.recording(7200.0, 113))});
+    };
+    CHECK(answer().verdict == Verdict::no_gap);
+    bench.has_winding = true;
+    const Diagnosis wound = answer();
+    CHECK(wound.verdict == Verdict::explained);
+    REQUIRE(wound.cause.size() == 1);
+    CHECK(wound.cause[0].effect == "second_thermal_mass");
+  }
+}
+
+}  // namespace
