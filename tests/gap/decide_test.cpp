@@ -286,3 +286,34 @@ TEST_CASE("what the printed table contradicts is not called explained") {
   CHECK(deny_a_rest(result));
   CHECK(result.verdict == Verdict::explained);
 }
+
+TEST_CASE("that several explanations reach the noise is said as far as the printed table shows it") {
+  Diagnosis result;
+  result.verdict = Verdict::ambiguous;
+  result.reason = several_explain;
+  result.cause.push_back({"radiation", 0.6, {}});
+  result.alternatives = {{"natural_convection"}};
+  result.gap.push_back({Signal::motor_C, "degC", std::nullopt, 9.0, 8.0, 1.4, 1.0, 0.84, {0.8, 0.9}});
+  CHECK_FALSE(admit_a_rest(result));
+  result.gap.back().after = 1.7;
+  CHECK(admit_a_rest(result));
+  CHECK(result.verdict == Verdict::ambiguous);
+  CHECK(result.reason == several_leave_a_rest);
+  result.reason = several_take_a_part;
+  CHECK_FALSE(deny_a_rest(result));
+  result.gap.back().after = 1.4;
+  CHECK(deny_a_rest(result));
+  CHECK(result.reason == several_explain);
+}
+
+TEST_CASE("constants alone explain only what the printed table shows near the noise") {
+  Diagnosis result;
+  result.verdict = Verdict::explained;
+  result.cause.push_back({"calibration.conductance", 0.9, {}});
+  result.gap.push_back({Signal::motor_C, "degC", std::nullopt, 9.0, 1.4, 1.4, 1.0, 0.84, {0.8, 0.9}});
+  CHECK_FALSE(constants_fall_short(result));
+  result.gap.back().after = 1.7;
+  CHECK(constants_fall_short(result));
+  result.cause.push_back({"radiation", 0.9, {}});  // that is a cause, and may leave a rest
+  CHECK_FALSE(constants_fall_short(result));
+}

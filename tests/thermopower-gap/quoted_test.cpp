@@ -90,7 +90,7 @@ std::vector<std::string> quotes_of(const std::string& page) {
     const Words words = words_of(line);
     if (words.empty()) continue;
     for (const char* first : {"EXPLAINED", "AMBIGUOUS", "UNEXPLAINED", "PARTLY", "where", "which", "or",
-                              "with", "current_A", "motor_C", "next"})
+                              "with", "motor", "angle", "angular", "next"})
       if (words[0] == first) quotes.push_back(line);
   }
   return quotes;

@@ -5,6 +5,7 @@
 
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/summary.hpp>
+#include <thermopower/plant/variable_words.hpp>
 #include "html_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -42,11 +43,12 @@ std::string check_text(const DataReport& report) {
   for (const auto& one : report.not_judged) out += summary_line("not judged", one);
   char row[160];
   if (!report.signals.empty()) {
-    std::snprintf(row, sizeof row, "\n  %-22s%10s%14s%14s%18s\n", "signal", "samples", "range", "noise",
+    std::snprintf(row, sizeof row, "\n  %-24s%10s%14s%14s%18s\n", "signal", "samples", "range", "noise",
                   "as configured");
     out += row;
     for (const auto& one : report.signals) {
-      std::snprintf(row, sizeof row, "  %-22s%10td%14s%14s%18s\n", (one.signal + " / " + one.unit).c_str(),
+      std::snprintf(row, sizeof row, "  %-24s%10td%14s%14s%18s\n",
+                    (plant::in_words(one.signal) + " / " + one.unit).c_str(),
                     static_cast<std::ptrdiff_t>(one.samples), readable(one.range).c_str(),
                     readable(one.noise).c_str(), readable(one.misfit).c_str());
       out += row;

@@ -3,6 +3,8 @@
 
 #include "html_text.hpp"
 
+#include <thermopower/plant/variable_words.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,41 +29,6 @@ std::size_t sequence_at(const std::string& text, std::size_t i) {
   if ((byte == 0xf0 && byte_at(i + 1) < 0x90) || (byte == 0xf4 && byte_at(i + 1) >= 0x90)) return 0;
   return length;
 }
-
-struct Words {
-  const char* name;
-  const char* text;
-  const char* unit;
-};
-
-constexpr Words words[] = {
-    {"t_s", "time", "s"},
-    {"power_param", "power (0 to 255)", ""},
-    {"drive_A", "drive current", "A"},
-    {"voltage_V", "voltage", "V"},
-    {"v_rms_V", "RMS voltage", "V"},
-    {"target_deg", "target angle", "\u00b0"},
-    {"target_dps", "target rate", "\u00b0/s"},
-    {"torque_Nm", "external torque", "N m"},
-    {"heat_W", "heat", "W"},
-    {"supply_V", "supply voltage", "V"},
-    {"ambient_C", "air temperature", "\u00b0C"},
-    {"airspeed_mps", "air speed", "m/s"},
-    {"neighbour_C", "temperature of the neighbour", "\u00b0C"},
-    {"current_A", "motor current", "A"},
-    {"motor_C", "motor temperature", "\u00b0C"},
-    {"angle_deg", "angle", "\u00b0"},
-    {"rate_dps", "angular rate", "\u00b0/s"},
-    {"rate_rad_per_s", "angular rate", "rad/s"},
-    {"acceleration_rad_per_s2", "angular acceleration", "rad/s\u00b2"},
-    {"drive_A_per_s", "change of the drive current", "A/s"},
-    {"servo_A", "current that the servo asks for", "A"},
-    {"servo_A_per_s", "change of the current that the servo asks for", "A/s"},
-    {"voltage_V_per_s", "change of the voltage", "V/s"},
-    {"law_A", "current by the law", "A"},
-    {"rise_K", "temperature above the air", "K"},
-    {"dT_dt", "rate of heating", "K/s"},
-};
 
 }  // namespace
 
@@ -122,6 +89,7 @@ std::string unit_text(const std::string& unit) {
   if (unit == "degC") return "\u00b0C";
   if (unit == "deg") return "\u00b0";
   if (unit == "deg/s" || unit == "dps") return "\u00b0/s";
+  if (unit == "rad/s2") return "rad/s\u00b2";
   if (unit == "ohm") return "\u03a9";
   if (unit == "1") return "";
   return unit;
@@ -138,8 +106,8 @@ std::string signal_text(const plant::SignalName& signal) {
 }
 
 VariableText variable_text(const std::string& name, const std::string& unit) {
-  for (const Words& one : words)
-    if (name == one.name) return {one.text, one.unit};
+  if (const plant::VariableWords* const words = plant::words_of(name))
+    return {words->text, unit_text(words->unit)};
   return {name, unit_text(unit), false};
 }
 

@@ -162,10 +162,12 @@ private:
     return text;
   }
 
-  /// How much of its signal's gap a place takes away.
-  static std::string share_of_gap(const Location& place) {
-    return takes_gap_away(place) ? percent_html(place.share) + " of its gap"
-                                 : "where no one place takes its gap away";
+  /// How much of its signal's gap a place takes away. Constants within what is known of them may take away what the model
+  /// as configured shows: then there is no gap.
+  std::string share_of_gap(const Location& place) const {
+    const std::string difference = d_.verdict == Verdict::no_gap ? "difference as configured" : "gap";
+    return takes_gap_away(place) ? percent_html(place.share) + " of its " + difference
+                                 : "where no one place takes its " + difference + " away";
   }
 
   void facts() {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include <thermopower/io/summary.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include "html_text.hpp"
 
@@ -82,10 +83,16 @@ std::string occurrences_text(const std::vector<Occurrence>& list) {
   return out;
 }
 
+std::string regime_text(const Regime& regime) {
+  const plant::VariableWords* const words = plant::words_of(regime.variable);
+  return plant::in_words(regime.variable) + " " + readable(regime.from) + " to " +
+         plain_unit(readable(regime.to), words != nullptr ? words->unit : "");
+}
+
 std::string gap_table(const Diagnosis& diagnosis) {
   if (diagnosis.gap.empty()) return {};
   char row[200];
-  std::snprintf(row, sizeof row, "\n  %-20s%14s%14s%14s%14s   %s\n", "RMSE, held out", "as configured",
+  std::snprintf(row, sizeof row, "\n  %-24s%13s%14s%13s%13s   %s\n", "RMSE, held out", "as configured",
                 "recalibrated", "with effect", "noise floor", "shrunk by [95 %]");
   std::string out = row;
   for (const auto& gap : diagnosis.gap) {
@@ -93,10 +100,11 @@ std::string gap_table(const Diagnosis& diagnosis) {
                              ? "-"
                              : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " +
                                    readable(100.0 * gap.ci95.high, 3) + "]";
-    std::snprintf(
-        row, sizeof row, "  %-20s%14s%14s%14s%14s   ", (to_string(gap.signal) + " / " + gap.unit).c_str(),
-        readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
-        diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(), readable(gap.noise_floor).c_str());
+    std::snprintf(row, sizeof row, "  %-24s%13s%14s%13s%13s   ",
+                  (plant::in_words(to_string(gap.signal)) + " / " + gap.unit).c_str(),
+                  readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
+                  diagnosis.cause.empty() ? "-" : readable(gap.after).c_str(),
+                  readable(gap.noise_floor).c_str());
     out += row + shrunk + "\n";
   }
   return out;
@@ -108,16 +116,15 @@ std::string summary(const Diagnosis& diagnosis) {
   std::string out = std::string(headline(diagnosis.verdict)) + "\n";
   if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
   out += findings_text(diagnosis.findings, Severity::warning);
+  // Constants within what is known of them may take away what the model as configured shows.
+  const std::string difference = diagnosis.verdict == Verdict::no_gap ? "difference as configured" : "gap";
   bool first = true;
   for (const auto& where : diagnosis.where) {
-    std::string text =
-        to_string(where.signal) + ", " + to_string(where.submodel) + " (" +
-        (takes_gap_away(where) ? percent(where.share) + " of the gap" : "no one place takes the gap away") +
-        ")";
-    if (where.regime) {
-      text += ", most for " + where.regime->variable + " " + readable(where.regime->from) + " to " +
-              readable(where.regime->to);
-    }
+    std::string text = plant::in_words(to_string(where.signal)) + ", " + to_string(where.submodel) + " (" +
+                       (takes_gap_away(where) ? percent(where.share) + " of the " + difference
+                                              : "no one place takes the " + difference + " away") +
+                       ")";
+    if (where.regime) text += ", most for " + regime_text(*where.regime);
     if (!where.only_in.empty()) text += "; only in " + occurrences_text(where.only_in);
     out += line(first ? "where" : "", text);
     first = false;
@@ -144,12 +151,11 @@ std::string summary(const Diagnosis& diagnosis) {
   }
   if (diagnosis.remaining) {
     const Remaining& rest = *diagnosis.remaining;
-    std::string text = std::string(to_string(rest.signal)) + " stays at " + readable(rest.times_floor, 3) +
-                       " times its noise floor, " + percent(rest.share) + " of the gap";
+    std::string text = plant::in_words(to_string(rest.signal)) + " stays at " +
+                       readable(rest.times_floor, 3) + " times its noise floor, " + percent(rest.share) +
+                       " of the gap";
     if (rest.submodel) text += std::string("; ") + to_string(*rest.submodel);
-    if (rest.regime)
-      text += ", most for " + rest.regime->variable + " " + readable(rest.regime->from) + " to " +
-              readable(rest.regime->to);
+    if (rest.regime) text += ", most for " + regime_text(*rest.regime);
     if (!rest.looks.empty()) text += "; " + rest.looks;
     out += line("remaining", text);
   }

@@ -7,6 +7,7 @@
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -254,7 +255,8 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
         covariate.values / std::max(covariate.values.cwiseAbs().maxCoeff(), 1e-12));
     const auto add = [&](Submodel submodel, const std::string& words,
                          std::function<std::vector<Direction>(double)> directions) {
-      b.freedoms.push_back({submodel, covariate.name, words + covariate.name, std::move(directions)});
+      b.freedoms.push_back(
+          {submodel, covariate.name, words + the_variable(covariate.name), std::move(directions)});
       b.freedoms.back().penalty = 1;
     };
     add(Submodel::mechanical_drive, "a torque constant that changes with ", [drive_Nm, z](double) {

@@ -7,6 +7,7 @@
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -105,18 +106,20 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
     const auto z = std::make_shared<Eigen::VectorXd>(
         covariate.name == "rate_dps" ? Eigen::VectorXd(covariate.values.cwiseAbs()) : covariate.values);
     *z /= std::max(z->cwiseAbs().maxCoeff(), 1e-12);
-    add(Submodel::electrical, covariate.name, "a voltage lost that grows with " + covariate.name, [k, z] {
-      Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(z->size(), 2);
-      columns.col(0) = k->v.law_A;
-      for (Eigen::Index i = 0; i < z->size(); ++i)
-        if (k->v.ohm[i] > 0.0) columns(i, 1) = k->on[i] * (*z)[i] / k->v.ohm[i];
-      return columns;
-    });
-    add(Submodel::electrical, covariate.name, "a factor that changes with " + covariate.name, [k, z] {
-      Eigen::MatrixXd columns(z->size(), 2);
-      columns << k->v.law_A, k->v.law_A.cwiseProduct(*z);
-      return columns;
-    });
+    add(Submodel::electrical, covariate.name,
+        "a voltage lost that grows with " + the_variable(covariate.name), [k, z] {
+          Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(z->size(), 2);
+          columns.col(0) = k->v.law_A;
+          for (Eigen::Index i = 0; i < z->size(); ++i)
+            if (k->v.ohm[i] > 0.0) columns(i, 1) = k->on[i] * (*z)[i] / k->v.ohm[i];
+          return columns;
+        });
+    add(Submodel::electrical, covariate.name, "a factor that changes with " + the_variable(covariate.name),
+        [k, z] {
+          Eigen::MatrixXd columns(z->size(), 2);
+          columns << k->v.law_A, k->v.law_A.cwiseProduct(*z);
+          return columns;
+        });
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
   }
   return b;
@@ -260,8 +263,8 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
     const bool temperature = unit_of_column(covariate.name) == "degC";
     const auto given = std::make_shared<Eigen::VectorXd>(covariate.values);
     *z /= std::max(z->cwiseAbs().maxCoeff(), 1e-12);
-    add(Submodel::thermal_loss, covariate.name, "a conductance that changes with " + covariate.name,
-        [k, z, watts] {
+    add(Submodel::thermal_loss, covariate.name,
+        "a conductance that changes with " + the_variable(covariate.name), [k, z, watts] {
           Eigen::MatrixXd two(z->size(), 2);
           const Eigen::VectorXd loss = k->loss_per_K.cwiseProduct(k->rise);
           two.col(0) = loss.cwiseProduct(*z);
@@ -269,16 +272,18 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
           return watts(two);
         });
     if (temperature) {
-      add(Submodel::thermal_heating, covariate.name, "heat that flows in from " + covariate.name,
+      add(Submodel::thermal_heating, covariate.name, "heat that flows in by " + the_variable(covariate.name),
           [k, given, watts] { return watts(k->loss_per_K.cwiseProduct(*given - k->v.winding_C)); });
     } else {
-      add(Submodel::thermal_heating, covariate.name, "heat with the square of " + covariate.name,
+      add(Submodel::thermal_heating, covariate.name,
+          "heat with the square of " + the_variable(covariate.name),
           [k, z, watts] { return watts(k->loss_per_K.cwiseProduct(z->cwiseAbs2())); });
-      add(Submodel::thermal_heating, covariate.name, "heat that comes with " + covariate.name, [k, z, watts] {
-        Eigen::MatrixXd two(z->size(), 2);
-        two << k->loss_per_K.cwiseProduct(*z), k->loss_per_K.cwiseProduct(z->cwiseAbs2());
-        return watts(two);
-      });
+      add(Submodel::thermal_heating, covariate.name, "heat that comes with " + the_variable(covariate.name),
+          [k, z, watts] {
+            Eigen::MatrixXd two(z->size(), 2);
+            two << k->loss_per_K.cwiseProduct(*z), k->loss_per_K.cwiseProduct(z->cwiseAbs2());
+            return watts(two);
+          });
     }
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
   }

@@ -123,21 +123,21 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
                          : "the recording has no column " + std::string(column)));
   };
   if (model.has_thermal()) {
-    if (!recording.has("motor_C")) lack("motor_C", "motor_C");
-    else if (!recording.has("ambient_C")) lack("motor_C", "ambient_C");
+    if (!recording.has("motor_C")) lack("the motor temperature", "motor_C");
+    else if (!recording.has("ambient_C")) lack("the motor temperature", "ambient_C");
     else if (inputs.heat == HeatSource::none)
       notes.push_back(
-          "motor_C is not judged: neither power_param (with a current law and a supply) nor current_A nor "
+          "the motor temperature is not judged: neither power_param (with a current law and a supply) nor current_A nor "
           "drive_A nor heat_W tells the heat");
     else measure(Signal::motor_C);
   } else if (recording.has("motor_C") && !model.has_axis()) {
-    notes.push_back("motor_C is not judged: the model has no thermal block");
+    notes.push_back("the motor temperature is not judged: the model has no thermal block");
   }
   if (model.has_current()) {
-    if (!recording.has("current_A")) lack("current_A", "current_A");
+    if (!recording.has("current_A")) lack("the motor current", "current_A");
     else if (!powered)
-      notes.push_back("current_A is not judged: power_param or the supply voltage is unknown");
-    else if (!recording.has("motor_C")) lack("current_A", "motor_C");
+      notes.push_back("the motor current is not judged: power_param or the supply voltage is unknown");
+    else if (!recording.has("motor_C")) lack("the motor current", "motor_C");
     else measure(Signal::current_A);
   }
   if (model.has_axis()) {
@@ -163,17 +163,41 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       notes.push_back("the axis is not judged: the recording has neither angle_deg nor rate_dps");
     } else {
       if (recording.has("rate_dps")) measure(Signal::rate_dps);
-      else lack("rate_dps", "rate_dps");
+      else lack("the angular rate", "rate_dps");
       if (recording.has("angle_deg"))
         inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
             unwrapped(recording.column("angle_deg"), inputs.runs);
-      else lack("angle_deg", "angle_deg");
+      else lack("the angle", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
       if (!commanded) close_loop(model, inputs);
     }
   }
   if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
   return inputs;
+}
+
+/// What is not judged, each sentence once. One that holds of some recordings only names them: of the others the signal is
+/// judged.
+inline std::vector<std::string> not_judged_in(const std::vector<const Inputs*>& all) {
+  std::vector<std::string> sentences;
+  for (const Inputs* one : all)
+    for (const std::string& note : one->not_judged)
+      if (std::find(sentences.begin(), sentences.end(), note) == sentences.end()) sentences.push_back(note);
+  for (std::string& sentence : sentences) {
+    std::vector<std::string> names;
+    std::size_t count = 0;
+    for (const Inputs* one : all) {
+      if (std::find(one->not_judged.begin(), one->not_judged.end(), sentence) == one->not_judged.end())
+        continue;
+      ++count;
+      if (std::find(names.begin(), names.end(), one->name) == names.end()) names.push_back(one->name);
+    }
+    if (count == all.size()) continue;
+    std::string where;
+    for (const std::string& name : names) where += (where.empty() ? "" : ", ") + name;
+    sentence = where + ": " + sentence;
+  }
+  return sentences;
 }
 
 }  // namespace thermopower::gap::engine

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/plant_info.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <cmath>
 
@@ -33,7 +34,8 @@ Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording, con
   for (std::size_t i = 0; i < info.signals.size(); ++i) {
     const std::string& name = info.signals[i].name;
     if (!recording.has(name))
-      inputs.not_judged.push_back(name + " is not judged: the recording has no column " + name);
+      inputs.not_judged.push_back(plant::the_variable(name) + " is not judged: the recording has no column " +
+                                  name);
     else if (complete) inputs.measured[i] = recording.column(name);
   }
   return inputs;

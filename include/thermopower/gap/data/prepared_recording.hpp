@@ -10,6 +10,7 @@
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,7 @@ public:
     believed_.remove(column);
     renew_inputs(model);
     for (std::string& note : inputs_.not_judged)
-      if (note.rfind(column + " ", 0) == 0) note = sentence;
+      if (note.rfind(plant::the_variable(column) + " is not judged", 0) == 0) note = sentence;
   }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }

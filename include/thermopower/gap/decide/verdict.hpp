@@ -176,6 +176,20 @@ inline constexpr const char* wholly_explained =
 /// The same where several explanations do.
 inline constexpr const char* several_explain = "several explanations bring held-out data near the noise";
 
+/// The same where the printed table shows a signal above the noise.
+inline constexpr const char* several_leave_a_rest =
+    "several explanations bring held-out data nearer to the noise, none of them all the way, and what remains does not "
+    "tell which";
+
+/// What is said where several explanations take a proven part away and leave a rest.
+inline constexpr const char* several_take_a_part =
+    "several explanations take a proven part of the gap away, and what remains of it does not tell which";
+
+/// What is said where constants alone do not bring the data to the noise, and no effect does better.
+inline constexpr const char* constants_leave_a_rest =
+    "there is a gap; other constants take the most of it away, and no effect of the catalogue explains what they "
+    "leave above the noise";
+
 /// What is said beside a rest.
 inline constexpr const char* partly_explained =
     "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
@@ -243,9 +257,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     const double doubt = std::min(4.0 * (level_left - decision.near_floor), 30.0 * (share_left - 0.15));
     result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
   } else if (only_constants) {
-    return nothing_known(
-        "there is a gap; other constants take the most of it away, and no effect of the catalogue explains what they "
-        "leave above the noise");
+    return nothing_known(constants_leave_a_rest);
   } else if (!proven) {
     return nothing_known("there is a gap, and no effect of the catalogue takes a proven part of it away");
   } else {
@@ -274,8 +286,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   } else if (best.probability < decision.likelier_than_all * together) {
     result.second_is_open = best.explanation.effects.size() > 1;
     result.verdict = Verdict::ambiguous;
-    result.reason =
-        "several explanations take a proven part of the gap away, and what remains of it does not tell which";
+    result.reason = several_take_a_part;
   } else {
     result.verdict = Verdict::partial;
     result.reason = partly_explained;

@@ -9,6 +9,7 @@
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -41,7 +42,7 @@ inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
                           "log it unfiltered and with the instant it is of",
                           FindingAction::masked,
                           {}});
-      one.leave_out(model, late, late + " is not judged: it " + words);
+      one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
     }
 }
 

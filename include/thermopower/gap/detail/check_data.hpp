@@ -286,11 +286,11 @@ THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vect
   std::vector<Inputs> inputs;
   for (const engine::PreparedRecording& one : checked.train) {
     inputs.push_back(one.inputs());
-    for (const std::string& note : one.inputs().not_judged)
-      if (std::find(report.not_judged.begin(), report.not_judged.end(), note) == report.not_judged.end())
-        report.not_judged.push_back(note);
     if (one.recording().rows() > longest->recording().rows()) longest = &one;
   }
+  std::vector<const Inputs*> all;
+  for (const Inputs& one : inputs) all.push_back(&one);
+  report.not_judged = engine::not_judged_in(all);
   constexpr Eigen::Index few = 12;
   const Recording sample = engine::sampled(longest->recording(), engine::moves(model, longest->recording()));
   if (sample.rows() < few) return report;

@@ -164,12 +164,10 @@ private:
       held_out_recordings_.push_back(one.recording());
       held_out_inputs_.push_back(one.inputs());
     }
-    for (const auto* all : {&train_inputs_, &held_out_inputs_})
-      for (const Inputs& one : *all)
-        for (const std::string& note : one.not_judged)
-          if (std::find(result_.not_judged.begin(), result_.not_judged.end(), note) ==
-              result_.not_judged.end())
-            result_.not_judged.push_back(note);
+    std::vector<const Inputs*> all;
+    for (const auto* part : {&train_inputs_, &held_out_inputs_})
+      for (const Inputs& one : *part) all.push_back(&one);
+    result_.not_judged = not_judged_in(all);
     result_.augmented = result_.recalibrated = model_;
   }
 
@@ -448,6 +446,18 @@ private:
     attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
+  /// Forgets what a report said of causes and scores, before another one is written.
+  void take_back_causes() {
+    result_.cause.clear();
+    result_.alternatives.clear();
+    result_.constants.clear();
+    result_.correlation = {};
+    result_.ranking.clear();
+    result_.gap.clear();
+    result_.series.clear();
+    result_.augmented = model_;
+  }
+
   void report(Attempt& attempt, const Conclusion& conclusion) {
     std::vector<Candidate>& candidates = attempt.candidates;
     result_.verdict = conclusion.verdict;
@@ -465,6 +475,11 @@ private:
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
+    if (constants_fall_short(result_)) {
+      take_back_causes();
+      report(attempt, nothing_known(constants_leave_a_rest));
+      return;
+    }
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     if (named && leaves_a_rest)

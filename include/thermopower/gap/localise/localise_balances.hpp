@@ -5,6 +5,7 @@
 #include <thermopower/gap/localise/judgement.hpp>
 #include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -64,12 +65,11 @@ inline std::string evidence_text(const std::string& given, const std::string& wo
   const Ordered ordered = strongest_axis(o);
   std::string text = given + ", " + words + " explains " + percent_text(share) +
                      " of the excess on stretches that the fit has not seen.";
-  char more[200];
+  char more[80];
   if (ordered.ratio > ordered.chance) {
-    std::snprintf(more, sizeof more,
-                  " The %s follows %s most (correlation ratio %.2f, by chance up to %.2f).",
-                  to_string(o.quantity).c_str(), ordered.axis.c_str(), ordered.ratio, ordered.chance);
-    text += more;
+    std::snprintf(more, sizeof more, " most (correlation ratio %.2f, by chance up to %.2f).", ordered.ratio,
+                  ordered.chance);
+    text += " The " + to_string(o.quantity) + " follows " + plant::the_variable(ordered.axis) + more;
   }
   const double period = half_power_period(o.value, o.interval_s);
   if (period > 0.0 && period < o.longest_run_s) {

@@ -7,6 +7,7 @@
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/plant_info.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -221,7 +222,8 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     picture.signal = plant::SignalName(info.signals[k].name);
     const std::optional<plant::PlantBalance>& balance = info.signals[k].balance;
     picture.quantity =
-        balance ? balance->quantity : plant::QuantityName("missing rate of " + info.signals[k].name);
+        balance ? balance->quantity
+                : plant::QuantityName("missing rate of " + plant::the_variable(info.signals[k].name));
     picture.unit = balance ? balance->unit : info.signals[k].unit + "/s";
     picture.variable = names[best];
     picture.variable_unit = units[best];
@@ -234,11 +236,11 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     std::snprintf(
         text, sizeof text,
         "From each measured state on, %s misses %.3g %s (root mean square), where noise explains %.3g;",
-        info.signals[k].name.c_str(), seen, picture.unit.c_str(), expected);
+        plant::the_variable(info.signals[k].name).c_str(), seen, picture.unit.c_str(), expected);
     location.evidence = text;
     if (order > own_plant_thresholds.least_order) {
-      std::snprintf(text, sizeof text, " it follows %s most (correlation ratio %.2f).", names[best].c_str(),
-                    order);
+      std::snprintf(text, sizeof text, " it follows %s most (correlation ratio %.2f).",
+                    plant::the_variable(names[best]).c_str(), order);
       location.regime = Regime{names[best], picture.x[0], picture.x[picture.x.size() - 1]};
     } else {
       std::snprintf(text, sizeof text, " nothing recorded orders it.");

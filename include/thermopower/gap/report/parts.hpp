@@ -8,6 +8,7 @@
 #include <thermopower/gap/report/estimates.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -158,8 +159,9 @@ inline void note_recalibration(Diagnosis& result) {
   for (const GapScore& gap : result.gap)
     if (gap.recalibrated > 1.05 * gap.before && gap.before > 0.0) {
       if (!result.recalibration.empty()) result.recalibration += "; ";
-      result.recalibration += std::string(to_string(gap.signal)) + ": refitted constants score " +
-                              std::to_string(gap.recalibrated / gap.before) +
+      char times[32];
+      std::snprintf(times, sizeof times, "%.3g", gap.recalibrated / gap.before);
+      result.recalibration += plant::in_words(to_string(gap.signal)) + ": refitted constants score " + times +
                               " times the held-out error of the configured ones";
     }
   if (!result.recalibration.empty())
@@ -171,23 +173,35 @@ inline bool is_above_the_noise(const GapScore& gap) {
   return gap.noise_floor > 0.0 && gap.after > decision.near_floor * gap.noise_floor;
 }
 
-/// Takes "explained" back where the printed table shows a signal above the noise: the decision is drawn on a part of the
-/// held-out data, and what is said must hold on all of it. @return whether it did
+/// Whether constants alone are said to explain what the printed table shows above the noise: they cannot be a part of an
+/// explanation, so that nothing is explained then.
+inline bool constants_fall_short(const Diagnosis& result) {
+  return result.verdict == Verdict::explained &&
+         std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) &&
+         std::all_of(result.cause.begin(), result.cause.end(),
+                     [](const Cause& one) { return one.effect.rfind("calibration.", 0) == 0; });
+}
+
+/// Takes back that causes bring every signal near the noise where the printed table shows one above it: the decision is
+/// drawn on a part of the held-out data, and what is said must hold on all of it. @return whether it did
 inline bool admit_a_rest(Diagnosis& result) {
-  if (result.verdict != Verdict::explained) return false;
-  const bool above = std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise);
-  const bool only_constants = std::all_of(result.cause.begin(), result.cause.end(), [](const Cause& one) {
-    return one.effect.rfind("calibration.", 0) == 0;
-  });
-  if (!above || only_constants) return false;
-  result.verdict = Verdict::partial;
-  result.reason = partly_explained;
+  if (std::none_of(result.gap.begin(), result.gap.end(), is_above_the_noise)) return false;
+  if (result.verdict == Verdict::explained) {
+    result.verdict = Verdict::partial;
+    result.reason = partly_explained;
+    return true;
+  }
+  if (result.verdict != Verdict::ambiguous || result.reason != several_explain) return false;
+  result.reason = several_leave_a_rest;
   return true;
 }
 
-/// Takes "partly explained" back where the printed table shows every signal near the noise. @return whether it did
+/// Takes back that the causes leave a rest where the printed table shows every signal near the noise. @return whether it
+/// did
 inline bool deny_a_rest(Diagnosis& result) {
-  if (result.verdict != Verdict::partial) return false;
+  const bool in_part = result.verdict == Verdict::partial ||
+                       (result.verdict == Verdict::ambiguous && result.reason == several_take_a_part);
+  if (!in_part) return false;
   for (const GapScore& gap : result.gap)
     if (!(gap.noise_floor > 0.0) || is_above_the_noise(gap)) return false;
   const bool alone = result.alternatives.empty();
@@ -346,7 +360,7 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
   }
   if (result.verdict == Verdict::unexplained && !result.where.empty())
     return "Log more around " + to_string(result.where.front().submodel) + " (" +
-           to_string(result.where.front().signal) +
+           plant::in_words(to_string(result.where.front().signal)) +
            "): whatever is switched, touched or moved while it runs, and repeat the same excitation twice.";
   if (result.verdict == Verdict::unexplained)
     return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "

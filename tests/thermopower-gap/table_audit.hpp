@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include "against_report.hpp"
+
+#include <set>
+
+namespace printed {
+
+/// Multiple of the noise floor up to which a report counts a signal as near it: docs/explain/gap-method.md.
+constexpr double near_floor = 1.5;
+
+/// What report.json says in words, against its own numbers.
+class TableAudit : public AgainstReport {
+public:
+  explicit TableAudit(const Written& written) : AgainstReport(written) {
+    verdict();
+    table();
+    places();
+    rest();
+    steps();
+  }
+
+private:
+  bool above(const Json& gap) const {
+    return gap["after"].get<double>() > near_floor * gap["noise_floor"].get<double>();
+  }
+  bool any_above() const {
+    return std::any_of(r_["gap"].begin(), r_["gap"].end(), [&](const Json& one) { return above(one); });
+  }
+
+  /// The verdict and its reason against the table.
+  void verdict() {
+    const std::string word = verdict_word(), reason = of(r_["reason"]);
+    const bool caused = !r_["cause"].empty();
+    need(caused == (word == "explained" || word == "partial" || word == "ambiguous"),
+         "causes do not fit the verdict", word);
+    need((word == "ambiguous") == !r_["alternatives"].empty(), "alternatives do not fit the verdict", word);
+    need((word == "insufficient") == r_["gap"].empty(), "a table does not fit the verdict", word);
+    if (word == "explained") need(!any_above(), "explained, and the table is above the noise");
+    if (word == "partial") need(any_above(), "in part, and the table is near the noise");
+    if (caused && reason.find("near the noise") != std::string::npos)
+      need(!any_above(), "'near the noise', and the table is above it", reason);
+    if (reason.find("all the way") != std::string::npos || reason.find("remains") != std::string::npos ||
+        reason.find("the rest stays above") != std::string::npos)
+      need(any_above(), "a rest, and the table has none", reason);
+    need(r_.contains("remaining") == (caused && any_above() && r_["verdict"] != "explained"),
+         "what remains does not fit the table", word);
+    if (word == "no_gap")
+      for (const auto& gap : r_["gap"])
+        need(std::min(gap["before"].get<double>(), gap["recalibrated"].get<double>()) <=
+                 near_floor * gap["noise_floor"].get<double>(),
+             "no gap, and the table shows one");
+    if (word == "unexplained")
+      need(std::any_of(r_["gap"].begin(), r_["gap"].end(),
+                       [](const Json& gap) { return gap["before"] > gap["noise_floor"]; }),
+           "a gap, and the table shows none");
+    named_in_words(reason);
+  }
+
+  /// The table against itself, and what is said of its columns.
+  void table() {
+    std::string worse;
+    for (const auto& [signal, gap] : r_["gap"].items()) {
+      const double before = gap["before"], after = gap["after"];
+      if (before > 0.0)
+        need(std::fabs(1.0 - after / before - gap["shrunk_by"].get<double>()) < 1e-9, "shrunk_by", signal);
+      if (!r_["cause"].empty())
+        need(gap["ci95"][0] <= gap["shrunk_by"] && gap["shrunk_by"] <= gap["ci95"][1],
+             "an interval without its value", signal);
+      for (const auto& note : r_["not_judged"])
+        need(of(note).rfind("the " + words(signal) + " is not judged", 0) != 0, "a row of what is not judged",
+             of(note));
+      const bool is_worse = gap["recalibrated"].get<double>() > 1.05 * before;
+      const std::string said = words(signal) + ": refitted constants score ";
+      need((of(r_["recalibration"]).find(said) != std::string::npos) == is_worse,
+           "what recalibration does to held-out data", signal);
+      if (!is_worse) continue;
+      Sentence sentence(of(r_["recalibration"]));
+      sentence.take(literal(said) + number + " times", [&](const std::smatch& m) {
+        need(is(m[1], gap["recalibrated"].get<double>() / before), "recalibrated", sentence.text());
+      });
+    }
+    named_in_words(of(r_["recalibration"]));
+    double probability = r_["none_of_these"].is_null() ? 0.0 : r_["none_of_these"].get<double>();
+    for (const auto& one : r_["ranking"])
+      if (!one["probability"].is_null()) probability += one["probability"].get<double>();
+    need(probability < 1.0 + 1e-6, "probabilities of more than 1");
+    for (const auto& cause : r_["cause"])
+      for (const auto& [name, parameter] : cause["parameters"].items())
+        need(parameter["ci95"][0] <= parameter["value"] && parameter["value"] <= parameter["ci95"][1],
+             "an interval without its value", name);
+  }
+
+  /// The evidence for each place against its share and against the recordings.
+  void places() {
+    std::set<std::string> seen;
+    for (const auto& place : r_["where"]) {
+      need(seen.insert(of(place["signal"]) + of(place["submodel"])).second, "a place that is named twice");
+      const std::string evidence = of(place["evidence"]);
+      named_in_words(evidence);
+      Sentence sentence(evidence);
+      double sum = 0.0;
+      const int shares = sentence.take("explains ([0-9]+) % of the excess", [&](const std::smatch& m) {
+        sum += 0.01 * std::atof(m[1].str().c_str());
+      });
+      need(std::fabs(std::min(sum, 1.0) - place["share"].get<double>()) <= 0.005 * shares + 1e-9,
+           "the evidence explains another share", evidence);
+      sentence.take(std::string("correlation ratio ") + number + ", by chance up to " + number,
+                    [&](const std::smatch& m) {
+                      const double ratio = std::atof(m[1].str().c_str()),
+                                   chance = std::atof(m[2].str().c_str());
+                      need(ratio >= chance && ratio <= 1.0, "a correlation that chance makes, too", evidence);
+                    });
+      sentence.take(std::string("at periods above ") + number + " s", [&](const std::smatch& m) {
+        need(std::atof(m[1].str().c_str()) < w_.longest_run_s, "a period longer than any run", evidence);
+      });
+      // What a freedom found by itself has no table.
+      sentence.take("repeats [0-9]+ times a turn", [](const std::smatch&) {});
+      sentence.take(std::string("behind a spring, ") + number + " Hz", [](const std::smatch&) {});
+      sentence.take(std::string("comes ") + number + " s after the temperature", [&](const std::smatch& m) {
+        need(std::atof(m[1].str().c_str()) < w_.longest_run_s, "a lag longer than any run", evidence);
+      });
+      nothing_left(sentence);
+      if (!place["regime"].is_null())
+        need(place["regime"]["from"] <= place["regime"]["to"], "a regime that ends before it begins");
+    }
+  }
+
+  /// What the steps of a signal allow, against its noise floor.
+  void steps() {
+    for (const auto& one : r_["findings"]) {
+      if (one["kind"] != "coarse_quantum" || !r_["gap"].contains(of(one["column"]))) continue;
+      Sentence sentence(of(one["message"]));
+      const int said = sentence.take(std::string("better than ") + number, [&](const std::smatch& m) {
+        need(std::atof(m[1].str().c_str()) <= 1.001 * gap_of(of(one["column"]))["noise_floor"].get<double>(),
+             "a noise floor that the steps do not allow", sentence.text());
+      });
+      need(said == 1, "steps without what they allow", sentence.text());
+    }
+  }
+
+  /// What remains, against the table.
+  void rest() {
+    if (!r_.contains("remaining")) return;
+    const Json& rest = r_["remaining"];
+    const Json& gap = gap_of(of(rest["signal"]));
+    const double after = gap["after"], floor = gap["noise_floor"], before = gap["before"];
+    need(std::fabs(rest["times_floor"].get<double>() - after / floor) < 1e-6 * after / floor, "times_floor");
+    for (const auto& one : r_["gap"])
+      need(one["after"].get<double>() / one["noise_floor"].get<double>() <= after / floor * (1.0 + 1e-9),
+           "another signal is further above the noise");
+    const double above = std::sqrt(std::max(after * after - floor * floor, 0.0)),
+                 whole = std::sqrt(std::max(before * before - floor * floor, 0.0));
+    if (whole > 0.0)
+      need(std::fabs(rest["share"].get<double>() - std::min(1.0, above / whole)) < 1e-6, "share of the rest");
+    named_in_words(of(rest["looks"]));
+    Sentence sentence(of(rest["looks"]));
+    sentence.take(
+        std::string("alike for about ") + number + " s; ([0-9]+) % of them is a constant offset of " +
+            number + " (\\S+)$",
+        [&](const std::smatch& m) {
+          const double offset = std::atof(m[3].str().c_str()), half = 0.05 * std::fabs(offset);
+          need(std::atof(m[1].str().c_str()) < w_.longest_run_s, "errors alike for longer than a run", m[0]);
+          need(m[4] == gap["unit"], "another unit", m[0]);
+          if (!w_.one_held_out) return;
+          const double part = 100.0 * offset * offset / (after * after),
+                       wide = 100.0 * (2.0 * std::fabs(offset) * half + half * half) / (after * after);
+          need(std::fabs(std::atof(m[2].str().c_str()) - part) <= 0.5 + wide, "an offset of another size",
+               m[0]);
+        });
+    nothing_left(sentence);
+  }
+};
+
+}  // namespace printed
