@@ -17,6 +17,9 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number>
 class AirCelsius {
+  static_assert(static_cast<Number>(0.5) > static_cast<Number>(0),
+                "thermopower: the Number of AirCelsius must be float or double: whole numbers have no NaN");
+
 public:
   /// Not said: NaN.
   constexpr AirCelsius() noexcept : air_C_(static_cast<Number>(NAN)) {}

@@ -12,6 +12,21 @@
 /// compiler.
 
 namespace thermopower {
+namespace detail {
+
+/// A motor with the thesis's current law, in numbers that the compiler knows.
+template <class Candidate, class = int>
+struct HasCurrentLaw {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct HasCurrentLaw<Candidate,
+                     typename Exists<decltype(Candidate::template current_law<double>().base_A),
+                                     decltype(Candidate::template current_law<double>().exponent)>::Type> {
+  static constexpr bool value = true;
+};
+
+}  // namespace detail
 
 /// What TabulatedCurrent tabulates: the thesis's law of a motor. A source of your own has the same four
 /// functions, all `constexpr`.
@@ -23,6 +38,10 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Motor>
 struct ThesisCurrentSource {
+  static_assert(
+      detail::HasCurrentLaw<Motor>::value,
+      "thermopower: the parameter of ThesisCurrentSource must be a motor with the thesis's current law, such as motors::Bgm2606_90t: a type with constexpr current_law<double>()");
+
   /// Current at 0 degC. @return A
   static constexpr double intercept_A(double v_rms_V) {
     return Motor::template current_law<double>().base_A *

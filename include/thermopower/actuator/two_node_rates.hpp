@@ -19,6 +19,10 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number>
 struct TwoNodeRates {
+  static_assert(
+      detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of TwoNodeRates must be float, double or a class that stands for one");
+
   Number fast_per_s;  ///< The nodes against each other, 1/s.
   Number slow_per_s;  ///< Both together against the air, 1/s; 0 where nothing is lost.
 };

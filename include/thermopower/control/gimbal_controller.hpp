@@ -15,6 +15,8 @@ namespace thermopower {
 /// @ingroup control
 template <uint8_t axis_count>
 struct GimbalCommand {
+  static_assert(axis_count > 0, "thermopower: a gimbal has at least one axis");
+
   uint8_t power[axis_count];       ///< POWER
   uint8_t p_gain[axis_count];      ///< P
   LimitReason reason[axis_count];  ///< Why `power` is below what the error asks for.
@@ -83,6 +85,8 @@ struct GimbalConfig {
 /// @ingroup control
 template <uint8_t axis_count>
 struct GimbalInputs {
+  static_assert(axis_count > 0, "thermopower: a gimbal has at least one axis");
+
   float error_deg[axis_count];  ///< Position errors, any number of turns.
   float camera_C;               ///< Thermometer of the camera's IMU.
   float frame_C;                ///< Thermometer of the frame's IMU; NaN when there is none.

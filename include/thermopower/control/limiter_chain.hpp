@@ -29,6 +29,10 @@ struct LimiterChainConfig {
 /// @copydoc LimiterChainConfig
 template <class Last>
 struct LimiterChainConfig<Last> {
+  static_assert(
+      detail::IsLimiter<Last>::value,
+      "thermopower: every parameter of LimiterChain must be a limiter: a type with Config, step, cut and ceiling");
+
   typename Last::Config first;  ///< Of the last limiter.
 
   /// The limiter's standard.
@@ -48,6 +52,10 @@ struct LimiterChainConfig<Last> {
 /// @copydoc LimiterChainConfig
 template <class First, class Second, class... Rest>
 struct LimiterChainConfig<First, Second, Rest...> {
+  static_assert(
+      detail::IsLimiter<First>::value,
+      "thermopower: every parameter of LimiterChain must be a limiter: a type with Config, step, cut and ceiling");
+
   typename First::Config first;              ///< Of the first limiter.
   LimiterChainConfig<Second, Rest...> rest;  ///< Of those after it: `rest.first` is the second's.
 

@@ -44,6 +44,8 @@ uint8_t reported_power(const Telemetry&, uint8_t, long) noexcept {
 /// @ingroup control
 template <uint8_t axis_count>
 class PowerInForce {
+  static_assert(axis_count > 0, "thermopower: a gimbal has at least one axis");
+
 public:
   /// Nothing was sent yet.
   constexpr PowerInForce() noexcept : largest_{}, before_{} {}

@@ -30,7 +30,8 @@ struct IsModelNumber<double, int> {
   static constexpr bool value = true;
 };
 template <class Number>
-struct IsModelNumber<Number, typename Exists<int Number::*>::Type> {
+struct IsModelNumber<
+    Number, typename Exists<int Number::*, decltype(probe<const Number>() * probe<const Number>())>::Type> {
   static constexpr bool value = true;
 };
 

@@ -5,10 +5,27 @@
 
 #include <stdint.h>
 
+#include "../detail/probe.hpp"
+
 /// @file
 /// @brief Poller: when to ask a board, and when to stop waiting for its answer.
 
 namespace thermopower {
+namespace detail {
+
+/// The pace of a conversation: `request_interval_us()` and `answer_timeout_us()`.
+template <class Candidate, class = int>
+struct SbgcIsPolling {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct SbgcIsPolling<Candidate, typename Exists<decltype(Candidate::request_interval_us()),
+                                                decltype(Candidate::answer_timeout_us())>::Type> {
+  static constexpr bool value = true;
+};
+
+}  // namespace detail
+
 namespace sbgc {
 
 /// @brief The pace of the thesis's program, with a time-out. A set of your own has the same functions.
@@ -53,6 +70,10 @@ enum class Turn : uint8_t {
 /// @ingroup sbgc
 template <class Constants>
 class BasicPoller {
+  static_assert(
+      thermopower::detail::SbgcIsPolling<Constants>::value,
+      "thermopower: the parameter of BasicPoller must be its constants, such as sbgc::StandardPolling: a type with constexpr request_interval_us() and answer_timeout_us()");
+
 public:
   /// @brief What is to be done. Call it in every round of the loop.
   /// @param now_us a clock that may wrap around at 2^32, such as Arduino's micros().

@@ -5,12 +5,33 @@
 
 #include <stdint.h>
 
+#include "../detail/probe.hpp"
 #include "checksum.hpp"
 
 /// @file
 /// @brief Protocol versions, and the policies that choose which of them a codec speaks.
 
 namespace thermopower {
+namespace detail {
+
+/// The running checksum of one frame, as sbgc::ProtocolV1 has it.
+template <class Candidate, class = int>
+struct SbgcIsProtocol {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct SbgcIsProtocol<
+    Candidate,
+    typename Exists<decltype(Candidate::is_start(uint8_t(0))), decltype(probe<Candidate>().begin(uint8_t(0))),
+                    decltype(probe<Candidate>().add_header(uint8_t(0))),
+                    decltype(probe<Candidate>().add_payload(uint8_t(0))),
+                    decltype(probe<Candidate>().finish()), decltype(probe<const Candidate>().trailer_size()),
+                    decltype(probe<const Candidate>().sending())>::Type> {
+  static constexpr bool value = true;
+};
+
+}  // namespace detail
+
 namespace sbgc {
 
 /// @brief Version of a frame; the value is its first byte.

@@ -58,6 +58,10 @@ struct ReceiverCounters {
 /// @ingroup sbgc
 template <size_t payload_capacity, class Protocol>
 class Receiver {
+  static_assert(
+      thermopower::detail::SbgcIsProtocol<Protocol>::value,
+      "thermopower: the second parameter of SbgcCodec and Receiver must be a protocol: sbgc::ProtocolV1, sbgc::ProtocolV2, sbgc::ProtocolAuto or a type with the same members");
+
   static_assert(payload_capacity <= 255, "thermopower: an SBGC payload has at most 255 bytes");
 
 public:

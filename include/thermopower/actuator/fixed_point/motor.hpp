@@ -36,6 +36,44 @@ struct IsMotor<Candidate,
   static constexpr bool value = true;
 };
 
+/// A motor with the thesis's laws.
+template <class Candidate, class = int>
+struct HasThesisLaws {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct HasThesisLaws<Candidate, typename thermopower::detail::Exists<
+                                    decltype(Candidate::template current_law<double>()),
+                                    decltype(Candidate::template heating_law<double>()),
+                                    decltype(Candidate::template cooling_law<double>())>::Type> {
+  static constexpr bool value = true;
+};
+
+/// A supply: `supply_V()`.
+template <class Candidate, class = int>
+struct IsSupply {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsSupply<Candidate, typename thermopower::detail::Exists<decltype(Candidate::supply_V())>::Type> {
+  static constexpr bool value = true;
+};
+
+/// Constants of a winding on one heat capacity.
+template <class Candidate, class = int>
+struct IsOhmicConstants {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsOhmicConstants<
+    Candidate,
+    typename thermopower::detail::Exists<
+        decltype(Candidate::supply_V()), decltype(Candidate::resistance_ohm()),
+        decltype(Candidate::reference_C()), decltype(Candidate::tempco_per_K()),
+        decltype(Candidate::heat_capacity_J_per_K()), decltype(Candidate::conductance_W_per_K())>::Type> {
+  static constexpr bool value = true;
+};
+
 }  // namespace detail
 
 /// The thesis's supply, 13 V. A supply of your own is such a struct.
@@ -57,6 +95,13 @@ struct ThirteenVolts {
 /// @ingroup actuator
 template <class Motor, class Supply = ThirteenVolts>
 struct ThesisMotor {
+  static_assert(
+      detail::HasThesisLaws<Motor>::value,
+      "thermopower: the first parameter of fixed_point::ThesisMotor must be a motor with the thesis's laws, such as motors::Bgm2606_90t: a type with constexpr current_law<double>(), heating_law<double>() and cooling_law<double>()");
+  static_assert(
+      detail::IsSupply<Supply>::value,
+      "thermopower: the second parameter of fixed_point::ThesisMotor must be a supply, such as fixed_point::ThirteenVolts: a type with constexpr supply_V()");
+
   /// Amplitude of the switched supply, V.
   static constexpr double supply_V() { return Supply::supply_V(); }
   /// At or below this voltage there is no heating, V.
@@ -104,6 +149,10 @@ struct ThesisMotor {
 /// @ingroup actuator
 template <class Constants>
 struct OhmicMotor {
+  static_assert(
+      detail::IsOhmicConstants<Constants>::value,
+      "thermopower: the parameter of fixed_point::OhmicMotor must be its constants: a type with constexpr supply_V(), resistance_ohm(), reference_C(), tempco_per_K(), heat_capacity_J_per_K() and conductance_W_per_K()");
+
   /// Amplitude of the switched supply, V.
   static constexpr double supply_V() { return Constants::supply_V(); }
   static constexpr double minimum_V_rms() { return 0.0; }  ///< Every voltage heats.

@@ -51,6 +51,10 @@ struct ThesisLimit {
 /// @ingroup control
 template <class Constants = ThesisLimit>
 class PerCycle {
+  static_assert(
+      detail::IsLimit<Constants>::value,
+      "thermopower: the parameter of fixed_point::PerCycle must be the constants of its limiter, such as fixed_point::ThesisLimit: a type with constexpr maximum_C() and safety_time_s()");
+
 public:
   /// Too warm: one count down, whatever the time.
   void lower(Ticks) noexcept {
@@ -75,6 +79,10 @@ private:
 /// @ingroup control
 template <class Constants = ThesisLimit>
 class PerSecond {
+  static_assert(
+      detail::IsCeilingRate<Constants>::value,
+      "thermopower: the parameter of fixed_point::PerSecond must be its constants, such as fixed_point::ThesisLimit: a type with constexpr rate_per_s()");
+
 public:
   /// Too warm: down, as far as the time allows.
   void lower(Ticks ticks) noexcept {
@@ -117,6 +125,10 @@ class SafetyLimiter {
   static_assert(
       detail::IsLimit<Constants>::value,
       "thermopower: the first parameter of fixed_point::SafetyLimiter must be its constants, such as fixed_point::ThesisLimit: a type with constexpr maximum_C(), safety_time_s() and rate_per_s()");
+
+  static_assert(
+      detail::IsCeilingRule<Rule<Constants> >::value,
+      "thermopower: the second parameter of fixed_point::SafetyLimiter must be a rule for the ceiling, such as fixed_point::PerSecond: a template with lower(ticks), raise(ticks), cut() and ceiling()");
 
   static_assert(Constants::maximum_C() >= 0.0 && Constants::maximum_C() <= 170.0,
                 "thermopower: maximum_C must be within 0 .. 170 degC for a fixed-point limiter");

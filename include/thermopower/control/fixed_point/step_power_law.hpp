@@ -4,6 +4,7 @@
 
 #include "../../fixed_point/units.hpp"
 #include "../limit_reason.hpp"
+#include "detail/composition.hpp"
 
 /// @file control/fixed_point/step_power_law.hpp
 /// How much power a position error is worth, eq 4.22, from the controller's own angle units: no conversion to
@@ -70,6 +71,10 @@ uint8_t level_of_error(uint16_t error_units) noexcept {
 /// @ingroup control
 template <class Constants = ThesisLevels>
 struct ProgrammedLevels {
+  static_assert(
+      detail::IsLevels<Constants>::value,
+      "thermopower: the parameter of fixed_point::ProgrammedLevels must be its constants, such as fixed_point::ThesisLevels: a type with constexpr full_power_error_deg() and power_step()");
+
   /// @param error_units  magnitude of the folded error in units of 360/16384 degree, 0 .. 8192
   /// @return power parameter
   uint8_t step(uint16_t error_units) noexcept {
@@ -86,6 +91,10 @@ struct ProgrammedLevels {
 /// @ingroup control
 template <class Constants = ThesisLevels>
 class HysteresisLevels {
+  static_assert(
+      detail::IsLevels<Constants>::value && detail::IsHysteresis<Constants>::value,
+      "thermopower: the parameter of fixed_point::HysteresisLevels must be its constants, such as fixed_point::ThesisLevels: a type with constexpr full_power_error_deg(), power_step() and hysteresis_deg()");
+
 public:
   /// @copydoc ProgrammedLevels::step
   uint8_t step(uint16_t error_units) noexcept {

@@ -96,6 +96,54 @@ struct IsLimit<Candidate, typename thermopower::detail::Exists<decltype(Candidat
   static constexpr bool value = true;
 };
 
+/// Constants of a ceiling that moves in counts per second: `rate_per_s()`.
+template <class Candidate, class = int>
+struct IsCeilingRate {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsCeilingRate<Candidate,
+                     typename thermopower::detail::Exists<decltype(Candidate::rate_per_s())>::Type> {
+  static constexpr bool value = true;
+};
+
+/// A rule for a ceiling: `lower(ticks)`, `raise(ticks)`, `cut()` and `ceiling()`.
+template <class Candidate, class = int>
+struct IsCeilingRule {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsCeilingRule<Candidate,
+                     typename thermopower::detail::Exists<
+                         decltype(thermopower::detail::probe<Candidate>().lower(Ticks(0))),
+                         decltype(thermopower::detail::probe<Candidate>().raise(Ticks(0))),
+                         decltype(thermopower::detail::probe<Candidate>().cut()),
+                         decltype(thermopower::detail::probe<const Candidate>().ceiling())>::Type> {
+  static constexpr bool value = true;
+};
+
+/// Constants of power levels: `full_power_error_deg()` and `power_step()`.
+template <class Candidate, class = int>
+struct IsLevels {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsLevels<Candidate, typename thermopower::detail::Exists<decltype(Candidate::full_power_error_deg()),
+                                                                decltype(Candidate::power_step())>::Type> {
+  static constexpr bool value = true;
+};
+
+/// The same with `hysteresis_deg()`.
+template <class Candidate, class = int>
+struct IsHysteresis {
+  static constexpr bool value = false;
+};
+template <class Candidate>
+struct IsHysteresis<Candidate,
+                    typename thermopower::detail::Exists<decltype(Candidate::hysteresis_deg())>::Type> {
+  static constexpr bool value = true;
+};
+
 }  // namespace detail
 }  // namespace fixed_point
 }  // namespace thermopower

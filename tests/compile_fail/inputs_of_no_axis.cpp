@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+// expect: a gimbal has at least one axis
+
+#include <thermopower/thermopower.hpp>
+namespace tp = thermopower;
+
+#if defined(MISUSE)
+tp::GimbalInputs<0> inputs;
+#else
+tp::GimbalInputs<3> inputs;
+#endif
