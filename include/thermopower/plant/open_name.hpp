@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace thermopower::plant {
@@ -21,6 +22,10 @@ namespace thermopower::plant {
 /// How to: @ref diagnose_a_gap.
 template <class Known>
 class OpenName {
+  static_assert(
+      std::is_enum<Known>::value,
+      "thermopower: the parameter of OpenName must be an enum, with to_string() and count_of() beside it");
+
 public:
   /// The first member of the set.
   OpenName() = default;

@@ -28,6 +28,10 @@ constexpr double deg_per_rad = 57.29577951308232;
 /// How to: @ref rig.
 template <class Number>
 class AxisPlant {
+  static_assert(
+      thermopower::detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of a simulated part must be float, double or a class that stands for one, such as lanes");
+
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
 public:

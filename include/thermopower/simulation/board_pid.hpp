@@ -23,6 +23,10 @@ namespace thermopower::simulation {
 /// How to: @ref rig.
 template <class Number>
 class BoardPid {
+  static_assert(
+      thermopower::detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of a simulated part must be float, double or a class that stands for one, such as lanes");
+
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
 public:

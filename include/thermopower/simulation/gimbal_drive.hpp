@@ -27,6 +27,10 @@ namespace thermopower::simulation {
 /// How to: @ref rig.
 template <class Number>
 struct GimbalDrive {
+  static_assert(
+      thermopower::detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of a simulated part must be float, double or a class that stands for one, such as lanes");
+
   OhmicCurrent<Number> winding;  ///< R(T).
   Number exponent;               ///< n, 0.5 .. 1.
   Number torque_Nm_per_A;        ///< Kt at 25 degC, above 0.

@@ -21,6 +21,10 @@ namespace thermopower::simulation {
 /// How to: @ref rig.
 template <class Number>
 struct JointFriction {
+  static_assert(
+      thermopower::detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of a simulated part must be float, double or a class that stands for one, such as lanes");
+
   Number coulomb_Nm;            ///< M_c, >= 0.
   Number breakaway_Nm;          ///< M_s, >= M_c.
   Number stribeck_rad_per_s;    ///< w_s, above 0.

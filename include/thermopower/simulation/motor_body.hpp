@@ -24,6 +24,10 @@ namespace thermopower::simulation {
 /// How to: @ref rig.
 template <class Number>
 class MotorBody {
+  static_assert(
+      thermopower::detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of a simulated part must be float, double or a class that stands for one, such as lanes");
+
   using Real = typename thermopower::detail::Numeric<Number>::Real;
 
 public:
