@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "detail/numeric.hpp"
+
 /// @file air_celsius.hpp
 /// An air temperature that cannot be forgotten silently.
 
@@ -17,7 +19,7 @@ namespace thermopower {
 /// @ingroup actuator
 template <class Number>
 class AirCelsius {
-  static_assert(static_cast<Number>(0.5) > static_cast<Number>(0),
+  static_assert(detail::IsModelNumber<Number>::value,
                 "thermopower: the Number of AirCelsius must be float or double: whole numbers have no NaN");
 
 public:

@@ -89,7 +89,7 @@ protected:
     if (!place.contains("only_in")) return;
     for (const auto& one : place["only_in"]) {
       const std::string path = of(one["recording"]), name = path.substr(path.find_last_of('/') + 1);
-      need(sentence.take(name), "an occurrence that is not told", sentence.text());
+      need(sentence.take(path) || sentence.take(name), "an occurrence that is not told", sentence.text());
       if (of(one["run"]).empty()) continue;
       need(sentence.take("run " + of(one["run"])), "a run that is not told", sentence.text());
     }

@@ -128,16 +128,19 @@ private:
     }
   }
 
-  /// What the steps of a signal allow, against its noise floor.
+  /// What rounding errs by: its steps over sqrt(12).
   void steps() {
     for (const auto& one : r_["findings"]) {
-      if (one["kind"] != "coarse_quantum" || !r_["gap"].contains(of(one["column"]))) continue;
+      if (one["kind"] != "coarse_quantum") continue;
       Sentence sentence(of(one["message"]));
-      const int said = sentence.take(std::string("better than ") + number, [&](const std::smatch& m) {
-        need(std::atof(m[1].str().c_str()) <= 1.001 * gap_of(of(one["column"]))["noise_floor"].get<double>(),
-             "a noise floor that the steps do not allow", sentence.text());
-      });
-      need(said == 1, "steps without what they allow", sentence.text());
+      const int said = sentence.take(
+          std::string("steps of ") + number + ": rounding alone errs by " + number + " \\(RMS\\)",
+          [&](const std::smatch& m) {
+            const double step = std::atof(m[1].str().c_str()), error = std::atof(m[2].str().c_str());
+            need(std::fabs(error * std::sqrt(12.0) / step - 1.0) < 2e-3, "rounding errs by something else",
+                 sentence.text());
+          });
+      need(said == 1, "steps without what rounding errs by", sentence.text());
     }
   }
 

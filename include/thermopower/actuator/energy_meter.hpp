@@ -60,6 +60,9 @@ struct IsMeterPlace<Candidate, Number,
 template <class Where, class Number = float>
 class EnergyMeter {
   static_assert(
+      detail::IsModelNumber<Number>::value,
+      "thermopower: the Number of EnergyMeter must be float, double or a class that stands for one");
+  static_assert(
       detail::IsMeterPlace<Where, Number>::value,
       "thermopower: the first parameter of EnergyMeter must be where the power is measured: AtWinding or "
       "AtSupply");

@@ -363,8 +363,8 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   std::vector<double> steps = step_sizes(values, runs);
   if (quantum > 0.0 && median_of(steps) < 1.5 * quantum && quantum > 1e-6)
     list.add(FindingKind::coarse_quantum, Severity::note, name,
-             "comes in steps of " + short_number(quantum) + ": no model can be told to be better than " +
-                 short_number(quantum / std::sqrt(12.0)));
+             "comes in steps of " + short_number(quantum) + ": rounding alone errs by " +
+                 short_number(quantum / std::sqrt(12.0)) + " (RMS) where the signal crosses many of them");
 }
 
 inline void PreparedRecording::mask_slow_input(const std::string& name, Eigen::VectorXd& values,
