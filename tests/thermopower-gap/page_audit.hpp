@@ -166,10 +166,10 @@ private:
     const Json* gap = named(sentence);
     need(gap != nullptr, "no signal's", sentence.text());
     if (gap == nullptr) return;
-    int said =
-        sentence.take(std::string(share) + " \\[" + share + ", " + share + "\\]", [&](const std::smatch& m) {
-          need(is_share(m[1], (*gap)["shrunk_by"]) && is_share(m[2], (*gap)["ci95"][0]) &&
-                   is_share(m[3], (*gap)["ci95"][1]),
+    int said = sentence.take(
+        std::string(share) + " \\[" + number + ", " + number + "\\]", [&](const std::smatch& m) {
+          need(is_share(m[1], (*gap)["shrunk_by"]) && is(m[2], 100.0 * (*gap)["ci95"][0].get<double>()) &&
+                   is(m[3], 100.0 * (*gap)["ci95"][1].get<double>()),
                "another shrinkage", sentence.text());
         });
     said += sentence.take(
@@ -221,13 +221,14 @@ private:
           Sentence sentence(row);
           std::string pattern = std::string("^\\|") + number + "\\|" + number +
                                 (caused ? std::string("\\|") + number : "") + "\\|" + number;
-          if (caused) pattern += std::string("\\|") + share + " " + share + " to " + share;
+          if (caused) pattern += std::string("\\|") + share + " " + number + " to " + number + " %";
           const int scores = sentence.take(pattern + "$", [&](const std::smatch& s) {
             bool same = is(s[1], (*gap)["before"]) && is(s[2], (*gap)["recalibrated"]) &&
                         is(s[caused ? 4 : 3], (*gap)["noise_floor"]);
             if (caused)
               same = same && is(s[3], (*gap)["after"]) && is_share(s[5], (*gap)["shrunk_by"]) &&
-                     is_share(s[6], (*gap)["ci95"][0]) && is_share(s[7], (*gap)["ci95"][1]);
+                     is(s[6], 100.0 * (*gap)["ci95"][0].get<double>()) &&
+                     is(s[7], 100.0 * (*gap)["ci95"][1].get<double>());
             need(same, "another score", row);
           });
           need(scores == 1, "a row that cannot be read", row);

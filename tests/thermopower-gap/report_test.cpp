@@ -547,7 +547,8 @@ TEST_CASE("the summary says verdict, where, which, what else, how far and what n
 TEST_CASE("a place that takes none of the gap away says so instead of 0 %") {
   Diagnosis d = example();
   d.where.front().share = 0.004;
-  CHECK_THAT(io::summary(d), ContainsSubstring("motor temperature, thermal.loss (no one place takes the gap away)"));
+  CHECK_THAT(io::summary(d),
+             ContainsSubstring("motor temperature, thermal.loss (no one place takes the gap away)"));
   CHECK_THAT(io::report_html(d, "motor", {}), ContainsSubstring("where no one place takes its gap away"));
   d.where.front().share = 0.006;
   CHECK_THAT(io::summary(d), ContainsSubstring("motor temperature, thermal.loss (1 % of the gap)"));

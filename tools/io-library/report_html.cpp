@@ -202,8 +202,8 @@ private:
     if (most != nullptr && has_cause()) {
       fact(
           "How far it shrinks",
-          percent_html(most->shrunk_by) + " [" + percent_html(most->ci95.low) + ", " +
-              percent_html(most->ci95.high) + "]",
+          percent_html(most->shrunk_by) + " [" + readable(100.0 * most->ci95.low) + ", " +
+              readable(100.0 * most->ci95.high) + "]",
           escaped(signal_text(most->signal)) + ": " + readable(most->before) + " to " +
               with_unit(readable(most->after), most->unit) + ", noise floor " + readable(most->noise_floor) +
               (most->ci95.low < 0.0
@@ -267,8 +267,8 @@ private:
       if (has_cause()) out_ += "<td>" + readable(gap.after) + "</td>";
       out_ += "<td>" + readable(gap.noise_floor) + "</td>";
       if (has_cause()) {
-        out_ += "<td>" + percent_html(gap.shrunk_by) + "<small>" + percent_html(gap.ci95.low) + " to " +
-                percent_html(gap.ci95.high) + "</small></td>";
+        out_ += "<td>" + percent_html(gap.shrunk_by) + "<small>" + readable(100.0 * gap.ci95.low) + " to " +
+                readable(100.0 * gap.ci95.high) + "\u00a0%</small></td>";
       }
       out_ += "</tr>\n";
     }
