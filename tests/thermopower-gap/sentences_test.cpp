@@ -153,16 +153,14 @@ std::vector<Case> cases() {
       named(without(test::bench_recording(offset, 300, 33), "current_A"), "logs/no_ammeter.csv"));
   all.push_back(several);
 
-  test::AxisFault friction, spring, scale_of_angle, late, pair;
+  test::AxisFault friction, spring, scale_of_angle, pair;
   friction.coulomb_Nm = pair.coulomb_Nm = 0.006;
   spring.spring_Nm_per_rad = pair.spring_Nm_per_rad = 0.05;
   scale_of_angle.angle_gain = 1.5;
-  late.delay_rows = 3;
   all.push_back(axis("no gap of an axis", {}, 41));
   all.push_back(axis("friction", friction, 43));
   all.push_back(axis("a spring", spring, 45));
   all.push_back(axis("an angle of another scale", scale_of_angle, 47));
-  all.push_back(axis("a delay", late, 49));
   all.push_back(axis("friction and a spring", pair, 51));
   Case half = axis("friction and a spring that nobody knows", pair, 53);
   half.options.without = {"cable_spring",    "imbalance", "cogging",
@@ -341,6 +339,8 @@ TEST_CASE("a word that is changed is found out, too") {
   CHECK_FALSE(printed::TableAudit(wrong).complaints().empty());
 }
 
+// For reports at large: THERMOPOWER_REPORTS=folder gap_sentences "reports in*", each in a folder of its own with
+// report.json, screen.txt and report.html.
 TEST_CASE("reports in the folder that THERMOPOWER_REPORTS names agree with themselves", "[.]") {
   const char* const folder = std::getenv("THERMOPOWER_REPORTS");
   REQUIRE(folder != nullptr);
