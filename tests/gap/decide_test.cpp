@@ -314,6 +314,13 @@ TEST_CASE("constants alone explain only what the printed table shows near the no
   CHECK_FALSE(constants_fall_short(result));
   result.gap.back().after = 1.7;
   CHECK(constants_fall_short(result));
+  Diagnosis taken_back = result;
+  take_causes_back(taken_back, Model());
+  CHECK(taken_back.verdict == Verdict::unexplained);
+  CHECK(taken_back.cause.empty());
+  CHECK(taken_back.gap.back().after == 9.0);
+  CHECK(taken_back.gap.back().shrunk_by == 0.0);
+  CHECK(taken_back.gap.back().noise_floor == 1.0);
   result.cause.push_back({"radiation", 0.9, {}});  // that is a cause, and may leave a rest
   CHECK_FALSE(constants_fall_short(result));
 }

@@ -446,18 +446,6 @@ private:
     attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
-  /// Forgets what a report said of causes and scores, before another one is written.
-  void take_back_causes() {
-    result_.cause.clear();
-    result_.alternatives.clear();
-    result_.constants.clear();
-    result_.correlation = {};
-    result_.ranking.clear();
-    result_.gap.clear();
-    result_.series.clear();
-    result_.augmented = model_;
-  }
-
   void report(Attempt& attempt, const Conclusion& conclusion) {
     std::vector<Candidate>& candidates = attempt.candidates;
     result_.verdict = conclusion.verdict;
@@ -475,18 +463,15 @@ private:
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
-    if (constants_fall_short(result_)) {
-      take_back_causes();
-      report(attempt, nothing_known(constants_leave_a_rest));
-      return;
-    }
+    const bool taken_back = constants_fall_short(result_);
+    if (taken_back) take_causes_back(result_, model_);
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
-    if (named && leaves_a_rest)
+    if (named && leaves_a_rest && !taken_back)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()
                                         : localise(result_.augmented, train_recordings_, {}, catalogue_));
-    if (named) {
+    if (named && !taken_back) {
       std::vector<Recording> simulated = train_recordings_;
       for (std::size_t i = 0; i < simulated.size(); ++i)
         for (SimulatedSignal& signal :

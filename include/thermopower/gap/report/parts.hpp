@@ -182,6 +182,28 @@ inline bool constants_fall_short(const Diagnosis& result) {
                      [](const Cause& one) { return one.effect.rfind("calibration.", 0) == 0; });
 }
 
+/// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
+/// showed. @param model  as configured
+inline void take_causes_back(Diagnosis& result, const Model& model) {
+  const Conclusion unknown = nothing_known(constants_leave_a_rest);
+  const double kept = (1.0 - unknown.none_of_these) / std::max(1.0 - result.none_of_these, 1e-12);
+  for (RankedExplanation& one : result.ranking) one.probability *= kept;
+  result.verdict = unknown.verdict;
+  result.reason = unknown.reason;
+  result.none_of_these = unknown.none_of_these;
+  result.cause.clear();
+  result.alternatives.clear();
+  result.constants.clear();
+  result.correlation = {};
+  result.augmented = model;
+  for (GapScore& gap : result.gap) {
+    gap.after = gap.before;
+    gap.shrunk_by = 0.0;
+    gap.ci95 = {};
+  }
+  for (SignalSeries& series : result.series) series.augmented = series.baseline;
+}
+
 /// Takes back that causes bring every signal near the noise where the printed table shows one above it: the decision is
 /// drawn on a part of the held-out data, and what is said must hold on all of it. @return whether it did
 inline bool admit_a_rest(Diagnosis& result) {
