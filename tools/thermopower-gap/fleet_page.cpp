@@ -245,6 +245,8 @@ private:
         std::to_string(one.units) + " units by chance only with a probability of " + readable(one.p, 2) + ".";
     if (!one.not_told_from.empty())
       out_ += " The fleet cannot tell it from " + io::breakable(io::joined(one.not_told_from, ", ")) + ".";
+    if (!verdict_.weak_shift.empty())
+      out_ += " What it makes of the constants of all units is in the values here.";
     out_ += "</p>\n";
   }
 

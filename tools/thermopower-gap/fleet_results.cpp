@@ -233,6 +233,10 @@ std::string fleet_json(const FleetResults& fleet) {
                                     {"held_out_gain", number(one.held_out_median)},
                                     {"gain", number(one.gain)},
                                     {"not_told_from", one.not_told_from}});
+  root["weak_shift"] = Json::object();
+  for (const auto& [name, shift] : verdict.weak_shift)
+    root["weak_shift"][parameter_name(name)] = {{"by", number(shift.by)},
+                                                {"sd", number(std::sqrt(shift.variance))}};
   root["units"] = Json::array();
   for (const pool::UnitVerdict& unit : verdict.units) {
     Json one = {{"unit", unit.unit},
@@ -322,6 +326,11 @@ std::string fleet_summary(const FleetResults& fleet) {
          << shortest(one.p, "%.2g") << " on held-out data)";
     for (const std::string& other : one.not_told_from) text << ", which could be " << other;
     text << "\n";
+    for (const auto& [name, shift] : verdict.weak_shift) {
+      std::snprintf(line, sizeof line, "    %-32s %+.2g %% by it, in all units' values above and below\n",
+                    parameter_name(name).c_str(), 100.0 * shift.by);
+      text << line;
+    }
     break;
   }
   for (const pool::UnitVerdict& unit : verdict.units) {

@@ -179,3 +179,134 @@ TEST_CASE("nothing, one log, and logs without an estimate are no trouble") {
   CHECK(verdict.families[0].spread.size() == 0);
   for (const UnitVerdict& one : verdict.units) CHECK(one.oddity == Oddity::none);
 }
+
+TEST_CASE(
+    "a unit whose constants alone are off is of the family that lacks nothing, and is held against its spread") {
+  Draw draw(3);
+  std::vector<LogResult> logs;
+  // What a diagnosis leaves of a log whose constants are beyond what the model's author knew of them: the fit that holds
+  // them is bad, the one that releases them is as good as any sound log's.
+  const auto released = [&](const std::string& unit, double time, const std::vector<double>& truth) {
+    LogResult log = draw.log(unit, time, "", truth, 5.0);
+    log.verdict = "explained";
+    log.chosen_effects = 1;
+    log.ranking.front().probability = 0.001;
+    log.ranking.front().fit.at[0] += 0.05;  // takes up what is held back
+    log.ranking.push_back(
+        draw.explanation("calibration.conductance", 0.99, truth, 0.01, std::exp(0.05 * draw.gauss())));
+    log.ranking.back().effects = 1;
+    return log;
+  };
+  for (int i = 0; i < 60; ++i)
+    logs.push_back(
+        draw.log("plain" + std::to_string(i), 0.0, "", {0.03 * draw.gauss(), 0.04 * draw.gauss()}));
+  for (int i = 0; i < 20; ++i)
+    logs.push_back(
+        draw.log("lag" + std::to_string(i), 0.0, "lag", {0.03 * draw.gauss(), 0.04 * draw.gauss(), 3.0}));
+  logs.push_back(released("mild", 0.0, {0.0, 0.12}));
+  logs.push_back(released("clogged", 0.0, {0.0, 0.5}));
+  for (int u = 0; u < 6; ++u) {
+    const std::vector<double> truth = {0.03 * draw.gauss(), 0.04 * draw.gauss()};
+    for (int k = 0; k < 8; ++k) {
+      std::vector<double> now = truth;
+      if (u == 0 && k > 3) now[1] += 0.2;
+      const std::string name = "followed" + std::to_string(u);
+      logs.push_back(u == 0 && k > 3 ? released(name, 30.0 * k, now) : draw.log(name, 30.0 * k, "", now));
+    }
+  }
+  const FleetVerdict verdict = judge_fleet(logs);
+  REQUIRE(verdict.families.size() == 2);
+  for (const char* name : {"mild", "clogged", "followed0"}) {
+    CAPTURE(name);
+    CHECK(unit_of(verdict, name).member);
+    CHECK(verdict.families[static_cast<std::size_t>(unit_of(verdict, name).family)].cause.empty());
+    CHECK(unit_of(verdict, name).misfit < 1.25);
+  }
+  CHECK(unit_of(verdict, "mild").oddity == Oddity::none);
+  CHECK(unit_of(verdict, "clogged").oddity == Oddity::parameter);
+  CHECK(unit_of(verdict, "clogged").standing.coordinate == 1);
+  CHECK(unit_of(verdict, "followed0").oddity == Oddity::none);
+  REQUIRE(unit_of(verdict, "followed0").drifts.size() == 1);
+  CHECK(unit_of(verdict, "followed0").drifts[0].coordinate == "calibration.conductance");
+  CHECK(unit_of(verdict, "followed0").drifts[0].drift.size == Approx(0.2).margin(0.03));
+}
+
+TEST_CASE("what an explanation adds is its name without the constants that it releases") {
+  CHECK(structure_of("").empty());
+  CHECK(structure_of("calibration.conductance").empty());
+  CHECK(structure_of("lag") == "lag");
+  CHECK(structure_of("calibration.resistance + lag + mass") == "lag + mass");
+  CHECK(structure_of("lag + calibration.resistance") == "lag");
+}
+
+TEST_CASE("what a weak effect that all have makes of the constants is in the units' intervals") {
+  // A constant whose fits lack an effect are off by the same in every unit: a fit with the effect is right, and less
+  // precise by what it has to find out besides.
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  const double off = -0.02, error = 0.006, besides = 0.008, differ = 0.003;
+  const auto fleet = [&](std::vector<double>& truth) {
+    std::vector<LogResult> logs;
+    for (int i = 0; i < 120; ++i) {
+      const bool lag = i % 2 == 1;
+      const double value = 0.04 * normal(random), own = off + differ * normal(random);
+      truth.push_back(value);
+      LogResult log;
+      log.log = log.unit = "u" + std::to_string(i);
+      log.verdict = lag ? "explained" : "no_gap";
+      log.chosen_effects = lag ? 1 : 0;
+      const double first = error * normal(random), second = besides * normal(random);
+      for (const char* name : {"", "lag", "offset"}) {
+        FittedExplanation one;
+        one.name = name;
+        const bool right = one.name == (lag ? "lag" : "");
+        const bool offset = one.name == "offset";
+        one.effects = one.name.empty() ? 0 : 1;
+        one.probability = right ? 0.99 : 0.005;
+        one.names = {"calibration.resistance"};
+        if (!one.name.empty()) one.names.push_back(one.name + ".size");
+        one.logarithmic.assign(one.names.size(), true);
+        one.at_bound.assign(one.names.size(), false);
+        const auto k = static_cast<Eigen::Index>(one.names.size());
+        one.fit.at = Eigen::VectorXd::Zero(k);
+        one.fit.covariance = 0.01 * Eigen::MatrixXd::Identity(k, k);
+        one.fit.at[0] = value + first + (offset ? second : own);
+        one.fit.covariance(0, 0) = error * error + (offset ? besides * besides : 0.0);
+        if (offset) {
+          const double estimate = (own - second) / besides, held = own / besides + normal(random) / 0.65;
+          one.train_gain = estimate * estimate;
+          one.held_out_gain = 0.43 * (held * held - (held - estimate) * (held - estimate));
+        } else {
+          one.train_gain = one.held_out_gain = right && lag ? 500.0 : 0.0;
+        }
+        log.ranking.push_back(one);
+      }
+      logs.push_back(std::move(log));
+    }
+    return logs;
+  };
+  double held = 0.0, count = 0.0, as_fitted = 0.0, mean = 0.0;
+  const int fleets = 40;
+  for (int i = 0; i < fleets; ++i) {
+    std::vector<double> truth;
+    const FleetVerdict verdict = judge_fleet(fleet(truth));
+    REQUIRE(verdict.weak.front().stands);
+    REQUIRE(verdict.weak_shift.count("calibration.resistance") == 1);
+    const Shift& shift = verdict.weak_shift.at("calibration.resistance");
+    mean += shift.by / fleets;
+    for (std::size_t u = 0; u < truth.size(); ++u) {
+      const UnitVerdict& unit = verdict.units[u];
+      REQUIRE(unit.shrunken);
+      const MixedEffects& spread = verdict.families[static_cast<std::size_t>(unit.family)].spread;
+      held += std::abs(unit.shrunken->at[0] - truth[u]) < reach95(spread, *unit.shrunken, 0);
+      as_fitted += std::abs(unit.shrunken->at[0] - shift.by - truth[u]) < 1.96 * error;
+      count += 1.0;
+    }
+  }
+  WARN("true constants within 95 % intervals " << held / count << "; as the logs have them "
+                                               << as_fitted / count << "; shift " << mean << " of " << -off);
+  CHECK(mean == Approx(-off).margin(0.001));
+  CHECK(held / count > 0.93);
+  CHECK(held / count < 0.97);
+  CHECK(as_fitted / count < 0.3);
+}

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/pool/causes.hpp>
+#include <thermopower/gap/pool/common_shift.hpp>
 #include <thermopower/gap/pool/drift.hpp>
 #include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/odd_units.hpp>
@@ -92,6 +93,8 @@ struct FleetVerdict {
   std::vector<BadLog> bad_logs;    ///< in the order of the logs
   std::vector<Prevalence> causes;  ///< every explanation that some unit finds likely
   std::vector<WeakEffect> weak;    ///< in units whose own diagnosis finds nothing; those that stand first
+  CommonShift
+      weak_shift;  ///< that the leading one of those adds to constants; in all units' estimates already
   bool structure_differs = false;  ///< there are several families
   bool parameters_differ = false;  ///< in some family the units differ in some coordinate
 };
@@ -110,6 +113,7 @@ public:
     for (std::size_t f = 0; f < result_.families.size(); ++f) judge(f);
     judge_drifts();
     find_weak_effects();
+    take_weak_effect_out();
     result_.structure_differs = result_.families.size() > 1;
     for (const Family& one : result_.families)
       for (const bool differs : one.differs) result_.parameters_differ = result_.parameters_differ || differs;
@@ -149,7 +153,7 @@ private:
     // What has more effects than the cause that was named was held to do no more than it.
     for (const FittedExplanation& one : log.ranking)
       if (one.effects <= log.chosen_effects && one.probability > 0.0)
-        total += result[one.name] = one.probability;
+        total += one.probability, result[structure_of(one.name)] += one.probability;
     for (auto& [name, probability] : result) probability /= total;
     if (result.empty()) result[outside] = 1.0;
     return result;
@@ -210,7 +214,7 @@ private:
       double gain = 0.0;
       bool whole = true;
       for (const std::size_t log : unit.logs) {
-        const FittedExplanation* one = logs_[log].find(result_.families[f].cause);
+        const FittedExplanation* one = logs_[log].likeliest(result_.families[f].cause);
         whole = whole && one != nullptr && std::isfinite(one->held_out_gain);
         if (whole) gain += one->train_gain + one->held_out_gain - 2.0 * one->own_parameters();
       }
@@ -239,7 +243,7 @@ private:
     for (const std::size_t i : units) {
       if (!result_.units[i].member) continue;
       for (const std::size_t log : result_.units[i].logs) {
-        const FittedExplanation* one = logs_[log].find(family.cause);
+        const FittedExplanation* one = logs_[log].likeliest(family.cause);
         if (!usable(one)) continue;
         for (std::size_t c = 0; c < one->names.size(); ++c) {
           if (seen.count(one->names[c]) == 0) order.push_back(one->names[c]);
@@ -261,7 +265,7 @@ private:
 
   /// A log's estimate in a family's coordinates; none where it lacks one.
   std::optional<Estimate> estimate_of(const Family& family, std::size_t log) const {
-    const FittedExplanation* one = logs_[log].find(family.cause);
+    const FittedExplanation* one = logs_[log].likeliest(family.cause);
     if (!usable(one) || family.coordinates.empty()) return std::nullopt;
     std::vector<Eigen::Index> places;
     for (const std::string& name : family.coordinates) {
@@ -350,7 +354,8 @@ private:
       }
       double sum = 0.0, count = 0.0;
       for (const std::size_t log : unit.logs)
-        if (const FittedExplanation* one = logs_[log].find(family.cause); one != nullptr && one->misfit > 0.0)
+        if (const FittedExplanation* one = logs_[log].likeliest(family.cause);
+            one != nullptr && one->misfit > 0.0)
           sum += 0.5 * std::log(one->misfit), count += 1.0;
       if (count == 0.0) continue;
       misfits.push_back({Eigen::VectorXd::Constant(1, sum / count), Eigen::MatrixXd::Zero(1, 1)});
@@ -401,11 +406,67 @@ private:
       if (stands[place]) result_.units[found[place].first].drifts.push_back(found[place].second);
   }
 
+  /// Whether weak effects may be looked for in a unit: what the others lack is no weak effect, and what was fitted with a
+  /// constant held that is off tells of that.
+  bool lacks_nothing(const UnitVerdict& unit) const {
+    if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) return false;
+    if (unit.oddity != Oddity::none || !unit.drifts.empty()) return false;
+    return std::all_of(unit.logs.begin(), unit.logs.end(), [&](std::size_t log) {
+      const FittedExplanation* one = logs_[log].likeliest("");
+      return one != nullptr && one->name.empty();
+    });
+  }
+
+  /// What the units' constants are moved by if all have an effect.
+  CommonShift shift_of(const std::string& effect) const {
+    std::vector<FittedBothWays> units;
+    for (const UnitVerdict& unit : result_.units) {
+      if (!lacks_nothing(unit)) continue;
+      FittedBothWays both;
+      for (const std::size_t log : unit.logs) {
+        both.without.push_back(logs_[log].find(""));
+        both.with.push_back(logs_[log].find(effect));
+      }
+      const auto fits = [](const FittedExplanation* one) { return usable(one) && !one->on_bounds; };
+      if (std::all_of(both.without.begin(), both.without.end(), fits) &&
+          std::all_of(both.with.begin(), both.with.end(), fits))
+        units.push_back(std::move(both));
+    }
+    return common_shift(units);
+  }
+
+  /// Moves all constants by what a weak effect that stands makes of them: it is in no unit's model, and would shift all
+  /// of them alike, by more than what a unit's own error is. Who is odd does not hang on that.
+  void take_weak_effect_out() {
+    if (result_.weak.empty() || !result_.weak.front().stands) return;
+    std::vector<CommonShift> others;
+    for (const std::string& one : result_.weak.front().not_told_from) others.push_back(shift_of(one));
+    result_.weak_shift = either(shift_of(result_.weak.front().explanation), others);
+    for (std::size_t f = 0; f < result_.families.size(); ++f) {
+      Family& family = result_.families[f];
+      for (std::size_t k = 0; k < family.coordinates.size(); ++k) {
+        const auto found = result_.weak_shift.find(family.coordinates[k]);
+        if (found == result_.weak_shift.end()) continue;
+        const auto c = static_cast<Eigen::Index>(k);
+        const auto move = [&, &shift = found->second](auto& unit) {
+          unit.at[c] += shift.by;
+          unit.covariance(c, c) += shift.variance;
+        };
+        for (const std::size_t i : held_against(f)) {
+          if (result_.units[i].estimate) move(*result_.units[i].estimate);
+          if (result_.units[i].shrunken) move(*result_.units[i].shrunken);
+        }
+        if (family.spread.size() == 0) continue;
+        family.spread.mean[c] += found->second.by;
+        family.spread.mean_covariance(c, c) += found->second.error;
+      }
+    }
+  }
+
   void find_weak_effects() {
     std::vector<std::map<std::string, Gain>> units;
     for (const UnitVerdict& unit : result_.units) {
-      if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) continue;
-      if (unit.oddity != Oddity::none || !unit.drifts.empty()) continue;  // what they lack is no weak effect
+      if (!lacks_nothing(unit)) continue;
       std::map<std::string, Gain> gains;
       std::map<std::string, std::size_t> seen;
       for (const std::size_t log : unit.logs)

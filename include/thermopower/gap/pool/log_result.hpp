@@ -6,12 +6,28 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace thermopower::gap::pool {
+
+/// What an explanation adds to the model: its name without the constants that it releases. Constants are coordinates of
+/// every explanation, and how they spread is what a fleet knows: a unit whose constants alone are off lacks nothing.
+/// @param name  ids with " + " between; empty: nothing is missing
+inline std::string structure_of(const std::string& name) {
+  constexpr const char* between = " + ";
+  std::string structure;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t end = std::min(name.find(between, at), name.size());
+    if (name.compare(at, 12, "calibration.") != 0)
+      structure += (structure.empty() ? "" : between) + name.substr(at, end - at);
+    at = end + 3;
+  }
+  return structure;
+}
 
 /// Where the fit of one explanation to one log ended; as a report's `ranking` has it.
 ///
@@ -66,6 +82,19 @@ struct LogResult {
     for (const FittedExplanation& one : ranking)
       if (one.name == name) return &one;
     return nullptr;
+  }
+
+  /// The likeliest explanation of a structure (structure_of()), or none: constants are released in it where this log
+  /// asks for that. Among equals the one that is listed first.
+  const FittedExplanation* likeliest(const std::string& structure) const {
+    // What has more effects than the cause that was named was held to do no more than it.
+    const FittedExplanation *best = find(structure), *plain = best;
+    const std::size_t most = std::max(chosen_effects, plain == nullptr ? 0 : plain->effects);
+    for (const FittedExplanation& one : ranking)
+      if (one.effects <= most && structure_of(one.name) == structure &&
+          (best == nullptr || one.probability > best->probability))
+        best = &one;
+    return best;
   }
 };
 
