@@ -127,6 +127,45 @@ TEST_CASE("stamps in other units decide") {
   }
 }
 
+TEST_CASE("a part in which the power is 0 or 1 is no duty where the other part goes further") {
+  const auto units = [](const std::vector<Recording>& train, const std::vector<Recording>& held) {
+    std::string text;
+    for (const Finding& one :
+         engine::check(test::bench_model(), train, held, {}, standard_catalogue()).findings)
+      if (one.kind == FindingKind::wrong_unit) text += one.column + " ";
+    return text;
+  };
+  // Rows without power, but for a few with the least there is: 12 V sqrt(1/255) on 8 ohm.
+  const Recording whole = bench();
+  Recording idle = whole.slice(225, 300);
+  Eigen::VectorXd power = idle.column("power_param"), current = idle.column("current_A");
+  REQUIRE(power.cwiseAbs().maxCoeff() == 0.0);
+  power.head(20).setOnes();
+  current.head(20).array() += 0.094;
+  idle.set("power_param", power);
+  idle.set("current_A", current);
+  CHECK(units({whole}, {idle}).empty());
+  CHECK(units({idle}, {whole}).empty());
+  CHECK(units({idle}, {idle}) == "power_param power_param ");
+}
+
+TEST_CASE("a thermometer that never changes decides, where the motor must have warmed") {
+  Recording r = bench();
+  change(r, "motor_C", [](double) { return 25.0; });
+  CHECK(decision(test::bench_model(), r) ==
+        "frozen_samples(motor_C) look at what reads the sensor, or leave the column out");
+  // In steps of two degrees, and with hardly any power, it may stand still.
+  r = bench();
+  change(r, "motor_C", [](double x) { return 2.0 * std::round(0.5 * x); });
+  CHECK(decision(test::bench_model(), r).empty());
+  r = bench();
+  const double air = r.column("ambient_C")[0];
+  change(r, "ambient_C", [&](double) { return air; });
+  change(r, "motor_C", [&](double) { return air; });
+  change(r, "power_param", [](double x) { return x > 100.0 ? 2.0 : 0.0; });
+  CHECK(decision(test::bench_model(), r).find("frozen_samples") == std::string::npos);
+}
+
 TEST_CASE("exchanged columns decide") {
   Recording r = axis();
   const Eigen::VectorXd angle = r.column("angle_deg");

@@ -163,12 +163,18 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
                                                const CheckOptions& options, const Catalogue& catalogue) {
   CheckedRecordings result;
   std::vector<Finding> others;
+  double most_power = 0.0;
+  for (const auto* all : {&train, &held_out})
+    for (const Recording& one : *all)
+      if (one.has("power_param"))
+        for (const double power : one.column("power_param"))
+          if (power > most_power) most_power = power;
   const auto take = [&](const std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
     for (const Recording& one : recordings) {
       to.emplace_back(model, one, options.as_recorded);
       const std::vector<Finding>& own = to.back().findings();
       others.insert(others.end(), own.begin(), own.end());
-      for (Finding& finding : check_units(model, one, to.back(), catalogue))
+      for (Finding& finding : check_units(model, one, to.back(), catalogue, most_power))
         others.push_back(std::move(finding));
     }
   };

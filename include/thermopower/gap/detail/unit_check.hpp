@@ -32,6 +32,8 @@ struct UnitThresholds {
       0.1;  ///< of the factor by which an output is said to be too small: what the misfit must be as it is
   double kelvin_C = 200.0;     ///< air is never so hot: kelvin
   double fahrenheit_C = 45.0;  ///< air hardly ever is: degrees Fahrenheit are asked about
+  double stands_still_K =
+      10.0;  ///< that the simulation warms by: thermometers come in steps of a degree or two, none of ten
   double warmer_than_air_K =
       15.0;                       ///< a motor that starts so much above the air may be in degrees Fahrenheit
   Eigen::Index rows = 3000;       ///< of the recording that are simulated
@@ -362,9 +364,33 @@ inline void check_drive_clock(const Model& model, const Recording& sample, doubl
              "log both with one clock");
 }
 
+/// A thermometer that stands still: it never changes, where the simulation warms by more than any step of one.
+inline void check_thermometer(const Model& model, const Recording& sample, const Catalogue& catalogue,
+                              FindingList& list) {
+  const Eigen::VectorXd* measured = sample.find("motor_C");
+  if (measured == nullptr || !model.has_thermal()) return;
+  std::vector<double> values = finite_samples(*measured);
+  if (values.empty() || quantile_of(values, 0.0) != quantile_of(values, 1.0)) return;
+  SimulationOptions options;
+  options.horizon_s = std::numeric_limits<double>::infinity();
+  for (const SimulatedSignal& signal : simulate(model, sample, options, catalogue)) {
+    if (signal.signal != Signal::motor_C) continue;
+    std::vector<double> simulated = finite_samples(signal.values);
+    if (simulated.empty()) return;
+    const double moves = quantile_of(simulated, 1.0) - quantile_of(simulated, 0.0);
+    if (moves > UnitThresholds().stands_still_K)
+      list.add(FindingKind::frozen_samples, Severity::error, "motor_C",
+               "never changes, where the model's goes through " + short_number(moves) +
+                   " degC: a thermometer that stands still",
+               "look at what reads the sensor, or leave the column out");
+  }
+}
+
 /// What units, signs, order and clocks of a recording's columns are wrong, as far as the simulation can tell.
+/// @param most_power  largest power_param of all recordings that were given together: a part of them may well be off
 inline std::vector<Finding> check_units(const Model& model, const Recording& recorded,
-                                        const PreparedRecording& prepared, const Catalogue& catalogue) {
+                                        const PreparedRecording& prepared, const Catalogue& catalogue,
+                                        double most_power) {
   constexpr UnitThresholds limit;
   if (model.own) return {};  // nobody but its author knows the units of its columns
   FindingList list(recorded);
@@ -377,14 +403,10 @@ inline std::vector<Finding> check_units(const Model& model, const Recording& rec
                "is at least " + short_number(least) + ": in kelvin where degrees Celsius are expected",
                std::string("--column ") + name + "=" + name + ":K");
   }
-  if (recorded.has("power_param")) {
-    std::vector<double> values = finite_samples(recorded.column("power_param"));
-    const double most = quantile_of(values, 1.0);
-    if (most > 0.0 && most <= 1.0)
-      list.add(FindingKind::wrong_unit, Severity::error, "power_param",
-               "never exceeds 1: a duty of 0..1 where 0..255 is expected",
-               "--column power_param=power_param:1");
-  }
+  if (recorded.has("power_param") && most_power > 0.0 && most_power <= 1.0)
+    list.add(FindingKind::wrong_unit, Severity::error, "power_param",
+             "never exceeds 1: a duty of 0..1 where 0..255 is expected",
+             "--column power_param=power_param:1");
   const bool axis = moves(model, recorded);
   Recording sample = sampled(prepared.recording(), axis);
   constexpr Eigen::Index few = 20;
@@ -412,6 +434,7 @@ inline std::vector<Finding> check_units(const Model& model, const Recording& rec
       return more.take();
     }
   }
+  check_thermometer(model, sample, catalogue, more);  // after exchanged columns: the air may stand still
   check_current_clock(model, sample, prepared.interval_s(), catalogue, more);
   if (std::isfinite(now)) check_drive_clock(model, sample, now, prepared.interval_s(), catalogue, more);
   return more.take();
