@@ -5,6 +5,8 @@
 
 #include <thermopower/gap/diagnose.hpp>
 
+#include <atomic>
+
 using namespace engine_fixture;
 
 namespace {
@@ -310,4 +312,16 @@ TEST_CASE("a user's own effect is found without any change to the engine") {
   for (const std::vector<std::string>& set : diagnosis.alternatives)
     for (const std::string& id : set) named = named || id == "standby_heat";
   CHECK(named);
+}
+
+TEST_CASE("a diagnosis that is told to stop ends by saying so") {
+  std::atomic<bool> stop{true};
+  Options options;
+  options.stop = &stop;
+  for (const unsigned threads : {1u, 2u}) {
+    options.threads = threads;
+    CHECK_THROWS_AS(diagnose_trial(trials().front().id, options), Stopped);
+  }
+  stop = false;
+  CHECK_NOTHROW(diagnose_trial(trials().front().id, options));
 }

@@ -54,6 +54,25 @@ TEST_CASE("every effect of the catalogue is tried here") {
   }
 }
 
+TEST_CASE(
+    "an effect whose hooks are objects is added as one that is a type, and refused where it is not whole") {
+  CatalogueEntry twin = *standard_catalogue().find("radiation");
+  twin.info.id = "twin";
+  Catalogue catalogue = standard_catalogue();
+  catalogue.add(twin);
+  REQUIRE(catalogue.find("twin") != nullptr);
+  CHECK(catalogue.list().size() == standard_catalogue().list().size() + 1);
+  CHECK_THROWS_AS(catalogue.add(twin), InvalidInput);  // the id is taken
+  twin.info.id = "half";
+  twin.dual = nullptr;
+  CHECK_THROWS_AS(catalogue.add(twin), InvalidInput);
+  twin = *standard_catalogue().find("radiation");
+  twin.info.id = "nowhere";
+  twin.hooks = HookSet();
+  CHECK_THROWS_AS(catalogue.add(twin), InvalidInput);
+  CHECK(catalogue.list().size() == standard_catalogue().list().size() + 1);
+}
+
 TEST_CASE("derivatives by automatic differentiation agree with finite differences, for every effect") {
   for (const Trial& trial : trials()) {
     const Model model = baseline_of(trial);

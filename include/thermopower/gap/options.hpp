@@ -4,12 +4,20 @@
 
 #include <thermopower/gap/recording.hpp>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace thermopower::gap {
+
+/// Thrown by a diagnosis that was told to stop (Options::stop).
+class Stopped : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
 
 /// What a diagnosis may be told.
 struct Options {
@@ -21,6 +29,8 @@ struct Options {
   bool as_recorded = false;  ///< the check says what is wrong with the data, but masks and cuts nothing
   unsigned threads = 1;      ///< 1 or more, of which at most 1024 are used; the result does not depend on it
   unsigned seed = 1;         ///< of the bootstrap; equal seeds give equal reports
+  /// Where another thread sets it, the diagnosis soon ends by throwing Stopped. None: nobody may.
+  const std::atomic<bool>* stop = nullptr;
 
   /// @throws InvalidInput naming the first option that is out of its range
   void validate() const {

@@ -150,6 +150,18 @@ public:
     return *this;
   }
 
+  /// Adds an effect whose hooks are objects, for equations that are no C++ types: all three kinds of them, for every term
+  /// that the set of hooks names. @throws InvalidInput where its info is unusable, its id is taken, or hooks are missing
+  Catalogue& add(CatalogueEntry entry) {
+    check(entry.info, entry.hooks);
+    if (!(entry.hooks.any_bench() || entry.hooks.any_axis()) || !entry.plain || !entry.dual || !entry.traced)
+      throw InvalidInput("effect '" + entry.info.id +
+                         "' has no hooks: expected one of each kind, and where they act");
+    infos_.push_back(entry.info);
+    entries_.push_back(std::move(entry));
+    return *this;
+  }
+
   /// Adds an effect whose equation a plant of one's own holds itself.
   /// @throws InvalidInput where its info is unusable or its id is taken
   Catalogue& declare(const EffectInfo& info) {

@@ -224,6 +224,7 @@ private:
     FitProblem problem;
     problem.model = &model_;
     problem.catalogue = &catalogue_;
+    problem.stop = options_.stop;
     std::vector<Segment> segments = cut(*thin, horizon_s, plant_of(model_));
     problem.segments = thinned_axis(segments, axis_rows, also, together);
     if (all != nullptr) *all = std::move(segments);

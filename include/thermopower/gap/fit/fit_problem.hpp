@@ -5,11 +5,13 @@
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/options.hpp>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -22,7 +24,8 @@ struct FitProblem {
   const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
   std::vector<Segment> segments;         ///< simulated one after the other
   std::array<double, signal_count> sigma = plant::for_each_signal(1.0);  ///< noise of each signal
-  double correlation = 1.0;  ///< samples that count as one, 1 or more
+  double correlation = 1.0;                 ///< samples that count as one, 1 or more
+  const std::atomic<bool>* stop = nullptr;  ///< as in Options
 
   /// Residuals of one segment in units of the noise, with their derivatives.
   struct Residuals {
@@ -50,6 +53,7 @@ struct FitProblem {
   void evaluate(const Explanation& explanation, const std::vector<Coordinate>& list,
                 const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
                 Use&& use) const {
+    if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
     const Plant& plant = this->plant();
     const int parameters = static_cast<int>(list.size());
     int largest = 0;
