@@ -2,12 +2,17 @@
 # Copyright (c) 2026 the thermopower authors
 """The Python module against a motor that is integrated here, in NumPy, and knows nothing of the library."""
 
+import ast
 import doctest
+import inspect
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import textwrap
+import time
 import unittest
 
 import numpy as np
@@ -171,6 +176,229 @@ class Refusing(unittest.TestCase):
         self.refuses("tolerance is 2", thermopower.diagnose, MODEL, good, tolerance=2.0, error=thermopower.InvalidInput)
         self.refuses("no option 'horizon'", thermopower.diagnose, MODEL, good, horizon=1.0, error=TypeError)
         self.refuses("there is no 'verdikt'", getattr, thermopower.check(MODEL, good), "verdikt", error=AttributeError)
+
+
+class OwnEffects(unittest.TestCase):
+    """A catalogue's effect written once more, in Python: it must be the same effect."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.train, cls.held_out = motor(900, 1), motor(600, 2)
+
+        def copper(p, terms):
+            """Copper's resistance grows as it warms."""
+            terms.tempco_per_K += p.per_K
+
+        cls.copper = thermopower.Effect("copper", copper, on="electrical", experiment="long heating and cooling",
+                                        parameters=[thermopower.parameter("per_K", "1/K", 0.0, 0.02, [0.0])])
+
+    def test_is_found_as_the_catalogues_own_is(self):
+        known = thermopower.diagnose(MODEL, self.train, self.held_out)
+        found = thermopower.diagnose(MODEL, self.train, self.held_out, effects=[self.copper], without=["winding_tempco"])
+        self.assertEqual([one.effect for one in found.cause], ["copper"])
+        value, expected = found.cause[0].parameters.per_K, known.cause[0].parameters.tempco_per_K
+        self.assertAlmostEqual(value.value, expected.value, delta=0.01 * (expected.ci95[1] - expected.ci95[0]))
+        self.assertAlmostEqual(found.gap.motor_C.shrunk_by, known.gap.motor_C.shrunk_by, places=3)
+        self.assertIn("copper", found.html())
+        new, = thermopower.simulate([found.augmented], [self.held_out], effects=[self.copper])
+        old, = thermopower.simulate([known.augmented], [self.held_out])
+        np.testing.assert_allclose(new[0]["motor_C"], old[0]["motor_C"], atol=0.01)
+        with self.assertRaises(thermopower.InputError):
+            thermopower.simulate(found.augmented, self.held_out)  # nobody says what copper is
+
+    def test_functions_of_numpy_and_branches_carry_derivatives(self):
+        def odd(p, terms):
+            x = terms.winding_C / 100.0
+            terms.extra_loss_W += p.a * (np.tanh(x) + np.exp(-x) - np.sqrt(abs(x)) + x**2 - 1.0 / (2.0 + x))
+            if terms.winding_C > 40.0:
+                terms.extra_loss_W = terms.extra_loss_W + 0.0
+
+        effect = thermopower.Effect("odd", odd, on="thermal", parameters=[thermopower.parameter("a", "W", -5.0, 5.0, [0.1])])
+        model = dict(MODEL, effects={"odd": {"a": 0.3}})
+        other = dict(MODEL, effects={"odd": {"a": 0.31}})
+        one, two = thermopower.predict([model, other], self.train, effects=[effect])
+        self.assertTrue(np.all(one["motor_C"][50:] != two["motor_C"][50:]))
+        thermopower.check(model, self.train, effects=[effect])
+
+    def test_what_goes_wrong_in_python_is_told(self):
+        def broken(p, terms):
+            terms.no_such_term += p.per_K
+
+        def words(p, terms):
+            terms.tempco_per_K = "warm"
+
+        given = [thermopower.parameter("per_K", "1/K", 0.0, 0.01, [0.002])]
+        for act, error, told in ((broken, AttributeError, "no_such_term"), (words, thermopower.InvalidInput, "expected a number")):
+            effect = thermopower.Effect("broken", act, on="electrical", parameters=given)
+            with self.assertRaises(error) as caught:
+                thermopower.predict(dict(MODEL, effects={"broken": {"per_K": 0.001}}), self.train, effects=[effect])
+            self.assertIn(told, str(caught.exception))
+        with self.assertRaises(thermopower.InvalidInput):
+            thermopower.Effect("nowhere", broken, on="everywhere", parameters=given)
+        with self.assertRaises(thermopower.InvalidInput):  # an id that there is
+            thermopower.check(MODEL, self.train, effects=[thermopower.Effect("radiation", words, on="electrical", parameters=given)])
+
+
+def kettle(constants, start, t_s, inputs, effects):
+    """Warms with the power, and loses to the room; exact between rows. Its effect is a lid that is open."""
+    loss = constants["loss_W_per_K"] + effects.get("open_lid", {"W_per_K": 0.0})["W_per_K"]
+    water = np.empty(len(t_s))
+    water[0] = start["water"]
+    for i in range(len(t_s) - 1):
+        end = inputs["room_C"][i] + inputs["power_W"][i] / loss
+        water[i + 1] = end + (water[i] - end) * np.exp(-(t_s[i + 1] - t_s[i]) * loss / constants["water_J_per_K"])
+    return {"water_C": water, "end": {"water": water[-1]}}
+
+
+def kettle_plant(simulate=kettle):
+    return thermopower.Plant(
+        "kettle", simulate, constants={"water_J_per_K": (4200.0, "J/K"), "loss_W_per_K": (2.0, "W/K")},
+        inputs={"power_W": "W", "room_C": "degC"}, states={"water": {"measured_by": "water_C", "initial": 20.0, "spread": 30.0}},
+        signals={"water_C": {"unit": "degC", "submodel": "kettle.loss"}},
+        effects=[thermopower.Effect("open_lid", submodel="kettle.loss", equation="loss += k (T - T_room)",
+                                    parameters=[thermopower.parameter("W_per_K", "W/K", 0.0, 50.0, [0.5, 5.0])])])
+
+
+def boiled(seed, lid):
+    """Two hours of a kettle that is switched every ten minutes."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, 7200.0, 20.0)
+    power = np.where((t // 600.0) % 2 == seed % 2, 300.0, 0.0)
+    inputs = {"power_W": power, "room_C": np.full(len(t), 20.0)}
+    water = kettle({"water_J_per_K": 4200.0, "loss_W_per_K": 2.0}, {"water": 20.0}, t, inputs, {"open_lid": {"W_per_K": lid}})["water_C"]
+    return {"t_s": t, **inputs, "water_C": water + random.normal(0.0, 0.1, len(t))}
+
+
+class OwnPlants(unittest.TestCase):
+    def test_diagnosed_simulated_and_changed(self):
+        plant = kettle_plant()
+        self.assertEqual(plant.constants, {"water_J_per_K": 4200.0, "loss_W_per_K": 2.0})
+        held_out = boiled(2, 1.5)
+        found = thermopower.diagnose(plant, boiled(1, 1.5), held_out)
+        self.assertEqual([one.effect for one in found.cause], ["open_lid"])
+        self.assertAlmostEqual(found.cause[0].parameters.W_per_K.value + found.augmented.constants["loss_W_per_K"], 3.5, delta=0.05)
+        self.assertIn("open_lid", found.augmented.acting)
+        error = lambda model: np.sqrt(np.mean((thermopower.simulate(model, held_out)["water_C"] - held_out["water_C"]) ** 2))
+        self.assertLess(error(found.augmented), 0.15)
+        self.assertGreater(error(plant), 1.0)
+        self.assertLess(error(plant.changed(effects={"open_lid": {"W_per_K": 1.5}})), 0.15)
+        self.assertTrue(found.html().endswith("</html>\n"))
+
+    def test_what_goes_wrong_in_its_function_is_told(self):
+        def silent(*_):
+            return {"end": {"water": 1.0}}
+
+        def falling(*_):
+            raise ZeroDivisionError("no water")
+
+        for function, error, told in ((silent, thermopower.InvalidInput, "did not answer 'water_C'"), (falling, ZeroDivisionError, "no water")):
+            with self.assertRaises(error) as caught:
+                thermopower.simulate(kettle_plant(function), boiled(1, 0.0))
+            self.assertIn(told, str(caught.exception))
+        with self.assertRaises(thermopower.InvalidInput):
+            kettle_plant().changed({"no_such": 1.0})
+
+
+class Interrupting(unittest.TestCase):
+    def test_ctrl_c_ends_a_diagnosis(self):
+        script = textwrap.dedent("""
+            import sys, time
+            sys.path.insert(0, sys.argv[1])
+            import test_thermopower as t, thermopower
+            def slow(*arguments):
+                time.sleep(0.02)
+                print("begun", flush=True)
+                return t.kettle(*arguments)
+            try:
+                thermopower.diagnose(t.kettle_plant(slow), t.boiled(1, 1.5), t.boiled(2, 1.5))
+            except KeyboardInterrupt:
+                print("interrupted", flush=True)
+        """)
+        child = subprocess.Popen([sys.executable, "-B", "-c", script, os.path.dirname(os.path.abspath(__file__))],
+                                 stdout=subprocess.PIPE, text=True)
+        for _ in range(10):
+            self.assertEqual(child.stdout.readline(), "begun\n")
+        child.send_signal(signal.SIGINT)
+        began = time.monotonic()
+        said = child.communicate(timeout=60)[0]
+        self.assertIn("interrupted", said)
+        self.assertEqual(child.returncode, 0)
+        self.assertLess(said.count("begun"), 400)  # the whole of it takes thousands
+        self.assertLess(time.monotonic() - began, 30.0)
+
+
+class Package(unittest.TestCase):
+    HERE = os.path.dirname(os.path.abspath(__file__))
+    ROOT = os.path.dirname(os.path.dirname(HERE))
+
+    def test_stubs_say_what_there_is(self):
+        with open(os.path.splitext(thermopower.__file__)[0] + ".pyi", encoding="utf-8") as file:
+            stubs = {one.name: one for one in ast.parse(file.read()).body if hasattr(one, "name")}
+        self.assertEqual(sorted(stubs), sorted(thermopower.__all__))
+
+        def names(function):
+            given = function.args
+            return [one.arg for one in given.posonlyargs + given.args + given.kwonlyargs]
+
+        for name, stub in stubs.items():
+            real = getattr(thermopower, name)
+            if isinstance(stub, ast.FunctionDef):
+                taken = [one for one, what in inspect.signature(real).parameters.items() if what.kind != what.VAR_KEYWORD]
+                self.assertEqual(names(stub)[: len(taken)], taken, name)
+                options = [one for one in names(stub)[len(taken):] if one not in dir(thermopower._thermopower.Options)]
+                self.assertEqual(options, [], name)
+                continue
+            for member in stub.body:
+                if isinstance(member, ast.FunctionDef) and hasattr(real, member.name) and not issubclass(real, ValueError):
+                    function = inspect.getattr_static(real, member.name)
+                    if isinstance(function, property):
+                        continue
+                    self.assertEqual(names(member), list(inspect.signature(function).parameters), f"{name}.{member.name}")
+                elif isinstance(member, ast.FunctionDef):
+                    self.fail(f"there is no {name}.{member.name}")
+
+    def test_pip_installs_it_without_network(self):
+        build = os.environ.get("THERMOPOWER_BUILD")
+        if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode != 0 or not build:
+            self.skipTest("no pip (Debian: python3-pip)")
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--disable-pip-version-check",
+                                   "--root-user-action=ignore", "--target", folder, "--config-settings", f"build-dir={build}", self.ROOT],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            version = subprocess.run([sys.executable, "-B", "-c", "import importlib.metadata, thermopower;"
+                                      "print(thermopower.__file__, importlib.metadata.version('thermopower'), len(thermopower.effects()) > 100)"],
+                                     env=dict(os.environ, PYTHONPATH=folder), capture_output=True, text=True, check=True).stdout
+            self.assertIn(folder, version)
+            self.assertIn("True", version)
+
+    def test_the_notebook_runs(self):
+        with open(os.path.join(self.ROOT, "examples", "notebook", "known_gap.ipynb"), encoding="utf-8") as file:
+            cells = json.load(file)["cells"]
+        os.environ.setdefault("MPLBACKEND", "Agg")
+        names = {}
+        code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        self.assertGreater(len(code), 5)
+        for cell in code:
+            exec(compile(cell, "known_gap.ipynb", "exec"), names)
+        self.assertEqual(names["found"].verdict, "explained")
+        self.assertTrue(all(not cell.get("outputs") for cell in cells))  # as it was written, not as it ran somewhere
+
+    def test_plot_draws_every_curve(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("no matplotlib (Debian: python3-matplotlib)")
+        matplotlib.use("Agg")
+        found = thermopower.diagnose(MODEL, motor(600, 1), motor(400, 2))
+        figure = found.plot()
+        self.assertEqual(len(figure.axes), len(found.series))
+        for axis, one in zip(figure.axes, found.series):
+            self.assertEqual(axis.get_ylabel(), f"{one['signal']} / {one['unit']}")
+            measured, baseline, augmented = axis.get_lines()
+            np.testing.assert_array_equal(measured.get_ydata(), one["measured"])
+            np.testing.assert_array_equal(baseline.get_ydata(), one["baseline"])
+            np.testing.assert_array_equal(augmented.get_ydata(), one["augmented"])
 
 
 def load_tests(loader, tests, pattern):

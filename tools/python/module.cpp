@@ -4,6 +4,9 @@
 // The part of the Python module that is C++: what crosses is text (JSON) and arrays. The package around it,
 // thermopower/__init__.py, is what users see.
 
+#include "own_effect.hpp"
+#include "own_plant.hpp"
+
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
@@ -15,7 +18,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,6 +31,7 @@
 
 namespace py = pybind11;
 namespace gap = thermopower::gap;
+namespace plant = thermopower::plant;
 namespace io = thermopower::io;
 
 namespace {
@@ -54,20 +60,50 @@ gap::Recording recording_in(const std::string& path, const std::vector<std::stri
   return io::read_recording(path, parsed).recording;
 }
 
-gap::Model model_of(const std::string& json) {
-  return io::parse_model("model", json, gap::standard_catalogue());
+gap::Model model_of(const std::string& json, const gap::Catalogue& catalogue = gap::standard_catalogue()) {
+  return io::parse_model("model", json, catalogue);
+}
+
+/// The standard catalogue, and effects whose equations are Python functions.
+gap::Catalogue catalogue_with(const std::vector<py::dict>& effects) {
+  gap::Catalogue catalogue = gap::standard_catalogue();
+  for (const py::dict& one : effects) thermopower::python::add_effect(catalogue, one);
+  return catalogue;
+}
+
+/// Does C++ work in a thread of its own while this one looks for Ctrl-C, which tells the work to stop. Called with the
+/// Python lock, which the work does not have.
+template <class Work>
+auto until_interrupted(std::atomic<bool>& stop, Work&& work) {
+  auto running = std::async(std::launch::async, std::forward<Work>(work));
+  bool interrupted = false;
+  for (bool done = false; !done;) {
+    {
+      const py::gil_scoped_release released;
+      done = running.wait_for(std::chrono::milliseconds(30)) == std::future_status::ready;
+    }
+    if (!interrupted && PyErr_CheckSignals() != 0) {
+      PyErr_Clear();  // raised below, when nothing uses the recordings any more
+      interrupted = stop = true;
+    }
+  }
+  if (interrupted) {
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
+    throw py::error_already_set();
+  }
+  return running.get();
 }
 
 /// A diagnosis with what its files are written from.
 struct Result {
   gap::Diagnosis diagnosis;
+  gap::Catalogue catalogue;
   std::string model_name;
   std::vector<gap::Recording> held_out;
 
   std::string report() const { return io::report_json(diagnosis); }
   std::string html() const {
-    return io::report_html(diagnosis, model_name,
-                           gap::catalogue_of(diagnosis.augmented, gap::standard_catalogue()).list(),
+    return io::report_html(diagnosis, model_name, gap::catalogue_of(diagnosis.augmented, catalogue).list(),
                            held_out);
   }
   std::string augmented() const { return io::to_json(diagnosis.augmented); }
@@ -95,11 +131,12 @@ struct Result {
   }
 };
 
-Result diagnose(const std::string& model, std::vector<gap::Recording> train,
-                std::vector<gap::Recording> held_out, const gap::Options& options) {
+Result diagnose(const gap::Model& model, const std::vector<py::dict>& effects,
+                std::vector<gap::Recording> train, std::vector<gap::Recording> held_out,
+                gap::Options options) {
   options.validate();
   Result result;
-  const gap::Model parsed = model_of(model);
+  result.catalogue = catalogue_with(effects);
   if (held_out.empty()) {
     for (gap::Recording& recording : train) {
       auto [first, last] = gap::split(recording, options.held_out_fraction);
@@ -107,27 +144,33 @@ Result diagnose(const std::string& model, std::vector<gap::Recording> train,
       held_out.push_back(std::move(last));
     }
   }
-  result.diagnosis = gap::diagnose(parsed, train, held_out, options);
-  result.model_name = parsed.name;
+  std::atomic<bool> stop{false};
+  options.stop = &stop;
+  result.diagnosis = until_interrupted(
+      stop, [&] { return gap::diagnose(model, train, held_out, options, result.catalogue); });
+  result.model_name = model.name;
   result.held_out = std::move(held_out);
   return result;
 }
 
-std::string check(const std::string& model, const std::vector<gap::Recording>& train,
-                  const std::vector<gap::Recording>& held_out, const gap::Options& options) {
+std::string check(const gap::Model& model, const std::vector<py::dict>& effects,
+                  const std::vector<gap::Recording>& train, const std::vector<gap::Recording>& held_out,
+                  const gap::Options& options) {
   options.validate();
-  return io::check_json(gap::check_data(model_of(model), train, held_out, options));
+  const gap::Catalogue catalogue = catalogue_with(effects);
+  const py::gil_scoped_release released;
+  return io::check_json(gap::check_data(model, train, held_out, options, catalogue));
 }
 
 using Signals = std::vector<std::pair<std::string, Eigen::VectorXd>>;
 
 // Each model on each recording's own thread of a few; an exception in one is the batch's.
-std::vector<Signals> simulate(const std::vector<std::string>& models,
+std::vector<Signals> simulate(const std::vector<gap::Model>& models, const std::vector<py::dict>& effects,
                               const std::vector<gap::Recording>& recordings,
                               const std::map<std::string, double>& starts, double horizon_s, bool from_inputs,
                               unsigned threads) {
-  std::vector<gap::Model> parsed;
-  for (const std::string& one : models) parsed.push_back(model_of(one));
+  const gap::Catalogue catalogue = catalogue_with(effects);
+  const py::gil_scoped_release released;
   gap::SimulationOptions options;
   options.horizon_s = horizon_s;
   const std::size_t count = models.size() * recordings.size();
@@ -137,10 +180,10 @@ std::vector<Signals> simulate(const std::vector<std::string>& models,
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
-        const gap::Model& model = parsed[i / recordings.size()];
+        const gap::Model& model = models[i / recordings.size()];
         gap::Recording recording = recordings[i % recordings.size()];
         if (from_inputs) recording = io::with_starts(std::move(recording), model, starts);
-        for (auto& one : gap::simulate(model, recording, options))
+        for (auto& one : gap::simulate(model, recording, options, catalogue))
           all[i].emplace_back(to_string(one.signal), std::move(one.values));
       } catch (...) {
         errors[i] = std::current_exception();
@@ -183,13 +226,25 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("report", &Result::report)
       .def("html", &Result::html)
       .def("augmented", &Result::augmented)
+      .def("augmented_model", [](const Result& one) { return one.diagnosis.augmented; })
+      .def("recalibrated_model", [](const Result& one) { return one.diagnosis.recalibrated; })
       .def("recalibrated", &Result::recalibrated)
       .def("summary", &Result::summary)
       .def("header", &Result::header)
       .def("series", &Result::series);
-  module.def("diagnose", &diagnose, released());
-  module.def("check", &check, released());
-  module.def("simulate", &simulate, released());
+  thermopower::python::bind_dual(module);
+  py::class_<gap::Model>(module, "Model")
+      .def_readonly("name", &gap::Model::name)
+      .def("constants", &thermopower::python::constants_of)
+      .def("effects", [](const gap::Model& model) { return model.effects; })
+      .def("with_", &thermopower::python::changed);
+  module.def("model", [](const std::string& json, const std::vector<py::dict>& effects) {
+    return model_of(json, catalogue_with(effects));
+  });
+  module.def("own_plant", &thermopower::python::own_plant);
+  module.def("diagnose", &diagnose);
+  module.def("check", &check);
+  module.def("simulate", &simulate);
   module.def("effects", [] { return io::catalogue_text(gap::standard_catalogue().list()); });
   module.def("normalised", [](const std::string& model) { return io::to_json(model_of(model)); });
   module.attr("known_columns") = io::known_columns();

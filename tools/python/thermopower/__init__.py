@@ -26,7 +26,8 @@ import numpy as np
 from . import _thermopower
 from ._thermopower import InputError, InvalidInput
 
-__all__ = ["InputError", "InvalidInput", "Part", "Diagnosis", "check", "diagnose", "effects", "predict", "read_model", "simulate"]
+__all__ = ["InputError", "InvalidInput", "Part", "Diagnosis", "Effect", "Plant", "check", "diagnose", "effects", "parameter", "predict",
+           "read_model", "simulate"]
 
 
 class Part:
@@ -71,12 +72,122 @@ def _part(value):
     return value
 
 
+def parameter(name, unit="1", lower=0.0, upper=1.0, starts=(), logarithmic=False):
+    """A parameter of an effect of one's own: bounds, and where fits begin; logarithmic where only its order of magnitude is known.
+
+    >>> parameter("Nm_s2_per_rad2", "N m s^2/rad^2", 0.0, 1.0, [1e-5])["upper"]
+    1.0
+    """
+    starts = [float(one) for one in starts] or [(lower * upper) ** 0.5 if logarithmic else 0.5 * (lower + upper)]
+    return {"name": name, "unit": unit, "lower": float(lower), "upper": float(upper), "starts": starts, "logarithmic": bool(logarithmic)}
+
+
+class Effect:
+    """An effect of one's own, which is simulated, fitted, weighed and reported like those of the catalogue.
+
+    act(p, terms): its equation, called with its parameters and the terms of the place it acts on, both with attributes. It
+    changes terms in place. In fits both are numbers that carry their derivatives: +, -, *, /, **, abs(), comparisons and
+    NumPy's exp, log, sin, cos, tanh and sqrt know them.
+    on: "electrical", "air", "thermal", "bench_readings", "drive", "axis", "friction" or "axis_readings"; terms are those of the
+    C++ documentation (plant/terms.hpp), such as terms.rate_rad_per_s and terms.load_Nm on an axis.
+    For an effect that a Plant switches on itself, leave both out, and say the submodel.
+
+    >>> def drag(p, terms):
+    ...     terms.load_Nm -= p.Nm_s2_per_rad2 * terms.rate_rad_per_s * abs(terms.rate_rad_per_s)
+    >>> Effect("air_drag", drag, on="axis", parameters=[parameter("Nm_s2_per_rad2", starts=[1e-5])]).id
+    'air_drag'
+    """
+
+    _submodels = {"electrical": "electrical", "air": "thermal.loss", "thermal": "thermal.heating",
+                  "bench_readings": "sensing.temperature", "drive": "mechanical.drive", "axis": "mechanical.load",
+                  "friction": "mechanical.friction", "axis_readings": "sensing.angle"}
+
+    def __init__(self, id, act=None, *, on=None, parameters=(), submodel=None, equation="", prose="", experiment=""):
+        if (act is None) != (on is None):
+            raise InvalidInput(f"effect '{id}': act and on go together")
+        if on is not None and on not in self._submodels:
+            raise InvalidInput(f"effect '{id}': on is '{on}', expected one of {', '.join(self._submodels)}")
+        submodel = submodel or self._submodels.get(on)
+        if submodel is None:
+            raise InvalidInput(f"effect '{id}': expected the submodel that it acts in")
+        self.id = id
+        self._given = {"id": id, "act": act, "on": on, "parameters": list(parameters), "submodel": submodel,
+                       "equation": equation or f"{id}: a function in Python",
+                       "prose": prose or (act.__doc__ or id).strip().splitlines()[0], "experiment": experiment or "vary every input"}
+
+    def __repr__(self):
+        return f"Effect({self.id!r})"
+
+
+class Plant:
+    """A plant of one's own: a Python function that simulates it.
+
+    simulate(constants, start, t_s, inputs, effects) gets dicts by name: numbers, numbers, arrays, and of each effect that acts a
+    dict of its parameters; t_s begins at 0. It answers with a dict of arrays, one for each signal, and "end", a dict of the
+    states at the last row, where states are not measured. It must answer equal calls equally. Derivatives are taken from
+    differences, so a fit calls it some hundred times.
+
+    constants: name to value, or to (value, unit). inputs: name to unit. states: name to a dict of measured_by (a signal) or
+    shows_in (the signal that tells its start), initial, spread and unit. signals: name to a dict of unit and submodel.
+    windowed: runs in windows that start from measured states, as an axis does, else over whole runs.
+    """
+
+    def __init__(self, name, simulate, *, constants, inputs, states, signals, effects=(), windowed=False):
+        order = list(signals)
+
+        def place(state, key, otherwise):
+            if key not in state:
+                return otherwise
+            if state[key] not in order:
+                raise InvalidInput(f"plant '{name}': a state names the signal '{state[key]}'; there is {', '.join(order)}")
+            return order.index(state[key])
+
+        def unit_of(value, otherwise="1"):
+            return value[1] if isinstance(value, (list, tuple)) else otherwise
+
+        self._effects = [one._given for one in effects]
+        self._model = _thermopower.own_plant(
+            name, simulate,
+            [{"part": name, "name": key, "unit": unit_of(value), "value": float(value[0] if isinstance(value, (list, tuple)) else value),
+              "may_be_cause": True} for key, value in constants.items()],
+            [{"name": key, "unit": unit} for key, unit in (inputs.items() if hasattr(inputs, "items") else ((one, "1") for one in inputs))],
+            [{"name": key, "unit": state.get("unit", "1"), "measured_by": place(state, "measured_by", -1),
+              "initial": float(state.get("initial", 0.0)), "spread": float(state.get("spread", 1.0)),
+              "shows_in": place(state, "shows_in", 0)} for key, state in states.items()],
+            [{"name": key, "unit": signal.get("unit", "1"), "submodel": signal.get("submodel", f"{name}.{key}")}
+             for key, signal in signals.items()],
+            self._effects, windowed)
+
+    @property
+    def constants(self):
+        """Its constants by name."""
+        return self._model.constants()
+
+    @property
+    def acting(self):
+        """The effects that act in it, each a dict of its parameters."""
+        return self._model.effects()
+
+    def changed(self, constants=None, effects=None):
+        """The same plant with other constants, and with effects that act: dicts by name."""
+        return self._of(self._model.with_(constants or {}, effects or {}))
+
+    def _of(self, model):
+        other = object.__new__(Plant)
+        other._effects, other._model = self._effects, model
+        return other
+
+    def __repr__(self):
+        return f"Plant({self._model.name!r}, constants={self.constants!r}, acting={self.acting!r})"
+
+
 class Diagnosis(Part):
     """What a diagnosis found: the keys of the JSON report as attributes, and what can be written from it."""
 
-    def __init__(self, result):
+    def __init__(self, result, plant=None):
         super().__init__(json.loads(result.report()))
         self._result = result
+        self._plant = plant
 
     def __repr__(self):
         return self._result.summary()
@@ -93,12 +204,16 @@ class Diagnosis(Part):
 
     @property
     def augmented(self):
-        """The model with the causes added and its constants moved along, as a dict."""
+        """The model with the causes added and its constants moved along: a dict, or a Plant of one's own."""
+        if self._plant is not None:
+            return self._plant._of(self._result.augmented_model())
         return json.loads(self._result.augmented())
 
     @property
     def recalibrated(self):
-        """The model with its own constants refitted and nothing added, as a dict."""
+        """The model with its own constants refitted and nothing added: a dict, or a Plant of one's own."""
+        if self._plant is not None:
+            return self._plant._of(self._result.recalibrated_model())
         return json.loads(self._result.recalibrated())
 
     @property
@@ -188,10 +303,22 @@ def _recordings(data, name, columns=()):
     return [_recording(data, name, columns)]
 
 
-def _model(model):
+def _own(effects):
+    return [one._given for one in effects]
+
+
+def _model(model, effects=()):
+    if isinstance(model, Plant):
+        if effects:
+            raise InvalidInput("effects= is for models of the library; a Plant has its own from the start")
+        return model._model
     if isinstance(model, (str, os.PathLike)):
-        model = read_model(model)
-    return json.dumps(model)
+        if not effects:
+            model = read_model(model)
+        else:
+            with open(model, encoding="utf-8") as file:
+                model = json.load(file)
+    return _thermopower.model(json.dumps(model), _own(effects))
 
 
 def _options(options):
@@ -215,29 +342,32 @@ def read_model(path):
         raise InputError(f"{os.fspath(path)}{str(error)[len('model'):]}") from None
 
 
-def diagnose(model, recordings, held_out=None, columns=(), **options):
+def diagnose(model, recordings, held_out=None, columns=(), effects=(), **options):
     """Finds where the model and the recordings part, and which effect is missing.
 
     held_out: recordings to judge on; without them the last 30 % of each recording. columns: for files only, as the
-    program's --column. Options are those of the program: horizon_s, tolerance, held_out_fraction, effects_at_once,
+    program's --column. effects: of one's own (Effect), beside those of the catalogue. Ctrl-C ends it. Options are those of the program: horizon_s, tolerance, held_out_fraction, effects_at_once,
     without, as_recorded, threads, seed.
     """
     return Diagnosis(
         _thermopower.diagnose(
-            _model(model),
+            _model(model, effects),
+            _own(effects),
             _recordings(recordings, "recordings", columns),
             _recordings(held_out, "held_out", columns),
             _options(options),
-        )
+        ),
+        model if isinstance(model, Plant) else None,
     )
 
 
-def check(model, recordings, held_out=None, columns=(), **options):
+def check(model, recordings, held_out=None, columns=(), effects=(), **options):
     """What is wrong with recordings, and what they can show; nothing is fitted."""
     return Part(
         json.loads(
             _thermopower.check(
-                _model(model),
+                _model(model, effects),
+                _own(effects),
                 _recordings(recordings, "recordings", columns),
                 _recordings(held_out, "held_out", columns),
                 _options(options),
@@ -246,12 +376,12 @@ def check(model, recordings, held_out=None, columns=(), **options):
     )
 
 
-def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, columns):
+def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, columns, effects):
     many_models, many = isinstance(models, (list, tuple)), isinstance(recordings, (list, tuple))
     sources = list(recordings) if many else [recordings]
     taken = _recordings(sources, "recording", columns)
     found = _thermopower.simulate(
-        [_model(one) for one in (models if many_models else [models])], taken, starts, horizon_s, from_inputs, threads or os.cpu_count() or 1
+        [_model(one, effects) for one in (models if many_models else [models])], _own(effects), taken, starts, horizon_s, from_inputs, threads or os.cpu_count() or 1
     )
     results = [
         [{**({"t_s": np.asarray(source["t_s"], float)} if hasattr(source, "keys") else {}), **dict(signals)}
@@ -263,19 +393,19 @@ def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, colum
     return results if many_models else results[0]
 
 
-def simulate(models, recordings, horizon_s=0.5, threads=0, columns=()):
+def simulate(models, recordings, horizon_s=0.5, threads=0, columns=(), effects=()):
     """Simulates recordings as a gap is judged: each run from its measured start, an axis in windows of horizon_s.
 
     One model or a list, one recording or a list; lists give lists, the outer one over models. Each result is a dict
     of arrays, nan where a signal could not be simulated.
     """
-    return _simulate(models, recordings, {}, horizon_s, False, threads, columns)
+    return _simulate(models, recordings, {}, horizon_s, False, threads, columns, effects)
 
 
-def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, columns=()):
+def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, columns=(), effects=()):
     """Predicts from inputs alone: what was not measured starts at the air's temperature and at rest, or as start says
     (such as {"motor_C": 40.0}). Lists as in simulate()."""
-    return _simulate(models, recordings, dict(start or {}), horizon_s, True, threads, columns)
+    return _simulate(models, recordings, dict(start or {}), horizon_s, True, threads, columns, effects)
 
 
 def effects():

@@ -1,17 +1,58 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 the thermopower authors
 from os import PathLike
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-Model = Union[Mapping[str, Any], str, PathLike[str]]
 Recording = Union[Mapping[str, Any], str, PathLike[str], Any]
 Recordings = Union[Recording, Sequence[Recording]]
 Signals = Dict[str, np.ndarray]
 
 class InputError(ValueError): ...
 class InvalidInput(ValueError): ...
+
+def parameter(
+    name: str, unit: str = ..., lower: float = ..., upper: float = ..., starts: Sequence[float] = ..., logarithmic: bool = ...
+) -> Dict[str, Any]: ...
+
+class Effect:
+    id: str
+    def __init__(
+        self,
+        id: str,
+        act: Optional[Callable[[Any, Any], None]] = ...,
+        *,
+        on: Optional[str] = ...,
+        parameters: Sequence[Mapping[str, Any]] = ...,
+        submodel: Optional[str] = ...,
+        equation: str = ...,
+        prose: str = ...,
+        experiment: str = ...,
+    ) -> None: ...
+
+class Plant:
+    def __init__(
+        self,
+        name: str,
+        simulate: Callable[..., Mapping[str, Any]],
+        *,
+        constants: Mapping[str, Union[float, Tuple[float, str]]],
+        inputs: Union[Mapping[str, str], Sequence[str]],
+        states: Mapping[str, Mapping[str, Any]],
+        signals: Mapping[str, Mapping[str, Any]],
+        effects: Sequence[Effect] = ...,
+        windowed: bool = ...,
+    ) -> None: ...
+    @property
+    def constants(self) -> Dict[str, float]: ...
+    @property
+    def acting(self) -> Dict[str, Dict[str, float]]: ...
+    def changed(
+        self, constants: Optional[Mapping[str, float]] = ..., effects: Optional[Mapping[str, Mapping[str, float]]] = ...
+    ) -> "Plant": ...
+
+Model = Union[Mapping[str, Any], str, PathLike[str], Plant]
 
 class Part:
     def __getattr__(self, name: str) -> Any: ...
@@ -31,9 +72,9 @@ class Diagnosis(Part):
     findings: List[Part]
     next_experiment: str
     @property
-    def augmented(self) -> Dict[str, Any]: ...
+    def augmented(self) -> Any: ...
     @property
-    def recalibrated(self) -> Dict[str, Any]: ...
+    def recalibrated(self) -> Any: ...
     @property
     def series(self) -> List[Dict[str, Any]]: ...
     def html(self) -> str: ...
@@ -47,6 +88,7 @@ def diagnose(
     recordings: Recordings,
     held_out: Optional[Recordings] = ...,
     columns: Sequence[str] = ...,
+    effects: Sequence[Effect] = ...,
     *,
     horizon_s: float = ...,
     tolerance: float = ...,
@@ -62,6 +104,7 @@ def check(
     recordings: Recordings,
     held_out: Optional[Recordings] = ...,
     columns: Sequence[str] = ...,
+    effects: Sequence[Effect] = ...,
     *,
     horizon_s: float = ...,
     as_recorded: bool = ...,
@@ -72,6 +115,7 @@ def simulate(
     horizon_s: float = ...,
     threads: int = ...,
     columns: Sequence[str] = ...,
+    effects: Sequence[Effect] = ...,
 ) -> Any: ...
 def predict(
     models: Union[Model, Sequence[Model]],
@@ -80,5 +124,6 @@ def predict(
     horizon_s: float = ...,
     threads: int = ...,
     columns: Sequence[str] = ...,
+    effects: Sequence[Effect] = ...,
 ) -> Any: ...
 def effects() -> str: ...
