@@ -52,20 +52,7 @@ struct Unit {
   bool steady = false;
 };
 
-constexpr const char* usage = "usage: gap_fleet_generate --out DIR --seed S --units N [--tiny]\n";
-
-/// Logs too short for a diagnosis, to measure what is around one.
-void write_tiny(const std::string& out, int count) {
-  std::ofstream manifest(out + "/manifest.csv");
-  manifest << "log,model,unit\n";
-  for (int i = 0; i < count; ++i) {
-    char name[40];
-    std::snprintf(name, sizeof name, "logs/t%06d.csv", i);
-    std::ofstream(out + "/" + name) << "t_s,power_param,ambient_C,motor_C,current_A\n0,100,25,25." << i % 10
-                                    << ",1\n1,100,25,25.5,1\n2,100,25,26,1\n";
-    manifest << name << ",model.json,u" << i << "\n";
-  }
-}
+constexpr const char* usage = "usage: gap_fleet_generate --out DIR --seed S --units N\n";
 
 }  // namespace
 
@@ -73,14 +60,12 @@ int main(int argc, char** argv) {
   std::string out;
   unsigned long long seed = 1;
   int count = 200;
-  bool tiny = false;
   for (int i = 1; i < argc; ++i) {
     const std::string option = argv[i];
     const bool more = i + 1 < argc;
     if (option == "--out" && more) out = argv[++i];
     else if (option == "--seed" && more) seed = std::strtoull(argv[++i], nullptr, 10);
     else if (option == "--units" && more) count = std::atoi(argv[++i]);
-    else if (option == "--tiny") tiny = true;
     else return std::fputs(usage, stderr), 2;
   }
   if (out.empty() || count < 1) return std::fputs(usage, stderr), 2;
@@ -88,7 +73,6 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(out + "/sealed");
   const BenchSetup bench = standard();
   std::ofstream(out + "/model.json") << bench_model_json(bench.context).dump(1) << "\n";
-  if (tiny) return write_tiny(out, count), 0;
 
   Random random(seed * 0x100000001b3ull);
   std::vector<Unit> units(static_cast<std::size_t>(count));
