@@ -25,7 +25,7 @@ namespace thermopower::gap::engine {
 
 /// Thresholds of the question when a power was switched.
 struct HeatThresholds {
-  Eigen::Index block_rows = 17;
+  Eigen::Index block_rows = 17;  ///< through which a body goes as the terms say, but for a straight line
   std::size_t parts = 20;        ///< of the blocks, for the jackknife
   std::size_t least_blocks = 6;  ///< in which the heat changes
   double least_share = 0.25;     ///< switched at any time is a half
