@@ -2,6 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "axis_case.hpp"
 #include "case.hpp"
 
@@ -46,18 +49,19 @@ inline AxisSetup draw_axis(const std::vector<std::string>& wanted, Random& rando
     c.plant[static_cast<std::size_t>(i)] *= 1.0 + random.uniform(-0.035, 0.035);
   c.dt_s = random.pick({0.001, 0.002, 0.004, 0.004, 0.005, 0.01, 0.01, 0.01, 0.02});
   if (wants("compliance") || wants("backlash")) c.dt_s = std::min(c.dt_s, 0.01);
-  c.has_motor = wants("torque_fade") || random.chance(0.35);
+  const bool by_warmth = wants("torque_fade") || wants("warm_friction");
+  c.has_motor = by_warmth || random.chance(0.35);
   s.noise_angle_deg = random.log_uniform(0.006, 0.05);
   s.noise_rate_dps = random.log_uniform(0.05, 0.4);
   s.quantum_angle_deg = random.pick({0.0, 0.0, 0.0, 360.0 / 16384.0, 360.0 / 4096.0, 0.01});
   s.quantum_rate_dps = random.pick({0.0, 0.0, 0.061, 0.1});
   s.amplitude_deg = random.uniform(20.0, 60.0);
   s.bandwidth_Hz = std::min(random.uniform(1.5, 4.0), 0.05 / c.dt_s);
-  if (wants("actuation_delay")) s.bandwidth_Hz = std::min(s.bandwidth_Hz, 2.2);
+  if (wants("actuation_delay") || wants("drive_lag")) s.bandwidth_Hz = std::min(s.bandwidth_Hz, 2.2);
   const double brisk = m[inertia] * random.uniform(12.0, 30.0) + m[viscous] * 3.0;
   s.top_A = brisk / m[torque_constant];
   s.first_C = random.uniform(22.0, 32.0);
-  s.rise_K = wants("torque_fade") ? random.uniform(25.0, 60.0) : random.uniform(5.0, 40.0);
+  s.rise_K = by_warmth ? random.uniform(25.0, 60.0) : random.uniform(5.0, 40.0);
   s.coloured = random.chance(0.3) ? random.uniform(0.05, 0.2) : 0.0;
   s.jitter = random.chance(0.12);
   s.missing_cells = random.chance(0.12);
@@ -288,6 +292,13 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
     // A torque that comes late and a servo that answers late are one where no current is logged.
     if (setup.servo && !order.effects.empty() && order.effects.front() == "actuation_delay")
       label["effects"] = {"servo_delay"};
+    for (const auto& same : axis_same_physics()) {
+      const std::set<std::string> truth(order.effects.begin(), order.effects.end());
+      if (truth == std::set<std::string>(same.one.begin(), same.one.end()))
+        label["same"].push_back(same.other);
+      if (truth == std::set<std::string>(same.other.begin(), same.other.end()))
+        label["same"].push_back(same.one);
+    }
     label["unknown"] =
         unknown == AxisUnknown::none
             ? nlohmann::ordered_json()

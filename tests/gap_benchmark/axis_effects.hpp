@@ -84,6 +84,33 @@ inline const std::vector<AxisEffect>& axis_effects() {
                      {stribeck_dps, 2.0, 80.0, {8.0, 30.0}}};
        },
        {"coulomb_friction"}},
+      // J dw/dt = M - (b + c) w, c one number forward and another backward: a lip seal, a screw with oil on one flank.
+      {"asymmetric_viscous",
+       "mechanical.friction",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         const double b = c.plant[viscous], mean = b * r.uniform(0.8, 2.0),
+                      tilt = r.sign() * r.uniform(0.2, 0.6);
+         p[forward_Nms] = mean * (1.0 + tilt) - b;
+         p[backward_Nms] = mean * (1.0 - tilt) - b;
+       },
+       [](const Context& c) {
+         const double b = c.model[viscous];
+         return List{{forward_Nms, -0.9 * b, 5.0 * b, {0.0, 0.5 * b}},
+                     {backward_Nms, -0.9 * b, 5.0 * b, {0.0, 0.5 * b}}};
+       },
+       {"calibration.viscous"}},
+      // J dw/dt = M - b exp(-k (T - 25)) w, T the motor's temperature: Reynolds's law of viscosity.
+      {"warm_friction",
+       "mechanical.friction",
+       motion,
+       [](const Context& c) { return c.has_motor; },
+       [](Random& r, const Context&, Values& p) { p[thinning_per_K] = r.log_uniform(0.008, 0.04); },
+       [](const Context&) {
+         return List{{thinning_per_K, -0.03, 0.12, {0.005, 0.02}}};
+       },
+       {}},
       {"load_friction",
        "mechanical.friction",
        motion,
@@ -131,6 +158,19 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{unbalance_sin_Nm, -m, m, {0.1 * m}}, {unbalance_cos_Nm, -m, m, {0.0}}};
        },
        {}},
+      // J dw/dt = M - b w + T, T the same at every angle and rate.
+      {"constant_torque",
+       "mechanical.load",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         p[weight_Nm] = r.sign() * c.torque_Nm * r.log_uniform(0.04, 0.5);
+       },
+       [](const Context& c) {
+         const double m = 2.0 * c.torque_Nm;
+         return List{{weight_Nm, -m, m, {-0.05 * m, 0.05 * m}}};
+       },
+       {}},
       {"cable_spring",
        "mechanical.load",
        motion,
@@ -144,7 +184,7 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{cable_Nm_per_rad, 0.0, m / c.swing_rad, {0.1 * m / c.swing_rad}},
                      {cable_Nm, -m, m, {0.0}}};
        },
-       {}},
+       {"constant_torque"}},
       {"cogging",
        "mechanical.load",
        motion,
@@ -218,6 +258,35 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{delay_s, 0.0, 0.06, {0.005, 0.015}}};
        },
        {}},
+      // J dw/dt = M - b w, lag dM/dt = Kt i - M: the current rises slowly in its winding.
+      {"drive_lag",
+       "mechanical.drive",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         p[lag_s] = r.log_uniform(std::max(0.008, c.dt_s), 0.15);
+       },
+       [](const Context&) {
+         return List{{lag_s, 0.002, 0.4, {0.01, 0.06}}};
+       },
+       {}},
+      // J dw/dt = Kt i (1 + s sin(n theta) + c cos(n theta)) - b w: slots and magnets, n times a turn.
+      {"torque_ripple",
+       "mechanical.drive",
+       motion,
+       always,
+       [](Random& r, const Context&, Values& p) {
+         const double size = r.log_uniform(0.04, 0.4), phase = r.uniform(-3.1, 3.1);
+         p[ripple_sin] = size * std::cos(phase);
+         p[ripple_cos] = size * std::sin(phase);
+         p[ripple_count] = r.pick({3.0, 4.0, 6.0, 7.0, 8.0, 11.0, 12.0, 14.0, 18.0, 21.0, 24.0});
+       },
+       [](const Context&) {
+         return List{{ripple_sin, -0.9, 0.9, {0.08}},
+                     {ripple_cos, -0.9, 0.9, {0.0}},
+                     {ripple_count, 2.0, 30.0, {3.0, 6.0, 12.0, 22.0}}};
+       },
+       {}},
       {"torque_saturation",
        "mechanical.drive",
        motion,
@@ -284,6 +353,21 @@ inline const std::vector<AxisEffect>& axis_effects() {
        {}},
   };
   return effects;
+}
+
+/// What is the same physics as a cause of the list, by other names: where one is the truth, the other is in its class.
+///
+/// Dry friction of F (1 + a) forward and F (1 - a) backward is friction of F either way and a torque of a F against
+/// them both, while it slides and in what it takes to break away.
+struct SamePhysics {
+  std::vector<std::string> one, other;
+};
+
+inline const std::vector<SamePhysics>& axis_same_physics() {
+  static const std::vector<SamePhysics> list = {
+      {{"asymmetric_friction"}, {"coulomb_friction", "constant_torque"}},
+  };
+  return list;
 }
 
 /// The baseline's own constants with the slack that anybody's explanation may use.

@@ -24,16 +24,24 @@ enum AxisParameter : int {
   gear_forward,
   gear_backward,
   film_dps,
+  forward_Nms,   ///< viscous friction besides, while the rate is positive, N m s/rad
+  backward_Nms,  ///< and while it is negative
+  thinning_per_K,
   // drive
   deadband_A,
   delay_s,
   torque_limit_Nm,
   fade_per_K,
+  lag_s,
+  ripple_sin,
+  ripple_cos,
+  ripple_count,
   // what depends on the angle
   unbalance_sin_Nm,
   unbalance_cos_Nm,
   cable_Nm_per_rad,
   cable_Nm,
+  weight_Nm,  ///< on a pulley: the same at every angle
   cogging_sin_Nm,
   cogging_cos_Nm,
   cogging_count,
@@ -76,7 +84,7 @@ inline AxisParameters axis_defaults() {
   AxisParameters p{};
   p[stribeck_dps] = 10.0;
   p[stribeck_exponent] = 2.0;
-  p[cogging_count] = 12.0;
+  p[cogging_count] = p[ripple_count] = 12.0;
   p[spring_Hz] = 10.0;
   p[spring_damping] = 0.05;
   p[angle_gain] = 1.0;
@@ -86,7 +94,7 @@ inline AxisParameters axis_defaults() {
 }
 
 constexpr double degrees_per_radian = 57.295779513082323;
-constexpr double fade_reference_C = 25.0;
+constexpr double fade_reference_C = 25.0;  ///< of a magnet and of a grease
 
 struct AxisInput {
   double drive_A = 0.0, motor_C = fade_reference_C;
@@ -94,9 +102,9 @@ struct AxisInput {
 };
 
 /// Motor side and far side of the spring, in rad; `bent` is how far the bristles are bent, as a share of the most,
-/// `warm` the warmth of the grease.
+/// `warm` the warmth of the grease, `late_Nm` the torque that a slow drive has reached.
 struct AxisState {
-  double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, bent = 0.0, warm = 0.0;
+  double angle = 0.0, rate = 0.0, far_angle = 0.0, far_rate = 0.0, bent = 0.0, warm = 0.0, late_Nm = 0.0;
   bool touching = false;  ///< of a spring with a gap: one side pushes the other
 };
 
@@ -117,6 +125,7 @@ public:
       damper_ = 2.0 * p_[spring_damping] * reduced * omega;
       step_s_ = std::min(step_s_, 0.1 / omega);
     }
+    if (p_[lag_s] > 0.0) step_s_ = std::min(step_s_, 0.5 * p_[lag_s]);
     const bool rubs = p_[coulomb_Nm] > 0.0 || p_[load_share] > 0.0 || p_[notch_Nm] > 0.0 ||
                       p_[gear_forward] < 1.0 || p_[gear_backward] < 1.0;
     if (p_[gap_deg] > 0.0) half_gap_ = 0.5 * p_[gap_deg] / degrees_per_radian;
@@ -146,7 +155,7 @@ public:
     }
     const double rate = (rate_dps - p_[rate_bias_dps]) / degrees_per_radian;
     if (first) {
-      x = AxisState{angle, rate, angle, rate, 0.0, 0.0, false};
+      x = AxisState{angle, rate, angle, rate, 0.0, 0.0, 0.0, false};
     } else if (absolute) {
       x.angle = angle;
       x.rate = rate;
@@ -170,7 +179,7 @@ public:
   /// Carries the state over a time in which all inputs are held.
   void advance(AxisState& x, const AxisInput& u, double duration_s) const {
     if (duration_s <= 0.0) return;
-    const Held held{motor_torque(u), u.hidden_Nm, u.hidden_wear};
+    const Held held{motor_torque(u), u.hidden_Nm, u.hidden_wear, thinning(u)};
     double step_s = step_s_;
     if (creeps_) {
       const double film = p_[film_dps] / degrees_per_radian, near = p_[inertia] * (1.0 - p_[far_share]);
@@ -245,15 +254,30 @@ public:
 
 private:
   struct Held {
-    double motor_Nm, hidden_Nm, wear;
+    double motor_Nm, hidden_Nm, wear, thin;
   };
-  using Rates = std::array<double, 6>;
+  using Rates = std::array<double, 7>;
 
   AxisParameters p_;
   double step_scale_ = 1.0, step_s_ = 0.25e-3, spring_ = 0.0, damper_ = 0.0, half_gap_ = 0.0;
   bool dry_ = false, creeps_ = false;
 
+  /// What is left of friction in warm grease: Reynolds's law of viscosity, exp(-beta (T - T0)), for all that rubs in it.
+  double thinning(const AxisInput& u) const {
+    return p_[thinning_per_K] != 0.0 ? std::exp(-p_[thinning_per_K] * (u.motor_C - fade_reference_C)) : 1.0;
+  }
+
+  /// What a drive brings to the shaft, N m: of a slow one what it has reached by now, lag dM/dt = commanded - M; and at
+  /// some angles, where the magnets and the coils stand well to each other, more for the same current than at others.
+  double delivered(const AxisState& x, const Held& held) const {
+    const double torque = p_[lag_s] > 0.0 ? x.late_Nm : held.motor_Nm;
+    if (p_[ripple_sin] == 0.0 && p_[ripple_cos] == 0.0) return torque;
+    const double turn = p_[ripple_count] * x.angle;
+    return torque * (1.0 + p_[ripple_sin] * std::sin(turn) + p_[ripple_cos] * std::cos(turn));
+  }
+
   double friction(const AxisState& x, const Held& held, double way) const {
+    const double motor_Nm = delivered(x, held);
     double torque = p_[coulomb_Nm] * (1.0 + way * p_[asymmetry]);
     if (p_[stick_ratio] > 0.0) {
       const double v = std::fabs(x.rate) * degrees_per_radian / p_[stribeck_dps];
@@ -261,9 +285,8 @@ private:
     }
     if (p_[run_out_share] > 0.0) torque *= 1.0 + p_[run_out_share] * std::sin(p_[run_out_count] * x.angle);
     const double load_Nm = p_[far_share] > 0.0 ? 0.0 : load_torque(x.angle, x.rate);
-    torque = torque * held.wear + p_[load_share] * std::fabs(held.motor_Nm - load_Nm);
+    torque = torque * held.wear + p_[load_share] * std::fabs(motor_Nm - load_Nm);
     // A gear hands on a part of the motor's torque; of the load's, when that turns the motor, another part.
-    const double motor_Nm = held.motor_Nm;
     const double arrives_Nm =
         motor_Nm * way > 0.0 ? motor_Nm * p_[gear_forward] : motor_Nm / p_[gear_backward];
     torque += (motor_Nm - arrives_Nm) * way;
@@ -271,7 +294,7 @@ private:
       const double z = (x.angle * degrees_per_radian - p_[notch_deg]) / p_[notch_width_deg];
       torque += p_[notch_Nm] * std::exp(-0.5 * z * z);
     }
-    return torque;
+    return torque * held.thin;
   }
 
   /// What two sides that are pressed together pass on, N m; they cannot pull.
@@ -309,9 +332,9 @@ private:
     return spring_ * (x.angle - x.far_angle) + damper_ * (x.rate - x.far_rate);
   }
 
-  /// Torque of the surroundings at an angle: weight, cable, end stop.
+  /// Torque of the surroundings at an angle: weights, cable, end stop.
   double load_torque(double angle, double rate) const {
-    double torque = -p_[cable_Nm_per_rad] * angle - p_[cable_Nm];
+    double torque = p_[weight_Nm] - p_[cable_Nm_per_rad] * angle - p_[cable_Nm];
     if (p_[unbalance_sin_Nm] != 0.0 || p_[unbalance_cos_Nm] != 0.0)
       torque -= p_[unbalance_sin_Nm] * std::sin(angle) + p_[unbalance_cos_Nm] * std::cos(angle);
     if (p_[stop_Nm_per_rad] > 0.0) {
@@ -324,13 +347,15 @@ private:
 
   /// All torque on the motor side but dry friction.
   double without_friction(const AxisState& x, const Held& held) const {
-    double torque = held.motor_Nm + held.hidden_Nm;
+    const double motor_Nm = delivered(x, held);
+    double torque = motor_Nm + held.hidden_Nm;
     if (p_[brake_share] > 0.0) {  // weak while it turns against its torque, from some 2 deg/s on
-      const double against = std::copysign(x.rate * degrees_per_radian / 2.0, -held.motor_Nm * x.rate);
-      torque -= p_[brake_share] * held.motor_Nm * 0.5 * (1.0 + std::tanh(against));
+      const double against = std::copysign(x.rate * degrees_per_radian / 2.0, -motor_Nm * x.rate);
+      torque -= p_[brake_share] * motor_Nm * 0.5 * (1.0 + std::tanh(against));
     }
-    double b = p_[viscous];
+    double b = p_[viscous] + (x.rate > 0.0 ? p_[forward_Nms] : p_[backward_Nms]);
     if (p_[warming_share] > 0.0) b *= 1.0 - p_[warming_share] * x.warm;
+    b *= held.thin;
     if (dry_ || creeps_) torque -= b * x.rate;
     else torque -= b * held.wear * x.rate;
     if (p_[cogging_sin_Nm] != 0.0 || p_[cogging_cos_Nm] != 0.0)
@@ -339,7 +364,7 @@ private:
     if (p_[cogging_second] != 0.0)
       torque -= p_[cogging_second] * std::hypot(p_[cogging_sin_Nm], p_[cogging_cos_Nm]) *
                 std::sin(2.0 * p_[cogging_count] * x.angle + p_[cogging_second_phase]);
-    if (p_[bristle_Nm] > 0.0) torque -= p_[bristle_Nm] * x.bent;
+    if (p_[bristle_Nm] > 0.0) torque -= p_[bristle_Nm] * x.bent * held.thin;
     if (p_[drag_Nm_per_dps2] > 0.0) {
       const double v = x.rate * degrees_per_radian;
       torque -= p_[drag_Nm_per_dps2] * v * std::fabs(v);
@@ -368,17 +393,13 @@ private:
       d[4] = (x.rate - std::fabs(x.rate) * x.bent) * degrees_per_radian / p_[bristle_deg];
     if (p_[warming_share] > 0.0)
       d[5] = (std::min(1.0, std::fabs(x.rate) * degrees_per_radian / 80.0) - x.warm) / p_[warming_s];
+    if (p_[lag_s] > 0.0) d[6] = (held.motor_Nm - x.late_Nm) / p_[lag_s];
     return d;
   }
 
   static AxisState moved(const AxisState& x, const Rates& d, double h) {
-    return {x.angle + h * d[0],
-            x.rate + h * d[1],
-            x.far_angle + h * d[2],
-            x.far_rate + h * d[3],
-            x.bent + h * d[4],
-            x.warm + h * d[5],
-            x.touching};
+    return {x.angle + h * d[0], x.rate + h * d[1], x.far_angle + h * d[2], x.far_rate + h * d[3],
+            x.bent + h * d[4],  x.warm + h * d[5], x.late_Nm + h * d[6],   x.touching};
   }
 
   AxisState stepped(const AxisState& x, const Held& held, double way, bool stuck, double h) const {

@@ -131,6 +131,79 @@ TEST_CASE("a rigid axis follows the exponential of the textbook, and dry frictio
   CHECK(agree(x.rate * degrees_per_radian, 0.9, 1e-9));
 }
 
+TEST_CASE(
+    "a weight on a pulley, a slow drive, a drag of two sides, warm grease and a ripple follow their textbook") {
+  AxisParameters p = small_axis();
+  p[viscous] = 0.0;
+  AxisInput u;
+  p[weight_Nm] = -2e-3;  // T / J t
+  AxisState x;
+  AxisPlant(p).advance(x, u, 0.5);
+  CHECK(agree(x.rate, -1.0, 1e-9));
+  p[weight_Nm] = 0.0;
+
+  p[lag_s] = 0.03;  // Kt i / J (t - lag (1 - exp(-t / lag)))
+  u.drive_A = 0.1;
+  x = AxisState{};
+  AxisPlant(p).advance(x, u, 0.05);
+  CHECK(agree(x.rate, 15.0 * (0.05 - 0.03 * (1.0 - std::exp(-0.05 / 0.03))), 1e-7));
+  p[lag_s] = 0.0;
+
+  p[viscous] = 1e-3;  // exp(-(b + c) t / J)
+  p[forward_Nms] = 2e-3;
+  p[backward_Nms] = -0.5e-3;
+  u.drive_A = 0.0;
+  for (const double way : {1.0, -1.0}) {
+    x = AxisState{};
+    x.rate = way;
+    AxisPlant(p).advance(x, u, 0.4);
+    CHECK(agree(x.rate, way * std::exp(way > 0.0 ? -3.0 * 0.4 : -0.5 * 0.4), 1e-9));
+  }
+  p[forward_Nms] = p[backward_Nms] = 0.0;
+
+  p[thinning_per_K] = 0.02;  // b exp(-k (T - 25)), and dry friction alike
+  u.motor_C = 60.0;
+  x = AxisState{};
+  x.rate = 1.0;
+  AxisPlant(p).advance(x, u, 0.8);
+  CHECK(agree(x.rate, std::exp(-0.8 * std::exp(-0.7)), 1e-9));
+  p[viscous] = 0.0;
+  p[coulomb_Nm] = 2e-3;
+  x = AxisState{};
+  x.rate = 1.0;
+  AxisPlant(p).advance(x, u, 0.3);
+  CHECK(agree(x.rate, 1.0 - 2.0 * std::exp(-0.7) * 0.3, 1e-9));
+  p[thinning_per_K] = p[coulomb_Nm] = 0.0;
+
+  p[ripple_sin] = 0.3;  // J w^2 / 2 is the work, Kt i (theta + s (1 - cos(n theta)) / n + c sin(n theta) / n)
+  p[ripple_cos] = -0.2;
+  p[ripple_count] = 6.0;
+  u.drive_A = 0.1;
+  x = AxisState{};
+  AxisPlant(p).advance(x, u, 0.6);
+  CHECK(agree(
+      0.5e-3 * x.rate * x.rate,
+      0.015 * (x.angle + 0.3 * (1.0 - std::cos(6.0 * x.angle)) / 6.0 - 0.2 * std::sin(6.0 * x.angle) / 6.0),
+      1e-8));
+}
+
+TEST_CASE("friction of two sides is friction and a torque that is always there, at rest and in motion") {
+  REQUIRE(axis_same_physics().size() == 1);
+  AxisParameters one = small_axis(), other = small_axis();
+  one[coulomb_Nm] = other[coulomb_Nm] = 2e-3;
+  one[asymmetry] = 0.4;
+  other[weight_Nm] = -0.4 * 2e-3;
+  AxisState a, b;
+  for (int i = 0; i < 400; ++i) {  // through both directions, and standstill in between
+    AxisInput u;
+    u.drive_A = 0.03 * std::sin(0.05 * i) + 0.008 * std::sin(0.31 * i);
+    AxisPlant(one).advance(a, u, 0.01);
+    AxisPlant(other).advance(b, u, 0.01);
+    REQUIRE(std::fabs(a.rate - b.rate) < 1e-6);
+  }
+  CHECK(std::fabs(a.angle) > 0.01);
+}
+
 TEST_CASE("a delayed command switches at its own instant") {
   AxisParameters p = small_axis();
   p[viscous] = 0.0;

@@ -64,6 +64,11 @@ inline const std::vector<Pair>& axis_pairs() {
       {"asymmetric_friction", "cogging"},
       {"cable_spring", "actuation_delay"},
       {"actuation_delay", "calibration.viscous"},
+      {"warm_friction", "coulomb_friction"},
+      {"constant_torque", "cogging"},
+      {"asymmetric_viscous", "imbalance"},
+      {"drive_lag", "coulomb_friction"},
+      {"torque_ripple", "cable_spring"},
   };
   return pairs;
 }
@@ -103,8 +108,8 @@ inline std::string title(const CaseOrder& order) {
 
 /// The list of what to draw, in an order that says nothing about the causes.
 /// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `servo` or `misspecified`; everything when empty
-/// With 5 recordings per effect: 225 single effects, 60 none, 48 pairs, 45 outside the catalogue; 111 dirty; 56
-/// misspecified.
+/// With 5 recordings per effect: 250 single effects, 60 none, 48 pairs, 45 outside the catalogue; 116 dirty; 54 with
+/// the servo's target; 56 misspecified.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
                                    bool thorough) {
   Random random(seed ^ 0x5eedull);

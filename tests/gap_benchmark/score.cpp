@@ -142,7 +142,7 @@ private:
     }
     const auto all = v.everything();
     const bool top = v.named() && v.cause == truth;
-    const bool classed = in_class(v, truth);
+    const bool classed = in_class(v, label, truth);
     if (truth.size() == 1) {
       Row& row = rows_[name];
       ++row.cases;
@@ -224,6 +224,12 @@ private:
                                 {"load_friction", "share", 0, 1.0},
                                 {"drive_efficiency", "efficiency", 0, 1.0},
                                 {"drive_efficiency", "back_efficiency", 1, 1.0},
+                                {"constant_torque", "Nm", 0, 1.0},
+                                {"asymmetric_viscous", "forward_Nms_per_rad", 0, 1.0},
+                                {"asymmetric_viscous", "backward_Nms_per_rad", 1, 1.0},
+                                {"warm_friction", "per_K", 0, 1.0},
+                                {"drive_lag", "lag_s", 0, 1.0},
+                                {"torque_ripple", "cycles_per_turn", 2, 1.0},
                                 {"drive_deadband", "A", 0, 1.0},
                                 {"cable_spring", "Nm_per_rad", 0, 1.0},
                                 {"compliance", "far_share", 0, 1.0},
@@ -253,10 +259,16 @@ private:
            number(label["likeness"], v.cause.begin()->c_str()) >= 0.9;
   }
 
-  static bool in_class(const Verdict& v, const Explanation& truth) {
+  /// The truth, or what is the same physics by another name, is part of the cause or of an alternative.
+  static bool in_class(const Verdict& v, const Json& label, const Explanation& truth) {
+    std::vector<Explanation> same = {truth};
+    if (label.contains("same"))
+      for (const auto& ids : label["same"]) same.push_back(ids.get<Explanation>());
     const auto all = v.everything();
     return v.named() && std::any_of(all.begin(), all.end(), [&](const Explanation& e) {
-             return std::includes(e.begin(), e.end(), truth.begin(), truth.end());
+             return std::any_of(same.begin(), same.end(), [&](const Explanation& one) {
+               return std::includes(e.begin(), e.end(), one.begin(), one.end());
+             });
            });
   }
 
@@ -285,7 +297,7 @@ private:
       tallies_.add("dirty_none", right);
     } else {
       right = v.named() && v.cause == truth;
-      tallies_.add("dirty_class", in_class(v, truth));
+      tallies_.add("dirty_class", in_class(v, label, truth));
       if (number(label, "confusability", 0.0) < 0.9) tallies_.add("dirty_named", right);
     }
     if (!right) miss(job, wrong ? "dirty, confident" : "dirty", title, v, why(v, label, truth));
@@ -293,7 +305,7 @@ private:
 
   void judge_servo(const std::string& job, const Json& label, const Verdict& v, const Explanation& truth) {
     const bool right = v.named() && v.cause == truth;
-    tallies_.add("servo_class", in_class(v, truth));
+    tallies_.add("servo_class", in_class(v, label, truth));
     if (number(label, "confusability", 0.0) < 0.9) tallies_.add("servo_named", right);
     if (!right) miss(job, "servo", join(truth) + ", target logged", v, why(v, label, truth));
   }
@@ -303,7 +315,7 @@ private:
     const bool form = label.contains("form");
     const bool wrong = confidently_wrong(v, label, truth);
     tallies_.add("misspecified_confident", wrong);
-    const bool right = in_class(v, truth);
+    const bool right = in_class(v, label, truth);
     tallies_.add(form ? "other_form" : "refitted", right);
     if (!right)
       miss(job, wrong ? "misspecified, confident" : "misspecified",
