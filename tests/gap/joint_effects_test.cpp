@@ -10,7 +10,7 @@
 #include <functional>
 #include <utility>
 
-// Bristles, the rise of friction near standstill and gears with play, stepped here apart from the library's equations: each is found, and
+// Bristles, the rise of friction near standstill, gears with play and slow drives, stepped here apart from the library's equations: each is found, and
 // none is taken for its neighbour.
 
 using namespace thermopower::gap;
@@ -22,6 +22,7 @@ struct Joint {
   double bristle_Nm = 0.0, bend_rad = 0.0;
   double coulomb_Nm = 0.0, rise_Nm = 0.0, knee_rad_per_s = 1.0, exponent = 2.0;
   double far_share = 0.0, gap_rad = 0.0;  ///< of the inertia, behind a gap between teeth
+  double lag_s = 0.0;                     ///< of the torque behind its command, from no torque on
 };
 
 constexpr double inertia = 1e-3, viscous = 1e-3, torque_constant = 0.2;
@@ -32,7 +33,7 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
   r.name = "joint";
   r.t_s.resize(rows);
   Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double theta = 0.0, omega = 0.0, bent = 0.0, far_theta = 0.0, far_omega = 0.0;
+  double theta = 0.0, omega = 0.0, bent = 0.0, far_theta = 0.0, far_omega = 0.0, late_Nm = 0.0;
   const double near = inertia * (1.0 - joint.far_share), far = inertia * joint.far_share;
   for (int i = 0; i < rows; ++i) {
     const double t = 0.01 * i, phase = static_cast<double>(seed);
@@ -44,7 +45,9 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
     constexpr int steps = 500;
     for (int k = 0; k < steps; ++k) {
       const double h = 0.01 / steps;
-      double push = torque_constant * drive[i] - viscous * omega;
+      const double asked_Nm = torque_constant * drive[i];
+      late_Nm += joint.lag_s > 0.0 ? h / joint.lag_s * (asked_Nm - late_Nm) : asked_Nm - late_Nm;
+      double push = late_Nm - viscous * omega;
       if (joint.bristle_Nm > 0.0) {
         bent += h * (omega - std::fabs(omega) * bent / joint.bend_rad);
         push -= joint.bristle_Nm * bent / joint.bend_rad;
@@ -278,4 +281,30 @@ TEST_CASE("a spring between motor and load is not taken for play") {
   INFO(sprung.reason);
   REQUIRE(sprung.cause.size() == 1);
   CHECK(sprung.cause.front().effect == "compliance");
+}
+
+TEST_CASE(
+    "a slow drive is found where a run's first readings are missing: it lags since the run began, and no longer") {
+  const auto without_first = [](Recording r) {
+    Eigen::VectorXd rate = r.column("rate_dps");
+    rate.head(2).setConstant(std::nan(""));
+    r.set("rate_dps", rate);
+    return r;
+  };
+  Joint joint;
+  joint.lag_s = 0.04;
+  Model model;
+  model.axis = RigidAxisModel{inertia, viscous, torque_constant};
+  Options options;
+  options.effects_at_once = 1;
+  // Three runs of one second held out: the start is a good part of each.
+  std::vector<Recording> held_out;
+  for (const std::uint64_t seed : {3u, 5u, 8u}) held_out.push_back(without_first(record(joint, 101, seed)));
+  const Diagnosis diagnosis = diagnose(model, {record(joint, 2000, 4)}, held_out, options);
+  INFO(diagnosis.reason);
+  CHECK(diagnosis.verdict == Verdict::explained);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "drive_lag");
+  CHECK(test::parameter_of(diagnosis, "lag_s") == Approx(0.04).epsilon(0.03));
+  for (const GapScore& gap : diagnosis.gap) CHECK(gap.after < 1.3 * gap.noise_floor);
 }

@@ -58,13 +58,10 @@ public:
     }
     const double delay_s =
         instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
-    // The command that reaches the drive now; before its first row a run is idle.
-    Eigen::Index commanded = begin * parts_;
-    while (commanded >= run.begin * parts_ && set_s(commanded) + delay_s > inputs_.t_s[begin]) --commanded;
-    // What is not carried on starts as the command before has left it.
-    if (state.own.count != instance_.own_states)
-      step_.settle(state, inputs_.t_s[begin] - start_s,
-                   drive(commanded - 1, run, begin, inputs_.t_s[begin] - start_s));
+    Eigen::Index commanded = arrived(begin * parts_, run, delay_s);
+    bring_about(run, begin, state, [&](Eigen::Index place, Eigen::Index row, double t_s) {
+      return drive(arrived(place + 1, run, delay_s) - 1, run, row, t_s);
+    });
     for (Eigen::Index row = begin; row < end; ++row) {
       const double t_s = inputs_.t_s[row] - start_s;
       sink(row, read(t_s, Scalar(state.angle_rad * deg_per_rad), Scalar(state.rate_rad_per_s * deg_per_rad)));
@@ -165,9 +162,10 @@ private:
     servo.start(begin, [&](Eigen::Index row, double angle_deg, double rate_dps) {
       return seen(row, run, angle_deg, rate_dps);
     });
-    if (state.own.count != instance_.own_states)
-      step_.settle(state, inputs_.t_s[begin] - start_s,
-                   drive(servo.command_A(), begin, inputs_.t_s[begin] - start_s));
+    bring_about(run, begin, state, [&](Eigen::Index place, Eigen::Index row, double t_s) {
+      if (place + 1 == begin * parts_) return drive(servo.command_A(), row, t_s);
+      return drive(constant<Scalar>(servo_A(row, run)), row, t_s);
+    });
     const auto sense = [&] {
       return std::pair<Scalar, Scalar>(state.angle_rad * deg_per_rad, state.rate_rad_per_s * deg_per_rad);
     };
@@ -181,6 +179,35 @@ private:
                          step_.advance(state, now_s, length_s, drive(servo.command_A(), row, now_s));
                        });
     }
+  }
+
+  /// Brings about the effects' own states at a row into which no window carries them. Before its first row a run is idle;
+  /// the commands since then act for as long as they did, and the motion is as it is now. Where the first row is long
+  /// ago the last command alone tells.
+  /// @param before  the drive in force when the command at a place among all ends: `before(place, row, t_s)`
+  template <class Before>
+  void bring_about(const RunSpan& run, Eigen::Index begin, AxisState<Scalar>& state, Before&& before) const {
+    if (state.own.count == instance_.own_states) return;
+    const double start_s = inputs_.t_s[run.begin], now_s = inputs_.t_s[begin] - start_s;
+    if (now_s > AxisStep<Scalar>::settled_for_s) {
+      step_.settle(state, now_s, before(begin * parts_ - 1, begin, now_s));
+      return;
+    }
+    step_.settle(state, 0.0, drive(run.begin * parts_ - 1, run, run.begin, 0.0));
+    for (Eigen::Index row = run.begin; row < begin; ++row) {
+      const double length_s = (inputs_.t_s[row + 1] - inputs_.t_s[row]) / static_cast<double>(parts_);
+      for (Eigen::Index part = 0; part < parts_; ++part) {
+        const double t_s = inputs_.t_s[row] - start_s + length_s * static_cast<double>(part);
+        step_.follow(state, t_s, length_s, before(row * parts_ + part, row, t_s));
+      }
+    }
+  }
+
+  /// The command that reaches the drive when that at a place is set; before its first row a run is idle.
+  Eigen::Index arrived(Eigen::Index place, const RunSpan& run, double delay_s) const {
+    const double now_s = set_s(place);
+    while (place >= run.begin * parts_ && set_s(place) + delay_s > now_s) --place;
+    return place;
   }
 
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,

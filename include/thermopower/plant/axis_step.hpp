@@ -64,6 +64,9 @@ struct AxisDrive {
 template <class Scalar>
 class AxisStep {
 public:
+  /// How long effects' own states settle: longer than what a joint remembers, shorter than a drift.
+  static constexpr double settled_for_s = 1.0;
+
   /// Precomputes what stays the same; keeps a reference to `instance`, which must outlive this object.
   explicit AxisStep(const Instance<Scalar>& instance) : instance_(instance) {
     const auto& shape = instance.axis_structure;
@@ -97,13 +100,19 @@ public:
   void settle(AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive) const {
     state.own.count = instance_.own_states;
     for (int i = 0; i < state.own.count; ++i) state.own.at[i] = constant<Scalar>(0.0);
+    follow(state, t_s, settled_for_s, drive);
+  }
+
+  /// Lets the effects' own states move for a while in which the motion stays what it is. What drifts without an end stays.
+  void follow(AxisState<Scalar>& state, double t_s, double length_s, const AxisDrive<Scalar>& drive) const {
     if (state.own.count == 0) return;
     OwnState<Scalar> own[most_own_states];
     torques(state, t_s, drive, own);
     using std::exp;
     for (int i = 0; i < state.own.count; ++i)
       if (value_of(own[i].per_s) > 0.0)
-        state.own.at[i] = own[i].slope / own[i].per_s * (1.0 - exp(Scalar(-own[i].per_s * settled_for_s)));
+        state.own.at[i] +=
+            (own[i].slope / own[i].per_s - state.own.at[i]) * (1.0 - exp(Scalar(-own[i].per_s * length_s)));
   }
 
   /// Moves the state by `h_s` under a drive that stays the same.
@@ -183,8 +192,6 @@ public:
   }
 
 private:
-  static constexpr double settled_for_s = 1.0;  ///< longer than what a joint remembers, shorter than a drift
-
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
     OwnState<Scalar> own[most_own_states];  ///< how the effects' own states move
