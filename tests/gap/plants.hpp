@@ -107,6 +107,8 @@ struct AxisFault {
   double spring_Nm_per_rad = 0.0;
   double angle_gain = 1.0;
   int delay_rows = 0;
+  double ripple_share = 0.0;    ///< of the torque, six times a turn
+  double thinning_per_K = 0.0;  ///< of viscous friction with the motor's temperature, which is recorded then
 };
 
 /// An axis driven by a sum of sines.
@@ -115,10 +117,11 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
   thermopower::gap::Recording r;
   r.name = "axis";
   r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows), motor_C(rows);
   for (int i = 0; i < rows; ++i) {
     const double t = 0.01 * i + static_cast<double>(seed);
     r.t_s[i] = 0.01 * i;
+    motor_C[i] = 50.0 - 25.0 * std::cos(0.2 * t);
     drive[i] = 0.1 * std::sin(2.1 * t) + 0.08 * std::sin(5.3 * t + 1.0) + 0.05 * std::sin(11.0 * t) +
                0.03 * std::sin(0.7 * t);
   }
@@ -129,7 +132,9 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
     const double torque = 0.2 * drive[std::max(0, i - fault.delay_rows)];
     for (int k = 0; k < 200; ++k) {
       const double h = 5e-5;
-      const double push = torque - 1e-3 * omega - fault.spring_Nm_per_rad * theta;
+      const double thin = std::exp(-fault.thinning_per_K * (motor_C[i] - 25.0));
+      const double push = torque * (1.0 + fault.ripple_share * std::sin(6.0 * theta)) - 1e-3 * thin * omega -
+                          fault.spring_Nm_per_rad * theta;
       const double next = omega + h * push / 1e-3;
       const double brake = h * fault.coulomb_Nm / 1e-3;
       omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
@@ -139,6 +144,7 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
   r.set("drive_A", drive);
   r.set("angle_deg", angle);
   r.set("rate_dps", rate);
+  if (fault.thinning_per_K > 0.0) r.set("motor_C", motor_C);
   return r;
 }
 

@@ -48,6 +48,24 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
   return out;
 }
 
+/// How often a torque may repeat in a turn, as far as travel and rows show such a period.
+inline std::vector<double> repeats_per_turn(const AxisAtRows& a) {
+  constexpr double rows_per_period = 4.2;
+  std::vector<double> counts;
+  const double travel = a.angle.maxCoeff() - a.angle.minCoeff(), pace = a.rate.cwiseAbs().mean();
+  for (int count = 2; count <= 64; ++count)
+    if (travel * count >= rad_per_turn &&
+        count * a.rows()->interval_s * pace <= rad_per_turn / rows_per_period)
+      counts.push_back(count);
+  return counts;
+}
+
+/// What repeats so often in a turn, in words.
+inline std::string repeating(const char* what, double count) {
+  return std::string(what) + " that repeats " + std::to_string(static_cast<int>(std::lround(count))) +
+         " times a turn";
+}
+
 /// What in friction may be otherwise.
 /// @param direction  which way the axis moves, -1 to 1
 /// @param drive_Nm   torque of the drive
@@ -88,6 +106,16 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
   add(a->command_name(), "a friction that grows with the torque", [direction, drive_Nm] {
     return std::vector<Direction>{flow_held(direction->cwiseProduct(drive_Nm->cwiseAbs()))};
   });
+  if (a->inputs().covariate_motor_C.size() > 0)
+    add("motor_C", "a friction that changes with the temperature", [a, direction, sampled] {
+      // Grease thins by an exponential: over tens of degrees its curvature shows.
+      const Eigen::VectorXd& motor_C = a->inputs().covariate_motor_C;
+      const Eigen::ArrayXd warmer = motor_C.array() - motor_C.mean();
+      const Eigen::ArrayXd z = warmer / std::max(warmer.abs().maxCoeff(), 1e-12);
+      Eigen::MatrixXd columns(a->rate.size(), 4);
+      columns << a->rate, a->rate.array() * z, a->rate.array() * z.square(), direction->array() * z;
+      return sampled(columns);
+    });
 }
 
 /// What between command and torque may be otherwise.
@@ -123,6 +151,17 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
       columns << *drive_Nm, drive_Nm->cwiseProduct((motor_C.array() - motor_C.mean()).matrix());
       return held(columns);
     });
+  if (!a->has_angle) return;
+  Freedom periodic{Submodel::mechanical_drive, "angle_deg", "", [a, drive_Nm, held](double count) {
+                     Eigen::MatrixXd columns(a->angle.size(), 2);
+                     columns << drive_Nm->array() * (count * a->angle.array()).sin(),
+                         drive_Nm->array() * (count * a->angle.array()).cos();
+                     return held(columns);
+                   }};
+  periodic.scan = repeats_per_turn(*a);
+  periodic.penalty = 2;
+  periodic.words_at = [](double count) { return repeating("a torque constant", count); };
+  if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
 }
 
 /// What of angle, time and inertia may be otherwise.
@@ -149,23 +188,14 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
     });
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
-    // A torque that repeats n times a turn, as far as travel and rows show such a period.
-    constexpr double rows_per_period = 4.2;
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "", [a, sampled](double count) {
                        Eigen::MatrixXd columns(a->angle.size(), 2);
                        columns << (count * a->angle.array()).sin(), (count * a->angle.array()).cos();
                        return sampled(columns);
                      }};
-    const double travel = a->angle.maxCoeff() - a->angle.minCoeff(), pace = a->rate.cwiseAbs().mean();
-    for (int count = 2; count <= 64; ++count)
-      if (travel * count >= rad_per_turn &&
-          count * a->rows()->interval_s * pace <= rad_per_turn / rows_per_period)
-        periodic.scan.push_back(count);
+    periodic.scan = repeats_per_turn(*a);
     periodic.penalty = 2;
-    periodic.words_at = [](double count) {
-      return "a torque that repeats " + std::to_string(static_cast<int>(std::lround(count))) +
-             " times a turn";
-    };
+    periodic.words_at = [](double count) { return repeating("a torque", count); };
     if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
   }
   add("t_s", "a constant torque", [n, sampled] { return sampled(Eigen::VectorXd::Ones(n)); });

@@ -92,6 +92,20 @@ TEST_CASE("friction, spring, delay and a wrong angle are told apart") {
   check_first(axis(fault), Signal::angle_deg, plant::Submodel::sensing_angle);
 }
 
+TEST_CASE(
+    "a torque constant that varies over the turn is the drive's fault, and friction that warmth thins is friction's") {
+  test::AxisFault fault;
+  fault.ripple_share = 0.2;
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_drive);
+  CHECK(axis(fault).where.front().regime->variable == "angle_deg");
+  CHECK(axis(fault).where.size() == 1);
+  fault = {};
+  fault.thinning_per_K = 0.02;
+  check_first(axis(fault), Signal::rate_dps, plant::Submodel::mechanical_friction);
+  CHECK(axis(fault).where.front().regime->variable == "motor_C");
+  CHECK(axis(fault).where.size() == 1);
+}
+
 TEST_CASE("the missing quantity has the size that was put in") {
   test::AxisFault fault;
   fault.spring_Nm_per_rad = 0.01;
