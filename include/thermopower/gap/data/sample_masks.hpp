@@ -216,9 +216,11 @@ private:
       // What continues either side in a straight line is the corner of a motion and no spike.
       if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
       if (i + 2 < count) off = std::min(off, std::abs(at(i) - 2.0 * at(i + 1) + at(i + 2)));
-      // Nothing lies beyond an end, where motions begin: there a parabola counts, too.
-      if (i < 2) off = std::min(off, std::abs(at(i) - 3.0 * at(i + 1) + 3.0 * at(i + 2) - at(i + 3)));
-      if (i + 2 >= count)
+      // Nothing lies beyond an end, where motions begin, and near it too few bends tell how sharply: there a parabola
+      // counts, too.
+      if (i <= limit_.bends_around && i + 3 < count)
+        off = std::min(off, std::abs(at(i) - 3.0 * at(i + 1) + 3.0 * at(i + 2) - at(i + 3)));
+      if (i + limit_.bends_around + 1 >= count && i >= 3)
         off = std::min(off, std::abs(at(i) - 3.0 * at(i - 1) + 3.0 * at(i - 2) - at(i - 3)));
       if (!(off > least) || confirmed_[static_cast<std::size_t>(rows[i])] != 0 ||
           is_motion(run, rows[i], off))
