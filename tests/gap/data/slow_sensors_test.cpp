@@ -114,6 +114,13 @@ TEST_CASE("straight lines between the readings of a slower sensor are seen, and 
   CHECK_FALSE(found_in(Eigen::VectorXd::LinSpaced(rows, 0.0, 300.0)));
   CHECK_FALSE(found_in(Eigen::VectorXd::LinSpaced(rows, 0.0, 300.0).array().floor()));
   CHECK_FALSE(found_in(Eigen::VectorXd::Constant(rows, 3.0)));
+  // An encoder that is new in each row while the joint moves, and rests in between.
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  Eigen::VectorXd resting = Eigen::VectorXd::Zero(rows);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    resting[i] = i % 400 < 150 ? 3.0 : std::round((3.0 + noise(random)) / 0.088) * 0.088;
+  CHECK_FALSE(found_in(resting));
   // A body warming and cooling without noise, written with four digits.
   Eigen::VectorXd smooth(rows);
   double body_C = 20.0;

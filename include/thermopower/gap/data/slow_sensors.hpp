@@ -27,8 +27,9 @@ struct SlowSensorThresholds {
   double by_one_quantum =
       0.3;  ///< largest share of updates by one quantum, as something steady changes in a coarse reading
   double on_line =
-      0.3;  ///< share of rows on the line between their neighbours that straight lines leave at least
-  double kink = 5.0;      ///< roundings that most kinks are larger than
+      0.8;  ///< of the rows that straight lines leave on the line between their neighbours, the least share
+  double pairs = 0.1;  ///< share of readings that bend the line twice where they were not taken at the rows
+  double kink = 5.0;   ///< roundings that most kinks are larger than
   double one_size = 0.3;  ///< largest share of kinks of the same size, as coarse steps are
   double apart = 0.1;     ///< share of the sparser of two columns that stands in a row with the other one
   double nearest = 3.0;   ///< usual distances between samples that are neighbours
@@ -141,7 +142,7 @@ inline std::optional<SlowColumn> straight_between_updates(const Eigen::VectorXd&
   const Rounding rounding(values);
   UpdateClock clock;
   std::vector<double> kinks;
-  double rows = 0.0, on_line = 0.0, coarsest = 0.0;
+  double rows = 0.0, on_line = 0.0, readings = 0.0, pairs = 0.0, coarsest = 0.0;
   for (const RunSpan& run : runs) {
     Eigen::Index kink = -1;
     for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
@@ -162,14 +163,20 @@ inline std::optional<SlowColumn> straight_between_updates(const Eigen::VectorXd&
       const bool second = i > run.begin + 1 && kink == i - 1;
       if (second) {
         straight.between[static_cast<std::size_t>(i)] = 1;
+        ++pairs;
         continue;
       }
+      ++readings;
       if (kink >= 0) clock.add(i - kink);
       kink = i;
     }
   }
   straight.rows_apart = clock.rows_apart();
-  if (straight.rows_apart == 0 || on_line < limit.on_line * rows) return std::nullopt;
+  if (straight.rows_apart == 0) return std::nullopt;
+  // Where each row is new, every second one looks like the second bend of a pair.
+  const double apart = static_cast<double>(straight.rows_apart),
+               bent = pairs > limit.pairs * readings ? 2.0 : 1.0;
+  if (apart <= bent || on_line < limit.on_line * (1.0 - bent / apart) * rows) return std::nullopt;
   const double usual = median_of(kinks);
   const auto same_size = std::count_if(kinks.begin(), kinks.end(),
                                        [&](double one) { return std::abs(one - usual) < 0.01 * usual; });
