@@ -142,7 +142,7 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
       if (!is_heated(one)) continue;
       findings.push_back(
           {FindingKind::sampled_command,
-           Severity::note,
+           Severity::warning,
            one.recording().name,
            heat_column(one.inputs()),
            late ? "is that of the interval before its row, as motor_C shows: it is used for that"
