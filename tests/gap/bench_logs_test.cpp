@@ -18,18 +18,22 @@ using Log = test::SwitchedBench::Log;
 
 namespace {
 
-Diagnosis answer_to(const test::SwitchedBench& bench, double lasts_s, unsigned seed) {
-  return diagnose(test::SwitchedBench::model(), {bench.recording(lasts_s, seed)},
-                  {bench.recording(lasts_s, seed + 100)});
+using Change = Recording (*)(Recording);
+
+Recording as_it_is(Recording r) { return r; }
+
+Diagnosis answer_to(const test::SwitchedBench& bench, unsigned seed, Change change) {
+  constexpr double lasts_s = 7200.0;
+  return diagnose(test::SwitchedBench::model(), {change(bench.recording(lasts_s, seed))},
+                  {change(bench.recording(lasts_s, seed + 100))});
 }
 
 /// Says so where a sound motor has a gap, or one with a winding has another cause.
-void check_sound_and_wound(test::SwitchedBench bench, double lasts_s, unsigned seed) {
+void check_sound_and_wound(test::SwitchedBench bench, unsigned seed, Change change = as_it_is) {
   CAPTURE(bench.rows_s);
-  const Diagnosis sound = answer_to(bench, lasts_s, seed);
-  CHECK(sound.verdict == Verdict::no_gap);
+  CHECK(answer_to(bench, seed, change).verdict == Verdict::no_gap);
   bench.has_winding = true;
-  const Diagnosis wound = answer_to(bench, lasts_s, seed);
+  const Diagnosis wound = answer_to(bench, seed, change);
   CHECK(wound.verdict == Verdict::explained);
   REQUIRE(wound.cause.size() == 1);
   CHECK(wound.cause[0].effect == "second_thermal_mass");
@@ -39,7 +43,7 @@ TEST_CASE("a power that is switched between the rows makes no gap, and hides non
   test::SwitchedBench bench;
   for (const double rows_s : {1.0, 5.0, 10.0}) {
     bench.rows_s = rows_s;
-    check_sound_and_wound(bench, 7200.0, 11);
+    check_sound_and_wound(bench, 11);
   }
 }
 
@@ -48,7 +52,7 @@ TEST_CASE("a power that is written after its interval makes no gap, and hides no
   bench.log = Log::afterwards;
   for (const double rows_s : {1.0, 5.0}) {
     bench.rows_s = rows_s;
-    check_sound_and_wound(bench, 7200.0, 12);
+    check_sound_and_wound(bench, 12);
   }
 }
 
@@ -88,21 +92,12 @@ Recording with_lines_drawn(Recording r) {
 }
 
 TEST_CASE("rows of their own for each stream, and lines drawn between readings, make no gap and hide none") {
-  for (const auto change : {in_rows_of_their_own, with_lines_drawn}) {
+  for (const Change change : {in_rows_of_their_own, with_lines_drawn}) {
     CAPTURE(change == in_rows_of_their_own);
     test::SwitchedBench bench;
     bench.log = Log::at_rows;
     if (change == in_rows_of_their_own) bench.read_late = late;
-    const auto answer = [&] {
-      return diagnose(test::SwitchedBench::model(), {change(bench.recording(7200.0, 13))},
-                      {change(bench.recording(7200.0, 113))});
-    };
-    CHECK(answer().verdict == Verdict::no_gap);
-    bench.has_winding = true;
-    const Diagnosis wound = answer();
-    CHECK(wound.verdict == Verdict::explained);
-    REQUIRE(wound.cause.size() == 1);
-    CHECK(wound.cause[0].effect == "second_thermal_mass");
+    check_sound_and_wound(bench, 13, change);
   }
 }
 

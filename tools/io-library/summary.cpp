@@ -3,6 +3,7 @@
 
 #include <thermopower/io/summary.hpp>
 #include <thermopower/plant/variable_words.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include "html_text.hpp"
 
@@ -141,7 +142,7 @@ std::string summary(const Diagnosis& diagnosis) {
     first = false;
   }
   for (const auto& constant : diagnosis.constants) {
-    const std::string as = "calibration." + constant.name;
+    const std::string as = plant::calibration_id(constant.name);
     const bool is_cause = std::any_of(diagnosis.cause.begin(), diagnosis.cause.end(),
                                       [&](const Cause& cause) { return cause.effect == as; });
     if (!is_cause)

@@ -6,6 +6,7 @@
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/io/text_table.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -179,8 +180,9 @@ Json drift_json(const pool::UnitDrift& one, bool logarithmic) {
 }  // namespace
 
 std::string parameter_name(const std::string& coordinate) {
-  const std::string prefix = "calibration.";
-  return coordinate.rfind(prefix, 0) == 0 ? coordinate.substr(prefix.size()) : coordinate;
+  return thermopower::plant::is_calibration(coordinate)
+             ? coordinate.substr(sizeof thermopower::plant::calibration_prefix - 1)
+             : coordinate;
 }
 
 double shown_value(double at, bool logarithmic) { return logarithmic ? std::exp(at) : at; }

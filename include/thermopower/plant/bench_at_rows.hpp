@@ -29,6 +29,12 @@ enum class HeatTold {
   by_record,            ///< it is recorded itself
 };
 
+/// Where the heat comes from that a simulation of the body takes.
+inline HeatTold heat_told(const Inputs& inputs) {
+  if (inputs.heat_W.size() > 0) return HeatTold::by_record;
+  return inputs.heat == HeatSource::law ? HeatTold::by_law : HeatTold::by_current;
+}
+
 /// What the laws of a bench say at the rows of a recording, each at its measured inputs. Behind a thermometer that
 /// lags (a model with that effect) the circuit is judged at what the thermometer shows.
 ///

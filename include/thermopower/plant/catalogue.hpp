@@ -7,6 +7,7 @@
 #include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -213,7 +214,7 @@ private:
     const std::string effect = "effect '" + info.id + "'";
     if (info.id.empty()) throw InvalidInput("an effect has no id");
     if (find(info.id) != nullptr) throw InvalidInput(effect + " is in the catalogue already");
-    if (info.id.rfind("calibration.", 0) == 0)
+    if (is_calibration(info.id))
       throw InvalidInput(effect + ": ids that start with calibration. belong to the engine");
     for (const Need need : info.needs) {
       const bool bench_only = need == Need::thermal_model || need == Need::current_model ||

@@ -90,7 +90,6 @@ struct Inputs {
   Eigen::VectorXd
       next_share;  ///< of a bench: part of the interval after each row in which the next row's inputs are in
                    ///< force already, 0..1; empty: they hold until that row
-  bool switched_anytime = false;  ///< `next_share` is what it is on average, and of one interval unknown
   std::array<Eigen::VectorXd, signal_count> measured;  ///< by Signal; empty where not judged
   /// By Signal: readings between samples, for the starts of windows where another signal stands alone; NaN or empty where
   /// there are none. Nothing is judged by them.
@@ -99,6 +98,8 @@ struct Inputs {
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }
+  /// Whether inputs change at instants between the rows that nobody knows: `next_share` is their mean.
+  bool switched_anytime() const { return (next_share.array() > 0.0 && next_share.array() < 1.0).any(); }
   /// Whether the signal is recorded and has a law.
   bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
   /// Measured values of a judged signal.

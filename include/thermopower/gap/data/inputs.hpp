@@ -8,6 +8,7 @@
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/rows.hpp>
+#include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -116,15 +117,15 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
 
   auto& notes = inputs.not_judged;
-  const auto lack = [&](const std::string& what, const char* column) {
-    notes.push_back(what + " is not judged: " +
+  const auto lack = [&](const char* what, const char* column) {
+    notes.push_back(plant::the_variable(what) + " is not judged: " +
                     (recording.find(column) != nullptr || recording.is_empty(column)
                          ? "column " + std::string(column) + " has no sample"
                          : "the recording has no column " + std::string(column)));
   };
   if (model.has_thermal()) {
-    if (!recording.has("motor_C")) lack("the motor temperature", "motor_C");
-    else if (!recording.has("ambient_C")) lack("the motor temperature", "ambient_C");
+    if (!recording.has("motor_C")) lack("motor_C", "motor_C");
+    else if (!recording.has("ambient_C")) lack("motor_C", "ambient_C");
     else if (inputs.heat == HeatSource::none)
       notes.push_back(
           "the motor temperature is not judged: neither power_param (with a current law and a supply) nor current_A nor "
@@ -134,10 +135,10 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     notes.push_back("the motor temperature is not judged: the model has no thermal block");
   }
   if (model.has_current()) {
-    if (!recording.has("current_A")) lack("the motor current", "current_A");
+    if (!recording.has("current_A")) lack("current_A", "current_A");
     else if (!powered)
       notes.push_back("the motor current is not judged: power_param or the supply voltage is unknown");
-    else if (!recording.has("motor_C")) lack("the motor current", "motor_C");
+    else if (!recording.has("motor_C")) lack("current_A", "motor_C");
     else measure(Signal::current_A);
   }
   if (model.has_axis()) {
@@ -163,11 +164,11 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
       notes.push_back("the axis is not judged: the recording has neither angle_deg nor rate_dps");
     } else {
       if (recording.has("rate_dps")) measure(Signal::rate_dps);
-      else lack("the angular rate", "rate_dps");
+      else lack("rate_dps", "rate_dps");
       if (recording.has("angle_deg"))
         inputs.measured[static_cast<std::size_t>(Signal::angle_deg)] =
             unwrapped(recording.column("angle_deg"), inputs.runs);
-      else lack("the angle", "angle_deg");
+      else lack("angle_deg", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
       if (!commanded) close_loop(model, inputs);
     }

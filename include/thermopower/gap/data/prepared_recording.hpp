@@ -69,12 +69,8 @@ public:
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
-  /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row  @param varies
-  /// it is that on average, and of one interval unknown
-  void take_next_before_it(Eigen::VectorXd share, bool varies) {
-    inputs_.next_share = std::move(share);
-    inputs_.switched_anytime = varies;
-  }
+  /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row
+  void take_next_before_it(Eigen::VectorXd share) { inputs_.next_share = std::move(share); }
   /// Leaves an output out. Comes before what is said of the command. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);

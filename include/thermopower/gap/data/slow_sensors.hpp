@@ -100,37 +100,25 @@ inline std::optional<SlowColumn> held_between_updates(const Eigen::VectorXd& val
   return held;
 }
 
-/// What the values of a column are rounded to: a power of ten for all from one power of ten to the next, since who
-/// writes six digits rounds 99.9 and 100.1 differently; or what a double holds.
-class Rounding {
-public:
-  /// Looks at the finite values.
-  explicit Rounding(const Eigen::VectorXd& values) {
-    std::map<int, std::vector<double>> decades;
-    for (const double value : values)
-      if (std::isfinite(value) && value != 0.0) decades[decade_of(value)].push_back(value);
-    for (const auto& [decade, of] : decades) units_[decade] = unit_of(of);
+/// What each value of a column is rounded to: a power of ten for all from one power of ten to the next, since who writes
+/// six digits rounds 99.9 and 100.1 differently; or what a double holds. 0 of zeros and of what is missing.
+inline Eigen::VectorXd roundings_of(const Eigen::VectorXd& values) {
+  std::map<int, std::vector<Eigen::Index>> decades;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (std::isfinite(values[i]) && values[i] != 0.0)
+      decades[static_cast<int>(std::floor(std::log10(std::abs(values[i]))))].push_back(i);
+  Eigen::VectorXd units = Eigen::VectorXd::Zero(values.size());
+  for (const auto& [decade, rows] : decades) {
+    const double largest = std::abs(values[rows.front()]), smallest = 1e-9 * largest;
+    double unit = 10.0;
+    const auto is_multiple = [&](Eigen::Index i) {
+      return std::abs(values[i] / unit - std::round(values[i] / unit)) < 1e-6;
+    };
+    while (unit > smallest && !std::all_of(rows.begin(), rows.end(), is_multiple)) unit *= 0.1;
+    for (const Eigen::Index i : rows) units[i] = std::max(unit, smallest);
   }
-
-  /// Of a value that was looked at.
-  double operator()(double value) const { return value != 0.0 ? units_.at(decade_of(value)) : 0.0; }
-
-private:
-  static int decade_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
-
-  static double unit_of(const std::vector<double>& values) {
-    const double largest = std::abs(values.front());
-    for (double unit = 10.0; unit > 1e-9 * largest; unit *= 0.1) {
-      const auto is_multiple = [unit](double value) {
-        return std::abs(value / unit - std::round(value / unit)) < 1e-6;
-      };
-      if (std::all_of(values.begin(), values.end(), is_multiple)) return unit;
-    }
-    return 1e-9 * largest;
-  }
-
-  std::map<int, double> units_;
-};
+  return units;
+}
 
 /// Finds a column of a sensor slower than the rows between whose readings straight lines were drawn, as who merges two
 /// streams of data does: most rows then lie on the line between their neighbours, and the others are apart by a clock.
@@ -139,34 +127,30 @@ inline std::optional<SlowColumn> straight_between_updates(const Eigen::VectorXd&
                                                           const std::vector<RunSpan>& runs) {
   constexpr SlowSensorThresholds limit;
   SlowColumn straight{RowMask(static_cast<std::size_t>(values.size()), 0), 1};
-  const Rounding rounding(values);
+  const Eigen::VectorXd roundings = roundings_of(values);
   UpdateClock clock;
   std::vector<double> kinks;
-  double rows = 0.0, on_line = 0.0, readings = 0.0, pairs = 0.0, coarsest = 0.0;
+  double rows = 0.0, on_line = 0.0, pairs = 0.0, coarsest = 0.0;
   for (const RunSpan& run : runs) {
     Eigen::Index kink = -1;
     for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
       const double share = (t_s[i] - t_s[i - 1]) / (t_s[i + 1] - t_s[i - 1]);
       const double off = std::abs(values[i] - values[i - 1] - share * (values[i + 1] - values[i - 1]));
       if (!std::isfinite(off)) continue;
-      const double rounded =
-          2.0 * std::max({rounding(values[i - 1]), rounding(values[i]), rounding(values[i + 1])});
       ++rows;
-      if (off <= rounded) {
-        straight.between[static_cast<std::size_t>(i)] = 1;
+      const double rounded = 2.0 * roundings.segment(i - 1, 3).maxCoeff();
+      const bool is_kink = off > rounded, is_second = is_kink && kink == i - 1;
+      if (is_kink) {
+        kinks.push_back(off);
+        coarsest = std::max(coarsest, rounded);
+      } else {
         ++on_line;
-        continue;
       }
-      kinks.push_back(off);
-      coarsest = std::max(coarsest, rounded);
-      // A reading between two rows bends the line at both.
-      const bool second = i > run.begin + 1 && kink == i - 1;
-      if (second) {
+      if (is_second) ++pairs;  // a reading between two rows bends the line at both
+      if (!is_kink || is_second) {
         straight.between[static_cast<std::size_t>(i)] = 1;
-        ++pairs;
         continue;
       }
-      ++readings;
       if (kink >= 0) clock.add(i - kink);
       kink = i;
     }
@@ -174,7 +158,8 @@ inline std::optional<SlowColumn> straight_between_updates(const Eigen::VectorXd&
   straight.rows_apart = clock.rows_apart();
   if (straight.rows_apart == 0) return std::nullopt;
   // Where each row is new, every second one looks like the second bend of a pair.
-  const double apart = static_cast<double>(straight.rows_apart),
+  const double readings = static_cast<double>(kinks.size()) - pairs,
+               apart = static_cast<double>(straight.rows_apart),
                bent = pairs > limit.pairs * readings ? 2.0 : 1.0;
   if (apart <= bent || on_line < limit.on_line * (1.0 - bent / apart) * rows) return std::nullopt;
   const double usual = median_of(kinks);

@@ -19,6 +19,14 @@
 
 namespace thermopower::gap::engine {
 
+/// Hands the recordings, in training and held out, that `is_asked` says yes to, to `use`.
+template <class IsAsked, class Use>
+void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& use) {
+  for (auto* all : {&checked.train, &checked.held_out})
+    for (PreparedRecording& one : *all)
+      if (is_asked(one)) use(one);
+}
+
 /// Leaves out a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate.
 inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
                                 std::vector<Finding>& findings) {
@@ -31,19 +39,20 @@ inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
   const std::string words = *lag_s > 0.0
                                 ? "comes " + short_number(*lag_s) + " s behind the slope of angle_deg"
                                 : "comes " + short_number(-*lag_s) + " s behind what rate_dps sums up to";
-  for (auto* all : {&checked.train, &checked.held_out})
-    for (PreparedRecording& one : *all) {
-      if (!one.inputs().judged(Signal::angle_deg) || !one.inputs().judged(Signal::rate_dps)) continue;
-      findings.push_back({FindingKind::lagging_output,
-                          Severity::warning,
-                          one.recording().name,
-                          late,
-                          words + ": filtered, or read later; it is not judged",
-                          "log it unfiltered and with the instant it is of",
-                          FindingAction::masked,
-                          {}});
-      one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
-    }
+  const auto has_both = [](const PreparedRecording& one) {
+    return one.inputs().judged(Signal::angle_deg) && one.inputs().judged(Signal::rate_dps);
+  };
+  for_each_recording(checked, has_both, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::lagging_output,
+                        Severity::warning,
+                        one.recording().name,
+                        late,
+                        words + ": filtered, or read later; it is not judged",
+                        "log it unfiltered and with the instant it is of",
+                        FindingAction::masked,
+                        {}});
+    one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
+  });
 }
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
@@ -58,20 +67,18 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
     if (is_closed(one)) between.add(one.inputs(), one.inputs().servo_A);
   const std::optional<double> share = between.steady_target(plant::servo_gains(model));
   if (!share) return;
-  for (auto* all : {&checked.train, &checked.held_out})
-    for (PreparedRecording& one : *all) {
-      if (!is_closed(one)) continue;
-      findings.push_back({FindingKind::sampled_command,
-                          Severity::note,
-                          one.recording().name,
-                          one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
-                          "went on between the rows, as the motion shows: the servo is given what lies " +
-                              short_number(100.0 * *share) + " % of the way to the next row's, on average",
-                          "log the target at the rate it is set",
-                          FindingAction::none,
-                          {}});
-      one.take_targets_between(model, *share);
-    }
+  for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::sampled_command,
+                        Severity::note,
+                        one.recording().name,
+                        one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
+                        "went on between the rows, as the motion shows: the servo is given what lies " +
+                            short_number(100.0 * *share) + " % of the way to the next row's, on average",
+                        "log the target at the rate it is set",
+                        FindingAction::none,
+                        {}});
+    one.take_targets_between(model, *share);
+  });
 }
 
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
@@ -92,31 +99,29 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
   if (!share && !(noise > 0.0)) return;
   const bool bends = share && between.bends();
   const int parts = share ? between.pieces() : 1;
-  for (auto* all : {&checked.train, &checked.held_out})
-    for (PreparedRecording& one : *all) {
-      if (!is_commanded(one)) continue;
-      const std::string column = command_column(one.inputs());
-      const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
-        findings.push_back(
-            {kind, Severity::note, one.recording().name, column, message, mend, FindingAction::none, {}});
-      };
-      if (share) {
-        note(FindingKind::sampled_command,
-             "went on between the rows, as the motion shows: its mean until the next row is taken, " +
-                 short_number(100.0 * *share) + " % of the way to that one's",
-             "log the command at the rate it is set, or the mean of it between the rows");
-        one.take_command(model, column,
-                         command_within(command_of(one), one.recording().spans(), *share, bends, parts));
-      }
-      if (noise > 0.0) {
-        const char* unit = model.axis->voltage_driven() ? " V" : " A";
-        note(FindingKind::noisy_command,
-             "has noise of " + short_number(noise) + unit +
-                 " that no motion follows: what a simulation wanders by it counts as noise",
-             "log the command that was sent, not the current that was measured");
-        one.set_command_noise(noise);
-      }
+  for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
+    const std::string column = command_column(one.inputs());
+    const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
+      findings.push_back(
+          {kind, Severity::note, one.recording().name, column, message, mend, FindingAction::none, {}});
+    };
+    if (share) {
+      note(FindingKind::sampled_command,
+           "went on between the rows, as the motion shows: its mean until the next row is taken, " +
+               short_number(100.0 * *share) + " % of the way to that one's",
+           "log the command at the rate it is set, or the mean of it between the rows");
+      one.take_command(model, column,
+                       command_within(command_of(one), one.recording().spans(), *share, bends, parts));
     }
+    if (noise > 0.0) {
+      const char* unit = model.axis->voltage_driven() ? " V" : " A";
+      note(FindingKind::noisy_command,
+           "has noise of " + short_number(noise) + unit +
+               " that no motion follows: what a simulation wanders by it counts as noise",
+           "log the command that was sent, not the current that was measured");
+      one.set_command_noise(noise);
+    }
+  });
 }
 
 /// Lets the power of a bench be switched when the training recordings say that it was, in all recordings.
@@ -125,10 +130,7 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   if (model.own || !model.has_thermal()) return;
   const auto heat_of = [&](const PreparedRecording& one) {
     const Inputs& inputs = one.inputs();
-    const plant::HeatTold told = inputs.heat_W.size() > 0         ? plant::HeatTold::by_record
-                                 : inputs.heat == HeatSource::law ? plant::HeatTold::by_law
-                                                                  : plant::HeatTold::by_current;
-    return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(told).heat_W;
+    return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
   };
   const auto is_heated = [](const PreparedRecording& one) { return one.inputs().judged(Signal::motor_C); };
   HeatBetweenRows between;
@@ -137,25 +139,23 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   const std::optional<double> share = between.share();
   if (!share) return;
   const bool late = *share == 1.0;
-  for (auto* all : {&checked.train, &checked.held_out})
-    for (PreparedRecording& one : *all) {
-      if (!is_heated(one)) continue;
-      findings.push_back(
-          {FindingKind::sampled_command,
-           Severity::warning,
-           one.recording().name,
-           heat_column(one.inputs()),
-           late ? "is that of the interval before its row, as motor_C shows: it is used for that"
-                : "was switched between the rows, as motor_C shows: the next row's is in force for " +
-                      short_number(100.0 * *share) +
-                      " % of an interval on average, and what a simulation wanders by not knowing more "
-                      "counts as noise",
-           late ? "log the power that is set until the next row"
-                : "log the power when it is switched, or its mean between the rows",
-           FindingAction::none,
-           {}});
-      one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share), !late);
-    }
+  for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
+    findings.push_back(
+        {FindingKind::sampled_command,
+         Severity::warning,
+         one.recording().name,
+         heat_column(one.inputs()),
+         late ? "is that of the interval before its row, as motor_C shows: it is used for that"
+              : "was switched between the rows, as motor_C shows: the next row's is in force for " +
+                    short_number(100.0 * *share) +
+                    " % of an interval on average, and what a simulation wanders by not knowing more "
+                    "counts as noise",
+         late ? "log the power that is set until the next row"
+              : "log the power when it is switched, or its mean between the rows",
+         FindingAction::none,
+         {}});
+    one.take_next_before_it(switched_share(one.inputs(), heat_of(one), *share));
+  });
 }
 
 THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::vector<Recording>& train,

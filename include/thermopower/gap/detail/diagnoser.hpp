@@ -17,6 +17,7 @@
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/gap/fit/thinning.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -245,7 +246,7 @@ private:
         list.push_back({{&entry}, {}});
     const std::vector<CalibratedConstant> constants = model_.calibrated();
     for (std::size_t i = 0; i < constants.size(); ++i)
-      if (constants[i].may_be_cause && !removed("calibration." + constants[i].id) &&
+      if (constants[i].may_be_cause && !removed(plant::calibration_id(constants[i].id)) &&
           can_be_judged(constants[i], model_, train_inputs_))
         list.push_back({{}, {static_cast<int>(i)}});
     return list;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/fit/prior.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/plant/plant.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <Eigen/Core>
 
@@ -49,7 +50,8 @@ struct Explanation {
     std::vector<std::string> list;
     for (const CatalogueEntry* entry : effects) list.push_back(entry->info.id);
     const std::vector<CalibratedConstant> constants = model.calibrated();
-    for (int index : released) list.push_back("calibration." + constants[static_cast<std::size_t>(index)].id);
+    for (int index : released)
+      list.push_back(plant::calibration_id(constants[static_cast<std::size_t>(index)].id));
     return list;
   }
 
@@ -128,7 +130,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
     const double reach = explanation.size() > 0 ? std::log(known_constants.farthest_factor)
                          : constant.has_slack   ? known_constants.within * sd
                                                 : 0.0;
-    list.push_back({"calibration." + constant.id, "1", -reach, reach, 0.0, {}, true, {}});
+    list.push_back({plant::calibration_id(constant.id), "1", -reach, reach, 0.0, {}, true, {}});
     if (!free) list.back().prior.sd = sd;
     if (!free && !constant.has_slack) list.back().lower = list.back().upper = 0.0;
     stay_within_effect(model, catalogue, constant, list.back());

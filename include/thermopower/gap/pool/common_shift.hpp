@@ -71,7 +71,7 @@ inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
   CommonShift result;
   if (units.size() < fewest || units.front().without.empty()) return result;
   for (const std::string& name : units.front().without.front()->names) {
-    if (name.rfind("calibration.", 0) != 0) continue;
+    if (!is_constant(name)) continue;
     std::vector<Estimate> moved(units.size());
     bool all = true;
     for (std::size_t i = 0; i < units.size(); ++i) all = all && detail::moved(units[i], name, moved[i]);

@@ -14,18 +14,28 @@
 
 namespace thermopower::gap::pool {
 
-/// What an explanation adds to the model: its name without the constants that it releases. Constants are coordinates of
-/// every explanation, and how they spread is what a fleet knows: a unit whose constants alone are off lacks nothing.
-/// @param name  ids with " + " between; empty: nothing is missing
-inline std::string structure_of(const std::string& name) {
-  constexpr const char* between = " + ";
-  std::string structure;
+/// Whether a cause or a coordinate is a constant of the model itself, and no effect. The pool knows no plant: so reports call them.
+inline bool is_constant(const std::string& id) { return id.rfind("calibration.", 0) == 0; }
+
+/// The ids in an explanation's name, which has " + " between them.
+inline std::vector<std::string> ids_in(const std::string& name) {
+  constexpr char between[] = " + ";
+  std::vector<std::string> ids;
   for (std::size_t at = 0; at < name.size();) {
     const std::size_t end = std::min(name.find(between, at), name.size());
-    if (name.compare(at, 12, "calibration.") != 0)
-      structure += (structure.empty() ? "" : between) + name.substr(at, end - at);
-    at = end + 3;
+    ids.push_back(name.substr(at, end - at));
+    at = end + sizeof between - 1;
   }
+  return ids;
+}
+
+/// What an explanation adds to the model: its name without the constants that it releases. Constants are coordinates of
+/// every explanation, and how they spread is what a fleet knows: a unit whose constants alone are off lacks nothing.
+/// @param name  of the explanation; empty: nothing is missing
+inline std::string structure_of(const std::string& name) {
+  std::string structure;
+  for (const std::string& id : ids_in(name))
+    if (!is_constant(id)) structure += (structure.empty() ? "" : " + ") + id;
   return structure;
 }
 
@@ -52,14 +62,9 @@ struct FittedExplanation {
   /// How many coordinates are its effects' own.
   int own_parameters() const {
     int count = 0;
-    for (const std::string& one : names) count += one.rfind("calibration.", 0) == 0 ? 0 : 1;
+    for (const std::string& one : names) count += is_constant(one) ? 0 : 1;
     // A constant that was released is one, too.
-    for (std::size_t at = 0; at < name.size();) {
-      const std::size_t end = name.find(" + ", at);
-      count += name.compare(at, 12, "calibration.") == 0 ? 1 : 0;
-      if (end == std::string::npos) break;
-      at = end + 3;
-    }
+    for (const std::string& one : ids_in(name)) count += is_constant(one) ? 1 : 0;
     return count;
   }
 };

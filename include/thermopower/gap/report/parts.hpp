@@ -9,6 +9,7 @@
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/plant/variable_words.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -179,7 +180,7 @@ inline bool constants_fall_short(const Diagnosis& result) {
   return result.verdict == Verdict::explained &&
          std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) &&
          std::all_of(result.cause.begin(), result.cause.end(),
-                     [](const Cause& one) { return one.effect.rfind("calibration.", 0) == 0; });
+                     [](const Cause& one) { return plant::is_calibration(one.effect); });
 }
 
 /// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation

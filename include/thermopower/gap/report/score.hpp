@@ -106,11 +106,10 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
   Dice dice(1);
   for (const Segment& segment : segments) {
     const Inputs& inputs = *segment.inputs;
-    if ((!(inputs.command_noise > 0.0) && !inputs.switched_anytime) || noisy.count(&inputs) > 0) continue;
+    if ((!(inputs.command_noise > 0.0) && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
-    if (inputs.switched_anytime)
-      for (double& share : copy.next_share)  // of its mean; within the interval
-        share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
+    for (double& share : copy.next_share)  // of its mean; within the interval
+      share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
     for (Eigen::Index row = 0; row < inputs.rows() && inputs.command_noise > 0.0; ++row) {
       const double by = inputs.command_noise * dice.normal();
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
