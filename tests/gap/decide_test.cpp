@@ -154,6 +154,49 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   CHECK(candidates[1].probability > 0.99);
 }
 
+TEST_CASE("friction that is alike in both directions is friction, and no rival of it") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates(3);
+  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
+  candidates[2].explanation.effects.push_back(standard_catalogue().find("asymmetric_friction"));
+  for (Candidate& one : candidates) {
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.at_bound.assign(one.list.size(), false);
+    one.train = one.held_out = sums_of(blocks(30.0, 30.0));
+  }
+  const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
+  candidates[1].train = candidates[1].held_out = candidates[2].train = candidates[2].held_out =
+      sums_of(blocks(1.0, 1.0));
+  candidates[1].fit.at[constants] = 0.02;
+  candidates[2].fit.at[constants] = 0.0201;
+  candidates[2].fit.at[constants + 1] = 0.0199;
+  const auto count = static_cast<Eigen::Index>(candidates[2].list.size());
+  candidates[2].fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
+  Weight few;  // so few independent samples that a parameter costs next to nothing
+  few.correlation.fill(1000.0);
+  few.held_out.fill(1000.0);
+
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability == 0.0);
+  CHECK(candidates[1].probability > 0.9);
+
+  // 15 % apart, or not known to be less: then it may be the one or the other.
+  candidates[2].fit.at[constants + 1] = 0.017;
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability > 0.05);
+  candidates[2].fit.at[constants + 1] = 0.0199;
+  candidates[2].fit.information *= 1e-4;  // 0.02 N m of uncertainty
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability > 0.05);
+
+  // And where friction alone fits worse, they do not say the same.
+  candidates[2].fit.information *= 1e4;
+  candidates[1].train = candidates[1].held_out = sums_of(blocks(1.2, 1.2));
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability > 0.05);
+}
+
 TEST_CASE("a friction backward that no motion tells is no friction that differs by direction") {
   const Model model = axis_model();
   Candidate one;

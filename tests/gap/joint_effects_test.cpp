@@ -208,6 +208,25 @@ TEST_CASE("an encoder without a gyroscope is enough, and a rate that comes late 
   }
 }
 
+TEST_CASE("an axis that a coarse encoder shows at rest, or at the same step in each row, is no gap") {
+  // Seven rows of the same angle, or with the same step between them, tell the rate to a step of the encoder over them, and
+  // not to nothing: 3.7 deg/s here.
+  using Effect = test::SampledAxis::Effect;
+  constexpr double step_deg = 360.0 / 8192.0;
+  const auto read = [&](double length_s, std::uint64_t seed) {
+    Recording r = test::SampledAxis(Effect::friction, length_s, seed, 2, 0.0).logged_each(2);
+    Eigen::VectorXd angle = r.column("angle_deg");
+    for (double& value : angle) value = step_deg * std::round(value / step_deg);
+    r.set("angle_deg", angle);
+    r.remove("rate_dps");
+    return r;
+  };
+  Model model = test::SampledAxis::model();
+  model.effects["coulomb_friction"] = {{"Nm", 0.006}, {"transition_rad_per_s", 0.002}};
+  const Diagnosis sound = diagnose(model, {read(20.0, 31)}, {read(14.0, 32)});
+  CHECK(sound.verdict == Verdict::no_gap);
+}
+
 TEST_CASE("an encoder off its centre is found whatever the phase of its error") {
   for (const double phase_rad : {0.0, 0.9}) {
     CAPTURE(phase_rad);

@@ -5,6 +5,7 @@
 
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/plant/effects/ambient_bias.hpp>
+#include <thermopower/plant/effects/asymmetric_friction.hpp>
 #include <thermopower/plant/effects/constant_torque.hpp>
 #include <thermopower/plant/effects/drive_lag.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
@@ -192,7 +193,32 @@ TEST_CASE("the catalogue refuses what does not fit together, in a sentence that 
       return one;
     }
   };
+  struct Alike : ConstantTorque {
+    static EffectInfo info() {
+      EffectInfo one = ConstantTorque::info();
+      one.where_equal = WhereEqual{0, 1, "coulomb_friction"};
+      return one;
+    }
+  };
+  struct OfItself : AsymmetricFriction {
+    static EffectInfo info() {
+      EffectInfo one = AsymmetricFriction::info();
+      one.where_equal->cause = one.id;
+      return one;
+    }
+  };
+  struct Mixed : AsymmetricFriction {
+    static EffectInfo info() {
+      EffectInfo one = AsymmetricFriction::info();
+      one.where_equal->other = transition;
+      return one;
+    }
+  };
   Catalogue catalogue;
+  CHECK_THROWS_WITH(catalogue.add<Alike>(), ContainsSubstring("two places of the list"));
+  CHECK_THROWS_WITH(catalogue.add<OfItself>(), ContainsSubstring("another cause"));
+  CHECK_THROWS_WITH(catalogue.add<Mixed>(),
+                    ContainsSubstring("'transition_rad_per_s'") && ContainsSubstring("same unit"));
   CHECK_THROWS_WITH(catalogue.add<Wrong>(), ContainsSubstring("'Nm'") && ContainsSubstring("number 1"));
   CHECK_THROWS_WITH(catalogue.add<Needy>(), ContainsSubstring("needs 'thermal'"));
   CHECK_THROWS_WITH(catalogue.add<Scaled>(),

@@ -168,27 +168,42 @@ public:
   }
 
 private:
-  /// The rate at a start of which the angle alone is recorded: between the slopes of the rows around it.
+  /// The rate at a start of which the angle alone is recorded: between the slopes of the rows around it, which may all be
+  /// the same where the encoder is coarse, and then are as far off as one of its steps makes them.
   static std::vector<HiddenStart> hidden_rate(const Segment& segment) {
     const Inputs& inputs = *segment.inputs;
     if (inputs.judged(Signal::rate_dps) || !inputs.judged(Signal::angle_deg) || segment.warm_up) return {};
     constexpr Eigen::Index around = 3;
-    const Eigen::VectorXd& angle = inputs.of(Signal::angle_deg);
+    const Eigen::VectorXd &angle = inputs.of(Signal::angle_deg), &t_s = inputs.t_s;
+    const Eigen::Index first = std::max(segment.run.begin, segment.begin - around),
+                       last = std::min(segment.run.end - 1, segment.begin + around);
     double least = 1e300, most = -1e300;
-    for (Eigen::Index row = std::max(segment.run.begin, segment.begin - around);
-         row + 1 < std::min(segment.run.end, segment.begin + around + 1); ++row) {
-      const double slope_dps = (angle[row + 1] - angle[row]) / (inputs.t_s[row + 1] - inputs.t_s[row]);
+    for (Eigen::Index row = first; row < last; ++row) {
+      const double slope_dps = (angle[row + 1] - angle[row]) / (t_s[row + 1] - t_s[row]);
       if (!std::isfinite(slope_dps)) continue;
       least = std::min(least, slope_dps);
       most = std::max(most, slope_dps);
     }
-    if (!(most > least)) return {};
+    if (!(most >= least)) return {};
     HiddenStart hidden;
     hidden.coordinate = 1;
     hidden.shows_in = Signal::angle_deg;
     hidden.noise_per_spread = 1e-3;  // 0.05 deg of noise, and starts that spread by tens of deg/s
-    hidden.farthest = most - least;
+    // A reading is off by half a step, so that the slope over these rows is off by one at most.
+    hidden.farthest = std::max(most - least, smallest_step_deg(segment) / (t_s[last] - t_s[first]));
+    if (!(hidden.farthest > 0.0)) return {};
     return {hidden};
+  }
+
+  /// The smallest step between two rows of a segment whose angles differ; 0 where none do.
+  static double smallest_step_deg(const Segment& segment) {
+    const Eigen::VectorXd& angle = segment.inputs->of(Signal::angle_deg);
+    double smallest = 1e300;
+    for (Eigen::Index row = segment.begin; row + 1 < segment.end; ++row) {
+      const double step = std::abs(angle[row + 1] - angle[row]);
+      if (step > 0.0) smallest = std::min(smallest, step);
+    }
+    return smallest < 1e300 ? smallest : 0.0;
   }
 
   Scalar start_scalar(const Start& start, int coordinate) const {

@@ -234,6 +234,21 @@ private:
       throw InvalidInput(effect + ": has more than " + std::to_string(most_own_states) + " states");
     int place = 0;
     for (const Parameter& parameter : info.parameters) check(parameter, place++, effect, hooks);
+    if (info.where_equal) check(*info.where_equal, info);
+  }
+
+  static void check(const WhereEqual& equal, const EffectInfo& info) {
+    const auto is_place = [&](int i) { return i >= 0 && i < static_cast<int>(info.parameters.size()); };
+    const std::string where = "effect '" + info.id + "', what it is where two of its parameters are equal: ";
+    if (!is_place(equal.one) || !is_place(equal.other) || equal.one == equal.other)
+      throw InvalidInput(where + "expected two places of the list of parameters (from 0)");
+    const Parameter &one = info.parameters[static_cast<std::size_t>(equal.one)],
+                    &other = info.parameters[static_cast<std::size_t>(equal.other)];
+    if (one.unit != other.unit || one.logarithmic || other.logarithmic)
+      throw InvalidInput(where + "'" + one.name + "' and '" + other.name +
+                         "' need the same unit, and neither may be logarithmic");
+    if (equal.cause.empty() || equal.cause == info.id)
+      throw InvalidInput(where + "expected the id of another cause");
   }
 
   static void check(const Parameter& parameter, int place, const std::string& effect, const HookSet& hooks) {

@@ -163,6 +163,13 @@ struct HiddenState {
   std::string unit;  ///< of its value
 };
 
+/// What an effect is where two of its parameters are equal: dry friction that is alike in both directions is dry friction.
+struct WhereEqual {
+  int one = -1;       ///< place of a parameter among the effect's
+  int other = -1;     ///< place of another, in the same unit
+  std::string cause;  ///< the other effect's id, or that of a constant, such as `calibration.viscous`
+};
+
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.
 struct EffectInfo {
   std::string id;                     ///< stable, snake_case
@@ -181,6 +188,8 @@ struct EffectInfo {
   /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds half of the
   /// longest run stands for something that does not change in it. None: any.
   double (*slowest_s)(const double* parameters) = nullptr;
+  /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
+  std::optional<WhereEqual> where_equal = {};
 };
 
 }  // namespace thermopower::plant

@@ -20,8 +20,10 @@ public:
   /// What the simulation does not know.
   enum class Effect { none, friction, cogging };
 
-  /// @param set_each  steps of the loop after which the command is set anew
-  SampledAxis(Effect effect, double length_s, std::uint64_t seed, int set_each = 1) {
+  /// @param set_each         steps of the loop after which the command is set anew
+  /// @param angle_noise_deg  standard deviation of the angle's noise
+  SampledAxis(Effect effect, double length_s, std::uint64_t seed, int set_each = 1,
+              double angle_noise_deg = 0.03) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     std::normal_distribution<double> normal;
@@ -43,7 +45,7 @@ public:
       }
       t_s_.push_back(step * loop_s);
       drive_A_.push_back(command_A);
-      angle_deg_.push_back(57.29578 * rad + 0.03 * normal(random));
+      angle_deg_.push_back(57.29578 * rad + angle_noise_deg * normal(random));
       rate_dps_.push_back(57.29578 * radps + 0.2 * normal(random));
       for (int i = 0; i < inner; ++i) {
         double torque_Nm = 0.09 * command_A - 0.002 * radps;

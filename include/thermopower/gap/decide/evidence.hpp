@@ -184,6 +184,52 @@ inline bool is_at_the_noise(const Candidate& candidate) {
          worst_level(candidate.held_out) <= decision.no_gap;
 }
 
+/// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
+inline bool in_the_running(const Candidate& candidate) {
+  return !candidate.on_bounds && !candidate.idle && candidate.held_out.any();
+}
+
+/// Whether two parameters of a candidate are equal as far as it matters, with what the data leave open.
+/// @param one    place of a parameter among the candidate's coordinates
+/// @param other  place of another one
+inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t other) {
+  const auto a = static_cast<Eigen::Index>(one), b = static_cast<Eigen::Index>(other);
+  const double larger = std::max(std::abs(candidate.fit.at[a]), std::abs(candidate.fit.at[b]));
+  double apart = std::abs(candidate.fit.at[a] - candidate.fit.at[b]);
+  const Eigen::MatrixXd& information = candidate.fit.information;
+  if (std::max(a, b) < information.rows()) {
+    constexpr double standard_errors = 2.0;
+    const double curvature = 0.25 * (information(a, a) + information(b, b) - 2.0 * information(a, b));
+    apart += standard_errors / std::sqrt(std::max(curvature, 1e-300));
+  }
+  return apart <= decision.equal * larger;
+}
+
+/// Whether a candidate ended where it is another one (EffectInfo::where_equal) that scores like it: both say the same,
+/// and the other says it with fewer parameters.
+inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, const Model& model) {
+  std::size_t first = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    const std::size_t at = first;
+    first += entry->info.parameters.size();
+    if (!entry->info.where_equal) continue;
+    const plant::WhereEqual& equal = *entry->info.where_equal;
+    if (!are_equal(candidate, at + static_cast<std::size_t>(equal.one),
+                   at + static_cast<std::size_t>(equal.other)))
+      continue;
+    std::vector<std::string> ids;
+    for (const std::string& id : candidate.explanation.ids(model))
+      if (id != entry->info.id) ids.push_back(id);
+    // Constants are free in every explanation.
+    if (!plant::is_calibration(equal.cause)) ids.push_back(equal.cause);
+    std::vector<std::string> simpler_ids = simpler.explanation.ids(model);
+    std::sort(ids.begin(), ids.end());
+    std::sort(simpler_ids.begin(), simpler_ids.end());
+    if (ids == simpler_ids) return in_the_running(simpler) && scores_alike(simpler, candidate);
+  }
+  return false;
+}
+
 /// Marks effects beside which constants move that alone bring everything to the noise: the constants are the answer,
 /// and such an effect mends what is left of the noise.
 inline void mark_idle(std::vector<Candidate>& candidates) {
@@ -192,11 +238,6 @@ inline void mark_idle(std::vector<Candidate>& candidates) {
     if (constants.explanation.effects.empty() && !constants.explanation.released.empty() &&
         is_at_the_noise(constants))
       for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
-}
-
-/// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
-inline bool in_the_running(const Candidate& candidate) {
-  return !candidate.on_bounds && !candidate.idle && candidate.held_out.any();
 }
 
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
@@ -243,8 +284,17 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     // What brings everything to the noise was shown, however little of a period the travel holds.
     one.on_bounds =
         ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad, weight.longest_run_s);
-    if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   }
+  // All at once: where it is known who may be named, and before anybody is.
+  std::vector<bool> says_the_same(candidates.size(), false);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    says_the_same[i] = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& simpler) {
+      return is_in_fact(simpler, candidates[i], model);
+    });
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    candidates[i].idle = candidates[i].idle || says_the_same[i];
+  for (const Candidate& one : candidates)
+    if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   const auto merged = [&](const SignalSums& sums, const std::array<double, signal_count>& correlation) {
     std::size_t merge = 1;
     for (std::size_t i = 0; i < signal_count; ++i)

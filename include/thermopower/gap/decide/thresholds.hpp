@@ -17,6 +17,9 @@ struct DecisionThresholds {
   /// Share of the score, for an explanation with fewer parameters, where the best one is far above the noise: a
   /// model that is wrong by several times the noise proves nothing by its last twentieth.
   double alike_far_from_noise = 0.05;
+  /// Share of the larger one by which two parameters may differ, two standard errors included, that are equal as far as it
+  /// matters: frictions of two directions are seldom known to a tenth beforehand.
+  double equal = 0.1;
   /// Standard errors by which a richer explanation must fit better than a simpler one not to stay behind it.
   double beyond_doubt = 2.0;
   /// Probability, as a share of the likeliest one's, from which a rival is an alternative. With a single rival below

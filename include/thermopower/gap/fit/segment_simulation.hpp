@@ -12,9 +12,9 @@
 namespace thermopower::gap::engine {
 
 /// The step of one coordinate of a start, in multiples of `trial`, that fits the samples of a segment best (linear least
-/// squares about 0).
+/// squares about where it is).
 /// @param start  to step from
-/// @param held   weight of the step itself, in units of the samples: how strongly it stays at 0
+/// @param held   weight of the coordinate itself, in units of the samples: how strongly it stays at 0
 /// @param unit   of each place among the plant's signals: residuals are divided by it; 0 leaves a signal out
 inline double best_step(const Plant& plant, Rollout& rollout, const Segment& segment, const Start& start,
                         int coordinate, double trial, double held, const std::vector<double>& unit) {
@@ -24,7 +24,7 @@ inline double best_step(const Plant& plant, Rollout& rollout, const Segment& seg
   Start moved = start;
   moved[coordinate] += trial;
   rollout.roll(segment, moved, with);
-  double product = 0.0, square = held;
+  double product = -held * start[coordinate] / trial, square = held;
   for (std::size_t k = 0; k < signals.size(); ++k) {
     if (!(unit[k] > 0.0) || !segment.inputs->judged(signals[k])) continue;
     const Eigen::VectorXd& measured = segment.inputs->of(signals[k]);
@@ -40,7 +40,9 @@ inline double best_step(const Plant& plant, Rollout& rollout, const Segment& seg
   return square > 0.0 ? product / square : 0.0;
 }
 
-/// Moves the starts of a segment that nobody measures to where they fit its samples best, within their bounds.
+/// Moves the starts of a segment that nobody measures to where they fit its samples best, within their bounds. The rate
+/// between two readings of a coarse encoder is off by many times what it is fitted to, and no axis is linear that far:
+/// steps are taken until they are small.
 inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment& segment, Start& start) {
   const std::vector<Signal>& signals = plant.signals(segment);
   for (const HiddenStart& hidden : rollout.hidden_starts(segment)) {
@@ -48,11 +50,17 @@ inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment
     if (found == signals.end() || !segment.inputs->judged(hidden.shows_in)) continue;
     std::vector<double> unit(signals.size(), 0.0);
     unit[static_cast<std::size_t>(found - signals.begin())] = 1.0;
-    Start from = start;
-    from[hidden.coordinate] = 0.0;
-    const double step = best_step(plant, rollout, segment, from, hidden.coordinate, hidden.trial,
-                                  hidden.noise_per_spread * hidden.noise_per_spread, unit);
-    start[hidden.coordinate] = std::clamp(step * hidden.trial, -hidden.farthest, hidden.farthest);
+    constexpr int most_steps = 4;
+    constexpr double small = 1e-3;  // of how far it may go
+    double& at = start[hidden.coordinate];
+    at = 0.0;
+    for (int i = 0; i < most_steps; ++i) {
+      const double before = at;
+      const double step = best_step(plant, rollout, segment, start, hidden.coordinate, hidden.trial,
+                                    hidden.noise_per_spread * hidden.noise_per_spread, unit);
+      at = std::clamp(before + step * hidden.trial, -hidden.farthest, hidden.farthest);
+      if (std::abs(at - before) <= small * hidden.farthest) break;
+    }
   }
 }
 

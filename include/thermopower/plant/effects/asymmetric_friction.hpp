@@ -32,7 +32,11 @@ struct AsymmetricFriction {
              parameter(backward_Nm, "backward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
              friction_transition(transition), friction_tail(tail)},
             {Need::axis_model},
-            "slow motion at constant rate in both directions, and standstill"};
+            "slow motion at constant rate in both directions, and standstill",
+            {},
+            false,
+            nullptr,
+            WhereEqual{forward_Nm, backward_Nm, "coulomb_friction"}};
   }
 
   /// Adds dry friction by direction.

@@ -28,7 +28,11 @@ struct AsymmetricViscous {
             {parameter(forward, "forward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0}),
              parameter(backward, "backward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0})},
             {Need::axis_model},
-            "fast turns at constant rate in both directions"};
+            "fast turns at constant rate in both directions",
+            {},
+            false,
+            nullptr,
+            WhereEqual{forward, backward, "calibration.viscous"}};
   }
 
   /// Adds viscous friction by direction.
