@@ -282,6 +282,47 @@ TEST_CASE("a cached current is the current, whatever changes, and NaN comes thro
   }
 }
 
+namespace {
+// A law without a conductance: the current is not in proportion to the voltage. Counts how often it is asked.
+struct SquareLaw {
+  typedef float Scalar;
+  static int asked;
+  static float current_A(float v_rms_V, float motor_C) {
+    ++asked;
+    return v_rms_V * v_rms_V * (0.01f - 0.00002f * motor_C);
+  }
+  static ConfigError validate() { return ConfigError::none; }
+};
+int SquareLaw::asked = 0;
+}  // namespace
+
+TEST_CASE("a law without a conductance is asked only when something changed, and by whole and broken POWER") {
+  CachedCurrent<SquareLaw> cached((SquareLaw()));
+  const CurrentModel<SquareLaw> model((SquareLaw()));
+  const float powers[] = {0.0f, 1.0f, 0.5f, 99.75f, 254.9f, 255.0f, 300.0f};
+  for (const float power : powers) {
+    CAPTURE(power);
+    CHECK(cached.at_power(power, 12.0f, 25.0f).current_A ==
+          Approx(model.at_power(power, 12.0f, 25.0f).current_A).epsilon(1e-6));
+  }
+  CHECK(std::isnan(cached.at_power(-1.0f, 12.0f, 25.0f).current_A));
+  SquareLaw::asked = 0;
+  for (int i = 0; i < 10; ++i) cached.at_count(100, 12.0f, 70.0f + 0.04f * static_cast<float>(i));
+  CHECK(SquareLaw::asked == 1);
+  cached.at_count(101, 12.0f, 70.0f);
+  cached.at_count(101, 12.5f, 70.0f);
+  CHECK(SquareLaw::asked == 3);
+  // Less than a kelvin at any temperature that a motor has: half of one up to 128 degC.
+  for (float motor_C = 20.0f; motor_C < 250.0f; motor_C += 0.37f) {
+    cached.at_count(101, 12.0f, motor_C);
+    SquareLaw::asked = 0;
+    cached.at_count(101, 12.0f, motor_C + (motor_C < 127.0f ? 0.5f : 1.0f));
+    REQUIRE(SquareLaw::asked == 1);
+    cached.at_count(101, 12.0f, -motor_C);
+    REQUIRE(SquareLaw::asked == 2);
+  }
+}
+
 TEST_CASE("an observer that steps every n-th time sees the same heat, at equal and at changing steps") {
   for (const bool is_even : {true, false}) {
     INFO((is_even ? "equal" : "changing") << " steps");

@@ -365,3 +365,42 @@ TEST_CASE("a bound is raised to the higher of two, also where they differ in wha
   kept.go(1, 0x80000000u);
   CHECK(kept.below() == 1001);
 }
+
+TEST_CASE("a measurement is kept to 1/64 K and never below what was told; what is none changes nothing") {
+  const detail::KelvinUnits known = detail::celsius_units(600.0f);
+  for (float told_C = -100.0f; told_C <= 500.0f; told_C += 0.0137f) {
+    CAPTURE(told_C);
+    const CertifiedMeasurement measured(told_C, nan_);
+    REQUIRE(measured.is_any());
+    REQUIRE(measured.winding(known) >= static_cast<double>(told_C) * 262144.0);
+    REQUIRE(measured.winding(known) <= (static_cast<double>(told_C) + 1.0 / 32.0) * 262144.0);
+    REQUIRE(measured.body(known) == known);
+    REQUIRE(measured.winding(-200 * 262144) == -200 * 262144);
+    REQUIRE(CertifiedMeasurement(nan_, told_C).body(known) == measured.winding(known));
+  }
+  for (const float none_C : {nan_, infinite, -infinite, -100.01f, 500.01f, 1e9f})
+    CHECK_FALSE(CertifiedMeasurement(none_C, none_C).is_any());
+  CHECK_FALSE(CertifiedMeasurement().is_any());
+}
+
+TEST_CASE("the heat of a warm winding is never taken below Ohm's law, nor far above it") {
+  for (const float end_C : {40.0f, 60.3f, 110.0f, 200.0f})
+    for (const float coldest_C : {-40.0f, -10.3f, 0.0f, 20.0f}) {
+      CAPTURE(end_C, coldest_C);
+      const HeatBounds heat =
+          HeatBounds::ohmic(12.0f, 1.0f, {6.0f, 6.0f}, {0.0039f, 0.0039f}, 20.0f, coldest_C, 200.0f);
+      CertifiedRelief relief;
+      relief.set(heat, 200.0f, end_C);
+      const auto ratio = [&](double T) { return 1.0 + 0.0039 * (T - 20.0); };
+      for (double T = static_cast<double>(coldest_C); T <= 250.0; T += 0.173) {
+        // Of the whole, which stands for 1 + 2^-15 of it; above its end the relief stays.
+        const double truth =
+            ratio(static_cast<double>(coldest_C)) / ratio(std::min(T, static_cast<double>(end_C)));
+        const double taken = static_cast<double>(relief.at(static_cast<detail::KelvinUnits>(
+                                 (T - static_cast<double>(coldest_C)) * 262144.0))) /
+                             65536.0 * static_cast<double>(detail::whole_margin());
+        REQUIRE(taken >= truth);
+        if (T > static_cast<double>(end_C)) REQUIRE(taken < truth + 2e-4);
+      }
+    }
+}

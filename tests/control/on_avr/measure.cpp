@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// measure <mean> <longest> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and
+// measure <mean> <longest> <ram> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and
 // prints, as a Markdown table, how many cycles its marked work takes, how much flash and RAM it needs beyond the
 // first program, which is empty, and how deep the stack goes. Fails when the last program's work exceeds one of the
-// two budgets in cycles, when a stack meets the data below it, and when a program writes to GPIOR1 that what it
+// two budgets in cycles or the one of bytes, when a stack meets the data below it, and when a program writes to GPIOR1 that what it
 // measures was not done. The first two axes alone may look cheap: a stack that overwrote the third did.
 
 #include <algorithm>
@@ -96,18 +96,19 @@ bool run(const char* path, Cost& cost) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  if (argument_count < 7 || argument_count % 2 != 1) {
-    std::fprintf(stderr, "usage: measure <mean> <longest> <name> <elf> [<name> <elf> ...]\n");
+  if (argument_count < 8 || argument_count % 2 != 0) {
+    std::fprintf(stderr, "usage: measure <mean> <longest> <ram> <name> <elf> [<name> <elf> ...]\n");
     return 2;
   }
   const unsigned long long mean = std::strtoull(arguments[1], nullptr, 10);
   const unsigned long long longest = std::strtoull(arguments[2], nullptr, 10);
+  const unsigned long long ram = std::strtoull(arguments[3], nullptr, 10);
   std::printf(
       "| step of | cycles, mean | cycles, longest | flash, bytes | RAM, bytes | stack, bytes |\n"
       "|---|---|---|---|---|---|\n");
   Cost empty = {}, cost = {};
   bool is_good = true;
-  for (int i = 3; i < argument_count; i += 2) {
+  for (int i = 4; i < argument_count; i += 2) {
     if (!run(arguments[i + 1], cost)) {
       std::fprintf(stderr, "%s: did not run\n", arguments[i + 1]);
       return 1;
@@ -120,7 +121,7 @@ int main(int argument_count, char** arguments) {
       std::fprintf(stderr, "%s: %u steps were refused\n", arguments[i], cost.refused);
       is_good = false;
     }
-    if (i == 3) {
+    if (i == 4) {
       empty = cost;
       continue;
     }
@@ -130,8 +131,9 @@ int main(int argument_count, char** arguments) {
                 cost.flash - empty.flash, cost.ram - empty.ram, cost.stack);
   }
   std::printf(
-      "\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most; allowed: %llu and "
-      "%llu cycles.\n",
-      static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0, mean, longest);
-  return is_good && cost.mean <= mean && cost.longest <= longest ? 0 : 1;
+      "\nThe last one takes %.1f %% of a 10 ms cycle at 16 MHz on average, %.1f %% at most, and %u bytes of RAM; "
+      "allowed: %llu and %llu cycles, %llu bytes.\n",
+      static_cast<double>(cost.mean) / 1600.0, static_cast<double>(cost.longest) / 1600.0,
+      cost.ram - empty.ram, mean, longest, ram);
+  return is_good && cost.mean <= mean && cost.longest <= longest && cost.ram - empty.ram <= ram ? 0 : 1;
 }

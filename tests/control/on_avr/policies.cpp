@@ -163,11 +163,11 @@ struct GainTable {
 const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
 typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable>>> Axis;
 // What docs/explain/certified-limiter.md says of an axis's RAM.
-static_assert(sizeof(Axis) == 481, "an axis");
-static_assert(sizeof(CertifiedLimiter<>) == 191 && sizeof(CertifiedTwoNode) == 120,
+static_assert(sizeof(Axis) == 432, "an axis");
+static_assert(sizeof(CertifiedLimiter<>) == 169 && sizeof(CertifiedTwoNode) == 108,
               "its limiter, and the bounds in it");
 static_assert(sizeof(Motor::Thermal) == 186 && sizeof(TemperatureObserver) == 151, "and the observer");
-static_assert(sizeof(Motor::Current) == 50 && sizeof(Axis::State) == 29, "its current; what it logs");
+static_assert(sizeof(Motor::Current) == 23 && sizeof(Axis::State) == 29, "its current; what it logs");
 // Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
 // measures in a third.
 static const uint8_t every = THERMOPOWER_POLICY == 18 ? 9 : 3;

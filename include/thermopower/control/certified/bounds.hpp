@@ -121,23 +121,41 @@ struct CertifiedUse {
   }
 };
 
-/// Temperatures measured at one instant since the last plan; NaN where nothing was measured.
+/// Temperatures measured at one instant since the last plan. Kept in 1/64 K, rounded up: two bytes each in every
+/// limiter instead of four.
 ///
 /// @snippet control_examples.cpp certified parts
 /// How to: @ref explain_certified_limiter.
 /// @ingroup control
-struct CertifiedMeasurement {
-  float winding_C;  ///< Never below the truth at that instant.
-  float body_C;     ///< Never below the truth at that instant.
+class CertifiedMeasurement {
+public:
+  /// Nothing measured.
+  CertifiedMeasurement() noexcept : winding_(none()), body_(none()) {}
+  /// @param winding_C, body_C  never below the truth at that instant. NaN where nothing was measured; what is below
+  ///                           -100 or above 500 degC is no measurement
+  CertifiedMeasurement(float winding_C, float body_C) noexcept : winding_(up(winding_C)), body_(up(body_C)) {}
 
-  /// Whether there is one. What is below -100 degC is no measurement.
-  bool is_any() const noexcept { return winding_C >= -100.0f || body_C >= -100.0f; }
-  /// The lower of a measurement and what is known without it. @param known  a bound throughout the step
-  static detail::KelvinUnits units(float measured_C, detail::KelvinUnits known) noexcept {
-    if (!(measured_C >= -100.0f)) return known;
-    const detail::KelvinUnits measured = detail::celsius_units(measured_C) + 1;
-    return measured < known ? measured : known;
+  /// Whether there is one.
+  bool is_any() const noexcept { return winding_ != none() || body_ != none(); }
+  /// The lower of the winding's and what is known without it. @param known  a bound throughout the step
+  detail::KelvinUnits winding(detail::KelvinUnits known) const noexcept { return lower(winding_, known); }
+  /// The same for the body.
+  detail::KelvinUnits body(detail::KelvinUnits known) const noexcept { return lower(body_, known); }
+
+private:
+  static constexpr int16_t none() { return 32767; }
+  static int16_t up(float measured_C) noexcept {
+    // A power of two multiplies without rounding.
+    if (!(measured_C >= -100.0f && measured_C <= 500.0f)) return none();
+    return static_cast<int16_t>(static_cast<int16_t>(measured_C * 64.0f) + 1);
   }
+  static detail::KelvinUnits lower(int16_t measured, detail::KelvinUnits known) noexcept {
+    if (measured == none()) return known;
+    const detail::KelvinUnits units = measured * 4096L;
+    return units < known ? units : known;
+  }
+
+  int16_t winding_, body_;
 };
 
 /// Carries a step's length through the network's two time constants: the part of the way to its final value
@@ -156,6 +174,10 @@ struct CertifiedTravel {
     const float below = slow < 1.0f ? slow * (1.0f - 0.5f * slow) : 0.5f;
     const CertifiedTravel travel = {detail::fine_up(above(fastest_per_s * dt_s)), detail::fine_down(below)};
     return travel;
+  }
+  /// The same. @param slowest  the rate with the largest heat capacity as a part of the fastest, not above the truth
+  static CertifiedTravel over_part(float fastest_per_s, detail::UnitFraction slowest, float dt_s) noexcept {
+    return over(fastest_per_s, fastest_per_s * (static_cast<float>(slowest) * (1.0f / 65536.0f)), dt_s);
   }
   /// Goes no farther than a hold does, for a step that is no longer: what was planned with the coarse fraction of
   /// a hold then covers the step to the last unit. A hold of many time constants ends at 1 - 2^-16 instead of one;
@@ -188,15 +210,16 @@ public:
     const int32_t fine =
         detail::rounded_down(per_K * 8388608.0f);  // 2^-23 per kelvin: up to 0.78 % per kelvin
     per_K_ = static_cast<uint16_t>(fine < 0xffffL ? fine : 0xffffL);
-    end_ = detail::celsius_units(end_C - heat.coldest_C);
-    if (end_ > 255L * 262144L) end_ = 255L * 262144L;
+    // In 1/256 K, rounded down: above it the relief stays, and less relief is more heat.
+    const detail::KelvinUnits end = detail::celsius_units(end_C - heat.coldest_C) >> 10;
+    end_ = static_cast<uint16_t>(end < 0 ? 0 : (end < 255L * 256L ? end : 255L * 256L));
   }
   /// Heat at a winding temperature as a fraction of the heat at the coldest, not below the truth. @param
   /// over_coldest  difference
   detail::UnitFraction at(detail::KelvinUnits over_coldest) const noexcept {
-    const detail::KelvinUnits over = over_coldest < end_ ? over_coldest : end_;
-    if (over <= 0) return detail::whole_fraction();
-    const uint16_t coarse = static_cast<uint16_t>(static_cast<uint32_t>(over) >> 10);  // 1/256 K
+    if (over_coldest <= 0) return detail::whole_fraction();
+    const uint32_t over = static_cast<uint32_t>(over_coldest) >> 10;  // 1/256 K
+    const uint16_t coarse = over < end_ ? static_cast<uint16_t>(over) : end_;
     // Below one half of 2^32, because the relief is less than the whole; so doubled instead of shifted by 15.
     const uint32_t half_relief = detail::product(coarse, per_K_);
     const uint16_t relief = static_cast<uint16_t>((half_relief + half_relief) >> 16);
@@ -204,8 +227,7 @@ public:
   }
 
 private:
-  uint16_t per_K_ = 0;
-  detail::KelvinUnits end_ = 0;
+  uint16_t per_K_ = 0, end_ = 0;
 };
 
 /// What holds a power back.

@@ -198,8 +198,7 @@ public:
   ///                                       observer's estimate plus k sigmas the guarantee holds as often as that
   ///                                       is above the truth. NaN where nothing was measured
   void tighten(float winding_upper_C, float body_upper_C) noexcept {
-    measured_.winding_C = winding_upper_C;
-    measured_.body_C = body_upper_C;
+    measured_ = CertifiedMeasurement(winding_upper_C, body_upper_C);
   }
 
   /// Says that a larger power than the one granted may have acted since the last step; call it before `step()`.
@@ -247,7 +246,7 @@ public:
   /// and nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     if (!is_error(config_error_)) {
-      measured_.winding_C = measured_.body_C = detail::not_a_number();
+      measured_ = CertifiedMeasurement();
       if (pending() > 0.0f) advance();
       network_.advance_unknown(acting_);
     }
@@ -314,7 +313,7 @@ private:
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
     network_.advance(acted_, travel_, measured_);
-    measured_.winding_C = measured_.body_C = detail::not_a_number();
+    measured_ = CertifiedMeasurement();
     pending_s_ = 0.0f;
     steps_ = 0;
     acted_ = 0;
@@ -339,7 +338,7 @@ private:
     node_ = largest.node;
   }
 
-  // Only what changed: floats are dear on a small chip, comparing bits is not.
+  // Air that is the same as at the last plan is seen by its bits. A supply never is: no two readings are alike.
   void observe_air(float air_C) noexcept {
     if (detail::is_same(air_C, read_air_C_)) return;
     read_air_C_ = air_C;
@@ -348,13 +347,9 @@ private:
   }
   void observe(float air_C, float supply_V) noexcept {
     observe_air(air_C);
-    if (!detail::is_same(supply_V, read_supply_V_)) {
-      read_supply_V_ = supply_V;
-      const float ratio = supply_V * per_supply_V_;
-      const bool is_used = detail::is_from_zero_to(ratio, 1.0f);
-      supply_squared_ = is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
-    }
-    network_.take_warm_winding(supply_squared_);
+    const float ratio = supply_V * per_supply_V_;
+    const bool is_used = detail::is_from_zero_to(ratio, 1.0f);
+    network_.take_warm_winding(is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction());
   }
 
   LimitedPower least(LimitReason reason, uint8_t demand) noexcept {
@@ -371,8 +366,7 @@ private:
   Network network_;
   typename Network::Travel travel_;
   float highest_air_C_, air_error_K_, per_supply_V_, count_W_;
-  float read_air_C_ = detail::not_a_number(), read_supply_V_ = detail::not_a_number();
-  detail::UnitFraction supply_squared_ = detail::whole_fraction();
+  float read_air_C_ = detail::not_a_number();
   uint16_t late_steps_ = 0;
   float each_s_ = 0.0f, pending_s_ = 0.0f;  // `steps_` of the one, after the other
   uint8_t steps_ = 0;
@@ -383,7 +377,7 @@ private:
   ConfigError config_error_;
   uint8_t every_, turn_;
   CertifiedNode node_ = CertifiedNode::none;
-  CertifiedMeasurement measured_ = {detail::not_a_number(), detail::not_a_number()};  // since the last plan
+  CertifiedMeasurement measured_;  // since the last plan
   bool is_limiting_ = false;
 };
 

@@ -57,7 +57,8 @@ public:
   CertifiedOneNode(const Config& config, const CertifiedUse& use) noexcept {
     const float count_W = use.heat.heat_when_cold_W * (detail::whole_margin() / 255.0f);
     fastest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.lowest;
-    slowest_per_s_ = config.least_conductance_W_per_K / config.heat_capacity_J_per_K.highest;
+    slowest_ =
+        detail::fraction_down(config.heat_capacity_J_per_K.lowest / config.heat_capacity_J_per_K.highest);
     to_air_ = detail::kelvin_per_count_up(count_W / config.least_conductance_W_per_K);
     hold_s_ = use.hold_s;
     hold_ = detail::fraction_up(CertifiedTravel::above(fastest_per_s_ * use.hold_s));
@@ -93,7 +94,7 @@ public:
   }
   /// Prepares a step length.
   Travel travel(float dt_s) const noexcept {
-    Travel travel = {CertifiedTravel::over(fastest_per_s_, slowest_per_s_, dt_s), dt_s > hold_s_};
+    Travel travel = {CertifiedTravel::over_part(fastest_per_s_, slowest_, dt_s), dt_s > hold_s_};
     if (!travel.is_late) travel.body.end_at(hold_);
     return travel;
   }
@@ -105,7 +106,7 @@ public:
     const detail::KelvinUnits passed = carry(count, step);
     if (!measured.is_any()) return;
     const detail::UpperBound node = node_;
-    node_.set(measured.units(measured.winding_C, passed));
+    node_.set(measured.winding(passed));
     to_air_now_ = to_air_;  // colder than the bound for which the heat was taken
     const detail::KelvinUnits since = carry(count, step);
     if (since < node.above()) node_.set(since);
@@ -177,9 +178,9 @@ private:
   }
   detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }
 
-  float fastest_per_s_, slowest_per_s_, hold_s_;
+  float fastest_per_s_, hold_s_;
   detail::KelvinUnits to_air_, to_air_now_, coldest_, limit_;
-  detail::UnitFraction horizon_, hold_;
+  detail::UnitFraction slowest_, horizon_, hold_;
   CertifiedRelief relief_;
   detail::UpperBound node_;
   detail::KelvinUnits base_ = 0;

@@ -99,9 +99,9 @@ public:
     const Bounds& winding = config.winding_heat_capacity_J_per_K;
     const Bounds& body = config.body_heat_capacity_J_per_K;
     fastest_winding_per_s_ = derived.winding_rate / winding.lowest;
-    slowest_winding_per_s_ = derived.winding_rate / winding.highest;
     fastest_body_per_s_ = derived.body_rate / (winding.lowest + body.lowest);
-    slowest_body_per_s_ = derived.body_rate / (winding.highest + body.highest);
+    slowest_winding_ = detail::fraction_down(winding.lowest / winding.highest);
+    slowest_body_ = detail::fraction_down((winding.lowest + body.lowest) / (winding.highest + body.highest));
 
     across_ = derived.across;
     soak_ = derived.soak;
@@ -154,8 +154,8 @@ public:
 
   /// Prepares a step length; only a length that changed costs anything.
   Travel travel(float dt_s) const noexcept {
-    Travel travel = {CertifiedTravel::over(fastest_winding_per_s_, slowest_winding_per_s_, dt_s),
-                     CertifiedTravel::over(fastest_body_per_s_, slowest_body_per_s_, dt_s), dt_s > hold_s_};
+    Travel travel = {CertifiedTravel::over_part(fastest_winding_per_s_, slowest_winding_, dt_s),
+                     CertifiedTravel::over_part(fastest_body_per_s_, slowest_body_, dt_s), dt_s > hold_s_};
     if (!travel.is_late) {
       travel.winding.end_at(hold_winding_);
       travel.body.end_at(hold_body_);
@@ -169,15 +169,15 @@ public:
     const Hull passed = carry(count, step);
     if (!measured.is_any()) return;
     const detail::UpperBound winding = winding_, mean = mean_;
-    const detail::KelvinUnits seen_winding = measured.units(measured.winding_C, passed.winding);
-    const detail::KelvinUnits seen_body = measured.units(measured.body_C, passed.mean);
+    const detail::KelvinUnits seen_winding = measured.winding(passed.winding);
+    const detail::KelvinUnits seen_body = measured.body(passed.mean);
     const detail::KelvinUnits seen_mean =
         seen_winding > seen_body ? seen_body + detail::part_up(seen_winding - seen_body, weight_) : seen_body;
     winding_.set(seen_winding);
     mean_.set(seen_mean < passed.mean ? seen_mean : passed.mean);
     // Colder than the bounds for which the heat was taken, so the heat is the highest there is.
     take(detail::whole_fraction(), detail::whole_fraction());
-    taken_winding_ = -1000L * 262144L;
+    taken_supply_ = 0;
     const Hull since = carry(count, step);
     if (since.winding < winding.above()) winding_.set(since.winding);
     else winding_ = winding;
@@ -207,12 +207,11 @@ public:
     const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
     // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
     if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
-        winding - taken_winding_ >= -slack_units() && winding - taken_winding_ < slack_units() &&
-        mean - taken_mean_ >= -slack_units() && mean - taken_mean_ < slack_units())
+        is_in_slack(winding, taken_winding_) && is_in_slack(mean, taken_mean_))
       return;
     taken_supply_ = supply_squared;
-    taken_winding_ = winding;
-    taken_mean_ = mean;
+    taken_winding_ = sixteenths(winding);
+    taken_mean_ = sixteenths(mean);
     // How far each may fall within a hold, also when it has first moved by the slack, and the air by
     // anything.
     const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
@@ -424,7 +423,7 @@ private:
   // What the mean cannot pass however long the count acts: the box below it is invariant (29).
   detail::KelvinUnits soaked_late(uint8_t count) noexcept {
     take(detail::whole_fraction(), detail::whole_fraction());
-    taken_winding_ = -1000L * 262144L;  // to be taken anew
+    taken_supply_ = 0;  // to be taken anew
     const float apart_K = detail::celsius_from(gap_ + detail::times(across_now_ + soak_now_, count));
     const float to_air_K = detail::celsius_from(detail::times(to_air_now_, count));
     const detail::KelvinUnits settled =
@@ -437,6 +436,15 @@ private:
   }
 
   static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
+  // The lowest 16 bits of a bound in 1/16 K tell it from every other: where the heat is taken, bounds lie between the
+  // coldest air and 4000 degC, and 2^16 of these are 4096 K.
+  static uint16_t sixteenths(detail::KelvinUnits bound) noexcept {
+    return static_cast<uint16_t>(static_cast<uint32_t>(bound) >> 14);
+  }
+  // Three of these apart, rounded down both, is less than the slack.
+  static bool is_in_slack(detail::KelvinUnits bound, uint16_t taken) noexcept {
+    return static_cast<uint16_t>(sixteenths(bound) - taken + 3u) <= 6u;
+  }
   static detail::UnitFraction supply(detail::UnitFraction relief,
                                      detail::UnitFraction supply_squared) noexcept {
     return supply_squared == detail::whole_fraction()
@@ -449,14 +457,15 @@ private:
     to_air_now_ = detail::part_up(to_air_, body);
   }
 
-  float fastest_winding_per_s_, slowest_winding_per_s_, fastest_body_per_s_, slowest_body_per_s_, hold_s_;
+  float fastest_winding_per_s_, fastest_body_per_s_, hold_s_;
+  detail::UnitFraction slowest_winding_, slowest_body_;     // as parts of the fastest
   detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
   detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step
   detail::KelvinUnits gap_, least_mean_, base_over_air_, coldest_, winding_limit_, mean_limit_;
   detail::UnitFraction weight_, hold_winding_, hold_body_, horizon_winding_, horizon_body_;
   CertifiedRelief winding_relief_, mean_relief_;
-  detail::KelvinUnits taken_winding_ = -1000L * 262144L, taken_mean_ = 0;
-  detail::UnitFraction taken_supply_ = 0;
+  uint16_t taken_winding_ = 0, taken_mean_ = 0;  // for which bounds the heat was taken: `sixteenths()`
+  detail::UnitFraction taken_supply_ = 0;  // and for which supply; 0: to be taken anew, no supply is so low
   detail::UpperBound winding_, mean_;
   detail::KelvinUnits base_ = 0;
 };
