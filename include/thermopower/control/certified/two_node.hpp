@@ -167,22 +167,7 @@ public:
   /// @param measured  known of one instant of the step, whichever it was. (30)
   void advance(uint8_t count, const Travel& step, const CertifiedMeasurement& measured) noexcept {
     const Hull passed = carry(count, step);
-    if (!measured.is_any()) return;
-    const detail::UpperBound winding = winding_, mean = mean_;
-    const detail::KelvinUnits seen_winding = measured.winding(passed.winding);
-    const detail::KelvinUnits seen_body = measured.body(passed.mean);
-    const detail::KelvinUnits seen_mean =
-        seen_winding > seen_body ? seen_body + detail::part_up(seen_winding - seen_body, weight_) : seen_body;
-    winding_.set(seen_winding);
-    mean_.set(seen_mean < passed.mean ? seen_mean : passed.mean);
-    // Colder than the bounds for which the heat was taken, so the heat is the highest there is.
-    take(detail::whole_fraction(), detail::whole_fraction());
-    taken_supply_ = 0;
-    const Hull since = carry(count, step);
-    if (since.winding < winding.above()) winding_.set(since.winding);
-    else winding_ = winding;
-    if (since.mean < mean.above()) mean_.set(since.mean);
-    else mean_ = mean;
+    if (measured.is_any()) take_in(count, step, measured, passed);
   }
 
   /// Carries both bounds over an unknown time of at most one hold.
@@ -204,21 +189,10 @@ public:
   /// about as much.
   /// @param supply_squared  (supply / highest supply)^2, never below the truth
   void take_warm_winding(detail::UnitFraction supply_squared) noexcept {
-    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
-    // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
-    if (supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
-        is_in_slack(winding, taken_winding_) && is_in_slack(mean, taken_mean_))
-      return;
-    taken_supply_ = supply_squared;
-    taken_winding_ = sixteenths(winding);
-    taken_mean_ = sixteenths(mean);
-    // How far each may fall within a hold, also when it has first moved by the slack, and the air by
-    // anything.
-    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
-    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
-    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
-    take(supply(winding_relief_.at(winding - fall - slack_units() - coldest_), supply_squared),
-         supply(mean_relief_.at(mean - over - slack_units() - coldest_), supply_squared));
+    if (is_heat_taken(supply_squared)) return;
+    const Hull coldest = coldest_in_hold(supply_squared);
+    take(supply(winding_relief_.at(coldest.winding), supply_squared),
+         supply(mean_relief_.at(coldest.mean), supply_squared));
   }
 
   /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (21) to (27)
@@ -289,6 +263,8 @@ public:
   }
 
 private:
+  friend class CertifiedCoupledTwoNode;  // carries the same bounds, with less heat
+
   // What follows from the declaration alone.
   struct Derived {
     Derived(const Config& config, const CertifiedUse& use) noexcept {
@@ -367,6 +343,26 @@ private:
     return passed;
   }
 
+  // The same step from a reading of any instant of it (30), and the lower of both.
+  void take_in(uint8_t count, const Travel& step, const CertifiedMeasurement& measured,
+               const Hull& passed) noexcept {
+    const detail::UpperBound winding = winding_, mean = mean_;
+    const detail::KelvinUnits seen_winding = measured.winding(passed.winding);
+    const detail::KelvinUnits seen_body = measured.body(passed.mean);
+    const detail::KelvinUnits seen_mean =
+        seen_winding > seen_body ? seen_body + detail::part_up(seen_winding - seen_body, weight_) : seen_body;
+    winding_.set(seen_winding);
+    mean_.set(seen_mean < passed.mean ? seen_mean : passed.mean);
+    // Colder than the bounds for which the heat was taken, so the heat is the highest there is.
+    take(detail::whole_fraction(), detail::whole_fraction());
+    taken_supply_ = 0;
+    const Hull since = carry(count, step);
+    if (since.winding < winding.above()) winding_.set(since.winding);
+    else winding_ = winding;
+    if (since.mean < mean.above()) mean_.set(since.mean);
+    else mean_ = mean;
+  }
+
   // All of it above the base: the temperature that the least power would reach in the hottest air (11).
   struct Room {
     detail::KelvinUnits winding, mean, weighted, apart, winding_left, mean_left;
@@ -433,6 +429,25 @@ private:
     detail::KelvinUnits mean = mean_.above() > settled ? mean_.above() : settled;
     if (fed > mean) mean = fed;
     return mean + gap_ + detail::times(soak_now_, count);
+  }
+
+  // A supply that falls by less than 1/512 of its square may go on counting as it did: noise costs no work.
+  bool is_heat_taken(detail::UnitFraction supply_squared) const noexcept {
+    return supply_squared <= taken_supply_ && taken_supply_ - supply_squared < 128 &&
+           is_in_slack(winding_.below(), taken_winding_) && is_in_slack(mean_.below(), taken_mean_);
+  }
+  // For what bounds and supply the heat is taken, and how far above the coldest air each may have fallen within a hold,
+  // also when it has first moved by the slack, and the air by anything.
+  Hull coldest_in_hold(detail::UnitFraction supply_squared) noexcept {
+    const detail::KelvinUnits winding = winding_.below(), mean = mean_.below();
+    taken_supply_ = supply_squared;
+    taken_winding_ = sixteenths(winding);
+    taken_mean_ = sixteenths(mean);
+    const detail::KelvinUnits apart = (winding > mean ? winding - mean : 0) + 2 * slack_units();
+    const detail::KelvinUnits fall = detail::part_up(apart, hold_winding_);
+    const detail::KelvinUnits over = detail::part_up(mean - coldest_ + slack_units(), hold_body_);
+    const Hull coldest = {winding - fall - slack_units() - coldest_, mean - over - slack_units() - coldest_};
+    return coldest;
   }
 
   static constexpr detail::KelvinUnits slack_units() { return 65536; }  // a quarter of a kelvin
