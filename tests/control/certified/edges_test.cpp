@@ -28,6 +28,7 @@ CertifiedUse use(float limit_C) { return {heat(limit_C), 35.0f, 0.1f, 30.0f, 1, 
 typedef CertifiedLimiter<CertifiedOneNode> One;
 typedef CertifiedLimiter<CertifiedTwoNode> Two;
 typedef CertifiedLimiter<CertifiedChain<3>> Three;
+typedef CertifiedLimiter<CertifiedCoupledTwoNode> Both;
 
 One::Config one() { return {{Bounds::around(20.0f, 0.1f), 0.18f, 60.0f}, use(60.0f), 5.0f}; }
 Two::Config two() {
@@ -35,6 +36,7 @@ Two::Config two() {
           use(110.0f),
           5.0f};
 }
+Both::Config both() { return {{two().network, 1.1f}, use(110.0f), 5.0f}; }
 Three::Config three() {
   Three::Config config = Three::Config::standard();
   config.network.nodes[0] = {Bounds::around(5.0f, 0.1f), 0.5f, 120.0f};
@@ -46,6 +48,7 @@ Three::Config three() {
 void set(One::Config& config) { config = one(); }
 void set(Two::Config& config) { config = two(); }
 void set(Three::Config& config) { config = three(); }
+void set(Both::Config& config) { config = both(); }
 
 /// The worst actuator that is declared: least capacities, couplings and resistance, in the hottest air.
 struct Worst {
@@ -55,6 +58,7 @@ struct Worst {
 
   static Worst of(const One&) { return {{25.0, 0.0, 0.0}, {18.0, 1.0, 1.0}, {0.18, 0.0, 0.0}, 1, 0.0038}; }
   static Worst of(const Two&) { return {{25.0, 25.0, 0.0}, {7.2, 72.0, 1.0}, {0.9, 0.18, 0.0}, 2, 0.0038}; }
+  static Worst of(const Both&) { return {{25.0, 25.0, 0.0}, {7.2, 72.0, 1.0}, {0.9, 0.18, 0.0}, 2, 0.0038}; }
   static Worst of(const Three&) {
     return {{25.0, 25.0, 25.0}, {4.5, 18.0, 54.0}, {0.5, 0.3, 0.2}, 3, 0.0038};
   }
@@ -99,7 +103,7 @@ TEST_CASE("a bound of the heat that cannot be is refused by name") {
 
 TEMPLATE_TEST_CASE(
     "a limiter with a wrong constant names it, grants the least, and shows nothing that it does not know", "",
-    One, Two, Three) {
+    One, Two, Three, Both) {
   typename TestType::Config good;
   set(good);
   REQUIRE(good.validate() == ConfigError::none);
@@ -143,7 +147,7 @@ TEST_CASE("one node whose coldest air is at its limit is refused, though either 
 }
 
 TEMPLATE_TEST_CASE("a start that is not known is one at the limits; the hotter of two is believed of both",
-                   "", One, Two, Three) {
+                   "", One, Two, Three, Both) {
   typename TestType::Config config;
   set(config);
   const TestType untold(config);
@@ -164,7 +168,7 @@ TEMPLATE_TEST_CASE("a start that is not known is one at the limits; the hotter o
 }
 
 TEMPLATE_TEST_CASE("air that is said to be colder than the coldest counts as the coldest", "", One, Two,
-                   Three) {
+                   Three, Both) {
   typename TestType::Config config;
   set(config);
   TestType told(config), at_coldest(config);
@@ -178,7 +182,7 @@ TEMPLATE_TEST_CASE("air that is said to be colder than the coldest counts as the
 
 TEMPLATE_TEST_CASE(
     "cuts of an unknown time, late steps and late cuts: the bounds stay above the worst actuator", "", One,
-    Two, Three) {
+    Two, Three, Both) {
   typename TestType::Config config;
   set(config);
   config.use.every = GENERATE(std::uint8_t(1), std::uint8_t(4));  // a plan in each step, or in one of four
@@ -223,7 +227,7 @@ TEMPLATE_TEST_CASE(
 }
 
 TEMPLATE_TEST_CASE("one cut of an unknown time counts a whole hold of the power before it, from cold", "",
-                   One, Two, Three) {
+                   One, Two, Three, Both) {
   typename TestType::Config config;
   set(config);
   TestType limiter(config);
@@ -241,8 +245,8 @@ TEMPLATE_TEST_CASE("one cut of an unknown time counts a whole hold of the power 
   CHECK(warmest_K > 10.0);
 }
 
-TEMPLATE_TEST_CASE("the time to the limit is never longer than the worst actuator takes", "", One, Two,
-                   Three) {
+TEMPLATE_TEST_CASE("the time to the limit is never longer than the worst actuator takes", "", One, Two, Three,
+                   Both) {
   typename TestType::Config config;
   set(config);
   TestType limiter(config);
@@ -275,7 +279,7 @@ TEMPLATE_TEST_CASE("the time to the limit is never longer than the worst actuato
 
 TEMPLATE_TEST_CASE(
     "a supply that is measured low is granted more power, and the bounds stay above the worst actuator", "",
-    One, Two, Three) {
+    One, Two, Three, Both) {
   typename TestType::Config config;
   set(config);
   config.use.heat.supply_error = 0.02f;

@@ -13,6 +13,8 @@ using namespace thermopower;
 
 namespace {
 
+typedef CertifiedLimiter<CertifiedCoupledTwoNode> Coupled;
+
 /// A motor with a printed bracket: +-20 % on every constant.
 CertifiedLimiter<>::Config bench_motor(float fraction = 0.2f) {
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
@@ -242,17 +244,21 @@ TEST_CASE("little is wasted against the best possible with the true actuator kno
 }
 
 TEST_CASE("what is wasted over random motors, the median and the worst of them") {
-  const int told = GENERATE(0, 1, 2);
+  const int told = GENERATE(0, 1, 2, 3, 4);
   // The air is measured at every plan, and where start() is told it, from the start on.
   const bool is_air_told = told > 0;
   // A winding whose resistance does not rise: what is missing then is not the heat taken at the mean (6).
   const bool is_heat_constant = told == 2;
+  // Heat and cooling taken at one winding; then also how closely winding and body are coupled at most.
+  const bool is_coupled = told >= 3, is_coupling_told = told == 4;
   std::printf(
       "%s\ntolerance | heat granted / best possible, random motors: median | worst || best within the bounds / "
       "best possible: median || granted / best within the bounds: median | worst\n",
-      is_heat_constant ? "air told at the start, resistance does not rise:"
-      : is_air_told    ? "air told at the start:"
-                       : "air known from the first plan on:");
+      is_heat_constant   ? "air told at the start, resistance does not rise:"
+      : is_coupling_told ? "air told at the start, CertifiedCoupledTwoNode, highest coupling declared:"
+      : is_coupled       ? "air told at the start, CertifiedCoupledTwoNode:"
+      : is_air_told      ? "air told at the start:"
+                         : "air known from the first plan on:");
   const float tempco_per_K = is_heat_constant ? 0.0f : 0.0039f;
   for (const double fraction : {0.0, 0.1, 0.2}) {
     Random random(97);
@@ -287,6 +293,13 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
       CertifiedLimiter<> limiter(config);
       if (is_error(limiter.validate())) continue;
       const auto air_C = static_cast<float>(truth.air_C);
+      Coupled::Config both = {{config.network, is_coupling_told ? around(truth.coupling_W_per_K, 1.0).highest
+                                                                : static_cast<float>(INFINITY)},
+                              config.use,
+                              0.0f};
+      Coupled coupled(both);
+      REQUIRE(coupled.validate() == ConfigError::none);
+      coupled.start(air_C, air_C, air_C);
       if (is_air_told) limiter.start(air_C, air_C, air_C);
       else limiter.start(air_C, air_C);
       Truth hottest = truth;  // one of the actuators that may be behind these bounds
@@ -296,7 +309,7 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
       hottest.body_J_per_K *= 1.0 - fraction;
       hottest.resistance_ohm *= 1.0 - 0.25 * fraction;
       Truth closest = hottest;  // another: a winding as warm as the body draws more
-      closest.coupling_W_per_K *= 1000.0;
+      closest.coupling_W_per_K *= is_coupling_told ? (1.0 + fraction) / (1.0 - fraction) : 1000.0;
       Plant ours = {truth.air_C, truth.air_C}, best = ours, of_hottest = ours, of_closest = ours,
             in_bounds = ours;
       double ours_J = 0.0, best_J = 0.0, best_W = 0.0, in_bounds_J = 0.0;
@@ -304,7 +317,9 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
       const int steps = static_cast<int>(30.0 * truth.body_J_per_K / truth.conductance_W_per_K);  // of 0.1 s
       std::uint8_t held = 1;
       for (int i = 0; i < steps; ++i) {
-        const double ours_W = truth.heat_W(limiter.step({255, 13.0f, air_C}, 0.1f).power, ours.winding_C);
+        const int power = is_coupled ? coupled.step({255, 13.0f, air_C}, 0.1f).power
+                                     : limiter.step({255, 13.0f, air_C}, 0.1f).power;
+        const double ours_W = truth.heat_W(power, ours.winding_C);
         ours.step(truth, ours_W, 0.1);
         ours_J += ours_W;
         if (i % 10 == 0) held = best_power(best, truth, winding_C, body_C, 1.0);
@@ -334,6 +349,7 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
     CHECK(ours_of_known.back() <= 1.001);
     CHECK(shares.back() <= 1.001);  // the best is planned once a second
     CHECK(shares.front() > 0.3);    // what it grants is worth having
+    if (is_coupling_told) CHECK(median(shares) > (fraction < 0.05 ? 0.95 : fraction < 0.15 ? 0.85 : 0.75));
   }
 }
 

@@ -154,6 +154,12 @@ static void work() {
                            4.0f * error_deg, 0.0f,      LimitReason::none};
   result = gain.step(demand, facts);
 }
+#elif THERMOPOWER_POLICY == 17
+static CertifiedLimiter<CertifiedCoupledTwoNode> limiter({{bounds().network, 1.1f}, use(), 5.0f});
+static void work() {
+  const CertifiedLimiter<CertifiedCoupledTwoNode>::Inputs inputs = {demand, supply_V, air_C};
+  result = limiter.step(inputs, cycle_s).power;
+}
 #else                         // the whole: three axes, each with observer and certified limiter
 struct GainTable {
   static const uint8_t entries[2] thermopower_flash;
@@ -170,12 +176,12 @@ static_assert(sizeof(Motor::Thermal) == 186 && sizeof(TemperatureObserver) == 15
 static_assert(sizeof(Motor::Current) == 23 && sizeof(Axis::State) == 29, "its current; what it logs");
 // Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
 // measures in a third.
-static const uint8_t every = THERMOPOWER_POLICY == 18 ? 9 : 3;
+static const uint8_t every = THERMOPOWER_POLICY == 19 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
   Axis::Config config = Axis::Config::standard();
   config.limiter = bounds();
   config.limiter.use.every = config.thermal.every = every;
-  config.limiter.use.phase = THERMOPOWER_POLICY == 18 ? static_cast<uint8_t>(3 * axis) : 0;
+  config.limiter.use.phase = THERMOPOWER_POLICY == 19 ? static_cast<uint8_t>(3 * axis) : 0;
   config.thermal.phase = static_cast<uint8_t>(config.limiter.use.phase + 1);
   return config;
 }
@@ -198,7 +204,7 @@ static void correct(Axis& axis) {
   measured.is_valid = false;
 }
 static Axis& axis_of(uint8_t index) { return index == 0 ? roll : (index == 1 ? pitch : yaw); }
-#if THERMOPOWER_POLICY == 18  // all three in every cycle of 10 ms
+#if THERMOPOWER_POLICY == 19  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
   step(pitch, cycle_s);

@@ -179,6 +179,15 @@ TEST_CASE("the certified limiter: bounds instead of constants") {
   CHECK(config.validate() == tp::ConfigError::none);
   CHECK(Limiter(config).state().sustainable < limiter.state().sustainable);
 
+  //! [certified coupled]
+  // It is also known that winding and body are coupled by no more than 1.4 W/K: more power for the same safety.
+  typedef tp::CertifiedLimiter<tp::CertifiedCoupledTwoNode> Coupled;
+  tp::CertifiedCoupledTwoNodeConfig both_ends = {config.network, 1.4f};  // INFINITY where nothing is known
+  Coupled coupled({both_ends, use, 5.0f});
+  //! [certified coupled]
+  CHECK(coupled.validate() == tp::ConfigError::none);
+  CHECK(coupled.state().sustainable >= Limiter(config).state().sustainable);
+
   //! [certified one node]
   typedef tp::CertifiedLimiter<tp::CertifiedOneNode, tp::SquareHeat> OneNode;  // or LinearHeat, of Ohm's law
   OneNode::Config one = OneNode::Config::standard();

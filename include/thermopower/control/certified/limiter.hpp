@@ -3,6 +3,7 @@
 #pragma once
 
 #include "chain.hpp"
+#include "coupled_two_node.hpp"
 #include "one_node.hpp"
 #include "two_node.hpp"
 #include "../../air_celsius.hpp"

@@ -86,6 +86,7 @@ public:
 
   /// Sets the bound to what is known. @param winding_C, body_C  the hotter counts; NaN starts at the limit
   void start(float winding_C, float body_C) noexcept {
+    to_air_now_ = to_air_;  // it was taken for another bound
     if (!detail::is_finite(winding_C) || !detail::is_finite(body_C)) {
       node_.set(limit_);
       return;

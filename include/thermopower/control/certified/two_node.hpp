@@ -142,6 +142,8 @@ public:
   /// Sets the bounds to what is known. @param winding_C, body_C  never below the truth; NaN or above the
   /// limit starts at the limit
   void start(float winding_C, float body_C) noexcept {
+    take(detail::whole_fraction(), detail::whole_fraction());  // it was taken for other bounds
+    taken_supply_ = 0;
     const float hot = body_C > winding_C ? body_C : winding_C;
     winding_.set(detail::is_finite(hot) ? detail::celsius_units(hot) + 1 : winding_limit_);
     if (!detail::is_finite(body_C) || !detail::is_finite(winding_C)) {
