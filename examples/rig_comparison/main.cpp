@@ -74,15 +74,15 @@ void leave_out(const std::string& part) {
   if (part == "stiffness") tuning.stiffness = 1.0f;
 }
 
-// Ours knows from a stored state and the time off how warm each motor is, to 3 K; the others assume what they
-// assume.
+// Ours knows from a stored state and the time off how warm each motor is, to 3 K, and measures the air before it starts;
+// the others assume what they assume.
 AdaptiveGimbal ours(const Scenario& scenario) {
   std::array<float, 3> started_C;
   for (std::size_t i = 0; i < 3; ++i) {
     const double winding_C = scenario.axes[i].winding_C;
     started_C[i] = static_cast<float>((std::isnan(winding_C) ? scenario.air_C : winding_C) + 3.0);
   }
-  return AdaptiveGimbal(started_C, tuning);
+  return AdaptiveGimbal(started_C, tuning, static_cast<float>(scenario.air_C));
 }
 
 std::vector<Policy> policies() {

@@ -135,6 +135,9 @@ TEST_CASE("the configuration of every policy goes through a record") {
   check_component("SafetyLimiter", SafetyLimiter<>::Config::standard(), 12);
   check_component("NodeLimiter", NodeLimiter::Config::standard(), 36);
   check_component("CertifiedLimiter, two nodes", certified(), 32 + 34 + 4);
+  check_component("CertifiedLimiter, two nodes, both ends of their coupling",
+                  CertifiedLimiter<CertifiedCoupledTwoNode>::Config{{certified().network, 1.1f}, use(), 5.0f},
+                  36 + 34 + 4);
   check_component("CertifiedLimiter, one node",
                   CertifiedLimiter<CertifiedOneNode>::Config{{{70.0f, 90.0f}, 0.18f, 60.0f}, use(), 5.0f},
                   16 + 34 + 4);

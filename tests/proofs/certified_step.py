@@ -57,6 +57,7 @@ class Bound:
 
     def go(self, way, chosen):
         condition, heating, cooling = chosen
+        self.started = self.whole + 1
         value, whole = self.facts.fresh("value"), self.facts.fresh("whole")
         self.facts.add(
             z3.Implies(condition, value.same(self.value + self.facts.product(way, heating))),
@@ -78,17 +79,20 @@ class Decision:
 class Header:
     """The functions of a network's header over one set of facts."""
 
-    def __init__(self, text, signatures):
+    def __init__(self, text, signatures, other_text="", other_signatures=()):
         self.facts = Facts()
         self.unit = 1
         self.per_count = {}  # variable per count -> by how much rounding its part may raise it
         self.rounded = {}  # (direction, fraction) -> [(argument, result)]
         names = {
             "ite": self.ite, "part_up": self.part_up, "part_down": self.part_down, "times": self.times,
-            "blank": Record, "record": self.record, "CertifiedNode": Node, "soaked_late": lambda _count: None}
+            "blank": Record, "record": self.record, "CertifiedNode": Node, "soaked_late": lambda _count: None,
+            "fit_horizon": lambda *_: None}  # it only makes a count smaller: nothing is learned from it
         self.functions = {name: function(text, signature, name, arguments, names)
                           for name, signature, arguments in signatures}
-        self.rooms = []
+        self.functions.update({name: function(other_text, signature, name, arguments, names)
+                               for name, signature, arguments in other_signatures})
+        self.rooms, self.choices = [], []
 
     def __getattr__(self, name):
         if name == "functions" or name not in self.functions:
@@ -109,6 +113,7 @@ class Header:
             return yes if condition else no
         if isinstance(yes, Part):
             return condition, yes.fraction, no.fraction
+        self.choices.append((yes, no))
         return self.facts.choice(condition, yes, no)
 
     def rounded_product(self, direction, argument, fraction):
@@ -166,9 +171,9 @@ ONE_NODE = [("carry", r"KelvinUnits carry\(", ["self", "count", "step"]),
             ("room", r"KelvinUnits room\(", ["self"]), ("largest", r"CertifiedCount largest\(", ["self"])]
 
 
-def two_node(text):
+def two_node(text, other_text="", other_signatures=()):
     """The network at any state that validate() and the safe set admit."""
-    net = Header(text, TWO_NODE)
+    net = Header(text, TWO_NODE, other_text, other_signatures)
     facts = net.facts
     for name in ["base_", "gap_", "least_mean_", "winding_limit_", "mean_limit_", "across_", "soak_", "to_air_"]:
         setattr(net, name, facts.variable(name))
@@ -276,6 +281,86 @@ def two_node_hotter(text):
     net.sizes = lambda: sizes
     net.winding_, net.mean_ = Bound(net.facts, "winding"), Bound(net.facts, "mean")
     return no_room_grows(net, ["winding_", "mean_"])
+
+
+COUPLED = [("carry", r"Hull carry\(", ["self", "count", "step"]),
+           ("largest", r"CertifiedCount largest\(", ["self"]), ("end_sizes", r"EndSizes end_sizes\(", ["self"])]
+
+
+def coupled(text, of_two):
+    """The network that takes both ends: its own step and decision, everything else of the two-node network."""
+    net = two_node(of_two, text, COUPLED)
+    net.hold_mean_ = net.facts.fraction("hold_mean_")
+    net.lead_now_ = net.facts.variable("lead_now_")
+    net.facts.add(net.lead_now_ >= 0)
+    return net
+
+
+def coupled_step(net):
+    step = Step(net.facts, {"winding": net.hold_winding_, "body": net.hold_body_})
+    step.mean_rise = Part(net.facts.fraction("mean_rise", at_most=net.hold_mean_))
+    return step
+
+
+def coupled_least_power(text, of_two):
+    net = coupled(text, of_two)
+    for name in ["across_now_", "soak_now_", "to_air_now_", "to_air_hot_"]:
+        setattr(net, name, net.facts.variable(name))
+    return net.facts.counterexample(stays_inside(net, net.carry(None, coupled_step(net))))
+
+
+def coupled_granted_power(text, of_two):
+    net = coupled(text, of_two)
+    facts = net.facts
+    step = coupled_step(net)
+    start = net.winding_.kept(), net.mean_.kept()
+    count = facts.variable("count")
+    facts.add(count >= 1, count <= 254)
+    net.unit = count
+    net.take(facts.fraction("winding relief"), facts.fraction("mean relief"))
+    net.to_air_hot_ = net.part_up(net.to_air_, facts.fraction("warm end's relief"))
+    # take_at(): the smaller relief, of the same heat.
+    facts.add(net.to_air_hot_ <= net.to_air_now_)
+    sizes = net.end_sizes()
+    net.end_sizes = lambda: sizes
+    fed = sizes.fed - facts.variable("up_%d" % facts.made)
+    net.unit = 1
+    decision = net.largest()
+    room = net.rooms[0]
+    # take_warm_winding(): not more than what the bounds are apart.
+    facts.add(net.lead_now_ <= room.winding - room.mean)
+    facts.add(*[size <= room for room, size in decision.conditions])
+    net.winding_, net.mean_ = start
+    rise = net.across_now_ + net.soak_now_
+    names = [x.single() for x in (net.across_now_, net.soak_now_, net.to_air_now_, net.to_air_hot_)]
+    acting = acting_at_most(facts, names)
+    facts.add(acting[names[3]] <= acting[names[2]])
+    jump, warmest_spare = sizes.jump, room.mean - room.weighted
+    for argument, fraction in [
+            (rise - room.apart, net.hold_winding_), (net.across_now_, net.hold_winding_),
+            (room.winding + jump, net.weight_), (jump, net.weight_), (net.lead_now_, net.weight_),
+            (room.mean + net.lead_now_, net.weight_),
+            (fed + net.to_air_hot_ - warmest_spare, net.hold_mean_),
+            (net.to_air_now_, net.hold_mean_), (net.to_air_hot_, net.hold_mean_),
+            (acting[names[0]], step.winding.heating.fraction), (acting[names[2]], step.mean_rise.fraction),
+            (acting[names[3]], step.mean_rise.fraction)]:
+        facts.product(argument, fraction)
+    led = next((result for argument, result in net.rounded["up", net.weight_.single()]
+                if net.lead_now_.single() in argument.terms), room.mean)
+    chosen_before = len(net.choices)
+    passed = net.carry(acting, step)
+    warmest_way, coolest_way = net.choices[chosen_before + 2]
+    started = net.mean_.started - net.base_
+    coolest_spare = room.mean - led
+    for argument, fraction in [
+            (started - room.mean, net.weight_), (started, net.weight_), (warmest_way, net.hold_mean_),
+            (coolest_way, net.hold_mean_), (coolest_way - acting[names[2]], net.hold_mean_),
+            (warmest_way - acting[names[3]], net.hold_mean_), (acting[names[2]], net.hold_mean_),
+            (acting[names[3]], net.hold_mean_), (started - room.mean, net.hold_mean_),
+            (-coolest_spare, net.hold_mean_), (net.to_air_now_ - coolest_spare, net.hold_mean_),
+            (acting[names[2]] - coolest_spare, net.hold_mean_)]:
+        facts.product(argument, fraction)
+    return facts.counterexample(stays_inside(net, passed))
 
 
 def one_node(text):

@@ -70,12 +70,12 @@ def prepared(text):
     text = text.replace("detail::", "").replace("this->", "self.").replace("CertifiedNode::", "CertifiedNode.")
     text = re.sub(r"\braise\(", "raise_(", text)
     text = re.sub(r"\b(0x[0-9a-f]+|\d+)[UuLl]+\b", r"\1", text)
-    text = re.sub(r"(?<![\w.])(room|sizes|settled|supply|take|carry|rounding_units|slack_units)\(", r"self.\1(", text)
+    text = re.sub(r"(?<![\w.])(room|sizes|end_sizes|settled|supply|take|carry|rounding_units|slack_units)\(", r"self.\1(", text)
     return text
 
 
 MEMBER = re.compile(r"(?<![\w.])([a-z]\w*_)(?=\W|$)(?!\()")
-TYPE = r"(?:const\s+)?(?:KelvinUnits|UnitFraction|FineFraction|UpperBound|Hull|Room|Sizes|CertifiedCount|int32_t|uint32_t|uint8_t|uint16_t|auto)"
+TYPE = r"(?:const\s+)?(?:KelvinUnits|UnitFraction|FineFraction|UpperBound|Hull|Room|Sizes|EndSizes|CertifiedCount|int32_t|uint32_t|uint8_t|uint16_t|auto)"
 
 
 def statement(text):

@@ -116,6 +116,58 @@ def mean_equation(raised=True):
     return falsified(facts, lowest_body >= base)
 
 
+def lead_equation(most_coupling=True):
+    """(37), (38): the winding's lead over the mean falls no faster than the lower bound that is carried, at any coupling
+    not above the declared, any capacities, and any conductance. `share` is 1 - mu."""
+    a = Actuator()
+    share, share_low, k_high, least_power, least_share, share_of_end = z3.Reals(
+        "share share_low K_high P_least apart_at_share_low E")
+    apart = a.t_w - a.t_b
+    # C_w times the lead's rate, (1 - mu)(T_w' - T_b'), from (1) and (2): this is (37).
+    facts = a.facts + [share * (a.c_w + a.c_b) == a.c_b]
+    rate = share * (a.into_winding * a.c_b - a.into_body * a.c_w)  # times C_b
+    identity = falsified(
+        facts, rate == a.c_b * (share * a.power - a.k * apart + (1 - share) * a.g * (a.t_b - a.air)))
+    if identity is not None:
+        return identity
+    over, power, k, d, cooling = z3.Reals("lead P K T_w-T_b mu*G*(T_b-T_air)")
+    bounds = [0 < share_low, share_low <= share, share < 1, over >= 0, share * d == over, share_low * least_share == over,
+              k >= 0, 0 < k_high, 0 <= least_power, least_power <= power, cooling >= 0,
+              share_of_end * k_high == share_low * share_low * least_power]
+    if most_coupling:
+        bounds.append(k <= k_high)
+    # K_high / share_low (E - lead), multiplied out.
+    found = falsified(bounds, share * power - k * d + cooling >= share_low * least_power - k_high * least_share)
+    return found or falsified([0 < share_low, share_low * least_share == over, 0 < k_high,
+                               share_of_end * k_high == share_low * share_low * least_power],
+                              share_low * (share_low * least_power - k_high * least_share)
+                              == k_high * (share_of_end - over))
+
+
+def two_ends(at_both=True):
+    """(39) to (41): between two winding temperatures the mean's rate is not above the larger of those at the ends, and
+    the one line that is carried lies above both lines."""
+    x, y, part, heat_x, heat_y, heat, slope, rise = z3.Reals("T_cool T_warm part q_cool q_warm q slope rho")
+    between = x + part * (y - x)
+    convex = falsified(
+        [0 <= x, x <= y, 0 <= part, part <= 1, rise >= 0, heat_x * (1 + rise * x) == 1, heat_y * (1 + rise * y) == 1,
+         heat * (1 + rise * between) == 1],
+        heat <= (1 - part) * heat_x + part * heat_y)
+    if convex is not None:
+        return convex
+    # A mixture of two values is not above the larger; what is linear in the lead mixes in the same proportion.
+    rate_x, rate_y, larger = z3.Reals("F_cool F_warm larger")
+    ends = [larger >= rate_x] + ([larger >= rate_y] if at_both else [])
+    mixed = falsified(ends + [0 <= part, part <= 1], (1 - part) * rate_x + part * rate_y <= larger)
+    if mixed is not None:
+        return mixed
+    cool, warm, way, above, sigma = z3.Reals("v_cool v_warm v m-m_0 sigma")
+    facts = [way >= cool, way >= warm, 0 < sigma, sigma <= 1]
+    return falsified(facts + [above >= 0], z3.And(cool - sigma * above <= way - sigma * above,
+                                                  warm - above <= way - sigma * above)) or falsified(
+        facts + [above <= 0], z3.And(cool - sigma * above <= way - above, warm - above <= way - above))
+
+
 def travel_fractions(third="6"):
     """CertifiedTravel: F = x - x^2/2 + x^3/6 has F' >= 1 - F and F(0) = 0, so F >= 1 - exp(-x) by the same comparison;
     x - x^2/2 has F' <= 1 - F."""

@@ -28,6 +28,7 @@ from header_formulas import NotUnderstood  # noqa: E402
 CONTROL = os.path.join(HERE, "..", "..", "include", "thermopower", "control")
 TWO, ONE, BOUNDS, ARITHMETIC = ("certified/two_node.hpp", "certified/one_node.hpp", "certified/bounds.hpp",
                                 "certified/arithmetic.hpp")
+COUPLED = "certified/coupled_two_node.hpp"
 
 
 def header(name, mutation=None):
@@ -70,6 +71,9 @@ CLAIMS = [
      "(10) body <= mean <= winding, and without power the mean does not rise"),
     ("winding equation", [], physics.winding_equation, "(18) the carried equation lies above the winding's own"),
     ("mean equation", [], physics.mean_equation, "(20) the carried equation lies above the mean's own, after (13)"),
+    ("lead equation", [], physics.lead_equation, "(37), (38) the carried lead lies below the winding's own"),
+    ("two ends", [], physics.two_ends,
+     "(39) to (41) the mean's rate is highest at one end, and the carried line lies above both"),
     ("travel", [], physics.travel_fractions, "the parts of the way lie above and below 1 - exp(-x), for every x >= 0"),
     ("whole margin", [], physics.whole_margin, "a part that ends at 1 - 2^-16 is made up for by the heat's margin"),
     ("part_down", [ARITHMETIC], whole_numbers.part_down, "part_down is floor(value fraction / 65536), part_up above it"),
@@ -84,6 +88,8 @@ CLAIMS = [
      "(23) to (26) nor does any count up to the one that largest() grants"),
     ("two nodes: hotter", [TWO], certified_step.two_node_hotter,
      "at the same heat per count, hotter bounds are never granted more"),
+    ("both ends: least power", [COUPLED, TWO], certified_step.coupled_least_power, "the same as (15)"),
+    ("both ends: granted power", [COUPLED, TWO], certified_step.coupled_granted_power, "the same for (42)"),
     ("one node: least power", [ONE], certified_step.one_node_least_power, "the same as (15)"),
     ("one node: granted power", [ONE], certified_step.one_node_granted_power, "the same as (23)"),
     ("one node: hotter", [ONE], certified_step.one_node_hotter, "at the same heat per count, hotter is never granted more"),
@@ -117,6 +123,18 @@ MUTANTS = [
                                                "detail::part_down(room.apart, horizon_winding_) + lost")),
     ("limits without the spare", (TWO, "detail::part_up(winding_limit - base, weight) <= mean_limit - base - spare;",
                                   "detail::part_up(winding_limit - base, weight) <= mean_limit - base;")),
+    ("both ends: the cool end is left out", (COUPLED, "size.held_coolest = detail::part_up(to_air_now_, hold_mean_);",
+                                             "size.held_coolest = 0;")),
+    ("both ends: the warm end is left out", (COUPLED, "size.held_warmest = detail::part_up(fed + to_air_hot_, hold_mean_);",
+                                             "size.held_warmest = 0;")),
+    ("both ends: the raised mean is not heated", (COUPLED, "size.fed = fed + detail::part_up(to_air_now_, hold_mean_);",
+                                                  "size.fed = fed;")),
+    ("both ends: the winding's jump is left out",
+     (COUPLED, "size.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);", "size.jump = 0;")),
+    ("both ends: no lead in the decision", (COUPLED, "detail::part_up(room.mean + lead_now_, weight_)",
+                                            "detail::part_up(room.mean, weight_)")),
+    ("both ends: cooling at the heating's pace", (COUPLED, "way > 0 ? step.mean_rise : step.body.cooling",
+                                                  "way < 0 ? step.mean_rise : step.winding.heating")),
     ("one node: no room taken off", (ONE, "left = limit_ - base_ - above;", "left = limit_ - base_;")),
     ("one node: the hold is left out",
      (ONE, "largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_),\n"

@@ -108,7 +108,7 @@ TEST_CASE("Our law points better for less energy than constant power and the the
   for (const Scenario& scenario : {scenarios[1], scenarios[2], scenarios[5]}) {
     INFO(scenario.name);
     const float warm_C = static_cast<float>(scenario.air_C + 3.0);
-    AdaptiveGimbal ours({warm_C, warm_C, warm_C});
+    AdaptiveGimbal ours({warm_C, warm_C, warm_C}, {}, static_cast<float>(scenario.air_C));
     ConstantPower constant = constant_power();
     ThesisGimbal thesis = thesis_gimbal();
     const RigMetrics own = run_rig(RigConfig::thesis(), scenario, ours);
@@ -134,7 +134,7 @@ TEST_CASE(
         const double winding_C = scenario.axes[i].winding_C;
         started_C[i] = static_cast<float>((std::isnan(winding_C) ? scenario.air_C : winding_C) + 3.0);
       }
-      AdaptiveGimbal ours(started_C);
+      AdaptiveGimbal ours(started_C, {}, static_cast<float>(scenario.air_C));
       ConstantPower constant = stiff_constant_power();
       const RigMetrics own = run_rig(RigConfig::thesis(), scenario, ours),
                        other = run_rig(RigConfig::thesis(), scenario, constant);

@@ -109,14 +109,16 @@ public:
   ///                   the time off, from the winding's resistance, or 60 (its limit) when nothing is known.
   ///                   "As warm as the air" is wrong after a hot run.
   /// @param tuning     the same for every axis
+  /// @param air_C      air measured at the start; NaN: its highest until the first step
   explicit AdaptiveGimbal(const std::array<float, 3>& started_C = {60.0f, 60.0f, 60.0f},
-                          const AdaptiveTuning& tuning = {})
+                          const AdaptiveTuning& tuning = {},
+                          float air_C = thermopower::detail::not_a_number())
       : gimbal_(GimbalConfig::standard(), adaptive_axis<motors::Bgm2606_90t>(0, tuning),
                 adaptive_axis<motors::Bgm2606_90t>(1, tuning),
                 adaptive_axis<motors::Bgm5208_200_12>(2, tuning)) {
-    gimbal_.axis<0>().limiter().start(started_C[0], started_C[0]);
-    gimbal_.axis<1>().limiter().start(started_C[1], started_C[1]);
-    gimbal_.axis<2>().limiter().start(started_C[2], started_C[2]);
+    gimbal_.axis<0>().limiter().start(started_C[0], started_C[0], air_C);
+    gimbal_.axis<1>().limiter().start(started_C[1], started_C[1], air_C);
+    gimbal_.axis<2>().limiter().start(started_C[2], started_C[2], air_C);
   }
 
   /// One control cycle, as `GimbalController::step`.

@@ -184,17 +184,15 @@ public:
     fit_horizon(largest, room, lost_warmest, to_air_hot_ + detail::part_up(rise, weight_));
     fit_horizon(largest, room, lost_coolest, to_air_now_);
     // One hold: what the proof rests on.
-    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_),
-                detail::part_up(rise, hold_winding_), CertifiedNode::winding);
-    const detail::KelvinUnits jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
-    largest.fit(room.winding_left + room.apart, jump, CertifiedNode::winding);
-    const detail::KelvinUnits fed = detail::part_up(jump, weight_);
-    largest.fit(room.mean_left + detail::part_down(spare_warmest, hold_mean_),
-                detail::part_up(fed + to_air_hot_, hold_mean_), CertifiedNode::body);
-    largest.fit(room.mean_left + detail::part_down(spare_coolest, hold_mean_),
-                detail::part_up(to_air_now_, hold_mean_), CertifiedNode::body);
-    largest.fit(room.mean_left + spare_warmest, fed + detail::part_up(to_air_now_, hold_mean_),
+    const EndSizes size = end_sizes();
+    largest.fit(room.winding_left + detail::part_down(room.apart, hold_winding_), size.held_winding,
+                CertifiedNode::winding);
+    largest.fit(room.winding_left + room.apart, size.jump, CertifiedNode::winding);
+    largest.fit(room.mean_left + detail::part_down(spare_warmest, hold_mean_), size.held_warmest,
                 CertifiedNode::body);
+    largest.fit(room.mean_left + detail::part_down(spare_coolest, hold_mean_), size.held_coolest,
+                CertifiedNode::body);
+    largest.fit(room.mean_left + spare_warmest, size.fed, CertifiedNode::body);
     return largest;
   }
 
@@ -280,6 +278,20 @@ private:
     return passed;
   }
 
+  // Kelvin per count in the conditions of largest() that hold for one hold.
+  struct EndSizes {
+    detail::KelvinUnits held_winding, jump, held_warmest, held_coolest, fed;
+  };
+  EndSizes end_sizes() const noexcept {
+    EndSizes size;
+    size.held_winding = detail::part_up(across_now_ + soak_now_, hold_winding_);
+    size.jump = soak_now_ + detail::part_up(across_now_, hold_winding_);
+    const detail::KelvinUnits fed = detail::part_up(size.jump, weight_);
+    size.held_warmest = detail::part_up(fed + to_air_hot_, hold_mean_);
+    size.held_coolest = detail::part_up(to_air_now_, hold_mean_);
+    size.fed = fed + detail::part_up(to_air_now_, hold_mean_);
+    return size;
+  }
   void fit_horizon(CertifiedCount& largest, const Room& room, detail::KelvinUnits lost,
                    detail::KelvinUnits settled) const noexcept {
     const detail::KelvinUnits slow = detail::part_up(settled, horizon_body_);

@@ -17,6 +17,7 @@
 /// | network | when to take it |
 /// |---|---|
 /// | `CertifiedTwoNode` | the winding is much faster than the housing, or both have limits of their own |
+/// | `CertifiedCoupledTwoNode` | the same, on a chip with RAM to spare: more power for the same bounds, and more again where a highest coupling is known |
 /// | `CertifiedOneNode` | only one time constant is known |
 /// | `CertifiedChain<n>` | 2 to 8 nodes in a row, each with a limit of its own: winding, stator, housing, bracket |
 ///
@@ -65,7 +66,7 @@ struct SquareHeat {
 
 /// Grants the largest power with which no node exceeds its limit, whatever the true constants within the
 /// bounds.
-/// @tparam Network  `CertifiedTwoNode`, `CertifiedOneNode` or `CertifiedChain<n>`
+/// @tparam Network  `CertifiedTwoNode`, `CertifiedCoupledTwoNode`, `CertifiedOneNode` or `CertifiedChain<n>`
 /// @tparam Heat     `LinearHeat` or `SquareHeat`
 ///
 /// Guarantees, for every actuator, air and supply within the bounds and every demand, when each plan comes at
