@@ -126,6 +126,25 @@ expect("${output}" "10 logs: 0 reports were there, 8 are new, 2 have none")
 expect("${error}" "manifest.csv:10: thermopower-gap: [^\n]*broken.csv:3: column 'motor_C': 'x' is not a number")
 expect("${error}" "manifest.csv:11: thermopower-gap: [^\n]*missing.csv: cannot be read")
 
+# A log at which workers die costs itself alone: here one whose reading never ends, and whose worker is killed each time.
+find_program(mkfifo mkfifo)
+if(mkfifo)
+  execute_process(COMMAND ${mkfifo} ${HERE}/logs/endless.csv)
+  file(WRITE ${HERE}/endless.csv "${manifest}logs/endless.csv,model.json,9\n")
+  execute_process(COMMAND sh -c "\"$0\" fleet \"$1\" --out \"$2\" --workers 1 2>\"$2.err\" & fleet=$!
+                                 until [ $(ls \"$2\"/reports 2>/dev/null | grep -c json$) = 8 ]; do sleep 0.1; done
+                                 while worker=$(ps -o pid= --ppid $fleet); do sleep 0.3; kill -9 $worker; done
+                                 wait $fleet"
+                          ${PROGRAM} ${HERE}/endless.csv ${HERE}/endless
+                  RESULT_VARIABLE status OUTPUT_VARIABLE output TIMEOUT 300)
+  file(READ ${HERE}/endless.err error)
+  if(NOT status EQUAL 3)
+    message(FATAL_ERROR "a log at which workers die: exit ${status}\n${output}${error}")
+  endif()
+  expect("${output}" "9 logs: 0 reports were there, 8 are new, 1 have none")
+  expect("${error}" "endless.csv:10: its worker was killed twice")
+endif()
+
 # A manifest that is wrong is answered by its name and what is meant.
 function(refused manifest answer)
   file(WRITE ${HERE}/wrong.csv "${manifest}")

@@ -6,13 +6,12 @@
 #include "fleet_results.hpp"
 #include "manifest.hpp"
 #include "text_file.hpp"
+#include "worker_pool.hpp"
 
 #include <thermopower/io/output_files.hpp>
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/file.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,13 +23,10 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
-
-extern char** environ;
 
 namespace fs = std::filesystem;
 namespace io = thermopower::io;
@@ -39,13 +35,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A log under work.
+/// What a worker says of a log.
+constexpr char has_result = 'r', is_elsewhere = 'e', is_settled = 's';
+
+/// A log that has no report yet.
 struct Task {
   const ManifestLog* log = nullptr;
   std::uintmax_t size = 0;
   unsigned killed = 0;  ///< how often its worker died here
-  int lock = -1;        ///< held while its worker runs
-  Clock::time_point began;
 };
 
 /// What several processes share a fleet by. Whoever holds a log's lock works on it. The system takes the lock from a
@@ -62,7 +59,6 @@ public:
     std::error_code error;
     fs::create_directories(out_ / "reports", error);
     if (error) throw io::OutputError(out_.string() + ": cannot be made: " + error.message());
-    program_ = fs::read_symlink("/proc/self/exe");
     mark_start();
     tasks_.resize(logs_.size());
     for (std::size_t i = 0; i < logs_.size(); ++i) {
@@ -74,23 +70,18 @@ public:
       }
       task.size = fs::file_size(home_ / logs_[i].cell("log"), error);
       if (error) task.size = 0;
-      waiting_.push_back(&task);
+      waiting_.push_back(i);
       to_do_ += weight(task);
     }
     std::stable_sort(waiting_.begin(), waiting_.end(),
-                     [](const Task* a, const Task* b) { return a->size > b->size; });
+                     [this](std::size_t a, std::size_t b) { return tasks_[a].size > tasks_[b].size; });
     workers_ =
         arguments_.workers != 0 ? arguments_.workers : std::max(1u, std::thread::hardware_concurrency());
     start_ = Clock::now();
-    while (!waiting_.empty() || !running_.empty()) {
-      const bool found = fill();
-      if (!running_.empty()) {
-        wait_for_one();
-      } else if (!found && !waiting_.empty()) {
-        // Others work on all that is left. Should one of them die, its log is free again.
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      }
-      tell_progress();
+    try {
+      hand_out();
+    } catch (const std::system_error& fault) {
+      throw io::OutputError(fault.what());
     }
     if (told_) std::fprintf(stderr, "\r\033[K");
     tell_cost();
@@ -112,6 +103,7 @@ private:
     const auto when = fs::last_write_time(file_of(log, ".failed"), error);
     return !error && when >= begun_;
   }
+  bool is_over(const ManifestLog& log) const { return is_done(log) || has_failed(log); }
   // The file system's own clock, which is what the times of its files are by.
   void mark_start() {
     const fs::path mark = out_ / "reports" / ("start." + std::to_string(getpid()));
@@ -123,126 +115,111 @@ private:
   // What a log costs, roughly: each takes a while, however short it is.
   static double weight(const Task& task) { return static_cast<double>(task.size) + 1e5; }
 
-  /// Starts as many as there is room for. @return whether anything was started or turned out to be done
-  bool fill() {
-    bool found = false;
-    std::deque<Task*> held;  // by others
-    while (!waiting_.empty() && running_.size() < workers_) {
-      Task& task = *waiting_.front();
-      waiting_.pop_front();
-      if (is_done(*task.log) || has_failed(*task.log)) {
-        found = true;
-        ended(task);
-        continue;
+  void hand_out() {
+    WorkerPool pool(workers_, [this](std::size_t task) { return work(task); });
+    std::vector<std::size_t> elsewhere;  // others have them in hand
+    while (!waiting_.empty() || !elsewhere.empty() || pool.busy() > 0) {
+      while (!waiting_.empty() && pool.has_room()) {
+        const std::size_t next = waiting_.front();
+        waiting_.pop_front();
+        if (is_over(*tasks_[next].log)) ended(next);
+        else pool.give(next);
       }
-      if (!lock(task)) {
-        held.push_back(&task);
-        continue;
+      if (pool.busy() == 0 && elsewhere.empty()) continue;
+      // Should one of the others die, its log is free again.
+      const bool look_again = !elsewhere.empty() && pool.has_room();
+      if (const auto answer = pool.wait(look_again ? 50 : -1)) {
+        take(*answer, elsewhere);
+      } else {
+        waiting_.insert(waiting_.end(), elsewhere.begin(), elsewhere.end());
+        elsewhere.clear();
       }
-      found = true;
-      // Another process may have ended it between the look and the lock.
-      if (is_done(*task.log) || has_failed(*task.log)) {
-        unlock(task);
-        ended(task);
-        continue;
-      }
-      start(task);
+      tell_progress();
     }
-    waiting_.insert(waiting_.end(), held.begin(), held.end());
-    return found;
   }
 
-  bool lock(Task& task) const {
-    const fs::path path = file_of(*task.log, ".lock");
-    // The worker inherits it: where this process is killed and the worker lives on, the log stays taken.
-    task.lock = open(path.c_str(), O_RDWR | O_CREAT, 0644);
-    if (task.lock < 0) throw io::OutputError(path.string() + ": cannot be written: " + std::strerror(errno));
-    if (flock(task.lock, LOCK_EX | LOCK_NB) == 0) return true;
-    close(task.lock);
-    task.lock = -1;
-    return false;
-  }
-
-  void unlock(Task& task) const {
-    unlink(file_of(*task.log, ".lock").c_str());
-    close(task.lock);
-    task.lock = -1;
-  }
-
-  void start(Task& task) {
-    const ManifestLog& log = *task.log;
-    std::vector<std::string> words = {program_.string(), "diagnose",
-                                      "--threads",       "1",
-                                      "--model",         (home_ / log.cell("model")).string(),
-                                      "--recording",     (home_ / log.cell("log")).string(),
-                                      "--report",        file_of(log, ".json").string()};
-    if (arguments_.pages) words.insert(words.end(), {"--html", file_of(log, ".html").string()});
-    const auto add = [&](const char* column, const char* option) {
-      if (log.cell(column).empty()) return;
-      words.push_back(option);
-      words.push_back((home_ / log.cell(column)).string());
-    };
-    add("heldout", "--heldout");
-    add("map", "--map");
-    words.insert(words.end(), arguments_.options.begin(), arguments_.options.end());
-    std::vector<char*> values;
-    for (std::string& word : words) values.push_back(word.data());
-    values.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, file_of(log, ".err").c_str(),
-                                     O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    // Of the locks only its own: a worker that outlives its parent must not hold another log.
-    for (const auto& [other, running] : running_) posix_spawn_file_actions_addclose(&actions, running->lock);
-    pid_t child = 0;
-    task.began = Clock::now();
-    const int fault = posix_spawn(&child, program_.c_str(), &actions, nullptr, values.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (fault != 0) throw io::OutputError(std::string("a worker cannot be started: ") + std::strerror(fault));
-    running_[child] = &task;
-  }
-
-  void wait_for_one() {
-    int status = 0;
-    const pid_t child = waitpid(-1, &status, 0);
-    if (child < 0) {
-      if (errno == EINTR) return;
-      throw io::OutputError(std::string("workers cannot be waited for: ") + std::strerror(errno));
-    }
-    const auto found = running_.find(child);
-    if (found == running_.end()) return;
-    Task& task = *found->second;
-    running_.erase(found);
-    busy_ += std::chrono::duration<double>(Clock::now() - task.began).count();
-    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    const bool done = (code == 0 || code == 4) && is_done(*task.log);
-    ++diagnosed_;
-    if (!done && code < 0 && task.killed++ == 0) {
-      unlock(task);
-      waiting_.push_front(&task);  // it costs this log a second try, and no other anything
+  void take(const WorkerPool::Answer& answer, std::vector<std::size_t>& elsewhere) {
+    Task& task = tasks_[answer.task];
+    if (answer.said == is_elsewhere) {
+      elsewhere.push_back(answer.task);
       return;
     }
-    const fs::path errors = file_of(*task.log, ".err"), failed = file_of(*task.log, ".failed");
-    std::error_code error;
-    if (done) {
-      fs::remove(failed, error);
-      ++new_;
-    } else {
-      std::string fault = code < 0 ? "its worker was killed twice" : read_text(errors);
-      while (!fault.empty() && fault.back() == '\n') fault.pop_back();
-      io::OutputFiles outputs;
-      outputs.put(failed.string(), fault + "\n");
-      outputs.commit();
+    busy_ += answer.seconds;
+    if (answer.said == is_settled) {
+      ended(answer.task);
+      return;
     }
-    fs::remove(errors, error);
-    unlock(task);
-    ended(task);
+    ++diagnosed_;
+    if (!answer.said) {
+      if (task.killed++ == 0) {
+        waiting_.push_front(answer.task);  // it costs this log a second try, and no other anything
+        return;
+      }
+      const int lock = locked(*task.log);
+      if (lock < 0) {
+        elsewhere.push_back(answer.task);
+        return;
+      }
+      if (!is_over(*task.log)) put_failure(*task.log, "its worker was killed twice");
+      unlock(*task.log, lock);
+    }
+    if (is_done(*task.log)) ++new_;
+    ended(answer.task);
   }
 
-  void ended(const Task& task) {
-    done_ += weight(task);
+  /// Takes a log's lock. @return it; -1 where another holds it
+  int locked(const ManifestLog& log) const {
+    const fs::path path = file_of(log, ".lock");
+    const int lock = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (lock < 0) throw io::OutputError(path.string() + ": cannot be written: " + std::strerror(errno));
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
+    close(lock);
+    return -1;
+  }
+
+  void unlock(const ManifestLog& log, int lock) const {
+    unlink(file_of(log, ".lock").c_str());
+    close(lock);
+  }
+
+  void put_failure(const ManifestLog& log, std::string fault) const {
+    while (!fault.empty() && fault.back() == '\n') fault.pop_back();
+    io::OutputFiles outputs;
+    outputs.put(file_of(log, ".failed").string(), fault + "\n");
+    outputs.commit();
+  }
+
+  /// In a worker: diagnoses a log, unless others do or did.
+  char work(std::size_t which) const {
+    const ManifestLog& log = logs_[which];
+    const int lock = locked(log);
+    if (lock < 0) return is_elsewhere;
+    // Another process may have ended it between the look and the lock.
+    const bool over = is_over(log);
+    if (!over) diagnose(log);
+    unlock(log, lock);
+    return over ? is_settled : has_result;
+  }
+
+  void diagnose(const ManifestLog& log) const {
+    const auto path = [&](const char* column) {
+      return log.cell(column).empty() ? std::string() : (home_ / log.cell(column)).string();
+    };
+    FleetDiagnosis asked;
+    asked.model = path("model");
+    asked.recording = path("log");
+    asked.held_out = path("heldout");
+    asked.map = path("map");
+    asked.report = file_of(log, ".json").string();
+    if (arguments_.pages) asked.page = file_of(log, ".html").string();
+    const std::string fault = arguments_.diagnose(asked);
+    std::error_code error;
+    if (fault.empty() && is_done(log)) fs::remove(file_of(log, ".failed"), error);
+    else put_failure(log, fault.empty() ? "its report is not there any more" : fault);
+  }
+
+  void ended(std::size_t task) {
+    done_ += weight(tasks_[task]);
     ++ended_;
   }
 
@@ -274,7 +251,7 @@ private:
     for (const ManifestLog& log : logs_) ids.insert(log.id);
     for (const auto& entry : fs::directory_iterator(out_ / "reports", error)) {
       const std::string name = entry.path().filename().string();
-      for (const char* ending : {".err", ".lock", ".json.", ".html.", ".failed."}) {
+      for (const char* ending : {".lock", ".json.", ".html.", ".failed."}) {
         const std::size_t end = name.rfind(ending);
         if (end != std::string::npos && ids.count(name.substr(0, end)) != 0) remains.push_back(entry.path());
       }
@@ -332,10 +309,9 @@ private:
 
   const FleetArguments& arguments_;
   const std::vector<ManifestLog>& logs_;
-  fs::path out_, home_, program_;
-  std::vector<Task> tasks_;
-  std::deque<Task*> waiting_;
-  std::map<pid_t, Task*> running_;
+  fs::path out_, home_;
+  std::vector<Task> tasks_;          // of every log
+  std::deque<std::size_t> waiting_;  // in the order in which they are handed out
   unsigned workers_ = 1;
   std::size_t kept_ = 0, new_ = 0, ended_ = 0, diagnosed_ = 0;
   double to_do_ = 0.0, done_ = 0.0, busy_ = 0.0;

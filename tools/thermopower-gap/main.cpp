@@ -54,6 +54,7 @@ struct Arguments {
   }
   std::vector<std::string> recordings, held_out, without, columns, maps, starts;
   bool as_recorded = false;
+  bool silent = false;  // for one log of a fleet
   double horizon_s = 0.5;
   double tolerance = 0.05;
   unsigned threads = 0;
@@ -277,7 +278,7 @@ int diagnose(const Arguments& arguments) {
     write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);
     outputs.commit();
   }
-  std::fputs(io::summary(diagnosis).c_str(), stdout);
+  if (!arguments.silent) std::fputs(io::summary(diagnosis).c_str(), stdout);
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
@@ -382,6 +383,54 @@ int list_columns(const std::string& path, const std::string& proposal) {
   outputs.commit();
   std::fputs(text.c_str(), stdout);
   return made;
+}
+
+/// Exit status of some work; `fault` receives what is wrong where it throws, as it is told.
+template <class Work>
+int guarded(Work&& work, std::string& fault) {
+  const auto told = [&fault](const char* what, ExitStatus status) {
+    fault = std::string("thermopower-gap: ") + what;
+    return status;
+  };
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    return told(error.what(), wrong_usage);
+  } catch (const io::InputError& error) {
+    return told(error.what(), invalid_input);
+  } catch (const io::OutputError& error) {
+    return told(error.what(), invalid_input);
+  } catch (const gap::InvalidInput& error) {
+    return told(error.what(), invalid_input);
+  } catch (const std::bad_alloc&) {
+    return told("out of memory", invalid_input);
+  } catch (const std::exception& error) {
+    return told(error.what(), failed);
+  }
+}
+
+/// Diagnoses one log of a fleet. @return what is wrong; empty where its report is written
+std::string diagnose_one(const FleetDiagnosis& asked, Arguments arguments) {
+  arguments.model = asked.model;
+  arguments.recordings = {asked.recording};
+  if (!asked.held_out.empty()) arguments.held_out = {asked.held_out};
+  if (!asked.map.empty()) arguments.maps = {asked.map};
+  arguments.report = asked.report;
+  arguments.html = asked.page;
+  arguments.threads = 1;
+  arguments.silent = true;
+  std::string fault;
+  guarded([&] { return diagnose(arguments); }, fault);
+  return fault;
+}
+
+// No two numbers have the same.
+std::string text_of(double value) {
+  std::string text = std::to_string(value);
+  if (std::stod(text) == value) return text;
+  char exact[40];
+  std::snprintf(exact, sizeof exact, "%.17g", value);
+  return exact;
 }
 
 // CLI11's own would tell the largest double in 309 digits.
@@ -505,7 +554,7 @@ int run(int count, char** values) {
 
   FleetArguments fleet;
   CLI::App* const many = app.add_subcommand(
-      "fleet", "diagnose every log of a table, one process each; the same command resumes");
+      "fleet", "diagnose every log of a table, several at a time; the same command resumes");
   many->add_option(
           "manifest", fleet.manifest,
           "the logs (CSV): log, model, and where needed unit, time, heldout, map; paths from its folder on")
@@ -545,7 +594,8 @@ int run(int count, char** values) {
     for (const std::string& one : arguments.without)
       fleet.options.insert(fleet.options.end(), {"--without", one});
     if (horizon->count() > 0)
-      fleet.options.insert(fleet.options.end(), {"--horizon", std::to_string(arguments.horizon_s)});
+      fleet.options.insert(fleet.options.end(), {"--horizon", text_of(arguments.horizon_s)});
+    fleet.diagnose = [&arguments](const FleetDiagnosis& asked) { return diagnose_one(asked, arguments); };
     return run_fleet(fleet);
   }
   if (*columns) return list_columns(listed, proposal);
@@ -556,31 +606,15 @@ int run(int count, char** values) {
 }  // namespace
 
 int main(int count, char** values) {
-  const auto complain = [](const char* what) { std::fprintf(stderr, "thermopower-gap: %s\n", what); };
-  try {
-    const int status = run(count, values);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      complain("standard output cannot be written");
-      return invalid_input;
-    }
+  std::string fault;
+  const int status = guarded([&] { return run(count, values); }, fault);
+  if (!fault.empty()) {
+    std::fprintf(stderr, "%s\n", fault.c_str());
     return status;
-  } catch (const UsageError& error) {
-    complain(error.what());
-    return wrong_usage;
-  } catch (const io::InputError& error) {
-    complain(error.what());
-    return invalid_input;
-  } catch (const io::OutputError& error) {
-    complain(error.what());
-    return invalid_input;
-  } catch (const gap::InvalidInput& error) {
-    complain(error.what());
-    return invalid_input;
-  } catch (const std::bad_alloc&) {
-    complain("out of memory");
-    return invalid_input;
-  } catch (const std::exception& error) {
-    complain(error.what());
-    return failed;
   }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::fputs("thermopower-gap: standard output cannot be written\n", stderr);
+    return invalid_input;
+  }
+  return status;
 }
