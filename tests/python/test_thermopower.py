@@ -239,6 +239,201 @@ class OwnEffects(unittest.TestCase):
             thermopower.check(MODEL, self.train, effects=[thermopower.Effect("radiation", words, on="electrical", parameters=given)])
 
 
+def film(x, tail):
+    """Share of dry friction at a rate over its transition, as plant::film_share has it."""
+    steep, gentle, abrupt = np.tanh(x), x / (abs(x) + 1.0), (abs(x + 1.0) - abs(x - 1.0)) * 0.5
+    size = abs(tail)
+    return steep + (size + tail) * 0.5 * (gentle - steep) + (size - tail) * 0.5 * (abrupt - steep)
+
+
+def sweep(seconds, seed=1):
+    """A command that swings an axis at rising frequency, and where the axis starts; what is not judged is left out."""
+    t = np.arange(0.0, seconds, 0.01)
+    drive = 0.8 * np.sin(2.0 * np.pi * (0.3 + 0.05 * t) * t + seed) + 0.3 * np.sign(np.sin(1.1 * t))
+    return {"t_s": t, "drive_A": drive, "angle_deg": np.zeros(len(t)), "rate_dps": np.zeros(len(t)), "motor_C": np.full(len(t), 40.0)}
+
+
+AXIS = {
+    "format": "thermopower-model/1",
+    "name": "joint",
+    "axis": {"law": "rigid", "inertia_kgm2": 2e-3, "viscous_Nms_per_rad": 2e-3, "torque_constant_Nm_per_A": 0.1},
+}
+
+
+class Twins(unittest.TestCase):
+    """Effects of the catalogue, each written once more in Python with whatever such effects can have."""
+
+    def same(self, model, recording, effect, own, known):
+        """The effect in Python does what the catalogue's effects do, and it does something."""
+        mine = thermopower.predict(dict(model, effects={effect.id: own}), recording, effects=[effect])
+        theirs, bare = thermopower.predict([dict(model, effects=known), model], recording)
+        for name, values in theirs.items():
+            np.testing.assert_allclose(mine[name], values, rtol=1e-9, atol=1e-9, err_msg=name)
+        self.assertTrue(any(np.nanmax(abs(bare[name] - theirs[name])) > 1e-3 for name in theirs if name != "t_s"))
+
+    def test_a_second_mass(self):
+        def housing(p, shape):
+            shape.two_nodes = True
+            shape.winding_share, shape.coupling_W_per_K = p.share, p.W_per_K
+
+        effect = thermopower.Effect("housing", housing, on="thermal_structure",
+                                    parameters=[thermopower.parameter("share", "1", 0.01, 0.97, [0.12, 0.4]),
+                                                thermopower.parameter("W_per_K", "W/K", 1e-3, 1e3, [0.1, 1.0, 8.0], logarithmic=True)])
+        truth = {"second_thermal_mass": {"winding_share": 0.3, "coupling": 0.5}}
+        self.same(MODEL, motor(900, 1), effect, {"share": 0.3, "W_per_K": 0.5}, truth)
+
+        def measured(seed):
+            run, noise = motor(1200, seed), np.random.default_rng(seed)
+            seen = thermopower.predict(dict(MODEL, effects=truth), run)
+            return dict(run, **{name: seen[name] + noise.normal(0.0, sd, len(run["t_s"])) for name, sd in (("current_A", 0.004), ("motor_C", 0.1))})
+
+        found = thermopower.diagnose(MODEL, measured(1), measured(2), effects=[effect], without=["second_thermal_mass"], effects_at_once=1)
+        self.assertEqual([one.effect for one in found.cause], ["housing"])
+        for name, value in (("share", 0.3), ("W_per_K", 0.5)):
+            told = found.cause[0].parameters[name]
+            self.assertAlmostEqual(told.value, value, delta=told.ci95[1] - told.ci95[0])
+
+    def test_a_spring_and_a_delay(self):
+        def spring(p, shape):
+            shape.compliant, shape.delayed = True, True
+            shape.far_share, shape.spring_rad_per_s, shape.spring_damping = p.share, 2.0 * np.pi * p.Hz, p.damping
+            shape.delay_s = shape.delay_s + p.delay_s
+
+        effect = thermopower.Effect("spring", spring, on="axis_structure", parameters=[
+            thermopower.parameter("share", "1", 0.01, 0.97, [0.2]), thermopower.parameter("Hz", "Hz", 0.2, 300.0, [3.0], logarithmic=True),
+            thermopower.parameter("damping", "1", 1e-4, 2.0, [0.03], logarithmic=True), thermopower.parameter("delay_s", "s", 0.0, 0.5, [0.01])])
+        self.same(AXIS, sweep(4.0), effect, {"share": 0.4, "Hz": 4.0, "damping": 0.05, "delay_s": 0.02},
+                  {"compliance": {"far_share": 0.4, "frequency_Hz": 4.0, "damping": 0.05}, "actuation_delay": {"s": 0.02}})
+
+    def test_a_state_of_the_drive(self):
+        self.same(AXIS, sweep(4.0), LAG, {"lag_s": 0.05}, {"drive_lag": {"lag_s": 0.05}})
+
+    def test_a_state_of_the_friction(self):
+        def bristles(p, terms):
+            z = terms.own.bent_rad
+            z.slope, z.per_s = terms.rate_rad_per_s, abs(terms.rate_rad_per_s) / p.bend_rad
+            terms.torque_Nm += p.Nm / p.bend_rad * (z.value + p.damping_s * (z.slope - z.per_s * z.value))
+
+        effect = thermopower.Effect("bristles", bristles, on="friction", states={"bent_rad": "rad"}, parameters=[
+            thermopower.parameter("Nm", "N m", 0.0, 1e3, [0.005]), thermopower.parameter("bend_rad", "rad", 2e-3, 1.0, [0.01], logarithmic=True),
+            thermopower.parameter("damping_s", "s", 0.0, 0.02, [0.0], standard=0.0)])
+        self.same(AXIS, sweep(4.0), effect, {"Nm": 0.02, "bend_rad": 0.05, "damping_s": 0.002},
+                  {"presliding_friction": {"Nm": 0.02, "bend_rad": 0.05, "damping_s": 0.002}})
+        # A model may leave out what has a standard value.
+        self.same(AXIS, sweep(2.0), effect, {"Nm": 0.02, "bend_rad": 0.05}, {"presliding_friction": {"Nm": 0.02, "bend_rad": 0.05}})
+
+    def test_dry_friction(self):
+        def rubbing(p, terms):
+            terms.add_friction(p.Nm, 1.0 * p.Nm, 0.02, tail=0.3)
+
+        effect = thermopower.Effect("rubbing", rubbing, on="friction", parameters=[thermopower.parameter("Nm", "N m", 0.0, 1e3, [0.005])])
+        self.same(AXIS, sweep(4.0), effect, {"Nm": 0.02}, {"coulomb_friction": {"Nm": 0.02, "transition_rad_per_s": 0.02, "tail": 0.3}})
+
+    def test_two_places(self):
+        def copper(p, terms):
+            terms.tempco_per_K += p.per_K
+
+        def ammeter(p, read):
+            """The ammeter shows too much."""
+            read.current_A *= p.factor
+
+        effect = thermopower.Effect("both", {"electrical": copper, "bench_readings": ammeter}, parameters=[
+            thermopower.parameter("per_K", "1/K", 0.0, 0.02, [0.0]), thermopower.parameter("factor", "1", 0.5, 2.0, [1.0])])
+        self.same(MODEL, motor(900, 1), effect, {"per_K": 0.004, "factor": 1.1},
+                  {"winding_tempco": {"tempco_per_K": 0.004}, "current_sensor_gain": {"gain": 1.1}})
+
+    def test_a_curve(self):
+        def cable(p, terms):
+            terms.load_Nm += thermopower.curve(terms.angle_rad, [-100.0, 0.3, 100.0], [100.3 * p.k, 0.0 * p.k, -99.7 * p.k])
+
+        effect = thermopower.Effect("cable", cable, on="axis", parameters=[thermopower.parameter("k", "N m/rad", 0.0, 1e3, [0.01])])
+        self.same(AXIS, sweep(4.0), effect, {"k": 0.05}, {"cable_spring": {"Nm_per_rad": 0.05, "centre_rad": 0.3}})
+
+    def test_a_state_is_found_and_fitted(self):
+        """A drive that follows late, integrated here in steps of a tenth of a millisecond."""
+        def late(seed):
+            run = sweep(12.0, seed)
+            random, omega, theta, torque = np.random.default_rng(seed), 0.0, 0.0, 0.0
+            for i, amps in enumerate(run["drive_A"]):
+                run["angle_deg"][i], run["rate_dps"][i] = np.degrees(theta), np.degrees(omega)
+                for _ in range(100):
+                    torque += 1e-4 * (0.1 * amps - torque) / 0.06
+                    omega += 1e-4 * (torque - 2e-3 * omega) / 2e-3
+                    theta += 1e-4 * omega
+            for name, noise in (("angle_deg", 0.02), ("rate_dps", 0.5)):
+                run[name] = run[name] + random.normal(0.0, noise, len(run["t_s"]))
+            return run
+
+        others = [line.split()[0] for line in thermopower.effects().splitlines() if line and not line[0].isspace()]
+        found = thermopower.diagnose(AXIS, late(1), late(2), effects=[LAG], effects_at_once=1,
+                                     without=[one for one in others if one not in ("cogging", "cable_spring")])
+        self.assertEqual([one.effect for one in found.cause], ["late_drive"])
+        self.assertAlmostEqual(found.cause[0].parameters.lag_s.value, 0.06, delta=0.003)
+        text, left_out = found.header()
+        self.assertIn("late_drive_lag_s", text)
+        self.assertTrue(any("late_drive: it is written in Python" in one for one in left_out), left_out)
+
+    def test_what_cannot_be_is_told(self):
+        def nothing(p, terms):
+            pass
+
+        def half(p, shape):
+            shape.two_nodes = "yes"
+
+        given = [thermopower.parameter("k", "1", 0.0, 1.0, [0.5])]
+        made = lambda *arguments, **named: thermopower.check(MODEL, motor(60, 1), effects=[thermopower.Effect("x", *arguments, parameters=given, **named)])
+        for call, told in (
+                (lambda: made(nothing, on="thermal", states={"z_K": "K"}), "has states, but no hook"),
+                (lambda: made(nothing, on="axis", states={"a": "1", "b": "1", "c": "1"}), "more than 2 states"),
+                (lambda: made(nothing, on="axis", needs=["wind"]), "needs 'wind', expected one of"),
+                (lambda: made({"axis": nothing, "elsewhere": nothing}), "on is 'elsewhere'"),
+                (lambda: made({"axis": nothing}, on="axis"), "says itself on what"),
+                (lambda: made({}), "says itself on what"),
+                (lambda: thermopower.check(MODEL, motor(60, 1), effects=[thermopower.Effect("x", nothing, on="axis", parameters=[
+                    thermopower.parameter("k", "1", 0.0, 1.0, [0.5], starts_as_shares_of="torque")])]), "expected drive_A"),
+                (lambda: thermopower.predict(dict(MODEL, effects={"x": {"k": 0.5}}), motor(60, 1),
+                                             effects=[thermopower.Effect("x", half, on="thermal_structure", parameters=given)]), "expected True or False"),
+                (lambda: thermopower.curve(1.0, [0.0, 1.0], [1.0]), "2 points and 1 values"),
+                (lambda: thermopower.curve(1.0, [0.0, 0.0], [1.0, 2.0]), "expected numbers that increase")):
+            with self.assertRaises(thermopower.InvalidInput) as caught:
+                call()
+            self.assertIn(told, str(caught.exception))
+
+
+class Derivatives(unittest.TestCase):
+    def test_against_differences(self):
+        """Of every function that numbers with derivatives know."""
+        variable = thermopower._thermopower.Dual.variable
+        points, values = [-1.0, 0.2, 0.7, 3.0], [2.0, -1.0, 0.5, 4.0]
+        functions = [np.exp, np.log, np.sin, np.cos, np.tan, np.tanh, np.sqrt, np.square, np.expm1, np.log1p, np.sinh, np.cosh, np.arcsin,
+                     np.arccos, np.arctan, abs, lambda x: x**3, lambda x: x**-2, lambda x: x**0.7, lambda x: x**x, lambda x: 2.0**x,
+                     lambda x: 1.0 / x - x / 2.0 + (3.0 - x) * -x, lambda x: film(x, 0.4), lambda x: film(-3.0 * x, -0.7),
+                     lambda x: np.maximum(x, 0.4) * np.minimum(x, 0.4) * np.sign(x - 0.5), lambda x: thermopower.curve(x, points, values),
+                     lambda x: thermopower.curve(0.6, points, [x, 2.0 * x, x * x, 1.0])]
+        for number, function in enumerate(functions):
+            for x in (0.15, 0.33, 0.81):
+                told = function(variable(x))
+                self.assertAlmostEqual(told.value, function(x), places=12, msg=f"{number} at {x}")
+                self.assertAlmostEqual(told.slope, (function(x + 1e-6) - function(x - 1e-6)) / 2e-6, delta=1e-6 * (1.0 + abs(told.slope)), msg=f"{number} at {x}")
+
+    def test_curves_are_numpys(self):
+        at, values = [-1.0, 0.2, 0.7, 3.0], [2.0, -1.0, 0.5, 4.0]
+        for x in np.linspace(-2.0, 4.0, 61):
+            self.assertAlmostEqual(thermopower.curve(x, at, values), np.interp(x, at, values), places=12)
+
+
+def follow(p, terms):
+    """The torque follows its command late."""
+    late = terms.own.late_Nm
+    late.per_s = 1.0 / p.lag_s
+    late.slope = terms.drive_Nm * late.per_s
+    terms.delivered_Nm += late.value - terms.drive_Nm
+
+
+LAG = thermopower.Effect("late_drive", follow, on="axis", states={"late_Nm": "N m"}, experiment="steps of the command",
+                         parameters=[thermopower.parameter("lag_s", "s", 5e-4, 3.0, [0.005, 0.02, 0.08], logarithmic=True)])
+
+
 def kettle(constants, start, t_s, inputs, effects):
     """Warms with the power, and loses to the room; exact between rows. Its effect is a lid that is open."""
     loss = constants["loss_W_per_K"] + effects.get("open_lid", {"W_per_K": 0.0})["W_per_K"]
@@ -283,6 +478,54 @@ class OwnPlants(unittest.TestCase):
         self.assertGreater(error(plant), 1.0)
         self.assertLess(error(plant.changed(effects={"open_lid": {"W_per_K": 1.5}})), 0.15)
         self.assertTrue(found.html().endswith("</html>\n"))
+
+    def test_a_state_that_nobody_measures(self):
+        """An element between power and water, which is hot when the log begins; nobody measures it, nor says so."""
+        def element(constants, start, t_s, inputs, effects):
+            loss = 2.0 + effects.get("open_lid", {"W_per_K": 0.0})["W_per_K"]
+            water, hot, read = start["water"], start["element"], np.empty(len(t_s))
+            for i in range(len(t_s)):
+                read[i] = water
+                if i + 1 == len(t_s):
+                    break
+                for _ in range(10):
+                    step, flow = 0.1 * (t_s[i + 1] - t_s[i]), constants["flow_W_per_K"] * (hot - water)
+                    hot += step * (inputs["power_W"][i] - flow) / 3000.0
+                    water += step * (flow - loss * (water - inputs["room_C"][i])) / constants["water_J_per_K"]
+            return {"water_C": read, "end": {"water": water, "element": hot}}
+
+        plant = thermopower.Plant(
+            "kettle", element, inputs={"power_W": "W", "room_C": {"unit": "degC", "otherwise": 20.0}},
+            constants={"water_J_per_K": {"value": 4200.0, "unit": "J/K", "may_be_cause": False}, "flow_W_per_K": (20.0, "W/K")},
+            states={"water": {"measured_by": "water_C", "initial": 20.0, "spread": 30.0, "unit": "degC"},
+                    "element": {"shows_in": "water_C", "initial": 20.0, "spread": 100.0, "unit": "degC"}},
+            signals={"water_C": {"unit": "degC", "submodel": "kettle.loss",
+                                 "balance": {"constant": "water_J_per_K", "quantity": "missing_heat", "unit": "W"}}},
+            effects=[thermopower.Effect("open_lid", submodel="kettle.loss", parameters=[thermopower.parameter("W_per_K", "W/K", 0.0, 50.0, [0.5, 5.0])])])
+
+        def logged(seed, element_C):
+            t = np.arange(0.0, 3600.0, 20.0)
+            inputs = {"power_W": np.where((t // 600.0) % 2 == seed % 2, 300.0, 0.0), "room_C": np.full(len(t), 20.0)}
+            water = element(plant.constants, {"water": 20.0, "element": element_C}, t, inputs, {"open_lid": {"W_per_K": 1.5}})["water_C"]
+            return {"t_s": t, "power_W": inputs["power_W"], "water_C": water + np.random.default_rng(seed).normal(0.0, 0.1, len(t))}
+
+        found = thermopower.diagnose(plant, logged(1, 140.0), logged(2, 60.0))
+        self.assertEqual([one.effect for one in found.cause], ["open_lid"])
+        self.assertAlmostEqual(found.cause[0].parameters.W_per_K.value, 1.5, delta=0.15)
+        self.assertEqual(found.augmented.constants["water_J_per_K"], 4200.0)
+
+    def test_what_a_plant_cannot_be_is_told(self):
+        made = lambda **given: thermopower.Plant("kettle", kettle, **{"constants": {"loss_W_per_K": 2.0}, "inputs": {"power_W": "W"}, "states": {},
+                                                                     "signals": {"water_C": {}}, **given})
+        for given, told in (({"constants": {"k": {"worth": 2.0}}}, "constant 'k' has no 'worth'"), ({"constants": {"k": {"unit": "W"}}}, "'k' has no value"),
+                            ({"inputs": {"power_W": {"default": 1.0}}}, "input 'power_W' has no 'default'"),
+                            ({"signals": {"water_C": {"colour": "red"}}}, "signal 'water_C' has no 'colour'"),
+                            ({"signals": {"water_C": {"balance": {"constant": "no_such"}}}}, "its balance names 'no_such'"),
+                            ({"states": {"water": {"measured_by": "steam_C"}}}, "names the signal 'steam_C'")):
+            with self.assertRaises(thermopower.InvalidInput) as caught:
+                made(**given)
+            self.assertIn(told, str(caught.exception))
+        self.assertEqual(made(constants={"offset_K": {"value": -1.0, "above_zero": False}}).constants, {"offset_K": -1.0})
 
     def test_what_goes_wrong_in_its_function_is_told(self):
         def silent(*_):

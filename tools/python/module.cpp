@@ -4,6 +4,7 @@
 // The part of the Python module that is C++: what crosses is text (JSON) and arrays. The package around it,
 // thermopower/__init__.py, is what users see.
 
+#include "dual_numbers.hpp"
 #include "own_effect.hpp"
 #include "own_plant.hpp"
 
@@ -110,7 +111,8 @@ struct Result {
   std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }
   std::string summary() const { return io::summary(diagnosis); }
   std::pair<std::string, std::vector<std::string>> header() const {
-    io::MotorModelHeader made = io::motor_model_header(diagnosis.augmented, io::one_sentence(diagnosis));
+    io::MotorModelHeader made =
+        io::motor_model_header(diagnosis.augmented, io::one_sentence(diagnosis), catalogue);
     return {made.text, made.left_out};
   }
   py::list series() const {
@@ -233,6 +235,8 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("header", &Result::header)
       .def("series", &Result::series);
   thermopower::python::bind_dual(module);
+  thermopower::python::bind_added_friction<double>(module, "AddedFriction");
+  thermopower::python::bind_added_friction<plant::Dual>(module, "AddedFrictionOfDuals");
   py::class_<gap::Model>(module, "Model")
       .def_readonly("name", &gap::Model::name)
       .def("constants", &thermopower::python::constants_of)

@@ -11,6 +11,7 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,14 +75,23 @@ inline plant::Model own_plant(const std::string& name, const py::object& functio
   info.windowed = windowed;
   for (const py::dict& one : constants)
     info.constants.push_back({text(one, "part"), text(one, "name"), text(one, "unit"),
-                              one["value"].cast<double>(), one["may_be_cause"].cast<bool>(), true});
-  for (const py::dict& one : inputs) info.inputs.push_back({text(one, "name"), text(one, "unit"), {}});
+                              one["value"].cast<double>(), one["may_be_cause"].cast<bool>(),
+                              one["above_zero"].cast<bool>()});
+  for (const py::dict& one : inputs)
+    info.inputs.push_back(
+        {text(one, "name"), text(one, "unit"), one["otherwise"].cast<std::optional<double>>()});
   for (const py::dict& one : states)
     info.states.push_back({text(one, "name"), text(one, "unit"), one["measured_by"].cast<int>(),
                            one["initial"].cast<double>(), one["spread"].cast<double>(),
                            one["shows_in"].cast<int>()});
-  for (const py::dict& one : signals)
-    info.signals.push_back({text(one, "name"), text(one, "unit"), text(one, "submodel"), {}, {}});
+  for (const py::dict& one : signals) {
+    plant::PlantSignal signal{
+        text(one, "name"), text(one, "unit"), text(one, "submodel"), {}, text(one, "note")};
+    if (const auto balance = one["balance"].cast<std::optional<py::dict>>())
+      signal.balance = {text(*balance, "constant"), plant::QuantityName(text(*balance, "quantity")),
+                        text(*balance, "unit"), (*balance)["leaves_by"].cast<std::vector<std::string>>()};
+    info.signals.push_back(std::move(signal));
+  }
   std::vector<plant::EffectInfo> known;
   for (const py::dict& one : effects) known.push_back(info_of(one));
   info.validate();

@@ -26,7 +26,7 @@ import numpy as np
 from . import _thermopower
 from ._thermopower import InputError, InvalidInput
 
-__all__ = ["InputError", "InvalidInput", "Part", "Diagnosis", "Effect", "Plant", "check", "diagnose", "effects", "parameter", "predict",
+__all__ = ["InputError", "InvalidInput", "Part", "Diagnosis", "Effect", "Plant", "check", "curve", "diagnose", "effects", "parameter", "predict",
            "read_model", "simulate"]
 
 
@@ -72,25 +72,61 @@ def _part(value):
     return value
 
 
-def parameter(name, unit="1", lower=0.0, upper=1.0, starts=(), logarithmic=False):
+def parameter(name, unit="1", lower=0.0, upper=1.0, starts=(), logarithmic=False, *, standard=None, exceeds="", starts_as_shares_of="",
+              degenerate_at_bounds=False, periods_in_travel=0.0):
     """A parameter of an effect of one's own: bounds, and where fits begin; logarithmic where only its order of magnitude is known.
+
+    standard: its value where a model leaves it out. exceeds: another parameter that it must exceed, or nothing shows it.
+    starts_as_shares_of: an input ("drive_A", "power_param" or "supply_V") of whose largest magnitude the starts are shares.
+    degenerate_at_bounds: a fit that ends at a bound explains nothing. periods_in_travel: it counts periods of the angle, so
+    many of which must lie within the recorded travel.
 
     >>> parameter("Nm_s2_per_rad2", "N m s^2/rad^2", 0.0, 1.0, [1e-5])["upper"]
     1.0
     """
     starts = [float(one) for one in starts] or [(lower * upper) ** 0.5 if logarithmic else 0.5 * (lower + upper)]
-    return {"name": name, "unit": unit, "lower": float(lower), "upper": float(upper), "starts": starts, "logarithmic": bool(logarithmic)}
+    return {"name": name, "unit": unit, "lower": float(lower), "upper": float(upper), "starts": starts, "logarithmic": bool(logarithmic),
+            "standard": None if standard is None else float(standard), "exceeds": exceeds, "starts_as_shares_of": starts_as_shares_of,
+            "degenerate_at_bounds": bool(degenerate_at_bounds), "periods_in_travel": float(periods_in_travel)}
+
+
+def curve(x, at, values):
+    """A curve over a variable: straight between points, level beyond the outer ones. For equations of effects, too.
+
+    x: a number. at: numbers that increase. values: as many, such as parameters of an effect.
+
+    >>> curve(2.5, [0.0, 2.0, 4.0], [1.0, 1.0, 3.0])
+    1.5
+    >>> def rail(p, terms):
+    ...     terms.load_Nm += curve(terms.angle_rad, [-1.0, 0.0, 1.0], list(vars(p).values()))
+    """
+    if len(at) != len(values) or len(at) == 0:
+        raise InvalidInput(f"a curve has {len(at)} points and {len(values)} values; expected as many of each, and one at least")
+    if any(not low < high for low, high in zip(at, at[1:])):
+        raise InvalidInput(f"the points of a curve are {list(at)}; expected numbers that increase")
+    if not x > at[0]:
+        return values[0]
+    for low, high, first, last in zip(at, at[1:], values, values[1:]):
+        if x < high:
+            return first + (last - first) * ((x - low) / (high - low))
+    return values[-1]
 
 
 class Effect:
     """An effect of one's own, which is simulated, fitted, weighed and reported like those of the catalogue.
 
     act(p, terms): its equation, called with its parameters and the terms of the place it acts on, both with attributes. It
-    changes terms in place. In fits both are numbers that carry their derivatives: +, -, *, /, **, abs(), comparisons and
-    NumPy's exp, log, sin, cos, tanh and sqrt know them.
+    changes terms in place. In fits both are numbers that carry their derivatives: +, -, *, /, **, abs(), comparisons, curve()
+    and NumPy's exp, log, sin, cos, tan, tanh, sqrt, arctan and the like know them.
     on: "electrical", "air", "thermal", "bench_readings", "drive", "axis", "friction" or "axis_readings"; terms are those of the
-    C++ documentation (plant/terms.hpp), such as terms.rate_rad_per_s and terms.load_Nm on an axis.
-    For an effect that a Plant switches on itself, leave both out, and say the submodel.
+    C++ documentation (plant/terms.hpp), such as terms.rate_rad_per_s and terms.load_Nm on an axis. "thermal_structure" and
+    "axis_structure" set the model's shape once per simulation: a second mass, a spring.
+    An effect that acts on several places is a dict of functions by place, without on.
+    states: what the joint remembers because of it, name to unit, on "axis" or "friction": terms.own.<name> has its value,
+    and the function sets slope and per_s of d(value)/dt = slope - per_s value.
+    needs: what must be recorded or modelled for it, as in lists of effects ("airspeed_mps"), beside what its places need.
+    costly: looked at only where no cheaper cause alone explains the data.
+    For an effect that a Plant switches on itself, leave act and on out, and say the submodel.
 
     >>> def drag(p, terms):
     ...     terms.load_Nm -= p.Nm_s2_per_rad2 * terms.rate_rad_per_s * abs(terms.rate_rad_per_s)
@@ -98,22 +134,32 @@ class Effect:
     'air_drag'
     """
 
-    _submodels = {"electrical": "electrical", "air": "thermal.loss", "thermal": "thermal.heating",
+    _submodels = {"electrical": "electrical", "air": "thermal.loss", "thermal": "thermal.heating", "thermal_structure": "thermal.storage",
                   "bench_readings": "sensing.temperature", "drive": "mechanical.drive", "axis": "mechanical.load",
-                  "friction": "mechanical.friction", "axis_readings": "sensing.angle"}
+                  "friction": "mechanical.friction", "axis_structure": "mechanical.structure", "axis_readings": "sensing.angle"}
 
-    def __init__(self, id, act=None, *, on=None, parameters=(), submodel=None, equation="", prose="", experiment=""):
-        if (act is None) != (on is None):
-            raise InvalidInput(f"effect '{id}': act and on go together")
-        if on is not None and on not in self._submodels:
-            raise InvalidInput(f"effect '{id}': on is '{on}', expected one of {', '.join(self._submodels)}")
-        submodel = submodel or self._submodels.get(on)
+    def __init__(self, id, act=None, *, on=None, parameters=(), submodel=None, equation="", prose="", experiment="", states=None, needs=(),
+                 costly=False):
+        if hasattr(act, "items"):
+            if on is not None or not act:
+                raise InvalidInput(f"effect '{id}': a dict of functions says itself on what they act")
+            acts = dict(act)
+        else:
+            if (act is None) != (on is None):
+                raise InvalidInput(f"effect '{id}': act and on go together")
+            acts = {} if act is None else {on: act}
+        for place in acts:
+            if place not in self._submodels:
+                raise InvalidInput(f"effect '{id}': on is '{place}', expected one of {', '.join(self._submodels)}")
+        submodel = submodel or (self._submodels[next(iter(acts))] if acts else None)
         if submodel is None:
             raise InvalidInput(f"effect '{id}': expected the submodel that it acts in")
+        words = [one.__doc__ for one in acts.values() if one.__doc__]
         self.id = id
-        self._given = {"id": id, "act": act, "on": on, "parameters": list(parameters), "submodel": submodel,
+        self._given = {"id": id, "acts": acts, "parameters": list(parameters), "submodel": submodel,
                        "equation": equation or f"{id}: a function in Python",
-                       "prose": prose or (act.__doc__ or id).strip().splitlines()[0], "experiment": experiment or "vary every input"}
+                       "prose": prose or (words[0] if words else id).strip().splitlines()[0], "experiment": experiment or "vary every input",
+                       "states": list(dict(states or {}).items()), "needs": list(needs), "costly": bool(costly)}
 
     def __repr__(self):
         return f"Effect({self.id!r})"
@@ -127,8 +173,11 @@ class Plant:
     states at the last row, where states are not measured. It must answer equal calls equally. Derivatives are taken from
     differences, so a fit calls it some hundred times.
 
-    constants: name to value, or to (value, unit). inputs: name to unit. states: name to a dict of measured_by (a signal) or
-    shows_in (the signal that tells its start), initial, spread and unit. signals: name to a dict of unit and submodel.
+    constants: name to value, to (value, unit), or to a dict of value, unit, part, may_be_cause (False: it is known) and
+    above_zero (False: it may have any value). inputs: name to unit, or to a dict of unit and otherwise, its value where it is
+    not recorded. states: name to a dict of measured_by (a signal) or shows_in (the signal that tells its start), initial,
+    spread and unit. signals: name to a dict of unit, submodel, note (how it is judged, for the evidence) and balance: a dict of
+    constant, quantity, unit and leaves_by, which makes a missing heat, torque or flow of a missing rate.
     windowed: runs in windows that start from measured states, as an axis does, else over whole runs.
     """
 
@@ -142,21 +191,38 @@ class Plant:
                 raise InvalidInput(f"plant '{name}': a state names the signal '{state[key]}'; there is {', '.join(order)}")
             return order.index(state[key])
 
-        def unit_of(value, otherwise="1"):
-            return value[1] if isinstance(value, (list, tuple)) else otherwise
+        def spelt_out(kind, key, given, standard):
+            for one in given:
+                if one not in standard:
+                    raise InvalidInput(f"plant '{name}': {kind} '{key}' has no '{one}'; there is {', '.join(standard)}")
+            return {"name": key, **standard, **given}
+
+        def constant(key, given):
+            if isinstance(given, (list, tuple)):
+                given = dict(zip(("value", "unit"), given))
+            given = given if hasattr(given, "items") else {"value": given}
+            one = spelt_out("constant", key, given, {"value": None, "unit": "1", "part": name, "may_be_cause": True, "above_zero": True})
+            if one["value"] is None:
+                raise InvalidInput(f"plant '{name}': constant '{key}' has no value")
+            return {**one, "value": float(one["value"])}
+
+        def fed(key, given):
+            return spelt_out("input", key, given if hasattr(given, "items") else {"unit": given}, {"unit": "1", "otherwise": None})
+
+        def shown(key, given):
+            one = spelt_out("signal", key, given, {"unit": "1", "submodel": f"{name}.{key}", "note": "", "balance": None})
+            if one["balance"] is not None:
+                one["balance"] = spelt_out("balance of", key, one["balance"], {"constant": "", "quantity": "", "unit": "1", "leaves_by": []})
+            return one
 
         self._effects = [one._given for one in effects]
         self._model = _thermopower.own_plant(
-            name, simulate,
-            [{"part": name, "name": key, "unit": unit_of(value), "value": float(value[0] if isinstance(value, (list, tuple)) else value),
-              "may_be_cause": True} for key, value in constants.items()],
-            [{"name": key, "unit": unit} for key, unit in (inputs.items() if hasattr(inputs, "items") else ((one, "1") for one in inputs))],
+            name, simulate, [constant(*one) for one in constants.items()],
+            [fed(*one) for one in (inputs.items() if hasattr(inputs, "items") else ((one, "1") for one in inputs))],
             [{"name": key, "unit": state.get("unit", "1"), "measured_by": place(state, "measured_by", -1),
               "initial": float(state.get("initial", 0.0)), "spread": float(state.get("spread", 1.0)),
               "shows_in": place(state, "shows_in", 0)} for key, state in states.items()],
-            [{"name": key, "unit": signal.get("unit", "1"), "submodel": signal.get("submodel", f"{name}.{key}")}
-             for key, signal in signals.items()],
-            self._effects, windowed)
+            [shown(*one) for one in signals.items()], self._effects, windowed)
 
     @property
     def constants(self):

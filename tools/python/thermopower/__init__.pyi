@@ -13,15 +13,27 @@ class InputError(ValueError): ...
 class InvalidInput(ValueError): ...
 
 def parameter(
-    name: str, unit: str = ..., lower: float = ..., upper: float = ..., starts: Sequence[float] = ..., logarithmic: bool = ...
+    name: str,
+    unit: str = ...,
+    lower: float = ...,
+    upper: float = ...,
+    starts: Sequence[float] = ...,
+    logarithmic: bool = ...,
+    *,
+    standard: Optional[float] = ...,
+    exceeds: str = ...,
+    starts_as_shares_of: str = ...,
+    degenerate_at_bounds: bool = ...,
+    periods_in_travel: float = ...,
 ) -> Dict[str, Any]: ...
+def curve(x: Any, at: Sequence[float], values: Sequence[Any]) -> Any: ...
 
 class Effect:
     id: str
     def __init__(
         self,
         id: str,
-        act: Optional[Callable[[Any, Any], None]] = ...,
+        act: Union[Callable[[Any, Any], None], Mapping[str, Callable[[Any, Any], None]], None] = ...,
         *,
         on: Optional[str] = ...,
         parameters: Sequence[Mapping[str, Any]] = ...,
@@ -29,6 +41,9 @@ class Effect:
         equation: str = ...,
         prose: str = ...,
         experiment: str = ...,
+        states: Optional[Mapping[str, str]] = ...,
+        needs: Sequence[str] = ...,
+        costly: bool = ...,
     ) -> None: ...
 
 class Plant:
@@ -37,8 +52,8 @@ class Plant:
         name: str,
         simulate: Callable[..., Mapping[str, Any]],
         *,
-        constants: Mapping[str, Union[float, Tuple[float, str]]],
-        inputs: Union[Mapping[str, str], Sequence[str]],
+        constants: Mapping[str, Union[float, Tuple[float, str], Mapping[str, Any]]],
+        inputs: Union[Mapping[str, Union[str, Mapping[str, Any]]], Sequence[str]],
         states: Mapping[str, Mapping[str, Any]],
         signals: Mapping[str, Mapping[str, Any]],
         effects: Sequence[Effect] = ...,
