@@ -54,7 +54,7 @@ struct Arguments {
   }
   std::vector<std::string> recordings, held_out, without, columns, maps, starts;
   bool as_recorded = false;
-  bool silent = false;  // for one log of a fleet
+  bool of_fleet = false;  // one log of it: nothing is said, and its paths are the fleet's own
   double horizon_s = 0.5;
   double tolerance = 0.05;
   unsigned threads = 0;
@@ -232,11 +232,11 @@ int export_model(const Arguments& arguments) {
 
 int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
-  refuse_overlaps(arguments);
+  if (!arguments.of_fleet) refuse_overlaps(arguments);
   const std::vector<io::ColumnChoice> choices = column_choices(arguments);
   io::OutputFiles outputs;
   for (const auto* path : arguments.outputs()) {
-    if (!path->empty()) outputs.expect(*path);
+    if (!path->empty() && !arguments.of_fleet) outputs.expect(*path);
   }
   gap::Diagnosis diagnosis;
   gap::Model model;
@@ -278,7 +278,7 @@ int diagnose(const Arguments& arguments) {
     write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);
     outputs.commit();
   }
-  if (!arguments.silent) std::fputs(io::summary(diagnosis).c_str(), stdout);
+  if (!arguments.of_fleet) std::fputs(io::summary(diagnosis).c_str(), stdout);
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
@@ -418,7 +418,7 @@ std::string diagnose_one(const FleetDiagnosis& asked, Arguments arguments) {
   arguments.report = asked.report;
   arguments.html = asked.page;
   arguments.threads = 1;
-  arguments.silent = true;
+  arguments.of_fleet = true;
   std::string fault;
   guarded([&] { return diagnose(arguments); }, fault);
   return fault;
