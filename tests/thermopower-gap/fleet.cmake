@@ -133,7 +133,10 @@ if(mkfifo)
   file(WRITE ${HERE}/endless.csv "${manifest}logs/endless.csv,model.json,9\n")
   execute_process(COMMAND sh -c "\"$0\" fleet \"$1\" --out \"$2\" --workers 1 2>\"$2.err\" & fleet=$!
                                  until [ $(ls \"$2\"/reports 2>/dev/null | grep -c json$) = 8 ]; do sleep 0.1; done
-                                 while worker=$(ps -o pid= --ppid $fleet); do sleep 0.3; kill -9 $worker; done
+                                 while ps -o stat= -p $fleet | grep -q '^[^Z]'; do
+                                   sleep 0.3
+                                   worker=$(ps -o pid= --ppid $fleet) && kill -9 $worker
+                                 done
                                  wait $fleet"
                           ${PROGRAM} ${HERE}/endless.csv ${HERE}/endless
                   RESULT_VARIABLE status OUTPUT_VARIABLE output TIMEOUT 300)
