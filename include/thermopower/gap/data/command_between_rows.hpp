@@ -6,7 +6,7 @@
 #include <thermopower/gap/data/motion_regression.hpp>
 #include <thermopower/plant/servo_loop.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -89,8 +90,7 @@ private:
     /// Of the heat's earlier change in the heat, which all terms but the first are given at once.
     /// @param used  terms, from the first on
     double share(Eigen::Index used) const {
-      const Eigen::VectorXd fitted =
-          square.topLeftCorner(used, used).completeOrthogonalDecomposition().solve(product.head(used));
+      const Eigen::VectorXd fitted = LeastSquares(square.topLeftCorner(used, used)).solve(product.head(used));
       const double at_once = fitted.tail(used - 1).sum();
       return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
     }
@@ -142,19 +142,35 @@ private:
     return did;
   }
 
+  /// Leaves of each column what its straight line does not tell. @param along  abscissa of the rows
+  static void take_line_off(const Eigen::VectorXd& along, Eigen::MatrixXd& columns) {
+    const double middle = along.mean();
+    double spread = 0.0;
+    for (Eigen::Index i = 0; i < along.size(); ++i) spread += (along[i] - middle) * (along[i] - middle);
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      const double mean = columns.col(k).mean();
+      double slope = 0.0;
+      for (Eigen::Index i = 0; i < along.size(); ++i) slope += (along[i] - middle) * columns(i, k) / spread;
+      for (Eigen::Index i = 0; i < along.size(); ++i) columns(i, k) -= mean + slope * (along[i] - middle);
+    }
+  }
+
   void add_block(const Inputs& inputs, const Eigen::Ref<const Eigen::MatrixXd>& did, Eigen::Index begin) {
     const Eigen::VectorXd& motor_C = inputs.of(Signal::motor_C);
     const Eigen::Index rows = did.rows();
-    Eigen::MatrixXd all(rows, terms + 1), line(rows, 2);
+    Eigen::MatrixXd left(rows, terms + 1);
+    Eigen::VectorXd along_s(rows);
     Eigen::Index used = 0;
     for (Eigen::Index i = 0; i < rows; ++i) {
       if (!std::isfinite(motor_C[begin + i])) continue;
-      all.row(used) << did.row(i), motor_C[begin + i];
-      line.row(used++) << 1.0, inputs.t_s[begin + i] - inputs.t_s[begin];
+      for (Eigen::Index k = 0; k < terms; ++k) left(used, k) = did(i, k);
+      left(used, terms) = motor_C[begin + i];
+      along_s[used++] = inputs.t_s[begin + i] - inputs.t_s[begin];
     }
     if (2 * used < rows) return;
-    const Eigen::MatrixXd lines = line.topRows(used), given = all.topRows(used);
-    const Eigen::MatrixXd left = given - lines * lines.colPivHouseholderQr().solve(given);
+    left.conservativeResize(used, terms + 1);
+    along_s.conservativeResize(used);
+    take_line_off(along_s, left);
     Sums block;
     block.square = left.leftCols(terms).transpose() * left.leftCols(terms);
     block.product = left.leftCols(terms).transpose() * left.col(terms);

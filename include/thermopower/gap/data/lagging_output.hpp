@@ -3,10 +3,11 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +102,7 @@ private:
       square += weight * other.square;
       product += weight * other.product;
     }
-    double lag_s() const { return square.completeOrthogonalDecomposition().solve(product)[0]; }
+    double lag_s() const { return LeastSquares(square).solve(product)[0]; }
   };
 
   std::vector<Row> rows_;

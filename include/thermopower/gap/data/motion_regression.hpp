@@ -3,10 +3,11 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -160,9 +161,7 @@ private:
     }
 
     Eigen::VectorXd solve() const {
-      return Eigen::MatrixXd(square_.selfadjointView<Eigen::Lower>())
-          .completeOrthogonalDecomposition()
-          .solve(product_);
+      return LeastSquares(square_.selfadjointView<Eigen::Lower>()).solve(product_);
     }
 
     Eigen::VectorXd regressors(const Row& row) const {

@@ -5,7 +5,7 @@
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/robust.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -51,23 +51,23 @@ private:
                           Eigen::Index end, double centre_s, double known) {
     // Sums of powers of the stamps about the centre, in units of the block's length.
     const double unit_s = std::max(t_s[end - 1] - t_s[begin], 1e-300);
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0, s4 = 0.0, y0 = 0.0, y1 = 0.0, y2 = 0.0;
     Eigen::Index count = 0;
     for (Eigen::Index i = begin; i < end; ++i) {
       if (!std::isfinite(values[i])) continue;
       const double s = (t_s[i] - centre_s) / unit_s;
-      const Eigen::Vector3d powers(1.0, s, s * s);
-      normal += powers * powers.transpose();
-      right += powers * values[i];
+      s0 += 1.0, s1 += s, s2 += s * s, s3 += s * s * s, s4 += s * s * s * s;
+      y0 += values[i], y1 += s * values[i], y2 += s * s * values[i];
       ++count;
     }
     if (2.0 * static_cast<double>(count) <= known * static_cast<double>(end - begin)) return missing;
     if (count < 4) {  // too few for a parabola: a straight line
-      if (count < 2) return right[0] / static_cast<double>(std::max<Eigen::Index>(count, 1));
-      return normal.topLeftCorner<2, 2>().ldlt().solve(right.head<2>())[0];
+      if (count < 2) return y0 / static_cast<double>(std::max<Eigen::Index>(count, 1));
+      return (y0 * s2 - y1 * s1) / (s0 * s2 - s1 * s1);
     }
-    return normal.ldlt().solve(right)[0];
+    // The first unknown of the normal equations, by Cramer's rule.
+    const double c0 = s2 * s4 - s3 * s3, c1 = s2 * s3 - s1 * s4, c2 = s1 * s3 - s2 * s2;
+    return (y0 * c0 + y1 * c1 + y2 * c2) / (s0 * c0 + s1 * c1 + s2 * c2);
   }
 
   /// Share of the rows with a sample.

@@ -7,7 +7,7 @@
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/options.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 
 #include <algorithm>
@@ -114,11 +115,8 @@ public:
   }
 
 private:
-  /// Starts by starts.
-  using StartMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_start, largest_start>;
-
   struct Eliminated {
-    StartMatrix inverse;       ///< of the starts' own block
+    Eigen::MatrixXd inverse;   ///< of the starts' own block
     Eigen::MatrixXd coupling;  ///< starts by coordinates
     Start gradient;
   };
@@ -157,16 +155,19 @@ private:
     const auto starts = residuals.jacobian.rightCols(start.size());
     const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
     Eliminated& part = eliminated_[i];
-    StartMatrix block = starts.transpose() * starts;
-    block.diagonal() += weight;
-    for (Eigen::Index k = 0; k < start.size(); ++k)
-      if (!(block(k, k) > 0.0)) block(k, k) = 1.0;
-    if (start.size() == 2) part.inverse = Eigen::Matrix2d(block).inverse();
-    else part.inverse = block.inverse();
+    part.inverse.setZero(start.size(), start.size());
+    part.inverse.noalias() += starts.transpose() * starts;
+    for (Eigen::Index k = 0; k < start.size(); ++k) {
+      double& diagonal = part.inverse(k, k);
+      diagonal += weight[k];
+      if (!(diagonal > 0.0)) diagonal = 1.0;
+    }
+    invert_symmetric(part.inverse);
     part.coupling = starts.transpose() * own;
     part.gradient = starts.transpose() * residuals.value + (weight.array() * start.array()).matrix();
     information_.noalias() += own.transpose() * own;
-    information_.noalias() -= part.coupling.transpose() * part.inverse * part.coupling;
+    const Eigen::MatrixXd held = part.inverse * part.coupling;
+    information_.noalias() -= part.coupling.transpose() * held;
     gradient_.noalias() += own.transpose() * residuals.value;
     gradient_.noalias() -= part.coupling.transpose() * (part.inverse * part.gradient);
     chi2 += residuals.value.squaredNorm();
@@ -218,7 +219,7 @@ private:
           matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
         matrix(a, a) += damping;
       }
-      const Eigen::VectorXd solved = matrix.ldlt().solve(right);
+      const Eigen::VectorXd solved = SymmetricSystem(matrix).solve(right);
       std::vector<Eigen::Index> inside;
       bool clipped = false;
       for (Eigen::Index a = 0; a < m; ++a) {

@@ -2,9 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/localise/thresholds.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +64,7 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
       }
       for (Eigen::Index j = 0; j < m; ++j) g(i, j) = gram(at, open[static_cast<std::size_t>(j)]);
     }
-    const Eigen::VectorXd solved = m > 0 ? Eigen::VectorXd(g.ldlt().solve(c)) : Eigen::VectorXd();
+    const Eigen::VectorXd solved = m > 0 ? SymmetricSystem(g).solve(c) : Eigen::VectorXd();
     Eigen::Index worst = -1;
     double excess = 0.0;
     for (Eigen::Index i = 0; i < m; ++i) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/localise/projection.hpp>
 #include <thermopower/gap/localise/rows.hpp>
@@ -128,7 +129,7 @@ inline bool scatters_with(const Observed& o, const std::string& variable, const 
   x.col(0).setOnes();
   x.col(1) = along->values;
   if (driven != nullptr) x.col(2) = driven->values;
-  const Eigen::VectorXd left = o.value - x * x.colPivHouseholderQr().solve(o.value);
+  const Eigen::VectorXd left = o.value - x * LeastSquares(x).solve(o.value);
   const double noise = o.noise * o.noise, all = left.squaredNorm() / static_cast<double>(n);
   const double scatter = std::max(all - noise, least_share * all),
                typical = along->values.squaredNorm() / static_cast<double>(n);

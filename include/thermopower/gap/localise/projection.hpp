@@ -8,7 +8,7 @@
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/samples.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>

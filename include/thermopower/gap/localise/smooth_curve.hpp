@@ -2,7 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <Eigen/Dense>
+#include <thermopower/gap/data/linear_solve.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -81,7 +83,7 @@ public:
       const Sums &seen_by_one = of_[i], &asked = shared_[i];
       if (!(asked.count > 0.0)) continue;
       const Eigen::VectorXd a =
-          Eigen::LDLT<Eigen::MatrixXd>(all_.left - seen_by_one.left + stiffness * all_.count * penalty_)
+          SymmetricSystem(all_.left - seen_by_one.left + stiffness * all_.count * penalty_)
               .solve(all_.right - seen_by_one.right);
       sum += asked.squares - 2.0 * a.dot(asked.right) + a.dot(asked.left * a);
       count += asked.count;
@@ -91,7 +93,7 @@ public:
 
   /// The spline of all samples at places.
   SmoothCurve curve(double stiffness, const Eigen::VectorXd& places) const {
-    const Eigen::LDLT<Eigen::MatrixXd> solver(all_.left + stiffness * all_.count * penalty_);
+    const SymmetricSystem solver(all_.left + stiffness * all_.count * penalty_);
     const Eigen::VectorXd a = solver.solve(all_.right);
     SmoothCurve curve;
     curve.x = places;
@@ -100,7 +102,7 @@ public:
       const Piece piece = at(places[i]);
       curve.value[i] = piece.share.dot(a.segment<4>(piece.first));
     }
-    curve.freedom = solver.solve(all_.left).trace();
+    for (Eigen::Index k = 0; k < size; ++k) curve.freedom += solver.solve(all_.left.col(k))[k];
     return curve;
   }
 

@@ -2,10 +2,11 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -36,11 +37,10 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   // unit, what only the prior knows would be taken for rounding, and its share of the intervals would be lost.
   const Eigen::VectorXd unit = candidate.fit.information.diagonal().unaryExpr(
       [](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 1.0; });
-  const Eigen::MatrixXd inverse = unit.asDiagonal() *
-                                  (unit.asDiagonal() * candidate.fit.information * unit.asDiagonal())
-                                      .completeOrthogonalDecomposition()
-                                      .pseudoInverse() *
-                                  unit.asDiagonal();
+  const LeastSquares scaled(unit.asDiagonal() * candidate.fit.information * unit.asDiagonal());
+  Eigen::MatrixXd inverse(unit.size(), unit.size());
+  for (Eigen::Index k = 0; k < unit.size(); ++k)
+    inverse.col(k) = unit[k] * scaled.solve(Eigen::VectorXd::Unit(unit.size(), k)).cwiseProduct(unit);
   double inflation = 1.0, longest = 1.0;
   for (std::size_t i = 0; i < signal_count; ++i)
     if (candidate.train.samples[i] > 0.0) {
