@@ -105,6 +105,31 @@ private:
   }
 };
 
+/// The hooks of an effect for one scalar: they have no state, one object serves every catalogue.
+template <class Effect, class Scalar>
+std::shared_ptr<const Hooks<Scalar>> hooks_of() {
+  static const HooksOf<Effect, Scalar> hooks;
+  const Hooks<Scalar>* const one = &hooks;
+  return {std::shared_ptr<const void>(), one};  // owned by nobody
+}
+
+/// Which hooks an effect has.
+template <class Effect>
+HookSet hook_set_of() {
+  HookSet hooks;
+  hooks.electrical = HasHook<Effect, ElectricalTerms<double>>::value;
+  hooks.air = HasHook<Effect, AirTerms<double>>::value;
+  hooks.thermal = HasHook<Effect, ThermalTerms<double>>::value;
+  hooks.thermal_structure = HasHook<Effect, ThermalStructure<double>>::value;
+  hooks.bench_readings = HasHook<Effect, BenchReadings<double>>::value;
+  hooks.drive = HasHook<Effect, DriveTerms<double>>::value;
+  hooks.axis = HasHook<Effect, AxisTerms<double>>::value;
+  hooks.friction = HasHook<Effect, FrictionTerms<double>>::value;
+  hooks.axis_structure = HasHook<Effect, AxisStructure<double>>::value;
+  hooks.axis_readings = HasHook<Effect, AxisReadings<double>>::value;
+  return hooks;
+}
+
 }  // namespace detail
 
 /// An effect of the catalogue: what it is, and its hooks for both scalars.
@@ -147,7 +172,9 @@ public:
         detail::has_any_hook<Effect>,
         "thermopower: an effect needs a hook 'template <class Scalar> static void act(const Scalar* p, "
         "XTerms<Scalar>& terms)' where XTerms is one of plant/terms.hpp");
-    if constexpr (detail::HasInfo<Effect>::value && detail::has_any_hook<Effect>) add_checked<Effect>();
+    if constexpr (detail::HasInfo<Effect>::value && detail::has_any_hook<Effect>)
+      add({Effect::info(), detail::hook_set_of<Effect>(), detail::hooks_of<Effect, double>(),
+           detail::hooks_of<Effect, Dual>(), detail::hooks_of<Effect, Expression>()});
     return *this;
   }
 
@@ -188,28 +215,6 @@ public:
   }
 
 private:
-  template <class Effect>
-  void add_checked() {
-    CatalogueEntry entry;
-    entry.info = Effect::info();
-    entry.hooks.electrical = detail::HasHook<Effect, ElectricalTerms<double>>::value;
-    entry.hooks.air = detail::HasHook<Effect, AirTerms<double>>::value;
-    entry.hooks.thermal = detail::HasHook<Effect, ThermalTerms<double>>::value;
-    entry.hooks.thermal_structure = detail::HasHook<Effect, ThermalStructure<double>>::value;
-    entry.hooks.bench_readings = detail::HasHook<Effect, BenchReadings<double>>::value;
-    entry.hooks.drive = detail::HasHook<Effect, DriveTerms<double>>::value;
-    entry.hooks.axis = detail::HasHook<Effect, AxisTerms<double>>::value;
-    entry.hooks.friction = detail::HasHook<Effect, FrictionTerms<double>>::value;
-    entry.hooks.axis_structure = detail::HasHook<Effect, AxisStructure<double>>::value;
-    entry.hooks.axis_readings = detail::HasHook<Effect, AxisReadings<double>>::value;
-    check(entry.info, entry.hooks);
-    entry.plain = std::make_shared<detail::HooksOf<Effect, double>>();
-    entry.dual = std::make_shared<detail::HooksOf<Effect, Dual>>();
-    entry.traced = std::make_shared<detail::HooksOf<Effect, Expression>>();
-    infos_.push_back(entry.info);
-    entries_.push_back(std::move(entry));
-  }
-
   void check(const EffectInfo& info, const HookSet& hooks) const {
     const std::string effect = "effect '" + info.id + "'";
     if (info.id.empty()) throw InvalidInput("an effect has no id");

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/decide/block_jackknife.hpp>
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
@@ -345,8 +346,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   std::vector<Candidate*> simplest_first;
   for (Candidate& one : candidates)
     if (in_the_running(one)) simplest_first.push_back(&one);
-  std::stable_sort(simplest_first.begin(), simplest_first.end(),
-                   [&](const Candidate* a, const Candidate* b) { return penalty(*a) < penalty(*b); });
+  sort_by(simplest_first, [&](const Candidate* one) { return penalty(*one); });
   for (std::size_t i = 0; i < simplest_first.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       Candidate& richer = *simplest_first[i];

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
@@ -138,11 +139,17 @@ public:
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < candidates.size(); ++i)
       if (fitness(candidates[i]) - best <= nearly * (worst - best)) list.push_back(i);
-    std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) {
-      return price_of_constants(candidates[a], model) < price_of_constants(candidates[b], model);
-    });
+    sort_by(list, [&](std::size_t i) { return price_of_constants(candidates[i], model); });
     list.resize(std::min(list.size(), some));
     return list;
+  }
+
+  /// Indices of the candidates from index `first` on, the fittest first.
+  static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
+    sort_by(order, [&](std::size_t i) { return fitness(candidates[i]); });
+    return order;
   }
 
 private:
@@ -197,15 +204,6 @@ private:
     Explanation together;
   };
 
-  static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
-    std::vector<std::size_t> order;
-    for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return fitness(candidates[a]) < fitness(candidates[b]);
-    });
-    return order;
-  }
-
   /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
   /// after some steps are in sight of the best one.
   void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
@@ -249,8 +247,7 @@ private:
     in_parallel(promises.size(), threads_, [&](std::size_t i) {
       promises[i].cost = coarse_.promise(*promises[i].near, promises[i].together);
     });
-    std::stable_sort(promises.begin(), promises.end(),
-                     [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
+    sort_by(promises, [](const Promise& one) { return one.cost; });
     std::set<std::vector<std::string>> seen;
     std::vector<Promise> kept;
     for (Promise& one : promises) {

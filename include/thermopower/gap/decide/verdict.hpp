@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
 #include <thermopower/gap/options.hpp>
@@ -275,9 +276,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
       order.push_back(i);
       together += candidates[i].probability;
     }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return candidates[a].probability > candidates[b].probability;
-  });
+  sort_by(order, [&](std::size_t i) { return -candidates[i].probability; });
   result.alternatives = order;
   result.leaves_a_rest = !near;
   if (near) {

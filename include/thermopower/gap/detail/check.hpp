@@ -7,6 +7,7 @@
 #include <thermopower/gap/data/experiment.hpp>
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -194,8 +195,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
                       one.kind == FindingKind::swapped_columns;
     return one.severity != Severity::error ? 2 : unit ? 0 : 1;
   };
-  std::stable_sort(others.begin(), others.end(),
-                   [&](const Finding& a, const Finding& b) { return rank(a) < rank(b); });
+  sort_by(others, rank);
   result.findings = std::move(others);
   return result;
 }

@@ -310,13 +310,11 @@ private:
     problem.sigma = coarse_problem.sigma = longer_problem.sigma;
     const Search searching(coarse, shortest_s < short_s ? longer : coarse, fine, options_.threads,
                            suspects());
-    std::vector<Explanation> causes = singles();
-    const auto is_cheap = [](const Explanation& one) {
-      return one.effects.empty() || !one.effects.front()->info.costly;
-    };
-    const auto cheap_end = std::stable_partition(causes.begin(), causes.end(), is_cheap);
-    const std::vector<Explanation> costly(cheap_end, causes.end());
-    causes.erase(cheap_end, causes.end());
+    std::vector<Explanation> causes, costly;
+    for (Explanation& one : singles()) {
+      const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
+      (is_costly ? costly : causes).push_back(std::move(one));
+    }
     candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
@@ -421,11 +419,7 @@ private:
       for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
       return sums;
     };
-    std::vector<std::size_t> order(candidates.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return Search::fitness(candidates[a]) < Search::fitness(candidates[b]);
-    });
+    const std::vector<std::size_t> order = Search::by_fitness(candidates, 0);
     std::vector<std::size_t> looked_at;
     std::size_t single = 0;
     const std::vector<std::size_t> modest = Search::modest(candidates, model_);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 
 #include <algorithm>
@@ -57,8 +58,7 @@ inline std::vector<std::size_t> overlooked(const FitProblem& part, const std::ve
     seen.add(of[place]);
   }
   if (total.mean() < clearly * clearly * seen.mean()) return {};
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t x, std::size_t y) { return of[x].mean() > of[y].mean(); });
+  sort_by(order, [&](std::size_t i) { return -of[i].mean(); });
   order.resize(std::min(order.size(), part.segments.size()));
   std::sort(order.begin(), order.end());
   return order;

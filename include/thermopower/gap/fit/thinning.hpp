@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 
@@ -215,8 +216,7 @@ private:
   void add_mixed(Eigen::Index begin, Eigen::Index end, double until_s) {
     std::vector<Eigen::Index> order;
     for (Eigen::Index one = begin; one < end; ++one) order.push_back(one);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Eigen::Index a, Eigen::Index b) { return level(a) < level(b); });
+    sort_by(order, [&](Eigen::Index row) { return level(row); });
     // Cut at the two widest steps of the level.
     std::array<std::size_t, 2> cuts{0, 0};
     std::array<double, 2> widest{0.0, 0.0};

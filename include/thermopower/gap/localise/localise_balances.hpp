@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/localise/judgement.hpp>
 #include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/plant/balance.hpp>
@@ -91,8 +92,7 @@ public:
     judge_alternatives();
     for (const Group& group : groups_)
       if (group.judgement) place(group);
-    std::stable_sort(out_.where.begin(), out_.where.end(),
-                     [](const Location& a, const Location& b) { return a.share > b.share; });
+    sort_by(out_.where, [](const Location& one) { return -one.share; });
     return std::move(out_);
   }
 

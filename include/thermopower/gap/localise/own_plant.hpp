@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/localise/missing_quantity.hpp>
 #include <thermopower/gap/recording.hpp>
@@ -36,8 +37,7 @@ public:
   OrderedRate(const std::vector<double>& rate, const std::vector<double>& variable, int bins) {
     for (std::size_t i = 0; i < rate.size(); ++i)
       if (std::isfinite(variable[i])) samples_.push_back({variable[i], rate[i]});
-    std::stable_sort(samples_.begin(), samples_.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    sort_by(samples_, [](const auto& one) { return one.first; });
     const std::size_t count = samples_.size();
     // Bins of equally many samples; equal values are not torn apart.
     for (std::size_t k = 0, begin = 0; k < static_cast<std::size_t>(bins) && begin < count; ++k) {
@@ -250,8 +250,7 @@ void localise_own_plant(const Model& model, const Catalogue& catalogue, const st
     found.where.push_back(std::move(location));
     found.quantities.push_back(std::move(picture));
   }
-  std::stable_sort(found.where.begin(), found.where.end(),
-                   [](const Location& a, const Location& b) { return a.share > b.share; });
+  sort_by(found.where, [](const Location& one) { return -one.share; });
 }
 
 /// Draws what the causes of an augmented model supply into pictures of missing rates.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
@@ -33,9 +34,8 @@ inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, st
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (i != chosen && candidates[i].explanation.size() > 0 && candidates[i].held_out.any())
       order.push_back(&candidates[i]);
-  std::stable_sort(order.begin(), order.end(), [](const Candidate* a, const Candidate* b) {
-    return a->probability != b->probability ? a->probability > b->probability : a->deviance < b->deviance;
-  });
+  sort_by(order, [](const Candidate* one) { return one->deviance; });
+  sort_by(order, [](const Candidate* one) { return -one->probability; });
   std::vector<Rival> rivals;
   for (const Candidate* one : order)
     if (rivals.size() < most)
@@ -49,10 +49,8 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
                  const FitProblem& problem, const Weight& weight) {
   std::vector<std::size_t> order(candidates.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const bool first = candidates[a].held_out.any(), second = candidates[b].held_out.any();
-    return first != second ? first : candidates[a].deviance < candidates[b].deviance;
-  });
+  sort_by(order, [&](std::size_t i) { return candidates[i].deviance; });
+  sort_by(order, [&](std::size_t i) { return candidates[i].held_out.any() ? 0 : 1; });
   const double least = candidates[order.front()].deviance;
   std::vector<Eigen::VectorXd> signatures(order.size());
   const Candidate& empty = candidates.front();
