@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
-#include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 
@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// @file heat_between_rows.hpp
@@ -78,23 +79,13 @@ private:
   static constexpr std::size_t bodies = 3;
   static constexpr Eigen::Index terms = bodies + 2;  ///< what came earlier, the sum, and the bodies
 
-  struct Sums {
-    Eigen::Matrix<double, terms, terms> square = Eigen::Matrix<double, terms, terms>::Zero();
-    Eigen::Matrix<double, terms, 1> product = Eigen::Matrix<double, terms, 1>::Zero();
-
-    void add(const Sums& other, double weight) {
-      square += weight * other.square;
-      product += weight * other.product;
-    }
-
-    /// Of the heat's earlier change in the heat, which all terms but the first are given at once.
-    /// @param used  terms, from the first on
-    double share(Eigen::Index used) const {
-      const Eigen::VectorXd fitted = LeastSquares(square.topLeftCorner(used, used)).solve(product.head(used));
-      const double at_once = fitted.tail(used - 1).sum();
-      return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
-    }
-  };
+  /// Of the heat's earlier change in the heat, which all terms but the first are given at once.
+  /// @param used  terms, from the first on
+  static double share_of(const NormalEquations& sums, Eigen::Index used) {
+    const Eigen::VectorXd fitted = sums.solve_first(used);
+    const double at_once = fitted.tail(used - 1).sum();
+    return at_once > 0.0 ? fitted[0] / at_once : plant::missing;
+  }
 
   struct Estimate {
     double value = plant::missing, error = 1e9;
@@ -104,21 +95,21 @@ private:
     constexpr HeatThresholds limit;
     if (blocks_.size() < limit.least_blocks) return {};
     const std::size_t parts = std::min(limit.parts, blocks_.size());
-    std::vector<Sums> sums(parts);
-    Sums all;
+    std::vector<NormalEquations> sums(parts, NormalEquations(terms));
+    NormalEquations all(terms);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       sums[i * parts / blocks_.size()].add(blocks_[i], 1.0);
       all.add(blocks_[i], 1.0);
     }
     std::vector<double> without;
-    for (const Sums& one : sums) {
-      Sums rest = all;
+    for (const NormalEquations& one : sums) {
+      NormalEquations rest = all;
       rest.add(one, -1.0);
-      without.push_back(rest.share(used));
+      without.push_back(share_of(rest, used));
     }
     const double error = jackknife_error(without);
     if (!std::isfinite(error)) return {};
-    return {all.share(used), error};
+    return {share_of(all, used), error};
   }
 
   /// What the heat of a run did until each of its rows, in J: a row of terms for each.
@@ -126,16 +117,17 @@ private:
                                     double usual_s) {
     constexpr std::array<double, bodies> hold{30.0, 6.0, 1.5};  // intervals
     Eigen::MatrixXd did(run.size(), terms);
-    Eigen::Matrix<double, 1, terms> now = Eigen::Matrix<double, 1, terms>::Zero();
+    std::array<double, terms> now{};
     for (Eigen::Index row = run.begin; row < run.end; ++row) {
-      did.row(row - run.begin) = now;
+      for (std::size_t k = 0; k < now.size(); ++k)
+        did(row - run.begin, static_cast<Eigen::Index>(k)) = now[k];
       if (row + 1 == run.end) break;
       const double step_s = inputs.t_s[row + 1] - inputs.t_s[row];
       now[0] += (heat_W[row + 1] - heat_W[row]) * step_s;
       now[1] += heat_W[row] * step_s;
       for (std::size_t k = 0; k < bodies; ++k) {
         const double time_constant_s = hold[k] * usual_s, kept = std::exp(-step_s / time_constant_s);
-        double& held_J = now[static_cast<Eigen::Index>(k) + 2];
+        double& held_J = now[k + 2];
         held_J = kept * held_J + (1.0 - kept) * time_constant_s * heat_W[row];
       }
     }
@@ -171,13 +163,12 @@ private:
     left.conservativeResize(used, terms + 1);
     along_s.conservativeResize(used);
     take_line_off(along_s, left);
-    Sums block;
-    block.square = left.leftCols(terms).transpose() * left.leftCols(terms);
-    block.product = left.leftCols(terms).transpose() * left.col(terms);
-    blocks_.push_back(block);
+    NormalEquations block(terms);
+    for (Eigen::Index i = 0; i < used; ++i) block.add(left.row(i).head(terms), left(i, terms));
+    blocks_.push_back(std::move(block));
   }
 
-  std::vector<Sums> blocks_;
+  std::vector<NormalEquations> blocks_;
 };
 
 /// Part of each interval in which the next row's inputs are in force: `share` where they make another heat, else 0.

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
-#include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -50,9 +51,11 @@ public:
         Row row;
         row.more_dps = (deg[k + 1] - deg[k]) / step_s - mean_dps;
         row.steeper = (dps[k + 1] - dps[k]) / step_s;
-        row.others << (dps[k + 2] - dps[k - 1]) / (inputs.t_s[k + 2] - inputs.t_s[k - 1]), 1.0, mean_dps,
-            mean_dps * std::sin(rad), mean_dps * std::cos(rad);
-        if (std::isfinite(row.more_dps) && row.others.allFinite()) rows_.push_back(row);
+        row.others = {(dps[k + 2] - dps[k - 1]) / (inputs.t_s[k + 2] - inputs.t_s[k - 1]), 1.0, mean_dps,
+                      mean_dps * std::sin(rad), mean_dps * std::cos(rad)};
+        const auto known = [](double value) { return std::isfinite(value); };
+        if (known(row.more_dps) && std::all_of(row.others.begin(), row.others.end(), known))
+          rows_.push_back(row);
       }
   }
 
@@ -61,21 +64,24 @@ public:
   std::optional<double> lag_s() const {
     constexpr LagThresholds limit;
     if (rows_.size() < limit.least_rows) return std::nullopt;
-    std::vector<Sums> blocks(limit.blocks);
+    std::vector<NormalEquations> blocks(limit.blocks, NormalEquations(terms));
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      blocks[i * limit.blocks / rows_.size()].add(rows_[i]);
+      const Eigen::Map<const Eigen::VectorXd> instruments(rows_[i].others.data(), terms);
+      Eigen::VectorXd regressors = instruments;
+      regressors[0] = rows_[i].steeper;
+      blocks[i * limit.blocks / rows_.size()].add(instruments, regressors, rows_[i].more_dps);
       squares += rows_[i].others[0] * rows_[i].others[0] / static_cast<double>(rows_.size());
     }
-    Sums all;
-    for (const Sums& one : blocks) all.add(one, 1.0);
+    NormalEquations all(terms);
+    for (const NormalEquations& one : blocks) all.add(one, 1.0);
     std::vector<double> without;
-    for (const Sums& one : blocks) {
-      Sums rest = all;
+    for (const NormalEquations& one : blocks) {
+      NormalEquations rest = all;
       rest.add(one, -1.0);
-      without.push_back(rest.lag_s());
+      without.push_back(rest.solve()[0]);
     }
-    const double lag = all.lag_s(), standard_error = jackknife_error(without);
+    const double lag = all.solve()[0], standard_error = jackknife_error(without);
     const bool sure =
         std::abs(lag) > limit.sure * standard_error && standard_error < limit.precise * std::abs(lag);
     if (!sure || std::abs(lag) * std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;
@@ -84,25 +90,9 @@ public:
 
 private:
   static constexpr int terms = 5;
-  using Terms = Eigen::Matrix<double, terms, 1>;
   struct Row {
     double more_dps = 0.0, steeper = 0.0;
-    Terms others = Terms::Zero();  ///< the instrument, and what else makes a difference
-  };
-  struct Sums {
-    Eigen::Matrix<double, terms, terms> square = Eigen::Matrix<double, terms, terms>::Zero();
-    Terms product = Terms::Zero();
-    void add(const Row& row) {
-      Terms x = row.others;
-      x[0] = row.steeper;
-      square += row.others * x.transpose();
-      product += row.others * row.more_dps;
-    }
-    void add(const Sums& other, double weight) {
-      square += weight * other.square;
-      product += weight * other.product;
-    }
-    double lag_s() const { return LeastSquares(square).solve(product)[0]; }
+    std::array<double, terms> others{};  ///< the instrument, and what else makes a difference
   };
 
   std::vector<Row> rows_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/jackknife.hpp>
-#include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
@@ -79,7 +79,7 @@ class MotionRegression {
 public:
   /// Terms of a command over the interval from row `row` of a run to the next: at most fourteen; none where the run does not hold
   /// the rows that they are made of.
-  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
+  using Terms = Eigen::VectorXd;
   /// Makes the terms of a command.
   using TermsOf = std::function<Terms(const Inputs& inputs, const Eigen::VectorXd& command,
                                       const RunSpan& run, Eigen::Index row)>;
@@ -144,25 +144,11 @@ private:
   /// Sums of the regression.
   class Sums {
   public:
-    Sums(Eigen::Index terms, const std::vector<int>& cogs)
-        : terms_(terms), cogs_(cogs), square_(Eigen::MatrixXd::Zero(all(), all())), product_(all()) {
-      product_.setZero();
-    }
+    Sums(Eigen::Index terms, const std::vector<int>& cogs) : terms_(terms), cogs_(cogs), equations_(all()) {}
 
-    void add(const Row& row) {
-      const Eigen::VectorXd x = regressors(row);
-      square_.selfadjointView<Eigen::Lower>().rankUpdate(x);
-      product_ += x * row.response;
-    }
-
-    void add(const Sums& other, double weight) {
-      square_ += weight * other.square_;
-      product_ += weight * other.product_;
-    }
-
-    Eigen::VectorXd solve() const {
-      return LeastSquares(square_.selfadjointView<Eigen::Lower>()).solve(product_);
-    }
+    void add(const Row& row) { equations_.add(regressors(row), row.response); }
+    void add(const Sums& other, double weight) { equations_.add(other.equations_, weight); }
+    Eigen::VectorXd solve() const { return equations_.solve(); }
 
     Eigen::VectorXd regressors(const Row& row) const {
       Eigen::VectorXd x(all());
@@ -183,8 +169,7 @@ private:
 
     Eigen::Index terms_;
     std::vector<int> cogs_;
-    Eigen::MatrixXd square_;
-    Eigen::VectorXd product_;
+    NormalEquations equations_;
   };
 
   /// Hands each row with an acceleration to `use(driven, run, row, motion)`.

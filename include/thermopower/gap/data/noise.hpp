@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/data/robust.hpp>
 
 #include <Eigen/Core>
@@ -44,12 +45,12 @@ double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& ga
 /// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
 inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
   constexpr int sweeps = 200;
-  const Eigen::MatrixXd gram = columns.transpose() * columns;
-  const Eigen::VectorXd right = columns.transpose() * y;
+  const Eigen::MatrixXd square = gram(columns);
+  const Eigen::VectorXd right = transposed_times(columns, y);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(columns.cols());
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (gram(k, k) > 0.0) x[k] = std::max(0.0, x[k] + (right[k] - gram.row(k).dot(x)) / gram(k, k));
+      if (square(k, k) > 0.0) x[k] = std::max(0.0, x[k] + (right[k] - square.col(k).dot(x)) / square(k, k));
   return x;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 
 #include <algorithm>
@@ -111,14 +112,14 @@ public:
     point.starts = problem_.measured_starts();
     linearise(point);
     const Eigen::VectorXd change = stepped(point, 1e-3).at - at;
-    return projected_cost_ + 2.0 * gradient_.dot(change) + change.dot(information_ * change);
+    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
   }
 
 private:
   struct Eliminated {
     Eigen::MatrixXd inverse;   ///< of the starts' own block
     Eigen::MatrixXd coupling;  ///< starts by coordinates
-    Start gradient;
+    Eigen::VectorXd gradient;
   };
 
   void linearise(FitResult& at) {
@@ -151,28 +152,28 @@ private:
   void add_segment(std::size_t i, const FitProblem::Residuals& residuals, const Start& start, double& chi2,
                    double& prior) {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
-    const auto own = residuals.jacobian.leftCols(n);
-    const auto starts = residuals.jacobian.rightCols(start.size());
-    const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
+    const MatrixView own = residuals.jacobian.leftCols(n);
+    const MatrixView starts = residuals.jacobian.rightCols(start.size());
+    const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
     Eliminated& part = eliminated_[i];
-    part.inverse.setZero(start.size(), start.size());
-    part.inverse.noalias() += starts.transpose() * starts;
+    part.inverse = gram(starts);
+    part.gradient = transposed_times(starts, residuals.value);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
+      const double weight = inverse_sd[k] * inverse_sd[k];
       double& diagonal = part.inverse(k, k);
-      diagonal += weight[k];
+      diagonal += weight;
       if (!(diagonal > 0.0)) diagonal = 1.0;
+      part.gradient[k] += weight * start[k];
+      prior += weight * start[k] * start[k];
     }
     invert_symmetric(part.inverse);
-    part.coupling = starts.transpose() * own;
-    part.gradient = starts.transpose() * residuals.value + (weight.array() * start.array()).matrix();
-    information_.noalias() += own.transpose() * own;
-    const Eigen::MatrixXd held = part.inverse * part.coupling;
-    information_.noalias() -= part.coupling.transpose() * held;
-    gradient_.noalias() += own.transpose() * residuals.value;
-    gradient_.noalias() -= part.coupling.transpose() * (part.inverse * part.gradient);
+    part.coupling = transposed_product(starts, own);
+    information_ += gram(own);
+    information_ -= transposed_product(part.coupling, transposed_product(part.inverse, part.coupling));
+    gradient_ += transposed_times(own, residuals.value);
+    gradient_ -= transposed_times(part.coupling, transposed_times(part.inverse, part.gradient));
     chi2 += residuals.value.squaredNorm();
-    prior += (weight.array() * start.array().square()).sum();
-    projected_cost_ -= part.gradient.dot(part.inverse * part.gradient);
+    projected_cost_ -= quadratic_form(part.inverse, part.gradient);
     if (scatter_.size() > 0) add_scatter(residuals, part);
   }
 
@@ -185,12 +186,11 @@ private:
     const Eigen::Index parts = (rows + longest - 1) / longest;
     for (Eigen::Index k = 0; k < parts; ++k) {
       const Eigen::Index begin = rows * k / parts, count = rows * (k + 1) / parts - begin;
-      const auto jacobian = residuals.jacobian.middleRows(begin, count);
-      const auto value = residuals.value.segment(begin, count);
-      const Start by_start = jacobian.rightCols(jacobian.cols() - n).transpose() * value;
-      const Eigen::VectorXd gradient =
-          jacobian.leftCols(n).transpose() * value - part.coupling.transpose() * (part.inverse * by_start);
-      scatter_.noalias() += gradient * gradient.transpose();
+      const VectorView value = residuals.value.segment(begin, count);
+      const Eigen::VectorXd all = transposed_times(residuals.jacobian.middleRows(begin, count), value);
+      const Eigen::VectorXd by_start = transposed_times(part.inverse, all.tail(all.size() - n));
+      const Eigen::VectorXd gradient = all.head(n) - transposed_times(part.coupling, by_start);
+      for (Eigen::Index a = 0; a < n; ++a) scatter_.col(a) += gradient[a] * gradient;
       ++blocks_;
     }
   }
@@ -251,9 +251,8 @@ private:
     to.at = from.at + change;
     to.starts = from.starts;
     for (std::size_t i = 0; i < to.starts.size(); ++i) {
-      Start slope = eliminated_[i].gradient;
-      slope.noalias() += eliminated_[i].coupling * change;
-      to.starts[i].noalias() -= eliminated_[i].inverse * slope;
+      const Eigen::VectorXd slope = eliminated_[i].gradient + eliminated_[i].coupling * change;
+      to.starts[i] -= transposed_times(eliminated_[i].inverse, slope);
     }
     // A start that nobody measures stays among those that a body can have.
     for (std::size_t i = 0; i < to.starts.size(); ++i)
@@ -268,8 +267,11 @@ private:
     problem_.evaluate(explanation_, list_, at, starts, false,
                       [&](std::size_t i, const FitProblem::Residuals& residuals) {
                         chi2 += residuals.value.squaredNorm();
-                        const Start weight = problem_.start_weight(problem_.segments[i]).array().square();
-                        total += (weight.array() * starts[i].array().square()).sum();
+                        const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
+                        for (Eigen::Index k = 0; k < inverse_sd.size(); ++k) {
+                          const double off = inverse_sd[k] * starts[i][k];
+                          total += off * off;
+                        }
                       });
     for (std::size_t i = 0; i < list_.size(); ++i)
       total += per_prior_ * list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/localise/thresholds.hpp>
 
 #include <Eigen/Core>
@@ -106,15 +107,18 @@ inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd&
                      width = bounded + problem.free.cols() + columns.cols();
   Eigen::MatrixXd x(problem.y.size(), width);
   x << problem.nuisance, problem.free, columns;
-  const Eigen::VectorXd scale =
-      x.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
-  const Eigen::MatrixXd gram = scale.asDiagonal() * (x.transpose() * x) * scale.asDiagonal() +
-                               1e-8 * Eigen::MatrixXd::Identity(width, width);
-  const Eigen::VectorXd moment = scale.asDiagonal() * (x.transpose() * problem.y);
+  const Eigen::MatrixXd square = gram(x);
+  Eigen::VectorXd scale(width);
+  for (Eigen::Index k = 0; k < width; ++k)
+    scale[k] = square(k, k) > 0.0 ? 1.0 / std::sqrt(square(k, k)) : 0.0;
+  Eigen::MatrixXd scaled = scaled_both_ways(square, scale);
+  for (Eigen::Index k = 0; k < width; ++k) scaled(k, k) += 1e-8;
+  const Eigen::VectorXd moment = scale.cwiseProduct(transposed_times(x, problem.y));
   Eigen::VectorXd upper = Eigen::VectorXd::Constant(width, std::numeric_limits<double>::infinity());
   for (Eigen::Index k = 0; k < bounded; ++k) upper[k] = scale[k] > 0.0 ? problem.slack / scale[k] : 0.0;
-  const Eigen::VectorXd solution = bounded_solve(gram, moment, -upper, upper);
-  return std::max(0.0, problem.y.squaredNorm() - 2.0 * moment.dot(solution) + solution.dot(gram * solution));
+  const Eigen::VectorXd solution = bounded_solve(scaled, moment, -upper, upper);
+  return std::max(0.0,
+                  problem.y.squaredNorm() - 2.0 * moment.dot(solution) + quadratic_form(scaled, solution));
 }
 
 /// What a set of blocks makes of a problem.
@@ -165,10 +169,10 @@ public:
       Eigen::Index end = begin;
       while (end < rows && problem.fold[end] == problem.fold[begin]) ++end;
       const std::size_t f = static_cast<std::size_t>(problem.fold[begin]);
-      const auto part = x.middleRows(begin, end - begin);
-      const auto target = problem.y.segment(begin, end - begin);
-      gram_[f].noalias() += part.transpose() * part;
-      moment_[f].noalias() += part.transpose() * target;
+      const MatrixView part = x.middleRows(begin, end - begin);
+      const VectorView target = problem.y.segment(begin, end - begin);
+      gram_[f] += gram(part);
+      moment_[f] += transposed_times(part, target);
       square_[f] += target.squaredNorm();
       begin = end;
     }
@@ -221,22 +225,26 @@ public:
       for (Eigen::Index r = 0; r < width; ++r) out[r] = full[index[static_cast<std::size_t>(r)]];
       return out;
     };
-    const Eigen::MatrixXd ridge = Eigen::MatrixXd::Identity(width, width) * 1e-8;
+    const auto with_ridge = [](Eigen::MatrixXd square) {
+      for (Eigen::Index k = 0; k < square.rows(); ++k) square(k, k) += 1e-8;
+      return square;
+    };
     const Eigen::MatrixXd all = part(all_);
     const Eigen::VectorXd all_moment = piece(all_moment_);
     double squares = 0.0;
     for (const double square : square_) squares += square;
-    const Eigen::VectorXd solution = bounded_solve(all + ridge, all_moment, lower, upper);
+    const Eigen::VectorXd solution = bounded_solve(with_ridge(all), all_moment, lower, upper);
     result.seen_total =
-        std::max(0.0, squares - 2.0 * solution.dot(all_moment) + solution.dot(all * solution));
+        std::max(0.0, squares - 2.0 * solution.dot(all_moment) + quadratic_form(all, solution));
     result.coefficients = solution.cwiseProduct(scale);
     result.unseen.assign(square_.size(), 0.0);
     for (std::size_t f = 0; f < square_.size(); ++f) {
       if (square_[f] == 0.0) continue;
       const Eigen::MatrixXd own = part(gram_[f]);
       const Eigen::VectorXd own_moment = piece(moment_[f]);
-      const Eigen::VectorXd other = bounded_solve(all - own + ridge, all_moment - own_moment, lower, upper);
-      result.unseen[f] = std::max(0.0, square_[f] - 2.0 * other.dot(own_moment) + other.dot(own * other));
+      const Eigen::VectorXd other =
+          bounded_solve(with_ridge(all - own), all_moment - own_moment, lower, upper);
+      result.unseen[f] = std::max(0.0, square_[f] - 2.0 * other.dot(own_moment) + quadratic_form(own, other));
       result.unseen_total += result.unseen[f];
     }
     return result;

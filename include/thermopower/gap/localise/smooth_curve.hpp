@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 
 #include <Eigen/Core>
 
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 /// @file
 /// A smooth curve through samples.
@@ -53,12 +55,8 @@ public:
     // Where there are no samples the curve goes straight on; were they all at one place, level.
     constexpr double level = 1e-9;
     for (Eigen::Index k = 0; k + 1 < size; ++k) {
-      Eigen::VectorXd difference = Eigen::VectorXd::Zero(size);
-      difference[k] = -1.0, difference[k + 1] = 1.0;
-      penalty_ += level * difference * difference.transpose();
-      if (k + 2 == size) break;
-      difference[k] = 1.0, difference[k + 1] = -2.0, difference[k + 2] = 1.0;
-      penalty_ += difference * difference.transpose();
+      add_penalty(k, {-1.0, 1.0}, level);
+      if (k + 2 < size) add_penalty(k, {1.0, -2.0, 1.0}, 1.0);
     }
   }
 
@@ -85,7 +83,7 @@ public:
       const Eigen::VectorXd a =
           SymmetricSystem(all_.left - seen_by_one.left + stiffness * all_.count * penalty_)
               .solve(all_.right - seen_by_one.right);
-      sum += asked.squares - 2.0 * a.dot(asked.right) + a.dot(asked.left * a);
+      sum += asked.squares - 2.0 * a.dot(asked.right) + quadratic_form(asked.left, a);
       count += asked.count;
     }
     return count > 0.0 ? std::max(0.0, sum / count) : 0.0;
@@ -128,6 +126,14 @@ private:
       squares += y * y;
     }
   };
+
+  /// Adds the square of a difference of neighbouring coefficients. @param first  of them
+  void add_penalty(Eigen::Index first, const std::vector<double>& difference, double weight) {
+    for (std::size_t a = 0; a < difference.size(); ++a)
+      for (std::size_t b = 0; b < difference.size(); ++b)
+        penalty_(first + static_cast<Eigen::Index>(a), first + static_cast<Eigen::Index>(b)) +=
+            weight * difference[a] * difference[b];
+  }
 
   Piece at(double x) const {
     const double place = (x - from_) / width_;

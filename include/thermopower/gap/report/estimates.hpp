@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 
@@ -35,9 +36,9 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   if (candidate.fit.information.size() == 0) return {};
   // Each coordinate in the unit that the data resolve it in: beside a parameter that is known to a millionth of its
   // unit, what only the prior knows would be taken for rounding, and its share of the intervals would be lost.
-  const Eigen::VectorXd unit = candidate.fit.information.diagonal().unaryExpr(
-      [](double x) { return x > 0.0 ? 1.0 / std::sqrt(x) : 1.0; });
-  const LeastSquares scaled(unit.asDiagonal() * candidate.fit.information * unit.asDiagonal());
+  Eigen::VectorXd unit = candidate.fit.information.diagonal();
+  for (double& one : unit) one = one > 0.0 ? 1.0 / std::sqrt(one) : 1.0;
+  const LeastSquares scaled(scaled_both_ways(candidate.fit.information, unit));
   Eigen::MatrixXd inverse(unit.size(), unit.size());
   for (Eigen::Index k = 0; k < unit.size(); ++k)
     inverse.col(k) = unit[k] * scaled.solve(Eigen::VectorXd::Unit(unit.size(), k)).cwiseProduct(unit);
@@ -54,8 +55,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
     return covariance;
   }
   // Neighbouring blocks of long correlation are alike: they count as one in part.
-  covariance.of =
-      inverse * candidate.fit.scatter * inverse * (blocks / free * (1.0 + longest / block_samples));
+  covariance.of = transposed_product(inverse, transposed_product(candidate.fit.scatter, inverse)) *
+                  (blocks / free * (1.0 + longest / block_samples));
   for (Eigen::Index i = 0; i < covariance.of.rows(); ++i)
     covariance.of(i, i) = std::max(covariance.of(i, i), inverse(i, i));
   const double z = 1.96;
@@ -106,7 +107,12 @@ inline Eigen::MatrixXd covariance_of_moving(const Candidate& candidate, const We
   const Eigen::MatrixXd all = covariance_of(candidate, weight).of;
   if (all.size() == 0) return all;
   const std::vector<Eigen::Index> places = moving(candidate);
-  return all(places, places);
+  const Eigen::Index n = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd some(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < n; ++k)
+      some(i, k) = all(places[static_cast<std::size_t>(i)], places[static_cast<std::size_t>(k)]);
+  return some;
 }
 
 /// How the estimates of a fit hang together: its covariance, each coordinate in units of its own standard deviation.

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/linear_solve.hpp>
+
+#include <Eigen/Core>
+
+namespace thermopower::gap::engine {
+
+/// Sums of a linear regression over its rows. Sums of parts of the rows add up, and can be taken out again.
+class NormalEquations {
+public:
+  /// @param terms  of the regression: how many
+  explicit NormalEquations(Eigen::Index terms)
+      : square_(Eigen::MatrixXd::Zero(terms, terms)), product_(Eigen::VectorXd::Zero(terms)) {}
+
+  /// Adds a row. @param terms  the value of each
+  void add(const Eigen::VectorXd& terms, double response) { add(terms, terms, response); }
+
+  /// Adds a row of terms that err. @param instruments  one for each term, that do not err with it
+  void add(const Eigen::VectorXd& instruments, const Eigen::VectorXd& terms, double response) {
+    for (Eigen::Index k = 0; k < terms.size(); ++k) {
+      for (Eigen::Index i = 0; i < terms.size(); ++i) square_(i, k) += instruments[i] * terms[k];
+      product_[k] += instruments[k] * response;
+    }
+  }
+
+  /// Adds other sums so many times: -1 takes them out.
+  void add(const NormalEquations& other, double times) {
+    for (Eigen::Index k = 0; k < product_.size(); ++k) {
+      for (Eigen::Index i = 0; i < product_.size(); ++i) square_(i, k) += times * other.square_(i, k);
+      product_[k] += times * other.product_[k];
+    }
+  }
+
+  /// The coefficients; of several that do as well the shortest.
+  Eigen::VectorXd solve() const { return LeastSquares(square_).solve(product_); }
+
+  /// Those of a regression on the first terms alone. @param count  of them
+  Eigen::VectorXd solve_first(Eigen::Index count) const {
+    return LeastSquares(square_.topLeftCorner(count, count)).solve(product_.head(count));
+  }
+
+private:
+  Eigen::MatrixXd square_;   // of the terms, by the terms
+  Eigen::VectorXd product_;  // of the terms and the response
+};
+
+}  // namespace thermopower::gap::engine
