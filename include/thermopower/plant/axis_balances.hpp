@@ -5,6 +5,7 @@
 #include <thermopower/plant/axis_at_rows.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/columns.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -46,6 +47,19 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
     }
   }
   return out;
+}
+
+/// Sines and cosines of an angle in rad so many times over.
+inline Eigen::VectorXd sine(const Eigen::VectorXd& angle, double count) {
+  return (count * angle.array()).sin();
+}
+inline Eigen::VectorXd cosine(const Eigen::VectorXd& angle, double count) {
+  return (count * angle.array()).cos();
+}
+
+/// Temperatures above their mean.
+inline Eigen::VectorXd warmer_than_mean(const Eigen::VectorXd& temperature) {
+  return temperature.array() - temperature.mean();
 }
 
 /// How often a torque may repeat in a turn, as far as travel and rows show such a period.
@@ -97,9 +111,7 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
   add("rate_dps", "a friction that depends on the rate",
       [a, direction, sampled] { return sampled(scaled(hats(a->rate.cwiseAbs(), 5), *direction)); });
   add("rate_dps", "a friction that differs with the direction", [direction, sampled] {
-    Eigen::MatrixXd columns(direction->size(), 2);
-    columns << *direction, Eigen::VectorXd::Ones(direction->size());
-    return sampled(columns);
+    return sampled(columns_of({*direction, Eigen::VectorXd::Ones(direction->size())}));
   });
   add("rate_dps", "a friction that depends on rate and direction",
       [a, sampled] { return sampled(hats(a->rate, 9)); });
@@ -110,11 +122,10 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
     add("motor_C", "a friction that changes with the temperature", [a, direction, sampled] {
       // Grease thins by an exponential: over tens of degrees its curvature shows.
       const Eigen::VectorXd& motor_C = a->inputs().covariate_motor_C;
-      const Eigen::ArrayXd warmer = motor_C.array() - motor_C.mean();
-      const Eigen::ArrayXd z = warmer / std::max(warmer.abs().maxCoeff(), 1e-12);
-      Eigen::MatrixXd columns(a->rate.size(), 4);
-      columns << a->rate, a->rate.array() * z, a->rate.array() * z.square(), direction->array() * z;
-      return sampled(columns);
+      const Eigen::VectorXd warmer = warmer_than_mean(motor_C);
+      const Eigen::VectorXd z = warmer / std::max(warmer.cwiseAbs().maxCoeff(), 1e-12);
+      return sampled(columns_of({a->rate, a->rate.cwiseProduct(z), a->rate.cwiseProduct(z.cwiseAbs2()),
+                                 direction->cwiseProduct(z)}));
     });
 }
 
@@ -147,16 +158,12 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
   if (a->inputs().covariate_motor_C.size() > 0)
     add("motor_C", "a torque constant that changes with the temperature", [a, drive_Nm, held] {
       const Eigen::VectorXd& motor_C = a->inputs().covariate_motor_C;
-      Eigen::MatrixXd columns(motor_C.size(), 2);
-      columns << *drive_Nm, drive_Nm->cwiseProduct((motor_C.array() - motor_C.mean()).matrix());
-      return held(columns);
+      return held(columns_of({*drive_Nm, drive_Nm->cwiseProduct(warmer_than_mean(motor_C))}));
     });
   if (!a->has_angle) return;
   Freedom periodic{Submodel::mechanical_drive, "angle_deg", "", [a, drive_Nm, held](double count) {
-                     Eigen::MatrixXd columns(a->angle.size(), 2);
-                     columns << drive_Nm->array() * (count * a->angle.array()).sin(),
-                         drive_Nm->array() * (count * a->angle.array()).cos();
-                     return held(columns);
+                     return held(columns_of({drive_Nm->cwiseProduct(sine(a->angle, count)),
+                                             drive_Nm->cwiseProduct(cosine(a->angle, count))}));
                    }};
   periodic.scan = repeats_per_turn(*a);
   periodic.penalty = 2;
@@ -177,21 +184,15 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
   };
   if (a->has_angle) {
     add("angle_deg", "a torque with the sine of the angle", [a, sampled] {
-      Eigen::MatrixXd columns(a->angle.size(), 2);
-      columns << a->angle.array().sin(), a->angle.array().cos();
-      return sampled(columns);
+      return sampled(columns_of({sine(a->angle, 1.0), cosine(a->angle, 1.0)}));
     });
     add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
-      Eigen::MatrixXd columns(n, 2);
-      columns << a->angle, Eigen::VectorXd::Ones(n);
-      return sampled(columns);
+      return sampled(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
     });
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "", [a, sampled](double count) {
-                       Eigen::MatrixXd columns(a->angle.size(), 2);
-                       columns << (count * a->angle.array()).sin(), (count * a->angle.array()).cos();
-                       return sampled(columns);
+                       return sampled(columns_of({sine(a->angle, count), cosine(a->angle, count)}));
                      }};
     periodic.scan = repeats_per_turn(*a);
     periodic.penalty = 2;
@@ -311,9 +312,8 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };
   course(Submodel::mechanical_friction, "t_s", "a friction that changes in the course of time",
          [a, direction, order] {
-           Eigen::MatrixXd columns(direction->size(), 24);
-           columns << scaled(even_hats(order(), 12), *direction), scaled(even_hats(order(), 12), a->rate);
-           return columns;
+           const Eigen::MatrixXd hats = even_hats(order(), 12);
+           return beside(scaled(hats, *direction), scaled(hats, a->rate));
          });
   course(Submodel::mechanical_load, "t_s", "a torque of its own course in time",
          [order] { return even_hats(order(), 48); });
@@ -359,8 +359,8 @@ inline Balance instrument_balance(const AxisAtRows& a) {
   b.freedoms.push_back({Submodel::sensing_angle, "angle_deg", "the angle's error repeats every turn",
                         [rate_dps, angle](double) {
                           return std::vector<Direction>{
-                              flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().sin()))),
-                              flow_sampled(rate_dps->cwiseProduct(Eigen::VectorXd(angle->array().cos())))};
+                              flow_sampled(rate_dps->cwiseProduct(detail::sine(*angle, 1.0))),
+                              flow_sampled(rate_dps->cwiseProduct(detail::cosine(*angle, 1.0)))};
                         }});
   b.variables = {
       {"rate_dps", "deg/s", *rate_dps, OrderingVariable::Kind::sampled, Signal::rate_dps},

@@ -5,6 +5,7 @@
 #include <thermopower/plant/bench_at_rows.hpp>
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
+#include <thermopower/plant/columns.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -78,9 +79,8 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
       [k] { return Eigen::MatrixXd(k->v.law_A); });
   b.freedoms.back().or_instrument = Submodel::sensing_current;
   add(Submodel::electrical, "motor_C", "a resistance that depends on the temperature", [k] {
-    Eigen::MatrixXd columns(k->on.size(), 2);
-    columns << k->v.law_A, k->v.law_A.cwiseProduct(((k->v.winding_C.array() - 25.0) / 10.0).matrix());
-    return columns;
+    const Eigen::VectorXd warmer = (k->v.winding_C.array() - 25.0) / 10.0;
+    return columns_of({k->v.law_A, k->v.law_A.cwiseProduct(warmer)});
   });
   add(Submodel::electrical, "v_rms_V", "a voltage lost that depends on the drive",
       [k] { return scaled(hats(k->v.v_rms_V, 6), k->v.law_A); });
@@ -93,10 +93,8 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
     return columns;
   });
   add(Submodel::electrical, "v_rms_V", "a supply that gives way under load and with the charge drawn", [k] {
-    Eigen::MatrixXd columns(k->on.size(), 3);
-    columns << k->v.law_A, k->v.law_A.cwiseProduct(k->v.v_rms_V.cwiseAbs2()),
-        k->v.law_A.cwiseProduct(k->charge);
-    return columns;
+    return columns_of(
+        {k->v.law_A, k->v.law_A.cwiseProduct(k->v.v_rms_V.cwiseAbs2()), k->v.law_A.cwiseProduct(k->charge)});
   });
   b.variables = {{"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held},
                  {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C},
@@ -116,9 +114,7 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
         });
     add(Submodel::electrical, covariate.name, "a factor that changes with " + the_variable(covariate.name),
         [k, z] {
-          Eigen::MatrixXd columns(z->size(), 2);
-          columns << k->v.law_A, k->v.law_A.cwiseProduct(*z);
-          return columns;
+          return columns_of({k->v.law_A, k->v.law_A.cwiseProduct(*z)});
         });
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
   }
@@ -280,9 +276,8 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
           [k, z, watts] { return watts(k->loss_per_K.cwiseProduct(z->cwiseAbs2())); });
       add(Submodel::thermal_heating, covariate.name, "heat that comes with " + the_variable(covariate.name),
           [k, z, watts] {
-            Eigen::MatrixXd two(z->size(), 2);
-            two << k->loss_per_K.cwiseProduct(*z), k->loss_per_K.cwiseProduct(z->cwiseAbs2());
-            return watts(two);
+            return watts(
+                columns_of({k->loss_per_K.cwiseProduct(*z), k->loss_per_K.cwiseProduct(z->cwiseAbs2())}));
           });
     }
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
@@ -293,10 +288,8 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
       std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, std::min<Eigen::Index>(n, 8000) / 20));
   const auto course = [k, knots](const Eigen::VectorXd& size) {
     const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(k->rise.size(), 0.0, 1.0);
-    Eigen::MatrixXd columns(order.size(), knots + 2);
-    columns << scaled(even_hats(order, static_cast<int>(knots)), size), k->loss_per_K.cwiseProduct(k->rise),
-        k->loss_per_K;
-    return columns;
+    return beside(scaled(even_hats(order, static_cast<int>(knots)), size),
+                  columns_of({k->loss_per_K.cwiseProduct(k->rise), k->loss_per_K}));
   };
   const std::string nothing = "nothing recorded orders it; a course of its own in time";
   b.courses.push_back({Submodel::thermal_heating, "", nothing,

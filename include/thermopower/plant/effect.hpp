@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -113,13 +114,13 @@ class ParameterBuilder {
 public:
   /// @param index  by which the effect reads it, an enumerator: the catalogue checks it against the list
   /// @param name   as in model files and reports
-  ParameterBuilder(int index, std::string name) {
+  ParameterBuilder(int index, std::string_view name) {
     parameter_.index = index;
-    parameter_.name = std::move(name);
+    parameter_.name = name;
     parameter_.unit = "1";
   }
   /// Of its value; "1" (a pure number) unless said otherwise.
-  ParameterBuilder& unit(std::string text) { return parameter_.unit = std::move(text), *this; }
+  ParameterBuilder& unit(std::string_view text) { return parameter_.unit = text, *this; }
   /// Physical bounds, lower < upper.
   ParameterBuilder& within(double lower, double upper) {
     return parameter_.lower = lower, parameter_.upper = upper, *this;
@@ -135,7 +136,7 @@ public:
   /// Its value where a model leaves it out.
   ParameterBuilder& standard(double value) { return parameter_.standard = value, *this; }
   /// It must exceed another parameter of the effect, by name: below, the effect does not show.
-  ParameterBuilder& exceeds(std::string other) { return parameter_.exceeds = std::move(other), *this; }
+  ParameterBuilder& exceeds(std::string_view other) { return parameter_.exceeds = other, *this; }
   /// It counts periods in the angle, and so many must lie within the recorded travel.
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// It stays at its standard until the effect without it leaves what it takes away.
@@ -155,7 +156,7 @@ private:
 /// Begins a parameter: `parameter(lag_s, "lag_s").unit("s").within(0.05, 3000.0).logarithmic().starts({3.0})`.
 /// @param index  by which the effect reads it: `enum Parameters { lag_s };` and `p[lag_s]`
 /// @param name   as in model files and reports
-inline ParameterBuilder parameter(int index, std::string name) { return {index, std::move(name)}; }
+inline ParameterBuilder parameter(int index, std::string_view name) { return {index, name}; }
 
 /// A state of the joint that an effect brings: its hooks find it in `terms.own`.
 struct HiddenState {

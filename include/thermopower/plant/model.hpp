@@ -5,6 +5,7 @@
 #include <thermopower/plant/invalid_input.hpp>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -202,9 +203,15 @@ struct Model {
 
 namespace detail {
 
-/// Calls visit(block, name, value&) for every constant present.
-template <class ModelType, class Visitor>
-void for_each_constant(ModelType& model, Visitor&& visit) {
+/// What a visitor of the constants of a model gets to see of each: a number that it may write where the model is its own.
+template <class ModelType>
+using VisitConstant =
+    std::function<void(const char* block, const char* name,
+                       std::conditional_t<std::is_const_v<ModelType>, const double, double>& value)>;
+
+/// Calls visit(block, name, value) for every constant present.
+template <class ModelType>
+void for_each_constant(ModelType& model, const VisitConstant<ModelType>& visit) {
   if (model.supply) visit("supply", "nominal_V", model.supply->nominal_V);
   if (auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current)) {
     visit("current", "resistance_ohm", ohmic->resistance_ohm);

@@ -173,8 +173,9 @@ private:
   };
 
   /// Hands each row with an acceleration to `use(driven, run, row, motion)`.
-  template <class Use>
-  void for_each_row(Use&& use) const {
+  using UseRow = std::function<void(const Driven& driven, const RunSpan& run, Eigen::Index row,
+                                    const MeasuredMotion& motion)>;
+  void for_each_row(const UseRow& use) const {
     for (const Driven& one : recordings_) {
       const Inputs& inputs = *one.inputs;
       for (const RunSpan& run : inputs.runs)

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/columns.hpp>
 
 #include <Eigen/Core>
 
@@ -81,9 +82,9 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
   std::vector<double> costs, variances;
   for (std::size_t k = 0; k < noises.size(); ++k)
     for (std::size_t e = 0; e <= errors.size(); ++e) {
-      Eigen::MatrixXd columns(rows, 3);
-      columns << noises[0], noises[k], e < errors.size() ? errors[e] : Eigen::VectorXd::Zero(rows);
-      if (k == 0) columns.col(1).setZero();
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows);
+      const Eigen::MatrixXd columns =
+          plant::columns_of({noises[0], k == 0 ? none : noises[k], e < errors.size() ? errors[e] : none});
       const Eigen::VectorXd parts = non_negative_fit(columns, wanted);
       const double cost = (columns * parts - wanted).squaredNorm() +
                           limit.part_penalty * static_cast<double>((parts.array() > 0.0).count());

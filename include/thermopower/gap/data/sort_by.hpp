@@ -18,16 +18,22 @@ inline std::vector<std::size_t> ascending(const std::vector<double>& numbers) {
   return order;
 }
 
+/// Puts items into an order. @param order  index of each place's item
+template <class Item>
+void reorder(std::vector<Item>& items, const std::vector<std::size_t>& order) {
+  std::vector<Item> sorted;
+  sorted.reserve(items.size());
+  for (const std::size_t index : order) sorted.push_back(std::move(items[index]));
+  items = std::move(sorted);
+}
+
 /// Sorts items by a number that each has, the least first; equal ones stay in the order in which they stand.
 /// @param key  makes the number of an item
 template <class Item, class Key>
 void sort_by(std::vector<Item>& items, Key&& key) {
   std::vector<double> numbers;
   for (const Item& one : items) numbers.push_back(static_cast<double>(key(one)));
-  std::vector<Item> sorted;
-  sorted.reserve(items.size());
-  for (const std::size_t index : ascending(numbers)) sorted.push_back(std::move(items[index]));
-  items = std::move(sorted);
+  reorder(items, ascending(numbers));
 }
 
 }  // namespace thermopower::gap::engine

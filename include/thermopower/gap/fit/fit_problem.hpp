@@ -13,6 +13,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -49,10 +51,9 @@ struct FitProblem {
   }
 
   /// Simulates all segments and hands each one's residuals to `use(segment index, residuals)`.
-  template <class Use>
   void evaluate(const Explanation& explanation, const std::vector<Coordinate>& list,
                 const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
-                Use&& use) const {
+                const std::function<void(std::size_t index, const Residuals& residuals)>& use) const {
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
     const Plant& plant = this->plant();
     const int parameters = static_cast<int>(list.size());

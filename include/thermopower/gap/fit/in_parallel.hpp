@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -22,8 +23,7 @@ inline constexpr std::size_t most_threads = 1024;
 ///
 /// An exception ends the work as soon as what is under way has ended, and is thrown here: that of the
 /// smallest i that threw, whatever the number of threads.
-template <class Work>
-void in_parallel(std::size_t count, unsigned threads, Work&& work) {
+inline void in_parallel(std::size_t count, unsigned threads, const std::function<void(std::size_t i)>& work) {
   if (threads <= 1 || count <= 1) {
     for (std::size_t i = 0; i < count; ++i) work(i);
     return;

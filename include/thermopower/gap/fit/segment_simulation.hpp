@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -98,10 +100,10 @@ inline Start start_of(const Plant& plant, Rollout& rollout, const Segment& segme
 
 /// Simulates segments from their measured starts and hands each one's readings to `use(segment index, readings)`.
 /// @param sigma  as start_of() takes it
-template <class Use>
-void simulate_segments(const Model& model, const Catalogue& catalogue, const std::vector<Segment>& segments,
-                       SimulationMode mode, Use&& use,
-                       const std::array<double, signal_count>* sigma = nullptr) {
+inline void simulate_segments(const Model& model, const Catalogue& catalogue,
+                              const std::vector<Segment>& segments, SimulationMode mode,
+                              const std::function<void(std::size_t index, const Readings& readings)>& use,
+                              const std::array<double, signal_count>* sigma = nullptr) {
   const Plant& plant = plant_of(model);
   const auto rollout = plant.rollout(model, catalogue, {}, {}, mode);
   Readings readings;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/localise/thresholds.hpp>
+#include <thermopower/plant/columns.hpp>
 
 #include <Eigen/Core>
 
@@ -103,10 +104,8 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
 /// Sum of squares that nuisances within their slack and these columns leave on all rows: cheap enough for a
 /// scan.
 inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd& columns) {
-  const Eigen::Index bounded = problem.nuisance.cols(),
-                     width = bounded + problem.free.cols() + columns.cols();
-  Eigen::MatrixXd x(problem.y.size(), width);
-  x << problem.nuisance, problem.free, columns;
+  const Eigen::MatrixXd x = plant::beside(plant::beside(problem.nuisance, problem.free), columns);
+  const Eigen::Index bounded = problem.nuisance.cols(), width = x.cols();
   const Eigen::MatrixXd square = gram(x);
   Eigen::VectorXd scale(width);
   for (Eigen::Index k = 0; k < width; ++k)
