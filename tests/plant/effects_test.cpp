@@ -13,6 +13,8 @@
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/warm_friction.hpp>
 
+#include <Eigen/QR>
+
 #include <set>
 
 using namespace engine_fixture;

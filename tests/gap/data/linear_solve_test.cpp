@@ -3,9 +3,9 @@
 
 #include <thermopower/gap/data/linear_solve.hpp>
 
-#include <catch.hpp>
-
 #include <random>
+
+#include "../../catch.hpp"
 
 using thermopower::gap::engine::invert_symmetric;
 using thermopower::gap::engine::LeastSquares;
