@@ -6,7 +6,7 @@
     cost.py GENERATE PROGRAM DIR [--logs 1000] [--pairs 5] [--most 10000]
 
 1. Handing out: logs too short for a diagnosis, one worker and two in turns.
-2. Two workers: the same with logs whose diagnosis is short but a real one.
+2. Two workers: the same with logs whose diagnosis is short but a real one; and two ranks under mpirun.
 3. Results that are there: reports of real diagnoses, copied for as many logs as are asked for, read, pooled and written
    again by the same command; by logs, and by logs of one unit.
 4. Rows: logs in which nothing is driven, which are read and checked and no more.
@@ -45,8 +45,8 @@ class Run:
         self.handing, self.busy, self.lost = (float(told[1]), float(told[4]), float(told[5])) if told else (0.0, 0.0, 0.0)
 
 
-def fleet(program, manifest, out, workers=1):
-    return Run(program, "fleet", manifest, "--out", out, "--workers", str(workers), "--no-pages")
+def fleet(program, manifest, out, workers=1, under=()):
+    return Run(*under, program, "fleet", manifest, "--out", out, "--workers", str(workers), "--no-pages")
 
 
 def write_logs(folder, model, count, rows, logs_of_unit=1):
@@ -108,6 +108,19 @@ def tell_turns(runs, count):
           f"{median(runs[2], lambda r: r.busy) / 100.0 * statistics.median(cpus):.3f}\n", flush=True)
 
 
+def tell_ranks(program, manifest, out, mpirun, pairs):
+    """One worker, and two ranks of one worker each, in turns: by the clock, from the command to its end."""
+    under = [mpirun, "-n", "2", "--oversubscribe"] + (["--allow-run-as-root"] if os.getuid() == 0 else [])
+    shares = []
+    for _ in range(pairs):
+        shutil.rmtree(out, ignore_errors=True)
+        one = fleet(program, manifest, out)
+        shutil.rmtree(out, ignore_errors=True)
+        shares.append(one.wall / (2.0 * fleet(program, manifest, out, 1, under).wall))
+    print(f"one worker's wall over twice two ranks' under mpirun, its start and end included, median of {pairs} pairs: "
+          f"{statistics.median(shares):.3f} ({min(shares):.3f} to {max(shares):.3f})\n", flush=True)
+
+
 def copied_reports(program, folder, manifest, reports):
     """Has the fleet make reports of nothing, and puts real ones in their places."""
     out = os.path.join(folder, "out")
@@ -129,6 +142,7 @@ def main():
     parser.add_argument("--short", type=int, default=1000, help="short diagnoses in turns")
     parser.add_argument("--pairs", type=int, default=5, help="turns of one worker and two")
     parser.add_argument("--most", type=int, default=10000, help="logs whose reports are there")
+    parser.add_argument("--mpirun", default=shutil.which("mpirun"), help="Open MPI's; without it no ranks are measured")
     asked = parser.parse_args()
     shutil.rmtree(asked.directory, ignore_errors=True)
     real, some = os.path.join(asked.directory, "real"), os.path.join(asked.directory, "some")
@@ -140,7 +154,10 @@ def main():
 
     rows = 100
     print(f"## Two workers: {asked.short} diagnoses of {rows} rows\n")
-    tell_turns(in_turns(asked.program, short_logs(some, real, asked.short, rows), os.path.join(some, "out"), asked.pairs), asked.short)
+    manifest, out = short_logs(some, real, asked.short, rows), os.path.join(some, "out")
+    tell_turns(in_turns(asked.program, manifest, out, asked.pairs), asked.short)
+    if asked.mpirun:
+        tell_ranks(asked.program, manifest, out, asked.mpirun, asked.pairs)
 
     fleet(asked.program, os.path.join(real, "manifest.csv"), os.path.join(real, "out"), 2)
     reports = []
