@@ -11,7 +11,7 @@ build=${1:-$root/build/mcdc}
 flags="-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc"
 . "$root/tests/mcdc/tools.sh"
 
-tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements
+tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements certified_coupled
   control_air_temperature control_axis_controller control_config_record control_failures_of_others control_gimbal_controller control_limiter_chain
   control_nodes_and_laws control_position_error control_power_law control_protection control_safety_limiter control_sensor_limiter control_utilisation control_decisions control_refusals actuator_start_decisions actuator_edges actuator_hottest_journal certified_edges
   fixed_point fixed_point_loop"
