@@ -11,7 +11,7 @@ namespace thermopower {
 
 namespace detail {
 
-// What is remembered of a law that has a conductance: that. Two products make a current of it.
+// What is remembered of any law: its last answer.
 template <class Law, class = int>
 class CurrentMemory {
 public:
@@ -29,7 +29,7 @@ public:
 private:
   State state_ = {not_a_number(), not_a_number(), not_a_number()};
 };
-// Any other law: its last answer.
+// What is remembered of a law that has a conductance: that. Two products make a current of it.
 template <class Law>
 class CurrentMemory<Law, typename Exists<decltype(probe<const Law>().conductance_S(0.0f))>::Type> {
 public:

@@ -2,12 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/calibration_id.hpp>
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/expression.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
-#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 #include <thermopower/gap/decide/block_jackknife.hpp>
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <array>
@@ -241,6 +242,17 @@ inline void mark_idle(std::vector<Candidate>& candidates) {
       for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
 }
 
+/// Marks candidates that another one says with less (is_in_fact()): all at once, so that a simpler one that is itself marked
+/// still counts.
+inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
+  std::vector<Candidate*> twins;
+  for (Candidate& one : candidates)
+    if (std::any_of(candidates.begin(), candidates.end(),
+                    [&](const Candidate& simpler) { return is_in_fact(simpler, one, model); }))
+      twins.push_back(&one);
+  for (Candidate* one : twins) one->idle = true;
+}
+
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
 /// judged on held-out data.
 ///
@@ -286,14 +298,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.on_bounds =
         ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad, weight.longest_run_s);
   }
-  // All at once: where it is known who may be named, and before anybody is.
-  std::vector<bool> says_the_same(candidates.size(), false);
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    says_the_same[i] = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& simpler) {
-      return is_in_fact(simpler, candidates[i], model);
-    });
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    candidates[i].idle = candidates[i].idle || says_the_same[i];
+  mark_twins(candidates, model);
   for (const Candidate& one : candidates)
     if (in_the_running(one) && (best == nullptr || one.deviance < best->deviance)) best = &one;
   const auto merged = [&](const SignalSums& sums, const std::array<double, signal_count>& correlation) {

@@ -24,19 +24,17 @@ struct AsymmetricFriction {
 
   /// What it is.
   static EffectInfo info() {
-    return {"asymmetric_friction",
-            Submodel::mechanical_friction,
-            "torque -= (forward where w > 0, else backward) film(w / transition, tail)",
-            "Dry friction that differs between the two directions.",
-            {parameter(forward_Nm, "forward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             parameter(backward_Nm, "backward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             friction_transition(transition), friction_tail(tail)},
-            {Need::axis_model},
-            "slow motion at constant rate in both directions, and standstill",
-            {},
-            false,
-            nullptr,
-            WhereEqual{forward_Nm, backward_Nm, "coulomb_friction"}};
+    EffectInfo one = {"asymmetric_friction",
+                      Submodel::mechanical_friction,
+                      "torque -= (forward where w > 0, else backward) film(w / transition, tail)",
+                      "Dry friction that differs between the two directions.",
+                      {parameter(forward_Nm, "forward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       parameter(backward_Nm, "backward_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       friction_transition(transition), friction_tail(tail)},
+                      {Need::axis_model},
+                      "slow motion at constant rate in both directions, and standstill"};
+    one.where_equal = WhereEqual{forward_Nm, backward_Nm, "coulomb_friction"};
+    return one;
   }
 
   /// Adds dry friction by direction.

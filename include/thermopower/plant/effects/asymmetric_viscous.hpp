@@ -21,18 +21,17 @@ struct AsymmetricViscous {
 
   /// What it is.
   static EffectInfo info() {
-    return {"asymmetric_viscous",
-            Submodel::mechanical_friction,
-            "torque -= (forward where w > 0, else backward) w",
-            "Viscous friction that differs between the two directions, besides the model's own.",
-            {parameter(forward, "forward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0}),
-             parameter(backward, "backward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0})},
-            {Need::axis_model},
-            "fast turns at constant rate in both directions",
-            {},
-            false,
-            nullptr,
-            WhereEqual{forward, backward, "calibration.viscous"}};
+    EffectInfo one = {
+        "asymmetric_viscous",
+        Submodel::mechanical_friction,
+        "torque -= (forward where w > 0, else backward) w",
+        "Viscous friction that differs between the two directions, besides the model's own.",
+        {parameter(forward, "forward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0}),
+         parameter(backward, "backward_Nms_per_rad").unit("N m s/rad").within(-1e3, 1e3).starts({0.0})},
+        {Need::axis_model},
+        "fast turns at constant rate in both directions"};
+    one.where_equal = WhereEqual{forward, backward, "calibration.viscous"};
+    return one;
   }
 
   /// Adds viscous friction by direction.
