@@ -2,15 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/plant/calibration_id.hpp>
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/plant/expression.hpp>
+#include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 #include <thermopower/plant/terms.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -180,26 +178,11 @@ public:
 
   /// Adds an effect whose hooks are objects, for equations that are no C++ types: all three kinds of them, for every term
   /// that the set of hooks names. @throws InvalidInput where its info is unusable, its id is taken, or hooks are missing
-  Catalogue& add(CatalogueEntry entry) {
-    check(entry.info, entry.hooks);
-    if (!(entry.hooks.any_bench() || entry.hooks.any_axis()) || !entry.plain || !entry.dual || !entry.traced)
-      throw InvalidInput("effect '" + entry.info.id +
-                         "' has no hooks: expected one of each kind, and where they act");
-    infos_.push_back(entry.info);
-    entries_.push_back(std::move(entry));
-    return *this;
-  }
+  Catalogue& add(CatalogueEntry entry);
 
   /// Adds an effect whose equation a plant of one's own holds itself.
   /// @throws InvalidInput where its info is unusable or its id is taken
-  Catalogue& declare(const EffectInfo& info) {
-    check(info, HookSet());
-    CatalogueEntry entry;
-    entry.info = info;
-    infos_.push_back(entry.info);
-    entries_.push_back(std::move(entry));
-    return *this;
-  }
+  Catalogue& declare(const EffectInfo& info);
 
   /// What there is, in the order added.
   const std::vector<EffectInfo>& list() const { return infos_; }
@@ -208,79 +191,17 @@ public:
   const std::vector<CatalogueEntry>& entries() const { return entries_; }
 
   /// The effect of that id, or nullptr.
-  const CatalogueEntry* find(std::string_view id) const {
-    for (const CatalogueEntry& entry : entries_)
-      if (entry.info.id == id) return &entry;
-    return nullptr;
-  }
+  const CatalogueEntry* find(std::string_view id) const;
 
 private:
-  void check(const EffectInfo& info, const HookSet& hooks) const {
-    const std::string effect = "effect '" + info.id + "'";
-    if (info.id.empty()) throw InvalidInput("an effect has no id");
-    if (find(info.id) != nullptr) throw InvalidInput(effect + " is in the catalogue already");
-    if (is_calibration(info.id))
-      throw InvalidInput(effect + ": ids that start with calibration. belong to the engine");
-    for (const Need need : info.needs) {
-      const bool bench_only = need == Need::thermal_model || need == Need::current_model ||
-                              need == Need::ohmic_without_tempco || need == Need::supply_not_logged ||
-                              need == Need::current_A || need == Need::power_param ||
-                              need == Need::two_nodes || need == Need::thesis_thermal ||
-                              need == Need::airspeed_mps || need == Need::neighbour_C;
-      const bool axis_only = need == Need::axis_model || need == Need::angle_deg || need == Need::open_loop ||
-                             need == Need::closed_loop;
-      if ((bench_only && !hooks.any_bench()) || (axis_only && !hooks.any_axis()))
-        throw InvalidInput(effect + ": needs '" + to_string(need) +
-                           "', which none of its hooks has to do with");
-    }
-    if (!info.states.empty() && !hooks.axis && !hooks.friction)
-      throw InvalidInput(effect + ": has states, but no hook on AxisTerms or FrictionTerms that moves them");
-    if (static_cast<int>(info.states.size()) > most_own_states)
-      throw InvalidInput(effect + ": has more than " + std::to_string(most_own_states) + " states");
-    int place = 0;
-    for (const Parameter& parameter : info.parameters) check(parameter, place++, effect, hooks);
-    if (info.where_equal) check(*info.where_equal, info);
-  }
-
-  static void check(const WhereEqual& equal, const EffectInfo& info) {
-    const auto is_place = [&](int i) { return i >= 0 && i < static_cast<int>(info.parameters.size()); };
-    const std::string where = "effect '" + info.id + "', what it is where two of its parameters are equal: ";
-    if (!is_place(equal.one) || !is_place(equal.other) || equal.one == equal.other)
-      throw InvalidInput(where + "expected two places of the list of parameters (from 0)");
-    const Parameter &one = info.parameters[static_cast<std::size_t>(equal.one)],
-                    &other = info.parameters[static_cast<std::size_t>(equal.other)];
-    if (one.unit != other.unit || one.logarithmic || other.logarithmic)
-      throw InvalidInput(where + "'" + one.name + "' and '" + other.name +
-                         "' need the same unit, and neither may be logarithmic");
-    if (equal.cause.empty() || equal.cause == info.id)
-      throw InvalidInput(where + "expected the id of another cause");
-  }
-
-  static void check(const Parameter& parameter, int place, const std::string& effect, const HookSet& hooks) {
-    const std::string where = effect + ", parameter '" + parameter.name + "': ";
-    if (parameter.name.empty()) throw InvalidInput(effect + ": a parameter has no name");
-    if (parameter.index >= 0 && parameter.index != place)
-      throw InvalidInput(where + "the effect reads it as number " + std::to_string(parameter.index) +
-                         ", but it is number " + std::to_string(place) + " of the list (from 0)");
-    if (!(parameter.lower < parameter.upper)) throw InvalidInput(where + "lower must be below upper");
-    if (parameter.logarithmic && !(parameter.lower > 0.0))
-      throw InvalidInput(where + "a logarithmic parameter needs a lower bound above 0");
-    if (parameter.starts.empty()) throw InvalidInput(where + "expected at least one start");
-    for (double start : parameter.starts)
-      if (!(start >= parameter.lower && start <= parameter.upper))
-        throw InvalidInput(where + "a start lies outside the bounds");
-    if (parameter.standard &&
-        !(*parameter.standard >= parameter.lower && *parameter.standard <= parameter.upper))
-      throw InvalidInput(where + "its standard value lies outside the bounds");
-    if ((parameter.starts_relative_to == Input::drive_A && !hooks.any_axis()) ||
-        ((parameter.starts_relative_to == Input::power_param ||
-          parameter.starts_relative_to == Input::supply_V) &&
-         !hooks.any_bench()))
-      throw InvalidInput(where + "its starts are shares of an input that none of the effect's hooks has");
-  }
+  void check(const EffectInfo& info, const HookSet& hooks) const;
 
   std::vector<EffectInfo> infos_;
   std::vector<CatalogueEntry> entries_;
 };
 
 }  // namespace thermopower::plant
+
+#ifndef THERMOPOWER_GAP_LIBRARY
+#include <thermopower/plant/detail/catalogue.hpp>
+#endif

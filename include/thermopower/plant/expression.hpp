@@ -5,9 +5,10 @@
 #include <thermopower/detail/numeric.hpp>
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/given.hpp>
+#include <thermopower/plant/inline.hpp>
 
-#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -133,42 +134,24 @@ public:
   Trace& operator=(const Trace&) = delete;
 
   /// A quantity that the equation is given, by its name in code.
-  Expression symbol(const std::string& name) { return {this, intern({Kind::symbol, name, 0.0, -1, -1, -1})}; }
+  Expression symbol(const std::string& name);
 
   /// A step of a computation.
-  Expression make(Kind kind, const Expression& a, const Expression& b = {}, const std::string& name = {}) {
-    const bool two = kind != Kind::negative && kind != Kind::function;
-    return {this, intern({kind, name, 0.0, place(a), two ? place(b) : -1, -1})};
-  }
+  Expression make(Kind kind, const Expression& a, const Expression& b = {}, const std::string& name = {});
 
   /// `yes` where the condition holds, else `no`.
-  static Expression choice(const Condition& condition, const Expression& yes, const Expression& no) {
-    if (condition.trace() == nullptr) return condition.value() ? yes : no;
-    Trace& trace = *condition.trace();
-    const int a = trace.place(yes), b = trace.place(no);
-    if (a == b) return yes;
-    return {&trace, trace.intern({Kind::choice, "", 0.0, condition.node(), a, b})};
-  }
+  static Expression choice(const Condition& condition, const Expression& yes, const Expression& no);
 
   /// Runs code once for every way through its branches and joins the results by choices.
   /// @param run  called without arguments, returns a vector of expressions of always the same length
   /// @throws NotTraceable for more than `most_ways` ways
-  template <class Run>
-  std::vector<Expression> every_branch(Run&& run) {
-    ways_ = 0;
-    auto joined = follow(run, {});
-    following_ = false;
-    return joined;
-  }
+  std::vector<Expression> every_branch(const std::function<std::vector<Expression>()>& run);
 
   /// An expression with another in the place of one of its parts.
   Expression replaced(const Expression& in, const Expression& part, const Expression& by);
 
   /// A step by its place.
-  Expression at(int place_of) {
-    const Node& node = nodes_[static_cast<std::size_t>(place_of)];
-    return node.kind == Kind::constant ? Expression(node.value) : Expression(this, place_of);
-  }
+  Expression at(int place_of);
 
   /// The steps, arguments before what uses them.
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -183,43 +166,12 @@ private:
     bool value;
   };
 
-  template <class Run>
-  std::vector<Expression> follow(Run& run, const std::vector<Decision>& from) {
-    if (++ways_ > most_ways) throw NotTraceable("its code branches too often");
-    path_ = from;
-    used_ = 0;
-    following_ = true;
-    std::vector<Expression> results = run();
-    const std::vector<Decision> path = path_;
-    for (std::size_t i = path.size(); i > from.size(); --i) {
-      std::vector<Decision> other(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i));
-      other.back().value = false;
-      const std::vector<Expression> otherwise = follow(run, other);
-      for (std::size_t k = 0; k < results.size(); ++k)
-        results[k] = choice(Condition(this, path[i - 1].condition), results[k], otherwise[k]);
-    }
-    return results;
-  }
+  std::vector<Expression> follow(const std::function<std::vector<Expression>()>& run,
+                                 const std::vector<Decision>& from);
 
-  bool decide(int condition) {
-    if (!following_) throw NotTraceable("its code branches where no branch can be followed");
-    for (std::size_t i = 0; i < used_; ++i)
-      if (path_[i].condition == condition) return path_[i].value;
-    if (used_ == path_.size()) path_.push_back({condition, true});
-    return path_[used_++].value;
-  }
-
-  int place(const Expression& x) {
-    return x.is_constant() ? intern({Kind::constant, "", x.constant_value(), -1, -1, -1}) : x.node();
-  }
-
-  int intern(const Node& node) {
-    const Key key(node.kind, node.name, node.value, node.a, node.b, node.c);
-    const auto known = known_.find(key);
-    if (known != known_.end()) return known->second;
-    nodes_.push_back(node);
-    return known_[key] = static_cast<int>(nodes_.size()) - 1;
-  }
+  bool decide(int condition);
+  int place(const Expression& x);
+  int intern(const Node& node);
 
   using Key = std::tuple<Kind, std::string, double, int, int, int>;
   std::vector<Node> nodes_;
@@ -232,70 +184,19 @@ private:
 
 namespace detail {
 
-inline Trace* trace_of(const Expression& a, const Expression& b) {
-  return a.is_constant() ? b.trace() : a.trace();
-}
-
 inline bool is(const Expression& x, double value) { return x.is_constant() && x.constant_value() == value; }
 
-inline Condition compare(Trace::Kind kind, const Expression& a, const Expression& b, bool known) {
-  if (a.is_constant() && b.is_constant()) return Condition(known);
-  return {trace_of(a, b), trace_of(a, b)->make(kind, a, b).node()};
-}
-
-inline Expression call(const char* name, const Expression& x, double known) {
-  return x.is_constant() ? Expression(known) : x.trace()->make(Trace::Kind::function, x, {}, name);
-}
-
 }  // namespace detail
-
-inline Condition::operator bool() const { return trace_ == nullptr ? value_ : trace_->decide(node_); }
-
-inline Expression Expression::operator-() const {
-  if (is_constant()) return -value_;
-  const Trace::Node& node = trace_->nodes()[static_cast<std::size_t>(node_)];
-  if (node.kind == Trace::Kind::negative) return {trace_, node.a};
-  return trace_->make(Trace::Kind::negative, *this);
-}
 
 /// @name As with plain numbers
 /// Each records what it computes; what is known already (a constant, a sum with 0) is not recorded.
 /// @{
 
 /// See above.
-inline Expression operator+(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.constant_value() + b.constant_value();
-  if (detail::is(a, 0.0)) return b;
-  if (detail::is(b, 0.0)) return a;
-  return detail::trace_of(a, b)->make(Trace::Kind::sum, a, b);
-}
-
-inline Expression operator-(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.constant_value() - b.constant_value();
-  if (detail::is(a, 0.0)) return -b;
-  if (detail::is(b, 0.0)) return a;
-  if (a.trace() == b.trace() && a.node() == b.node()) return 0.0;
-  return detail::trace_of(a, b)->make(Trace::Kind::difference, a, b);
-}
-
-inline Expression operator*(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.constant_value() * b.constant_value();
-  if (detail::is(a, 1.0)) return b;
-  if (detail::is(b, 1.0)) return a;
-  if (detail::is(a, 0.0) || detail::is(b, 0.0)) return 0.0;
-  return detail::trace_of(a, b)->make(Trace::Kind::product, a, b);
-}
-
-inline Expression operator/(const Expression& a, const Expression& b) {
-  if (a.is_constant() && b.is_constant()) return a.constant_value() / b.constant_value();
-  if (detail::is(b, 1.0)) return a;
-  if (!a.is_constant() && !b.is_constant()) {  // (x b) / b
-    const Trace::Node product = a.trace()->nodes()[static_cast<std::size_t>(a.node())];
-    if (product.kind == Trace::Kind::product && product.b == b.node()) return a.trace()->at(product.a);
-    if (product.kind == Trace::Kind::product && product.a == b.node()) return a.trace()->at(product.b);
-  }
-  return detail::trace_of(a, b)->make(Trace::Kind::quotient, a, b);
-}
+Expression operator+(const Expression& a, const Expression& b);
+Expression operator-(const Expression& a, const Expression& b);
+Expression operator*(const Expression& a, const Expression& b);
+Expression operator/(const Expression& a, const Expression& b);
 
 // With plain numbers, too: a recorded value that turns into one must not be preferred.
 inline Expression operator+(const Expression& a, double b) { return a + Expression(b); }
@@ -307,22 +208,12 @@ inline Expression operator-(double a, const Expression& b) { return Expression(a
 inline Expression operator*(double a, const Expression& b) { return Expression(a) * b; }
 inline Expression operator/(double a, const Expression& b) { return Expression(a) / b; }
 
-inline Condition operator<(const Expression& a, const Expression& b) {
-  return detail::compare(Trace::Kind::less, a, b, a.constant_value() < b.constant_value());
-}
-inline Condition operator>(const Expression& a, const Expression& b) { return b < a; }
-inline Condition operator<=(const Expression& a, const Expression& b) {
-  return detail::compare(Trace::Kind::less_or_equal, a, b, a.constant_value() <= b.constant_value());
-}
-inline Condition operator>=(const Expression& a, const Expression& b) { return b <= a; }
-inline Condition operator==(const Expression& a, const Expression& b) {
-  return detail::compare(
-      Trace::Kind::equal, a, b,
-      !(a.constant_value() < b.constant_value()) && !(b.constant_value() < a.constant_value()));
-}
-inline Condition operator!=(const Expression& a, const Expression& b) {
-  return Condition(!static_cast<bool>(a == b));
-}
+Condition operator<(const Expression& a, const Expression& b);
+Condition operator>(const Expression& a, const Expression& b);
+Condition operator<=(const Expression& a, const Expression& b);
+Condition operator>=(const Expression& a, const Expression& b);
+Condition operator==(const Expression& a, const Expression& b);
+Condition operator!=(const Expression& a, const Expression& b);
 inline Condition operator<(const Expression& a, double b) { return a < Expression(b); }
 inline Condition operator>(const Expression& a, double b) { return a > Expression(b); }
 inline Condition operator<=(const Expression& a, double b) { return a <= Expression(b); }
@@ -330,39 +221,15 @@ inline Condition operator>=(const Expression& a, double b) { return a >= Express
 inline Condition operator==(const Expression& a, double b) { return a == Expression(b); }
 inline Condition operator!=(const Expression& a, double b) { return a != Expression(b); }
 
-inline Expression exp(const Expression& x) { return detail::call("exp", x, std::exp(x.constant_value())); }
-inline Expression log(const Expression& x) { return detail::call("log", x, std::log(x.constant_value())); }
-inline Expression sin(const Expression& x) { return detail::call("sin", x, std::sin(x.constant_value())); }
-inline Expression cos(const Expression& x) { return detail::call("cos", x, std::cos(x.constant_value())); }
-inline Expression tanh(const Expression& x) { return detail::call("tanh", x, std::tanh(x.constant_value())); }
-inline Expression sqrt(const Expression& x) { return detail::call("sqrt", x, std::sqrt(x.constant_value())); }
-inline Expression abs(const Expression& x) { return detail::call("abs", x, std::abs(x.constant_value())); }
-inline Expression pow(const Expression& x, const Expression& y) {
-  if (x.is_constant() && y.is_constant()) return std::pow(x.constant_value(), y.constant_value());
-  return detail::trace_of(x, y)->make(Trace::Kind::power, x, y);
-}
+Expression exp(const Expression& x);
+Expression log(const Expression& x);
+Expression sin(const Expression& x);
+Expression cos(const Expression& x);
+Expression tanh(const Expression& x);
+Expression sqrt(const Expression& x);
+Expression abs(const Expression& x);
+Expression pow(const Expression& x, const Expression& y);
 /// @}
-
-inline Expression& Expression::operator+=(const Expression& b) { return *this = *this + b; }
-inline Expression& Expression::operator-=(const Expression& b) { return *this = *this - b; }
-inline Expression& Expression::operator*=(const Expression& b) { return *this = *this * b; }
-inline Expression& Expression::operator/=(const Expression& b) { return *this = *this / b; }
-
-inline Expression Trace::replaced(const Expression& in, const Expression& part, const Expression& by) {
-  if (in.is_constant() || part.is_constant()) return in;
-  std::map<int, Expression> known{{part.node(), by}};
-  const auto copy = [&](const auto& self, int at) -> Expression {
-    const auto found = known.find(at);
-    if (found != known.end()) return found->second;
-    const Node node = nodes_[static_cast<std::size_t>(at)];
-    if (node.kind == Kind::constant) return node.value;
-    if (node.kind == Kind::symbol) return {this, at};
-    const auto argument = [&](int place_of) { return place_of < 0 ? -1 : place(self(self, place_of)); };
-    const int a = argument(node.a), b = argument(node.b), c = argument(node.c);
-    return known[at] = {this, intern({node.kind, node.name, node.value, a, b, c})};
-  };
-  return copy(copy, in.node());
-}
 
 /// The value of a recorded column, or the plain value of an expression: still an expression. Only where code
 /// insists on a plain number it throws NotTraceable.
@@ -374,10 +241,7 @@ public:
   /// Any expression.
   explicit GivenExpression(const Expression& one) : Expression(one) {}
   /// The number, where it is one. @throws NotTraceable where it is none
-  operator double() const {  // NOLINT: effects may treat what was recorded as a plain number
-    if (!is_constant()) throw NotTraceable("its code turns a value into a plain number");
-    return constant_value();
-  }
+  operator double() const;  // NOLINT: effects may treat what was recorded as a plain number
 
   /// @name Arithmetic among such values yields such a value
   /// @{
@@ -438,9 +302,9 @@ inline Expression magnitude(const Expression& x) { return abs(x); }
 /// |x|.
 inline GivenExpression magnitude(const GivenExpression& x) { return GivenExpression(abs(x)); }
 /// The larger of x and a number.
-inline Expression at_least(const Expression& x, double floor) { return Trace::choice(x > floor, x, floor); }
+Expression at_least(const Expression& x, double floor);
 /// The larger of two.
-inline Expression larger(const Expression& a, const Expression& b) { return Trace::choice(b > a, b, a); }
+Expression larger(const Expression& a, const Expression& b);
 
 }  // namespace thermopower::plant
 
@@ -465,3 +329,7 @@ struct Numeric<plant::Expression> {
 
 }  // namespace detail
 }  // namespace thermopower
+
+#ifndef THERMOPOWER_GAP_LIBRARY
+#include <thermopower/plant/detail/expression.hpp>
+#endif

@@ -2,16 +2,14 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 
-#include <cmath>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -187,216 +185,15 @@ struct Model {
 
   /// How well a constant is known, as a share of its value; of fields that scale together the worst known
   /// counts. `otherwise` where nothing is stated.
-  double uncertainty_of(const CalibratedConstant& constant, double otherwise = 0.05) const {
-    double worst = 0.0;
-    for (const std::string& field : constant.fields) {
-      const auto found = uncertainty.find(constant.block + "." + field);
-      if (found != uncertainty.end() && found->second > worst) worst = found->second;
-    }
-    return worst > 0.0 ? worst : otherwise;
-  }
+  double uncertainty_of(const CalibratedConstant& constant, double otherwise = 0.05) const;
 
   /// What is wrong with it, naming the field and what was expected, or nothing. Effects are not looked into:
   /// the catalogue knows them.
   std::optional<std::string> validate() const;
 };
 
-namespace detail {
-
-/// What a visitor of the constants of a model gets to see of each: a number that it may write where the model is its own.
-template <class ModelType>
-using VisitConstant =
-    std::function<void(const char* block, const char* name,
-                       std::conditional_t<std::is_const_v<ModelType>, const double, double>& value)>;
-
-/// Calls visit(block, name, value) for every constant present.
-template <class ModelType>
-void for_each_constant(ModelType& model, const VisitConstant<ModelType>& visit) {
-  if (model.supply) visit("supply", "nominal_V", model.supply->nominal_V);
-  if (auto* ohmic = std::get_if<OhmicCurrentModel>(&model.current)) {
-    visit("current", "resistance_ohm", ohmic->resistance_ohm);
-    visit("current", "tempco_per_K", ohmic->tempco_per_K);
-    visit("current", "reference_C", ohmic->reference_C);
-  } else if (auto* thesis = std::get_if<ThesisCurrentModel>(&model.current)) {
-    visit("current", "slope_V2_mA_per_K", thesis->slope_V2_mA_per_K);
-    visit("current", "slope_V1_mA_per_K", thesis->slope_V1_mA_per_K);
-    visit("current", "slope_V0_mA_per_K", thesis->slope_V0_mA_per_K);
-    visit("current", "base_mA", thesis->base_mA);
-    visit("current", "exponent", thesis->exponent);
-    visit("current", "minimum_V_rms", thesis->minimum_V_rms);
-  }
-  if (auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal)) {
-    visit("thermal", "heat_capacity_J_per_K", lumped->heat_capacity_J_per_K);
-    visit("thermal", "conductance_W_per_K", lumped->conductance_W_per_K);
-  } else if (auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal)) {
-    visit("thermal", "cooling_per_min", polynomial->cooling_per_min);
-    visit("thermal", "rinv_slope_V1", polynomial->rinv_slope_V1);
-    visit("thermal", "rinv_slope_V0", polynomial->rinv_slope_V0);
-    visit("thermal", "rinv_offset_V1", polynomial->rinv_offset_V1);
-    visit("thermal", "rinv_offset_V0", polynomial->rinv_offset_V0);
-    visit("thermal", "minimum_V_rms", polynomial->minimum_V_rms);
-  }
-  if (model.axis) {
-    visit("axis", "inertia_kgm2", model.axis->inertia_kgm2);
-    visit("axis", "viscous_Nms_per_rad", model.axis->viscous_Nms_per_rad);
-    visit("axis", "torque_constant_Nm_per_A", model.axis->torque_constant_Nm_per_A);
-    if (model.axis->voltage_driven()) visit("axis", "resistance_ohm", model.axis->resistance_ohm);
-  }
-  if (auto* servo = std::get_if<PositionPidServo>(&model.servo)) {
-    visit("servo", "kp_A_per_deg", servo->kp_A_per_deg);
-    visit("servo", "kd_A_s_per_deg", servo->kd_A_s_per_deg);
-    visit("servo", "ki_A_per_deg_s", servo->ki_A_per_deg_s);
-    visit("servo", "limit_A", servo->limit_A);
-    visit("servo", "period_s", servo->period_s);
-    visit("servo", "delay_s", servo->delay_s);
-  } else if (auto* velocity = std::get_if<VelocityPiServo>(&model.servo)) {
-    visit("servo", "kp_A_s_per_deg", velocity->kp_A_s_per_deg);
-    visit("servo", "ki_A_per_deg", velocity->ki_A_per_deg);
-    visit("servo", "limit_A", velocity->limit_A);
-    visit("servo", "period_s", velocity->period_s);
-    visit("servo", "delay_s", velocity->delay_s);
-  }
-  if (model.own)
-    for (auto& constant : model.own->constants)
-      visit(constant.block.c_str(), constant.name.c_str(), constant.value);
-}
-
-/// The constant of that (possibly qualified) name, or nullptr.
-template <class ModelType>
-auto find_constant(ModelType& model, std::string_view wanted) {
-  using Value = std::conditional_t<std::is_const_v<ModelType>, const double, double>;
-  Value* found = nullptr;
-  for_each_constant(model, [&](const char* block, const char* field, auto& value) {
-    if (found == nullptr && (wanted == field || wanted == std::string(block) + "." + field)) found = &value;
-  });
-  return found;
-}
-
-/// The parameter `effects.<id>.<parameter>`, or nullptr.
-template <class Effects>
-auto find_parameter(Effects& effects, std::string_view wanted)
-    -> decltype(&effects.begin()->second.begin()->second) {
-  for (auto& effect : effects)
-    for (auto& parameter : effect.second)
-      if (wanted == "effects." + effect.first + "." + parameter.first) return &parameter.second;
-  return nullptr;
-}
-
-}  // namespace detail
-
-inline std::vector<NamedConstant> Model::constants() const {
-  std::vector<NamedConstant> list;
-  detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
-    list.push_back({block, field, value});
-  });
-  return list;
-}
-
-inline double Model::get(std::string_view constant_name) const {
-  const double* found = detail::find_constant(*this, constant_name);
-  if (found == nullptr) found = detail::find_parameter(effects, constant_name);
-  if (found == nullptr)
-    throw InvalidInput("model '" + name + "' has no constant '" + std::string(constant_name) + "'");
-  return *found;
-}
-
-inline void Model::set(std::string_view constant_name, double value) {
-  double* found = detail::find_constant(*this, constant_name);
-  if (found == nullptr) found = detail::find_parameter(effects, constant_name);
-  if (found == nullptr)
-    throw InvalidInput("model '" + name + "' has no constant '" + std::string(constant_name) + "'");
-  *found = value;
-}
-
-inline std::vector<CalibratedConstant> Model::calibrated() const {
-  std::vector<CalibratedConstant> list;
-  if (const auto* ohmic = std::get_if<OhmicCurrentModel>(&current)) {
-    list.push_back({"resistance", "current", {"resistance_ohm"}});
-    if (ohmic->tempco_per_K != 0.0) list.push_back({"tempco", "current", {"tempco_per_K"}});
-  } else if (std::holds_alternative<ThesisCurrentModel>(current)) {
-    list.push_back({"base", "current", {"base_mA"}});
-    list.push_back(
-        {"slope", "current", {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"}, true, false});
-    for (const char* field : {"slope_V2_mA_per_K", "slope_V1_mA_per_K", "slope_V0_mA_per_K"})
-      if (get(std::string("current.") + field) != 0.0)
-        list.push_back({field, "current", {field}, false, true});
-  }
-  if (std::holds_alternative<LumpedThermalModel>(thermal)) {
-    list.push_back({"heat_capacity", "thermal", {"heat_capacity_J_per_K"}});
-    list.push_back({"conductance", "thermal", {"conductance_W_per_K"}});
-  } else if (std::holds_alternative<ThesisThermalModel>(thermal)) {
-    list.push_back({"rinv",
-                    "thermal",
-                    {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"},
-                    true,
-                    false});
-    for (const char* field : {"rinv_slope_V1", "rinv_slope_V0", "rinv_offset_V1", "rinv_offset_V0"})
-      if (get(std::string("thermal.") + field) != 0.0)
-        list.push_back({field, "thermal", {field}, false, true});
-    list.push_back({"cooling", "thermal", {"cooling_per_min"}});
-  }
-  if (axis) {
-    list.push_back({"inertia", "axis", {"inertia_kgm2"}});
-    if (axis->viscous_Nms_per_rad != 0.0) list.push_back({"viscous", "axis", {"viscous_Nms_per_rad"}});
-    list.push_back({"torque_constant", "axis", {"torque_constant_Nm_per_A"}});
-    if (axis->voltage_driven()) list.push_back({"motor_resistance", "axis", {"resistance_ohm"}});
-  }
-  const auto gain = [&](const char* id, const char* field) {
-    if (get(std::string("servo.") + field) != 0.0) list.push_back({id, "servo", {field}});
-  };
-  if (std::holds_alternative<PositionPidServo>(servo)) {
-    gain("kp", "kp_A_per_deg");
-    gain("kd", "kd_A_s_per_deg");
-    gain("ki", "ki_A_per_deg_s");
-  } else if (std::holds_alternative<VelocityPiServo>(servo)) {
-    gain("kp", "kp_A_s_per_deg");
-    gain("ki", "ki_A_per_deg");
-  }
-  if (own)
-    for (const PlantConstant& constant : own->constants)
-      if (constant.may_be_cause && constant.value != 0.0)
-        list.push_back({constant.name, constant.block, {constant.name}});
-  if (!own)
-    for (const auto& effect : effects)
-      for (const auto& parameter : effect.second)
-        if (parameter.second != 0.0)
-          list.push_back(
-              {effect.first + "." + parameter.first, "effects." + effect.first, {parameter.first}});
-  return list;
-}
-
-inline std::optional<std::string> Model::validate() const {
-  std::optional<std::string> problem;
-  const auto positive = [](std::string_view field) {
-    return field == "nominal_V" || field == "resistance_ohm" || field == "heat_capacity_J_per_K" ||
-           field == "conductance_W_per_K" || field == "cooling_per_min" || field == "inertia_kgm2" ||
-           field == "limit_A" || field == "period_s";
-  };
-  detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
-    if (problem) return;
-    const std::string where = std::string(block) + "." + field;
-    if (!std::isfinite(value)) problem = where + " must be a finite number";
-    else if (positive(field) && !(value > 0.0))
-      problem = where + " is " + std::to_string(value) + ", expected a number above 0";
-  });
-  if (!problem && axis && axis->viscous_Nms_per_rad < 0.0)
-    problem = "axis.viscous_Nms_per_rad is negative, expected 0 or more";
-  if (!problem && axis && axis->torque_constant_Nm_per_A == 0.0)
-    problem = "axis.torque_constant_Nm_per_A is 0, expected another number";
-  if (!problem && has_servo() && get("servo.delay_s") < 0.0)
-    problem = "servo.delay_s is negative, expected 0 or more";
-  if (!problem && has_servo() && !axis) problem = "there is a servo block and no axis block: expected both";
-  if (own && !problem)
-    for (const PlantConstant& constant : own->constants)
-      if (constant.above_zero && !(constant.value > 0.0))
-        return constant.block + "." + constant.name + " is " + std::to_string(constant.value) +
-               ", expected a number above 0";
-  if (!problem && own && (has_current() || has_thermal() || axis))
-    problem =
-        "the model has a plant of its own and one of the blocks current, thermal and axis: expected one";
-  if (!problem && !own && !has_current() && !has_thermal() && !axis)
-    problem = "the model has none of the blocks current, thermal and axis: nothing can be judged";
-  return problem;
-}
-
 }  // namespace thermopower::plant
+
+#ifndef THERMOPOWER_GAP_LIBRARY
+#include <thermopower/plant/detail/model.hpp>
+#endif

@@ -136,6 +136,10 @@ public:
   /// Standard deviation of the segment's start where it is taken from measured values with this noise.
   virtual Start measured_start_sd(const Segment& segment,
                                   const std::array<double, signal_count>& sigma) const = 0;
+
+  /// Whether states that nobody measures pass from each window of a recording into the next, so that the noise of all
+  /// starts before a window tells in it.
+  virtual bool carries_states() const { return false; }
 };
 
 /// The equations of a plant as an object: everything that the stages of a diagnosis ask of it.

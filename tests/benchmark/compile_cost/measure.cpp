@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// measure <name> <source> <name> <source> ... -- <compiler> <flags...>: compiles each source once and prints what it took.
+// measure <name> <level> <source> ... -- <compiler> <flags...>: compiles each source once, at its level (such as -O2), and prints
+// what it took.
 // Processor seconds, not those on the wall: another program on the machine does not change them much.
 
 #include <sys/resource.h>
@@ -11,7 +12,6 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
@@ -26,9 +26,17 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-Cost cost_of(const std::vector<std::string>& compiler, const std::string& source) {
+struct Task {
+  std::string name;
+  std::string level;
+  std::string source;
+};
+
+Cost cost_of(const std::vector<std::string>& compiler, const Task& task) {
   std::vector<std::string> words = compiler;
-  for (const char* word : {"-c", source.c_str(), "-o", "/dev/null"}) words.push_back(word);
+  for (const std::string& word :
+       {task.level, std::string("-c"), task.source, std::string("-o"), std::string("/dev/null")})
+    words.push_back(word);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -49,20 +57,21 @@ Cost cost_of(const std::vector<std::string>& compiler, const std::string& source
 }  // namespace
 
 int main(int count, char** words) {
-  std::vector<std::pair<std::string, std::string>> sources;
+  std::vector<Task> tasks;
   int at = 1;
-  for (; at + 1 < count && std::strcmp(words[at], "--") != 0; at += 2)
-    sources.emplace_back(words[at], words[at + 1]);
+  for (; at + 2 < count && std::strcmp(words[at], "--") != 0; at += 3)
+    tasks.push_back({words[at], words[at + 1], words[at + 2]});
   const std::vector<std::string> compiler(words + (at < count ? at + 1 : at), words + count);
-  if (sources.empty() || compiler.empty()) {
-    std::fputs("usage: measure <name> <source> ... -- <compiler> <flags...>\n", stderr);
+  if (tasks.empty() || compiler.empty()) {
+    std::fputs("usage: measure <name> <level> <source> ... -- <compiler> <flags...>\n", stderr);
     return 2;
   }
-  std::printf("| translation unit | s | MB |\n| --- | --- | --- |\n");
+  std::printf("| translation unit | level | s | MB |\n| --- | --- | --- | --- |\n");
   bool all = true;
-  for (const auto& [name, source] : sources) {
-    const Cost cost = cost_of(compiler, source);
-    std::printf("| %s | %.1f | %.0f |\n", name.c_str(), cost.seconds, cost.megabytes);
+  for (const Task& task : tasks) {
+    const Cost cost = cost_of(compiler, task);
+    std::printf("| %s | %s | %.1f | %.0f |\n", task.name.c_str(), task.level.c_str(), cost.seconds,
+                cost.megabytes);
     std::fflush(stdout);
     all = all && cost.compiled;
   }
