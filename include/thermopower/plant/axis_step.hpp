@@ -38,6 +38,7 @@ struct AxisState {
   Scalar twist_rad;             ///< far side minus near side; unused on a rigid axis
   Scalar twist_rate_rad_per_s;  ///< its derivative
   OwnValues<Scalar> own = {};   ///< states of the effects' own
+  int touching = 0;             ///< the end of the free play at which the sides touch; AxisStep keeps it
 };
 
 /// What drives the axis over an interval.
@@ -77,6 +78,7 @@ public:
       const Scalar reduced = near_inertia_kgm2 * shape.far_share;
       spring_Nm_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_rad_per_s;
       damper_Nms_per_rad_ = reduced * shape.spring_rad_per_s * shape.spring_damping * 2.0;
+      play_ = {shape.gap_rad, spring_Nm_per_rad_, damper_Nms_per_rad_};
     }
     per_near_inertia_ = 1.0 / near_inertia_kgm2;
     double drag_Nms_per_rad = value_of(instance.viscous_Nms_per_rad);
@@ -120,6 +122,7 @@ public:
     const double length = value_of(h_s);
     if (!(length > 0.0)) return;
     const int pieces = static_cast<int>(std::fmin(2000.0, std::ceil(length / longest_s_)));
+    touch(state);
     for (int i = 0; i < pieces; ++i) {
       const double from_s = t_s + length * i / pieces;
       const Scalar piece_s = h_s * (1.0 / pieces);
@@ -221,8 +224,7 @@ private:
 
   Scalar spring(const AxisState<Scalar>& state) const {
     if (instance_.axis_structure.gapped)
-      return across_gap(state.twist_rad, state.twist_rate_rad_per_s, instance_.axis_structure.gap_rad,
-                        spring_Nm_per_rad_, damper_Nms_per_rad_);
+      return play_.torque(state.touching, state.twist_rad, state.twist_rate_rad_per_s);
     return spring_Nm_per_rad_ * state.twist_rad + damper_Nms_per_rad_ * state.twist_rate_rad_per_s;
   }
 
@@ -301,8 +303,7 @@ private:
     bend = h * std::abs(value_of(k1.rate) - value_of(k2.rate) - value_of(k3.rate) + value_of(k4.rate)) / 6.0;
     // A transition of friction between the second and the third slope shows in their difference only, and so
     // does a state of an effect's own that moves fast.
-    if (soft_ || from.own.count > 0 || instance_.axis_structure.gapped)
-      bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
+    if (soft_ || from.own.count > 0) bend += h * std::abs(value_of(k2.rate) - value_of(k3.rate)) / 6.0;
     const auto mean = [](const Scalar& a, const Scalar& b, const Scalar& c, Scalar& d) {
       d += a;
       d += 2.0 * (b + c);
@@ -344,6 +345,7 @@ private:
       Scalar stiffness = constant<Scalar>(0.0);
       slope<compliant>(state, t_s, drive, direction, start, &stiffness);
       if (soft_ && creep<compliant>(state, t_s, left_s, drive, depth, start, stiffness)) return;
+      constexpr int last_event = 11;
       double bend = 0.0;
       const AxisState<Scalar> reached =
           runge_kutta<compliant>(state, t_s, left_s, drive, direction, start, bend);
@@ -353,8 +355,22 @@ private:
         smooth<compliant>(state, t_s + value_of(half_s), half_s, drive, depth - 1);
         return;
       }
-      if (!dry_ || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 || event == 11) {
+      if constexpr (compliant) {
+        Scalar cut_s = left_s;
+        AxisState<Scalar> at_cut = reached;
+        if (event < last_event && meets_or_parts(state, t_s, drive, direction, start, cut_s, at_cut) &&
+            !(dry_ && value_of(at_cut.rate_rad_per_s) * direction < 0.0)) {
+          state = at_cut;
+          t_s += value_of(cut_s);
+          left_s -= cut_s;
+          if (!(value_of(left_s) > 0.0)) return;
+          continue;
+        }
+      }
+      if (!dry_ || direction == 0 || value_of(reached.rate_rad_per_s) * direction >= 0.0 ||
+          event == last_event) {
         state = reached;
+        if (event == last_event) touch(state);
         return;
       }
       // The rate crosses zero on the way: find where (linear guess, one Newton step), stop there, go on.
@@ -383,6 +399,68 @@ private:
       left_s -= cut_s;
       if (!(value_of(left_s) > 0.0)) return;
     }
+  }
+
+  /// Lets a state touch the end of the free play that it lies beyond.
+  void touch(AxisState<Scalar>& state) const {
+    if (instance_.axis_structure.gapped)
+      state.touching = play_.touching(state.twist_rad, state.twist_rate_rad_per_s);
+  }
+
+  /// Cuts a step where the sides of the free play meet or part in it: between two such events the equations are
+  /// linear in the twist, and across one the torque jumps.
+  /// @param start   slope of `from`
+  /// @param cut_s   in: the whole step; out: as far as the event, with its derivatives
+  /// @param at_cut  in: what the whole step reaches; out: the state at the event, touching what it touches after it
+  /// @return false: neither happens, nothing was changed
+  bool meets_or_parts(const AxisState<Scalar>& from, double t_s, const AxisDrive<Scalar>& drive,
+                      int direction, const Slope& start, Scalar& cut_s, AxisState<Scalar>& at_cut) const {
+    if (!instance_.axis_structure.gapped) return false;
+    const int end = from.touching != 0 ? from.touching : value_of(at_cut.twist_rad) < 0.0 ? -1 : 1;
+    const bool parts = from.touching != 0;
+    // They part where nothing presses any more, and meet at the end of the gap; beyond it, where they had parted
+    // before, where something presses again.
+    const bool by_pressure = parts || value_of(play_.beyond(end, from.twist_rad)) > 0.0;
+    const auto margin = [&](const AxisState<Scalar>& at) {
+      const Scalar m =
+          by_pressure ? Scalar(play_.pressed(end, at.twist_rad, at.twist_rate_rad_per_s) / spring_Nm_per_rad_)
+                      : play_.beyond(end, at.twist_rad);
+      return parts ? Scalar(-m) : m;
+    };
+    double low_s = 0.0, high_s = value_of(cut_s);
+    double low = value_of(margin(from)), high = value_of(margin(at_cut));
+    if (!(high > 0.0) || !(low <= 0.0)) return false;
+    const double near = 1e-4 * value_of(play_.gap_rad);  // from here on one step of Newton's is exact enough
+    double bend = 0.0, guess_s = high_s;
+    AxisState<Scalar> point = at_cut;
+    for (int k = 0; k < 20 && std::abs(high) > near && std::abs(low) > near; ++k) {
+      // Regula falsi, as the Illinois rule has it; halves where it creeps.
+      guess_s = k % 3 == 2 ? 0.5 * (low_s + high_s) : low_s + (high_s - low_s) * (low / (low - high));
+      point = runge_kutta<true>(from, t_s, constant<Scalar>(guess_s), drive, direction, start, bend);
+      const double there = value_of(margin(point));
+      if (there > 0.0) high_s = guess_s, high = there;
+      else low_s = guess_s, low = there;
+      if (std::abs(there) <= near) break;
+    }
+    Scalar at_s = constant<Scalar>(std::abs(low) < std::abs(high) && low_s > 0.0 ? low_s : high_s);
+    point = runge_kutta<true>(from, t_s, at_s, drive, direction, start, bend);
+    Slope there;
+    slope<true>(point, t_s + value_of(at_s), drive, direction, there);
+    Scalar grows = static_cast<double>(end) * there.twist;
+    if (by_pressure)
+      grows += (damper_Nms_per_rad_ / spring_Nm_per_rad_) * (static_cast<double>(end) * there.twist_rate);
+    if (parts) grows = -grows;
+    if (value_of(grows) > 0.0) {
+      const Scalar corrected_s = at_s - margin(point) / grows;
+      if (value_of(corrected_s) > 0.0 && value_of(corrected_s) <= value_of(cut_s)) {
+        at_s = corrected_s;
+        point = runge_kutta<true>(from, t_s, at_s, drive, direction, start, bend);
+      }
+    }
+    cut_s = at_s;
+    at_cut = point;
+    at_cut.touching = parts ? 0 : end;
+    return true;
   }
 
   /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
@@ -418,12 +496,14 @@ private:
       smooth<compliant>(state, t_s + 0.5 * h, half_s, drive, depth - 1);
     } else {
       state = reached;
+      touch(state);
     }
     return true;
   }
 
   const Instance<Scalar>& instance_;
   Scalar per_near_inertia_, far_inertia_kgm2_, spring_Nm_per_rad_, damper_Nms_per_rad_;
+  FreePlay<Scalar> play_;
   double longest_s_ = 1e9;
   bool soft_ = false;  ///< dry friction has a transition
   bool dry_ = false;   ///< dry friction has none: the axis sticks

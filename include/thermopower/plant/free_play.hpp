@@ -4,42 +4,48 @@
 
 #include <thermopower/plant/dual.hpp>
 
-#include <cmath>
-
 namespace thermopower::plant {
 
-/// What a spring and a damper with free play transmit at a twist: nothing inside the gap, and beyond its ends never a
-/// pull, as teeth that part do not stick.
+/// A spring and a damper with free play between two sides: teeth in a gap. Inside the gap nothing is transmitted; at
+/// either of its ends the sides meet on the spring and the damper, and never pull, as teeth that part do not stick.
 ///
-/// The gap is centred at a twist of 0. Its ends are rounded over a hundredth of its half, so that what follows from the
-/// gap is differentiable: the stretch is a softplus of the twist past the end, and the share of the damper that acts its
-/// slope.
-/// @param twist, twist_rate  of the far side relative to the near one, rad and rad/s
-/// @param gap_rad            from end to end, > 0
-/// @param stiffness, damping per rad and per rad/s, in any unit of torque
-/// @return in that unit, positive where the twist is
+/// The gap is centred at a twist of 0. The damper makes the torque jump where two sides meet: what integrates it stops
+/// there (AxisStep does), for an end that is rounded instead softens each blow, and what follows a blow never forgets it.
+///
+/// @snippet plant_examples.cpp free play
+/// How the whole works: @ref gap_method.
 template <class Scalar>
-Scalar across_gap(const Scalar& twist, const Scalar& twist_rate, const Scalar& gap_rad,
-                  const Scalar& stiffness, const Scalar& damping) {
-  using std::exp;
-  using std::log;
-  constexpr double rounded = 0.01;  // of the half
-  constexpr double far = 30.0;      // from here on exp(-x) is below a double's digits
-  const bool forward = value_of(twist) >= 0.0;
-  const Scalar half_rad = 0.5 * gap_rad, width_rad = rounded * half_rad;
-  const Scalar past = ((forward ? twist : Scalar(-twist)) - half_rad) / width_rad;
-  if (value_of(past) < -far) return constant<Scalar>(0.0);
-  const Scalar closing = forward ? twist_rate : Scalar(-twist_rate);
-  Scalar pressed;
-  if (value_of(past) > far) {
-    pressed = stiffness * (past * width_rad) + damping * closing;
-  } else {
-    const Scalar grown = exp(past);
-    pressed =
-        stiffness * (width_rad * log(Scalar(1.0 + grown))) + damping * closing * (grown / (1.0 + grown));
+struct FreePlay {
+  Scalar gap_rad;    ///< from end to end, > 0
+  Scalar stiffness;  ///< per rad, in any unit of torque
+  Scalar damping;    ///< per rad/s, in the same unit
+
+  /// How far the twist lies beyond an end, rad; inside the gap below 0.
+  /// @param end    +1 or -1: the end at positive twists, or at negative ones
+  /// @param twist  of the far side relative to the near one, rad
+  Scalar beyond(int end, const Scalar& twist) const {
+    return static_cast<double>(end) * twist - 0.5 * gap_rad;
   }
-  if (!(value_of(pressed) > 0.0)) return constant<Scalar>(0.0);
-  return forward ? pressed : Scalar(-pressed);
-}
+
+  /// What an end would press with where nothing kept the sides from pulling: below 0 it does not touch.
+  /// @param twist_rate  of the far side relative to the near one, rad/s
+  Scalar pressed(int end, const Scalar& twist, const Scalar& twist_rate) const {
+    return stiffness * beyond(end, twist) + damping * (static_cast<double>(end) * twist_rate);
+  }
+
+  /// The end at which the sides touch, +1 or -1; 0: none.
+  int touching(const Scalar& twist, const Scalar& twist_rate) const {
+    const int end = value_of(twist) < 0.0 ? -1 : 1;
+    const bool touches =
+        value_of(beyond(end, twist)) > 0.0 && value_of(pressed(end, twist, twist_rate)) > 0.0;
+    return touches ? end : 0;
+  }
+
+  /// What is transmitted while the sides touch at an end, or at none (0); positive where the twist is.
+  Scalar torque(int end, const Scalar& twist, const Scalar& twist_rate) const {
+    if (end == 0) return constant<Scalar>(0.0);
+    return static_cast<double>(end) * pressed(end, twist, twist_rate);
+  }
+};
 
 }  // namespace thermopower::plant

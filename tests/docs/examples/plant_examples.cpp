@@ -13,6 +13,7 @@
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/exchange_step.hpp>
+#include <thermopower/plant/free_play.hpp>
 #include <thermopower/plant/gimbal_joints.hpp>
 #include <thermopower/plant/network_plant.hpp>
 #include <thermopower/plant/network_step.hpp>
@@ -343,4 +344,20 @@ TEST_CASE("a finding says which rows it is about") {
   const Eigen::Index rows = finding.row_count();
   //! [finding]
   CHECK(rows == 15);
+}
+
+TEST_CASE("teeth transmit at the ends of their play, and never pull") {
+  //! [free play]
+  const plant::FreePlay<double> teeth{0.02, 50.0, 0.1};  // rad, N m per rad, N m s per rad
+  const double twist_rad = 0.012, closing_rad_per_s = 0.5;
+  const int end = teeth.touching(twist_rad, closing_rad_per_s);              // 1
+  const double torque_Nm = teeth.torque(end, twist_rad, closing_rad_per_s);  // 50 * 0.002 + 0.1 * 0.5
+  const int parting = teeth.touching(twist_rad, -2.0);                       // 0: they would have to pull
+  //! [free play]
+  CHECK(end == 1);
+  CHECK(torque_Nm == Approx(0.15));
+  CHECK(parting == 0);
+  CHECK(teeth.touching(-0.012, -0.5) == -1);
+  CHECK(teeth.torque(-1, -0.012, -0.5) == Approx(-0.15));
+  CHECK(teeth.touching(0.009, 3.0) == 0);
 }

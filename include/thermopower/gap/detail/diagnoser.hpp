@@ -94,7 +94,11 @@ private:
   /// will do. Where constants are the answer, the model must hold as it is configured.
   bool holds(const Attempt& attempt, const Conclusion& conclusion) {
     const Candidate& empty = attempt.candidates.front();
-    if (worst_level(empty) > 8.0) return false;
+    constexpr double far_above = 8.0;  // times the noise, over the windows of the fit
+    // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
+    if (worst_level(empty) > far_above)
+      return conclusion.verdict == Verdict::unexplained && holds(model_, held_out_inputs_, attempt.problem) &&
+             holds(model_, train_inputs_, attempt.problem);
     if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
       return holds(model_, held_out_inputs_, attempt.problem) &&
              holds(model_, train_inputs_, attempt.problem);

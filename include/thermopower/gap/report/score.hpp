@@ -96,6 +96,18 @@ private:
   std::uint64_t state_;
 };
 
+/// How far two simulations of the same rows lie apart: root mean squares by signal.
+inline std::array<double, signal_count> rms_between(const Errors& one, const Errors& other) {
+  std::array<double, signal_count> apart{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    double squares = 0.0;
+    const std::size_t count = std::min(one.of[i].size(), other.of[i].size());
+    for (std::size_t k = 0; k < count; ++k) squares += std::pow(other.of[i][k] - one.of[i][k], 2.0);
+    apart[i] = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+  }
+  return apart;
+}
+
 /// How far a simulation wanders from itself because the command of the axis was measured with noise, or the power of the
 /// bench switched at any time between two rows: root mean squares by signal, 0 where neither is so. One draw, the same each time.
 inline std::array<double, signal_count> wander_of_command(const Model& model,
@@ -121,14 +133,7 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
   std::vector<Segment> others = segments;
   for (Segment& segment : others)
     if (const auto found = noisy.find(segment.inputs); found != noisy.end()) segment.inputs = &found->second;
-  const Errors plain = errors_of(model, segments, catalogue), moved = errors_of(model, others, catalogue);
-  for (std::size_t i = 0; i < signal_count; ++i) {
-    double squares = 0.0;
-    const std::size_t count = std::min(plain.of[i].size(), moved.of[i].size());
-    for (std::size_t k = 0; k < count; ++k) squares += std::pow(moved.of[i][k] - plain.of[i][k], 2.0);
-    wander[i] = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
-  }
-  return wander;
+  return rms_between(errors_of(model, segments, catalogue), errors_of(model, others, catalogue));
 }
 
 /// Noise with what a noisy command adds to it, at most `rms`, which the best simulation leaves: that has both.
@@ -172,6 +177,36 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   return floor;
 }
 
+/// What a perfect model would score that carries states nobody measures from window to window: the noise of all starts
+/// before one tells there, and where sides meet and part it grows with each blow. Root mean squares by signal, 0 where
+/// nothing is carried on; the noise is drawn once, the same each time.
+inline std::array<double, signal_count> wander_of_starts(const Model& model,
+                                                         const std::vector<Segment>& segments,
+                                                         const std::array<double, signal_count>& sigma,
+                                                         const Catalogue& catalogue) {
+  std::array<double, signal_count> wander{};
+  const auto rollout = plant_of(model).rollout(model, catalogue, {}, {}, SimulationMode::free_running);
+  if (!rollout->carries_states()) return wander;
+  std::map<const Inputs*, Inputs> noisy;
+  Dice dice(2);
+  for (const Segment& segment : segments) {
+    const Inputs& inputs = *segment.inputs;
+    if (!segment.axis || noisy.count(&inputs) > 0) continue;
+    Inputs& copy = noisy[&inputs] = inputs;
+    for (const Signal signal : {Signal::angle_deg, Signal::rate_dps}) {
+      const auto at = static_cast<std::size_t>(signal);
+      if (!inputs.judged(signal)) continue;
+      for (Eigen::Index row = 0; row < inputs.rows(); ++row)
+        copy.measured[at][row] += sigma[at] * dice.normal();
+    }
+  }
+  if (noisy.empty()) return wander;
+  std::vector<Segment> others = segments;
+  for (Segment& segment : others)
+    if (const auto found = noisy.find(segment.inputs); found != noisy.end()) segment.inputs = &found->second;
+  return rms_between(errors_of(model, segments, catalogue), errors_of(model, others, catalogue));
+}
+
 /// What a perfect model would score where a command may be noisy, too.
 /// @param errors  of the best simulation  @param sigma  noise of the signals
 inline std::array<double, signal_count> floor_of(const Model& best, const Errors& errors,
@@ -180,8 +215,11 @@ inline std::array<double, signal_count> floor_of(const Model& best, const Errors
                                                  const Catalogue& catalogue) {
   std::array<double, signal_count> floor = noise_floor(best, segments, sigma, catalogue);
   const std::array<double, signal_count> wander = wander_of_command(best, segments, catalogue);
-  for (std::size_t i = 0; i < signal_count; ++i)
-    floor[i] = with_wander(floor[i], wander[i], errors.rms(static_cast<Signal>(i)));
+  const std::array<double, signal_count> carried = wander_of_starts(best, segments, sigma, catalogue);
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    const double rms = errors.rms(static_cast<Signal>(i));
+    floor[i] = with_wander(std::max(floor[i], std::min(carried[i], rms)), wander[i], rms);
+  }
   return floor;
 }
 
