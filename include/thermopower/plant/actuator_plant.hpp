@@ -167,6 +167,10 @@ public:
                            inputs.judged(Signal::rate_dps) ? sigma[3] * per_rate : 0.0);
   }
 
+  bool carries_states() const override {
+    return instance_.axis_structure.compliant || instance_.own_states > 0;
+  }
+
 private:
   /// The rate at a start of which the angle alone is recorded: between the slopes of the rows around it, which may all be
   /// the same where the encoder is coarse, and then are as far off as one of its steps makes them.

@@ -40,9 +40,9 @@ struct SpringTwist {
       : angle_rad(rate.size()), rate_rad_per_s(rate.size()), pull_rad_per_s2(rate.size()) {
     constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
     const double w = w_rad_per_s;
+    const FreePlay<double> play{gap_rad, w * w, 2.0 * damping * w};
     const auto pulled = [&](double q, double v) {
-      return gap_rad > 0.0 ? across_gap(q, v, gap_rad, w * w, 2.0 * damping * w)
-                           : w * w * q + 2.0 * damping * w * v;
+      return gap_rad > 0.0 ? play.torque(play.touching(q, v), q, v) : w * w * q + 2.0 * damping * w * v;
     };
     for (const RunSpan& run : rows.runs) {
       double q = 0.0, v = 0.0;

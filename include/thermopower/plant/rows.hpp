@@ -47,6 +47,12 @@ enum class HeatSource {
   none,      ///< nothing recorded: temperature is not judged
 };
 
+/// Something that is left out, because a column is missing or cannot be believed.
+struct NotJudged {
+  std::string what;      ///< the column that would show it, or `the axis`; empty: all that is left
+  std::string sentence;  ///< what is not judged, and why
+};
+
 /// A recording as a rollout wants it: inputs without holes, outputs with theirs, and what can be judged.
 ///
 /// @snippet plant_examples.cpp rollout
@@ -94,7 +100,7 @@ struct Inputs {
   /// By Signal: readings between samples, for the starts of windows where another signal stands alone; NaN or empty where
   /// there are none. Nothing is judged by them.
   std::array<Eigen::VectorXd, signal_count> between_samples;
-  std::vector<std::string> not_judged;  ///< one sentence each
+  std::vector<NotJudged> not_judged;  ///< what is left out, and why
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }

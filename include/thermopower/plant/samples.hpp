@@ -33,12 +33,13 @@ inline Eigen::VectorXd without_holes(const Eigen::VectorXd& values, const std::v
   return filled;
 }
 
-/// Median interval between the rows of runs, in s; 1 where there is none.
-inline double median_interval_s(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
+/// Median interval between the rows of runs, in s; `otherwise` where no run has two rows.
+inline double median_interval_s(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
+                                double otherwise = 1.0) {
   std::vector<double> steps;
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin; i + 1 < run.end; ++i) steps.push_back(t_s[i + 1] - t_s[i]);
-  if (steps.empty()) return 1.0;
+  if (steps.empty()) return otherwise;
   const std::size_t middle = steps.size() / 2;
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(middle), steps.end());
   return steps[middle];

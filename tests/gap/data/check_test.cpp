@@ -79,6 +79,20 @@ void spoilt_at_ten_places(const char* what, const Model& model, Recording r, con
 
 }  // namespace
 
+TEST_CASE("a current that somebody sets, and that stays where it was set, is not frozen") {
+  Recording r = bench();
+  Eigen::VectorXd set(r.t_s.size());
+  for (Eigen::Index row = 0; row < set.size(); ++row)
+    set[row] = 0.5 + 0.45 * std::sin(2.3 * static_cast<double>(row / 97));
+  Recording without_power;
+  without_power.name = r.name;
+  without_power.t_s = r.t_s;
+  for (const char* column : {"ambient_C", "motor_C"}) without_power.set(column, r.column(column));
+  without_power.set("current_A", set);
+  const PreparedRecording prepared(test::bench_model(), without_power);
+  CHECK_FALSE(found(prepared, FindingKind::frozen_samples, "current_A", FindingAction::masked));
+}
+
 TEST_CASE("less than a thousandth of clean samples is taken for dirt") {
   Eigen::Index samples = 0;
   std::size_t lost = 0;

@@ -78,7 +78,8 @@ TEST_CASE("what comes late is not judged, in every recording, and the reason is 
     CHECK_FALSE(one.inputs().judged(Signal::rate_dps));
     CHECK(one.inputs().judged(Signal::angle_deg));
     REQUIRE(one.inputs().not_judged.size() == 1);
-    CHECK(one.inputs().not_judged.front().find("the angular rate is not judged: it comes 0.02") == 0);
+    CHECK(one.inputs().not_judged.front().sentence.find("the angular rate is not judged: it comes 0.02") ==
+          0);
   }
   CHECK(std::count_if(checked.findings.begin(), checked.findings.end(), [](const Finding& one) {
           return one.kind == FindingKind::lagging_output && one.column == "rate_dps";

@@ -223,6 +223,6 @@ TEST_CASE("an empty column is said to be empty") {
   r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), missing));
   const engine::PreparedRecording prepared(test::bench_model(), r);
   REQUIRE_FALSE(prepared.inputs().not_judged.empty());
-  CHECK(prepared.inputs().not_judged.front() ==
+  CHECK(prepared.inputs().not_judged.front().sentence ==
         "the motor temperature is not judged: column ambient_C has no sample");
 }

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/command_noise.hpp>
 #include <thermopower/gap/data/motion_regression.hpp>
 #include <thermopower/plant/servo_loop.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
@@ -96,7 +97,7 @@ public:
     const double noise_deg = motion_.noise(Signal::angle_deg), response = this->response();
     double costs_deg = 0.0;
     for (const auto& one : motion_.recordings()) {
-      const double step_s = median_step_s(one.inputs->t_s, one.inputs->runs);
+      const double step_s = plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0);
       const Eigen::VectorXd& c = *one.command;
       const double spread = std::sqrt((c.array() - c.mean()).square().mean() * 2.0);  // of end and start
       costs_deg = std::max(costs_deg, response * spread * step_s * step_s / 12.0);
@@ -183,7 +184,7 @@ private:
     double step_s = 0.0;
     CommandNoise spectra;
     for (const auto& one : motion_.recordings()) {
-      step_s = std::max(step_s, median_step_s(one.inputs->t_s, one.inputs->runs));
+      step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
       spectra.add(*one.inputs, *one.command);
     }
     const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);

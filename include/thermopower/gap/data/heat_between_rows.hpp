@@ -6,6 +6,7 @@
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
@@ -50,7 +51,7 @@ public:
   void add(const Inputs& inputs, const Eigen::VectorXd& heat_W) {
     if (!inputs.judged(Signal::motor_C) || heat_W.size() == 0) return;
     constexpr HeatThresholds limit;
-    const double usual_s = median_step_s(inputs.t_s, inputs.runs);
+    const double usual_s = plant::median_interval_s(inputs.t_s, inputs.runs, 0.0);
     for (const RunSpan& run : inputs.runs) {
       const Eigen::MatrixXd did = heat_until(inputs, heat_W, run, usual_s);
       for (Eigen::Index begin = run.begin; begin + limit.block_rows <= run.end;

@@ -118,26 +118,28 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
 
   auto& notes = inputs.not_judged;
   const auto lack = [&](const char* what, const char* column) {
-    notes.push_back(plant::the_variable(what) + " is not judged: " +
-                    (recording.find(column) != nullptr || recording.is_empty(column)
-                         ? "column " + std::string(column) + " has no sample"
-                         : "the recording has no column " + std::string(column)));
+    notes.push_back({what, plant::the_variable(what) + " is not judged: " +
+                               (recording.find(column) != nullptr || recording.is_empty(column)
+                                    ? "column " + std::string(column) + " has no sample"
+                                    : "the recording has no column " + std::string(column))});
   };
   if (model.has_thermal()) {
     if (!recording.has("motor_C")) lack("motor_C", "motor_C");
     else if (!recording.has("ambient_C")) lack("motor_C", "ambient_C");
     else if (inputs.heat == HeatSource::none)
       notes.push_back(
-          "the motor temperature is not judged: neither power_param (with a current law and a supply) nor current_A nor "
-          "drive_A nor heat_W tells the heat");
+          {"motor_C",
+           "the motor temperature is not judged: neither power_param (with a current law and a supply) nor current_A nor "
+           "drive_A nor heat_W tells the heat"});
     else measure(Signal::motor_C);
   } else if (recording.has("motor_C") && !model.has_axis()) {
-    notes.push_back("the motor temperature is not judged: the model has no thermal block");
+    notes.push_back({"motor_C", "the motor temperature is not judged: the model has no thermal block"});
   }
   if (model.has_current()) {
     if (!recording.has("current_A")) lack("current_A", "current_A");
     else if (!powered)
-      notes.push_back("the motor current is not judged: power_param or the supply voltage is unknown");
+      notes.push_back(
+          {"current_A", "the motor current is not judged: power_param or the supply voltage is unknown"});
     else if (!recording.has("motor_C")) lack("current_A", "motor_C");
     else measure(Signal::current_A);
   }
@@ -161,7 +163,8 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     } else if (!commanded && !model.has_servo()) {
       lack("the axis", voltage_driven ? "voltage_V" : "drive_A");
     } else if (!recording.has("rate_dps") && !recording.has("angle_deg")) {
-      notes.push_back("the axis is not judged: the recording has neither angle_deg nor rate_dps");
+      notes.push_back(
+          {"the axis", "the axis is not judged: the recording has neither angle_deg nor rate_dps"});
     } else {
       if (recording.has("rate_dps")) measure(Signal::rate_dps);
       else lack("rate_dps", "rate_dps");
@@ -182,14 +185,17 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
 inline std::vector<std::string> not_judged_in(const std::vector<const Inputs*>& all) {
   std::vector<std::string> sentences;
   for (const Inputs* one : all)
-    for (const std::string& note : one->not_judged)
-      if (std::find(sentences.begin(), sentences.end(), note) == sentences.end()) sentences.push_back(note);
+    for (const plant::NotJudged& note : one->not_judged)
+      if (std::find(sentences.begin(), sentences.end(), note.sentence) == sentences.end())
+        sentences.push_back(note.sentence);
   for (std::string& sentence : sentences) {
     std::vector<std::string> names;
     std::size_t count = 0;
     for (const Inputs* one : all) {
-      if (std::find(one->not_judged.begin(), one->not_judged.end(), sentence) == one->not_judged.end())
-        continue;
+      const bool says_so =
+          std::any_of(one->not_judged.begin(), one->not_judged.end(),
+                      [&](const plant::NotJudged& note) { return note.sentence == sentence; });
+      if (!says_so) continue;
       ++count;
       if (std::find(names.begin(), names.end(), one->name) == names.end()) names.push_back(one->name);
     }

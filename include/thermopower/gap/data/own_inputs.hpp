@@ -26,7 +26,7 @@ Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording, con
     } else {
       if (!input.otherwise) {
         complete = false;
-        inputs.not_judged.push_back("nothing is judged: the recording has no column " + input.name);
+        inputs.not_judged.push_back({"", "nothing is judged: the recording has no column " + input.name});
       }
       inputs.own_inputs.push_back(Eigen::VectorXd::Constant(recording.rows(), input.otherwise.value_or(0.0)));
     }
@@ -34,8 +34,8 @@ Inputs prepare_own(const plant::PlantInfo& info, const Recording& recording, con
   for (std::size_t i = 0; i < info.signals.size(); ++i) {
     const std::string& name = info.signals[i].name;
     if (!recording.has(name))
-      inputs.not_judged.push_back(plant::the_variable(name) + " is not judged: the recording has no column " +
-                                  name);
+      inputs.not_judged.push_back(
+          {name, plant::the_variable(name) + " is not judged: the recording has no column " + name});
     else if (complete) inputs.measured[i] = recording.column(name);
   }
   return inputs;

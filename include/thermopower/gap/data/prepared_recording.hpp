@@ -11,6 +11,7 @@
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
 #include <thermopower/plant/variable_words.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -75,8 +76,8 @@ public:
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);
     renew_inputs(model);
-    for (std::string& note : inputs_.not_judged)
-      if (note.rfind(plant::the_variable(column) + " is not judged", 0) == 0) note = sentence;
+    for (plant::NotJudged& note : inputs_.not_judged)
+      if (note.what == column) note.sentence = sentence;
   }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
@@ -148,7 +149,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
                        model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(recorded, list);
-  interval_s_ = median_interval_s(believed_);
+  interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
     std::vector<Finding> all = list.take();
     for (Finding& one : all) one.action = FindingAction::none;

@@ -96,19 +96,6 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
   return median_of(list) / (normal_median * gain);
 }
 
-/// Median step between the stamps of rows inside runs, in s; 0 where no run has two rows.
-inline double median_step_s(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
-  std::vector<double> steps;
-  for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(t_s[i] - t_s[i - 1]);
-  return median_of(steps);
-}
-
-/// The same of a recording.
-inline double median_interval_s(const Recording& recording) {
-  return median_step_s(recording.t_s, recording.spans());
-}
-
 /// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a
 /// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
 /// ever differ by the same amount.

@@ -34,6 +34,8 @@ struct MaskThresholds {
   Eigen::Index longest_burst = 20;   ///< rows of a stretch elsewhere
   Eigen::Index longest_stuck = 400;  ///< rows, where all of them have the same value
   double rarely_equal = 0.5;         ///< share of equal neighbours below which the noise shows at every row
+  double nearly_always_equal =
+      0.9;  ///< share of equal neighbours from which a column that may jump is set, not measured
   double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
   double log_chance = 20.7;        ///< -ln(1e-9): how improbable a frozen stretch must be
   Eigen::Index least_frozen = 6;   ///< rows of the shortest frozen stretch
@@ -393,12 +395,19 @@ private:
     const double share = std::max(equal_share_, 1e-4);
     const bool improbable = -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
     if (equal_share_ < limit_.rarely_equal && quantum_ < scale_ && improbable) return true;
-    // Of a coarse thermometer only a reading that has to catch up tells that it stood.
-    if (end == rows.size()) return false;
+    // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
+    // a current that somebody sets.
+    if (end == rows.size() || is_set()) return false;
     const double jump = std::abs(values_[rows[end]] - value);
     return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
                             limit_.quanta * quantum_}) &&
            (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
+  }
+
+  /// Whether a column that may jump is constant but for steps: a value that is set, not measured.
+  bool is_set() const {
+    const bool may_jump = !traits_.cannot_jump && traits_.at_rest == nullptr && traits_.integral == nullptr;
+    return may_jump && equal_share_ > limit_.nearly_always_equal;
   }
 
   static constexpr MaskThresholds limit_{};

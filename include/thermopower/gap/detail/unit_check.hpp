@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/gap/simulate.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ struct Reading {
 
 /// How far a simulation is from a recording, as UnitThresholds says; NaN where nothing can be compared.
 inline double misfit(const Model& model, const Recording& recording, const Catalogue& catalogue) {
-  const double interval_s = median_interval_s(recording);
+  const double interval_s = plant::median_interval_s(recording.t_s, recording.spans(), 0.0);
   SimulationOptions options;
   options.horizon_s = static_cast<double>(UnitThresholds().window_rows) * interval_s;
   constexpr double most = 1e3;

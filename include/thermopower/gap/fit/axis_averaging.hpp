@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
@@ -36,7 +37,7 @@ public:
 
   /// The shorter recording, or the full one where it is not faster than needed.
   Inputs run(double horizon_s) const {
-    const double interval_s = median_step_s(full_.t_s, full_.runs);
+    const double interval_s = plant::median_interval_s(full_.t_s, full_.runs, 0.0);
     if (!(interval_s > 0.0)) return full_;
     if (full_.closed_loop) return full_;  // a servo answers each sample
     auto rows = static_cast<Eigen::Index>(horizon_s / (AveragingThresholds().rows_per_horizon * interval_s));

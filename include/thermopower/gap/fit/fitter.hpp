@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -219,7 +220,7 @@ private:
           matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
         matrix(a, a) += damping;
       }
-      const Eigen::VectorXd solved = SymmetricSystem(matrix).solve(right);
+      const Eigen::VectorXd solved = SymmetricSystem(std::move(matrix)).solve(std::move(right));
       std::vector<Eigen::Index> inside;
       bool clipped = false;
       for (Eigen::Index a = 0; a < m; ++a) {
