@@ -23,7 +23,48 @@ std::size_t count_of(const std::string& what, const std::string& text) {
   return n;
 }
 
+/// An effect of the test's own: a counterweight's bearing, which drags by half of what it carries.
+struct DraggingWeight {
+  enum Parameters { weight_Nm };
+  static thermopower::plant::EffectInfo info() {
+    using namespace thermopower::plant;
+    EffectInfo one = {"dragging_weight",
+                      Submodel::mechanical_load,
+                      "torque -= weight (1 + sign(w) / 2)",
+                      "A counterweight hangs on a rope over a stiff pulley.",
+                      {parameter(weight_Nm, "weight_Nm").unit("N m").within(0.0, 10.0).starts({0.0})},
+                      {Need::axis_model},
+                      "slow motion both ways"};
+    one.in_a_joint = [](const double* p, JointDescription& joint) {
+      joint.offset_Nm -= p[weight_Nm];
+      joint.friction_Nm += 0.5 * p[weight_Nm];
+      joint.remarks.push_back({{weight_Nm}, "the rope does not swing"});
+    };
+    return one;
+  }
+  template <class Scalar>
+  static void act(const Scalar* p, thermopower::plant::FrictionTerms<Scalar>& terms) {
+    terms.add_friction(1.5 * p[weight_Nm], -0.5 * p[weight_Nm], thermopower::plant::constant<Scalar>(0.01));
+  }
+};
+
 }  // namespace
+
+TEST_CASE("an effect of one's own reaches the simulators by what it says of itself") {
+  Catalogue catalogue = standard_catalogue();
+  catalogue.add<DraggingWeight>();
+  Model model = axis();
+  model.effects["constant_torque"] = {{"Nm", 0.03}};
+  model.effects["dragging_weight"] = {{"weight_Nm", 0.2}};
+  const io::SimulatorFile file = io::mjcf(model, "a test", catalogue);
+  CHECK_THAT(file.text, ContainsSubstring("frictionloss=\"0.1\"") && ContainsSubstring("biasprm=\"-0.17"));
+  REQUIRE(file.left_out.size() == 1);
+  CHECK(file.left_out[0] == "dragging_weight: weight_Nm 0.2; the rope does not swing");
+  CHECK_THAT(io::urdf(model, "a test", catalogue).text, ContainsSubstring("friction=\"0.1\""));
+  // Who does not know it leaves it out, with its numbers.
+  REQUIRE(io::mjcf(model, "a test").left_out.size() == 1);
+  CHECK(io::mjcf(model, "a test").left_out[0] == "dragging_weight: weight_Nm 0.2");
+}
 
 TEST_CASE("a joint's constants are where MuJoCo and robots look for them") {
   Model model = axis();

@@ -41,106 +41,79 @@ std::string attribute_text(const std::string& text) {
   return out.empty() ? "axis" : out;
 }
 
-/// What a joint and its drive are, as both formats may use it.
-struct Joint {
-  double inertia = 0.0, damping = 0.0, torque_constant = 0.0;
-  double friction_Nm = 0.0;
-  double back_emf_Nms_per_rad = 0.0;        // of a motor at a voltage
-  const char* control = "A";                // unit of the drive
-  std::optional<double> spring, spring_at;  // N m/rad, rad
-  std::optional<double> constant_Nm, limit_A, lag_s;
-  std::optional<double> imbalance_Nm, imbalance_rad;
-  std::optional<double> far_share, spring_rad_per_s, spring_damping;
+struct Described {
+  plant::JointDescription joint;
+  const char* control = "A";  // unit of the drive
   std::vector<std::string> left_out;
 };
 
+/// Makes a joint of a model: what its effects say of themselves, and what none of them can.
 class Reader {
 public:
-  explicit Reader(const Model& model) : model_(model) {
+  Reader(const Model& model, const Catalogue& catalogue) : model_(model), catalogue_(catalogue) {
     if (!model.axis)
       throw InvalidInput("model '" + model.name +
                          "' has no axis: simulators of bodies have nothing to take from it");
-    joint_.inertia = model.axis->inertia_kgm2;
-    joint_.damping = model.axis->viscous_Nms_per_rad;
-    joint_.torque_constant = model.axis->torque_constant_Nm_per_A;
+    plant::JointDescription& joint = described_.joint;
+    joint.inertia_kgm2 = model.axis->inertia_kgm2;
+    joint.damping_Nms_per_rad = model.axis->viscous_Nms_per_rad;
+    joint.Nm_per_drive = model.axis->torque_constant_Nm_per_A;
     if (model.axis->voltage_driven()) {
       // Kt (u - Kt w) / R: a gain on the voltage, and a force against the rate.
-      joint_.back_emf_Nms_per_rad =
-          joint_.torque_constant * joint_.torque_constant / model.axis->resistance_ohm;
-      joint_.torque_constant /= model.axis->resistance_ohm;
-      joint_.control = "V";
+      joint.back_emf_Nms_per_rad = joint.Nm_per_drive * joint.Nm_per_drive / model.axis->resistance_ohm;
+      joint.Nm_per_drive /= model.axis->resistance_ohm;
+      joint.drive_per_A = model.axis->resistance_ohm;
+      described_.control = "V";
     }
   }
 
-  Joint read() {
+  Described read() {
     for (const auto& [id, parameters] : model_.effects) take(id, parameters);
     if (model_.has_servo()) {
       std::string text = "servo:";
       for (const NamedConstant& one : model_.constants())
         if (one.block == "servo")
           text += (text.back() == ':' ? " " : ", ") + one.name + " " + number(one.value);
-      joint_.left_out.push_back(text + "; it is sampled, and belongs to the program that sets the control");
+      described_.left_out.push_back(text +
+                                    "; it is sampled, and belongs to the program that sets the control");
     }
     if (model_.has_current() || model_.has_thermal())
-      joint_.left_out.push_back(
+      described_.left_out.push_back(
           "the motor's current and temperature: the drive has neither a winding nor a body that warms");
-    return std::move(joint_);
+    return std::move(described_);
   }
 
 private:
-  static double of(const EffectParameters& parameters, const char* name) {
-    const auto found = parameters.find(name);
-    return found == parameters.end() ? 0.0 : found->second;
-  }
-
-  void leave_out(const std::string& id, const EffectParameters& parameters, const std::string& why = {}) {
-    std::string text = id + ":";
-    for (const auto& [name, value] : parameters)
-      text += (text.back() == ':' ? " " : ", ") + name + " " + number(value);
-    joint_.left_out.push_back(text + (why.empty() ? "" : "; " + why));
-  }
-
-  void dry_friction(const std::string& id, const EffectParameters& p, double moving_Nm,
-                    const std::string& more) {
-    joint_.friction_Nm += moving_Nm;
-    const double transition = of(p, "transition_rad_per_s");
-    if (transition > 0.0)
-      joint_.left_out.push_back(id + ": it turns over within transition_rad_per_s " + number(transition) +
-                                "; here at rest at once");
-    if (!more.empty()) joint_.left_out.push_back(id + ": " + more);
-  }
-
-  void take(const std::string& id, const EffectParameters& p) {
-    if (id == "coulomb_friction") dry_friction(id, p, of(p, "Nm"), "");
-    else if (id == "asymmetric_friction")
-      dry_friction(id, p, 0.5 * (of(p, "forward_Nm") + of(p, "backward_Nm")),
-                   "forward_Nm " + number(of(p, "forward_Nm")) + ", backward_Nm " +
-                       number(of(p, "backward_Nm")) + "; here the mean of both in both directions");
-    else if (id == "stribeck_friction")
-      dry_friction(id, p, of(p, "Nm"),
-                   "the rise near standstill: rise_Nm " + number(of(p, "rise_Nm")) + ", knee_rad_per_s " +
-                       number(of(p, "knee_rad_per_s")));
-    else if (id == "cable_spring") {
-      joint_.spring = of(p, "Nm_per_rad");
-      joint_.spring_at = of(p, "centre_rad");
-    } else if (id == "constant_torque") joint_.constant_Nm = of(p, "Nm");
-    else if (id == "torque_saturation")
-      joint_.limit_A = of(p, "A") * (model_.axis->voltage_driven() ? model_.axis->resistance_ohm : 1.0);
-    else if (id == "drive_lag") joint_.lag_s = of(p, "lag_s");
-    else if (id == "imbalance" && of(p, "Nm") != 0.0) {
-      joint_.imbalance_Nm = of(p, "Nm");
-      joint_.imbalance_rad = of(p, "phase_rad");
-    } else if (id == "compliance") {
-      joint_.far_share = of(p, "far_share");
-      joint_.spring_rad_per_s = 4.0 * quarter_turn_rad * of(p, "frequency_Hz");
-      joint_.spring_damping = of(p, "damping");
-    } else if (id == "actuation_delay")
-      leave_out(id, p, "hold the control back by this time, in whole steps of the simulation");
-    else leave_out(id, p);
+  void take(const std::string& id, const EffectParameters& given) {
+    const CatalogueEntry* entry = catalogue_.find(id);
+    if (entry == nullptr || entry->info.in_a_joint == nullptr) {
+      std::string text = id + ":";
+      for (const auto& [name, value] : given)
+        text += (text.back() == ':' ? " " : ", ") + name + " " + number(value);
+      described_.left_out.push_back(std::move(text));
+      return;
+    }
+    const std::vector<Parameter>& parameters = entry->info.parameters;
+    std::vector<double> values;
+    for (const Parameter& one : parameters) {
+      const auto found = given.find(one.name);
+      values.push_back(found != given.end() ? found->second : one.standard.value_or(0.0));
+    }
+    entry->info.in_a_joint(values.data(), described_.joint);
+    for (const plant::JointRemark& remark : described_.joint.remarks) {
+      std::string text = id + ":";
+      for (const int place : remark.parameters) {
+        const auto i = static_cast<std::size_t>(place);
+        text += (text.back() == ':' ? " " : ", ") + parameters[i].name + " " + number(values[i]);
+      }
+      described_.left_out.push_back(text + "; " + remark.text);
+    }
+    described_.joint.remarks.clear();
   }
 
   const Model& model_;
-  Joint joint_;
+  const Catalogue& catalogue_;
+  Described described_;
 };
 
 std::string comment(const std::string& origin, const std::string& unit,
@@ -159,95 +132,99 @@ std::string inertial(double inertia, double mass, double x, double y) {
 
 }  // namespace
 
-SimulatorFile mjcf(const Model& model, const std::string& origin) {
-  const Joint joint = Reader(model).read();
-  const double near = joint.inertia * (1.0 - joint.far_share.value_or(0.0)), far = joint.inertia - near;
+SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogue& catalogue) {
+  const Described described = Reader(model, catalogue).read();
+  const plant::JointDescription& joint = described.joint;
+  const double far = joint.far_side ? joint.inertia_kgm2 * joint.far_side->share : 0.0,
+               near = joint.inertia_kgm2 - far;
   double mass = near, x = 0.0, y = 0.0, about_centre = near;
-  if (joint.imbalance_Nm) {
+  if (joint.imbalance) {
     // Gravity along -y pulls a mass at the angle a with -m g l cos(theta + a): a = phase less a quarter turn.
-    const double size = std::fabs(*joint.imbalance_Nm), turned = *joint.imbalance_Nm < 0.0 ? 2.0 : 0.0;
+    const double size = std::fabs(joint.imbalance->Nm), turned = joint.imbalance->Nm < 0.0 ? 2.0 : 0.0;
     const double radius = share_of_inertia * near * gravity_m_per_s2 / size;
-    const double angle = *joint.imbalance_rad - quarter_turn_rad + turned * quarter_turn_rad;
+    const double angle = joint.imbalance->phase_rad - quarter_turn_rad + turned * quarter_turn_rad;
     mass = size / (gravity_m_per_s2 * radius);
     x = radius * std::cos(angle);
     y = radius * std::sin(angle);
     about_centre = near - mass * radius * radius;
   }
-  SimulatorFile file{{}, joint.left_out};
+  SimulatorFile file{{}, described.left_out};
   std::string& out = file.text;
-  out = comment(origin, joint.control, joint.left_out) + "<mujoco model=\"" + attribute_text(model.name) +
-        "\">\n";
+  out = comment(origin, described.control, described.left_out) + "<mujoco model=\"" +
+        attribute_text(model.name) + "\">\n";
   out += "  <compiler angle=\"radian\" inertiafromgeom=\"false\" boundmass=\"0\" boundinertia=\"0\"/>\n";
-  out += "  <option timestep=\"0.0001\" gravity=\"0 " + number(joint.imbalance_Nm ? -gravity_m_per_s2 : 0.0) +
+  out += "  <option timestep=\"0.0001\" gravity=\"0 " + number(joint.imbalance ? -gravity_m_per_s2 : 0.0) +
          " 0\"/>\n";
   out +=
       "  <worldbody>\n    <body name=\"driven\">\n      <joint name=\"axis\" type=\"hinge\" axis=\"0 0 1\" damping=\"" +
-      number(joint.damping) + "\" frictionloss=\"" + number(joint.friction_Nm) + "\"";
+      number(joint.damping_Nms_per_rad) + "\" frictionloss=\"" + number(joint.friction_Nm) + "\"";
   // MuJoCo's own softness would turn dry friction into a viscous one up to several degrees a second. Two steps of
   // the simulation are the hardest that it takes, and it makes them of anything harder.
   if (joint.friction_Nm > 0.0)
     out += " solreffriction=\"0.0002 1\" solimpfriction=\"0.99 0.999 0.0001 0.5 2\"";
   if (joint.spring)
-    out += " stiffness=\"" + number(*joint.spring) + "\" springref=\"" + number(*joint.spring_at) + "\"";
+    out += " stiffness=\"" + number(joint.spring->Nm_per_rad) + "\" springref=\"" +
+           number(joint.spring->centre_rad) + "\"";
   out +=
       "/>\n      <!-- In a model whose bodies already have an inertia about this axis, give the joint what is missing of it to " +
       number(near) + " kg m^2 as armature. -->\n      " + inertial(about_centre, mass, x, y) + "\n";
-  if (joint.far_share) {
-    const double reduced = near * far / (near + far), w = *joint.spring_rad_per_s;
+  if (joint.far_side) {
+    const double reduced = near * far / (near + far), w = joint.far_side->rad_per_s;
     out +=
         "      <body name=\"far\">\n        <joint name=\"compliance\" type=\"hinge\" axis=\"0 0 1\" stiffness=\"" +
-        number(reduced * w * w) + "\" damping=\"" + number(2.0 * *joint.spring_damping * w * reduced) +
+        number(reduced * w * w) + "\" damping=\"" + number(2.0 * joint.far_side->damping * w * reduced) +
         "\"/>\n        " + inertial(far, far, 0.0, 0.0) + "\n      </body>\n";
   }
   out +=
       "    </body>\n  </worldbody>\n  <actuator>\n    <general name=\"drive\" joint=\"axis\" gear=\"1\" gaintype=\"fixed\" gainprm=\"" +
-      number(joint.torque_constant) + "\"";
-  if (joint.constant_Nm || joint.back_emf_Nms_per_rad > 0.0)
-    out += " biastype=\"affine\" biasprm=\"" + number(joint.constant_Nm.value_or(0.0)) + " 0 " +
+      number(joint.Nm_per_drive) + "\"";
+  if (joint.offset_Nm != 0.0 || joint.back_emf_Nms_per_rad > 0.0)
+    out += " biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) + " 0 " +
            number(-joint.back_emf_Nms_per_rad) + "\"";
   if (joint.lag_s) out += " dyntype=\"filter\" dynprm=\"" + number(*joint.lag_s) + "\"";
-  if (joint.limit_A)
-    out +=
-        " ctrllimited=\"true\" ctrlrange=\"" + number(-*joint.limit_A) + " " + number(*joint.limit_A) + "\"";
+  if (joint.largest_drive)
+    out += " ctrllimited=\"true\" ctrlrange=\"" + number(-*joint.largest_drive) + " " +
+           number(*joint.largest_drive) + "\"";
   out += "/>\n  </actuator>\n</mujoco>\n";
   return file;
 }
 
-SimulatorFile urdf(const Model& model, const std::string& origin) {
-  const Joint joint = Reader(model).read();
-  SimulatorFile file{{}, joint.left_out};
-  file.left_out.insert(file.left_out.begin(), std::string(joint.control) +
-                                                  " to N m: " + number(joint.torque_constant) +
+SimulatorFile urdf(const Model& model, const std::string& origin, const Catalogue& catalogue) {
+  const Described described = Reader(model, catalogue).read();
+  const plant::JointDescription& joint = described.joint;
+  SimulatorFile file{{}, described.left_out};
+  file.left_out.insert(file.left_out.begin(), std::string(described.control) +
+                                                  " to N m: " + number(joint.Nm_per_drive) +
                                                   "; a joint is driven by its torque");
   if (joint.back_emf_Nms_per_rad > 0.0)
     file.left_out.push_back(
         "a motor at a voltage: what its counter-voltage takes is part of the damping here");
   if (joint.spring)
-    file.left_out.push_back("cable_spring: Nm_per_rad " + number(*joint.spring) + ", centre_rad " +
-                            number(*joint.spring_at));
-  if (joint.constant_Nm) file.left_out.push_back("constant_torque: Nm " + number(*joint.constant_Nm));
-  if (joint.lag_s) file.left_out.push_back("drive_lag: lag_s " + number(*joint.lag_s));
-  if (joint.imbalance_Nm)
-    file.left_out.push_back("imbalance: Nm " + number(*joint.imbalance_Nm) + ", phase_rad " +
-                            number(*joint.imbalance_rad) + "; move the link's centre of mass");
-  if (joint.far_share)
-    file.left_out.push_back("compliance: far_share " + number(*joint.far_share) + ", " +
-                            number(*joint.spring_rad_per_s) + " rad/s, damping " +
-                            number(*joint.spring_damping));
-  const std::string one = number(joint.inertia);
+    file.left_out.push_back("a spring: Nm_per_rad " + number(joint.spring->Nm_per_rad) + ", centre_rad " +
+                            number(joint.spring->centre_rad));
+  if (joint.offset_Nm != 0.0) file.left_out.push_back("a constant torque: Nm " + number(joint.offset_Nm));
+  if (joint.lag_s) file.left_out.push_back("a drive that lags: lag_s " + number(*joint.lag_s));
+  if (joint.imbalance)
+    file.left_out.push_back("an imbalance: Nm " + number(joint.imbalance->Nm) + ", phase_rad " +
+                            number(joint.imbalance->phase_rad) + "; move the link's centre of mass");
+  if (joint.far_side)
+    file.left_out.push_back("a compliance: far_share " + number(joint.far_side->share) + ", " +
+                            number(joint.far_side->rad_per_s) + " rad/s, damping " +
+                            number(joint.far_side->damping));
+  const std::string one = number(joint.inertia_kgm2);
   std::string& out = file.text;
   out =
-      "<?xml version=\"1.0\"?>\n" + comment(origin, joint.control, file.left_out) + "<robot name=\"" +
+      "<?xml version=\"1.0\"?>\n" + comment(origin, described.control, file.left_out) + "<robot name=\"" +
       attribute_text(model.name) +
       "\">\n  <link name=\"base\"/>\n  <link name=\"driven\">\n    <inertial>\n      <mass value=\"" + one +
       "\"/>\n      <inertia ixx=\"" + one + "\" ixy=\"0\" ixz=\"0\" iyy=\"" + one + "\" iyz=\"0\" izz=\"" +
       one +
       "\"/>\n    </inertial>\n  </link>\n  <joint name=\"axis\" type=\"continuous\">\n    <parent link=\"base\"/>\n"
       "    <child link=\"driven\"/>\n    <axis xyz=\"0 0 1\"/>\n    <dynamics damping=\"" +
-      number(joint.damping + joint.back_emf_Nms_per_rad) + "\" friction=\"" + number(joint.friction_Nm) +
-      "\"/>\n";
-  if (joint.limit_A)
-    out += "    <limit effort=\"" + number(std::fabs(*joint.limit_A * joint.torque_constant)) +
+      number(joint.damping_Nms_per_rad + joint.back_emf_Nms_per_rad) + "\" friction=\"" +
+      number(joint.friction_Nm) + "\"/>\n";
+  if (joint.largest_drive)
+    out += "    <limit effort=\"" + number(std::fabs(*joint.largest_drive * joint.Nm_per_drive)) +
            "\" velocity=\"1e9\"/>\n";
   out += "  </joint>\n</robot>\n";
   return file;

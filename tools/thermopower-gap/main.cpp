@@ -198,11 +198,11 @@ void write_exports(const Arguments& arguments, const gap::Model& model, const st
     put(arguments.header, header.text, header.left_out);
   }
   if (!arguments.mjcf.empty()) {
-    const io::SimulatorFile file = io::mjcf(model, origin);
+    const io::SimulatorFile file = io::mjcf(model, origin, catalogue);
     put(arguments.mjcf, file.text, file.left_out);
   }
   if (!arguments.urdf.empty()) {
-    const io::SimulatorFile file = io::urdf(model, origin);
+    const io::SimulatorFile file = io::urdf(model, origin, catalogue);
     put(arguments.urdf, file.text, file.left_out);
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/model.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
 #include <thermopower/io/names.hpp>
 
 #include <string>
@@ -22,12 +23,15 @@ struct SimulatorFile {
 /// Exact: inertia, damping, torque constant, spring, constant torque, saturation, lag of the drive, imbalance (as a
 /// mass off the axis), compliance (as a second hinge). Nearly: dry friction as `frictionloss`, which has no transition.
 /// What MJCF cannot express stands in a comment of the file and in `left_out`, with its numbers.
-/// @param origin  one line that says where it comes from
+/// @param origin     one line that says where it comes from
+/// @param catalogue  knows the model's effects: each of them says what it is in a joint (EffectInfo::in_a_joint)
 /// @throws InvalidInput where the model has no axis
-SimulatorFile mjcf(const Model& model, const std::string& origin);
+SimulatorFile mjcf(const Model& model, const std::string& origin,
+                   const Catalogue& catalogue = standard_catalogue());
 
 /// @brief The same as URDF: a joint with `<dynamics>` and `<limit>`, which is all that the format has.
 /// @throws InvalidInput where the model has no axis
-SimulatorFile urdf(const Model& model, const std::string& origin);
+SimulatorFile urdf(const Model& model, const std::string& origin,
+                   const Catalogue& catalogue = standard_catalogue());
 
 }  // namespace thermopower::io

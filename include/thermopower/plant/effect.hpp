@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/joint_description.hpp>
 #include <thermopower/plant/submodel.hpp>
 
 #include <initializer_list>
@@ -191,6 +192,9 @@ struct EffectInfo {
   double (*slowest_s)(const double* parameters) = nullptr;
   /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
   std::optional<WhereEqual> where_equal = {};
+  /// What it is to simulators of bodies: adds itself to a joint. Null: they have no words for it, and an export leaves it out
+  /// with its numbers.
+  void (*in_a_joint)(const double* parameters, JointDescription& joint) = nullptr;
 };
 
 }  // namespace thermopower::plant

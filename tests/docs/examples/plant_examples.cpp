@@ -53,6 +53,14 @@ struct ColdSeal {
 };
 //! [effect of one's own]
 
+//! [joint]
+/// A seal to simulators of bodies, which know no temperature: the friction that it has in the cold.
+void in_a_joint(const double* p, plant::JointDescription& joint) {
+  joint.friction_Nm += p[ColdSeal::Nm];
+  joint.remarks.push_back({{ColdSeal::fades_at_C}, "here it is always cold"});
+}
+//! [joint]
+
 /// A share of the heat capacity behind the surface, as the catalogue's second and third mass have it.
 struct Mount {
   static plant::EffectInfo info() {
@@ -122,6 +130,15 @@ TEST_CASE("a model, a recording, a simulation") {
   //! [axis model]
   CHECK_FALSE(axis.axis->voltage_driven());
   CHECK(axis.has_axis());
+}
+
+TEST_CASE("what an effect is to simulators of bodies") {
+  const double parameters[] = {0.3, 40.0};
+  plant::JointDescription joint;
+  in_a_joint(parameters, joint);
+  CHECK(joint.friction_Nm == 0.3);
+  REQUIRE(joint.remarks.size() == 1);
+  CHECK(joint.remarks[0].parameters == std::vector<int>{1});
 }
 
 TEST_CASE("a catalogue of one's own") {

@@ -20,13 +20,21 @@ struct ActuationDelay {
 
   /// What it is.
   static EffectInfo info() {
-    return {"actuation_delay",
-            Submodel::mechanical_drive,
-            "drive(t) = u(t - s)",
-            "The torque comes later than the command.",
-            {parameter(delay_s, "s").unit("s").within(0.0, 1.0).starts({0.002, 0.01, 0.03, 0.08})},
-            {Need::axis_model, Need::open_loop},
-            "fast reversals, recorded at a high rate"};
+    EffectInfo one = {"actuation_delay",
+                      Submodel::mechanical_drive,
+                      "drive(t) = u(t - s)",
+                      "The torque comes later than the command.",
+                      {parameter(delay_s, "s").unit("s").within(0.0, 1.0).starts({0.002, 0.01, 0.03, 0.08})},
+                      {Need::axis_model, Need::open_loop},
+                      "fast reversals, recorded at a high rate"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double*, JointDescription& joint) {
+    joint.remarks.push_back(
+        {{delay_s}, "hold the control back by this time, in whole steps of the simulation"});
   }
 
   /// Delays the command.

@@ -34,7 +34,14 @@ struct AsymmetricFriction {
                       {Need::axis_model},
                       "slow motion at constant rate in both directions, and standstill"};
     one.where_equal = WhereEqual{forward_Nm, backward_Nm, "coulomb_friction"};
+    one.in_a_joint = in_a_joint;
     return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.add_friction(0.5 * (p[forward_Nm] + p[backward_Nm]), transition, p[transition]);
+    joint.remarks.push_back({{forward_Nm, backward_Nm}, "here the mean of both in both directions"});
   }
 
   /// Adds dry friction by direction.

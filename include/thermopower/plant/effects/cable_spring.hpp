@@ -21,19 +21,26 @@ struct CableSpring {
 
   /// What it is.
   static EffectInfo info() {
-    return {"cable_spring",
-            Submodel::mechanical_load,
-            "torque -= k (theta - centre)",
-            "A cable pulls back towards its rest position.",
-            {parameter(Nm_per_rad, "Nm_per_rad").unit("N m/rad").within(0.0, 1e3).starts({0.0}),
-             // From far enough away the pull is a constant torque.
-             parameter(centre_rad, "centre_rad")
-                 .unit("rad")
-                 .within(-60.0, 60.0)
-                 .starts({0.0})
-                 .degenerate_at_bounds()},
-            {Need::axis_model, Need::angle_deg},
-            "slow motion over the full travel"};
+    EffectInfo one = {"cable_spring",
+                      Submodel::mechanical_load,
+                      "torque -= k (theta - centre)",
+                      "A cable pulls back towards its rest position.",
+                      {parameter(Nm_per_rad, "Nm_per_rad").unit("N m/rad").within(0.0, 1e3).starts({0.0}),
+                       // From far enough away the pull is a constant torque.
+                       parameter(centre_rad, "centre_rad")
+                           .unit("rad")
+                           .within(-60.0, 60.0)
+                           .starts({0.0})
+                           .degenerate_at_bounds()},
+                      {Need::axis_model, Need::angle_deg},
+                      "slow motion over the full travel"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.spring = JointSpring{p[Nm_per_rad], p[centre_rad]};
   }
 
   /// Adds the spring's torque.

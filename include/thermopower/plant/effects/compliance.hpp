@@ -23,19 +23,27 @@ struct Compliance {
 
   /// What it is.
   static EffectInfo info() {
-    return {"compliance",
-            Submodel::mechanical_structure,
-            "J1 dw/dt = drive - spring, J2 dw2/dt = spring",
-            "Part of the inertia hangs on a spring: the axis rings.",
-            {parameter(far_share, "far_share").unit("1").within(0.01, 0.97).starts({0.2, 0.6}),
-             parameter(frequency_Hz, "frequency_Hz")
-                 .unit("Hz")
-                 .within(0.2, 300.0)
-                 .logarithmic()
-                 .starts({1.5, 2.2, 3.3, 5.0, 7.5, 11.0, 16.0, 25.0, 40.0, 60.0}),
-             parameter(damping, "damping").unit("1").within(1e-4, 2.0).logarithmic().starts({0.03})},
-            {Need::axis_model},
-            "fast reversals and a frequency sweep"};
+    EffectInfo one = {
+        "compliance",
+        Submodel::mechanical_structure,
+        "J1 dw/dt = drive - spring, J2 dw2/dt = spring",
+        "Part of the inertia hangs on a spring: the axis rings.",
+        {parameter(far_share, "far_share").unit("1").within(0.01, 0.97).starts({0.2, 0.6}),
+         parameter(frequency_Hz, "frequency_Hz")
+             .unit("Hz")
+             .within(0.2, 300.0)
+             .logarithmic()
+             .starts({1.5, 2.2, 3.3, 5.0, 7.5, 11.0, 16.0, 25.0, 40.0, 60.0}),
+         parameter(damping, "damping").unit("1").within(1e-4, 2.0).logarithmic().starts({0.03})},
+        {Need::axis_model},
+        "fast reversals and a frequency sweep"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.far_side = JointFarSide{p[far_share], rad_per_turn * p[frequency_Hz], p[damping]};
   }
 
   /// Puts part of the inertia behind a spring.

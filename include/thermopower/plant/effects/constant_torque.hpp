@@ -20,14 +20,20 @@ struct ConstantTorque {
 
   /// What it is.
   static EffectInfo info() {
-    return {"constant_torque",
-            Submodel::mechanical_load,
-            "torque += Nm",
-            "A weight on a pulley, a preload, or an offset of the command: a torque that nothing changes.",
-            {parameter(size_Nm, "Nm").unit("N m").within(-1e3, 1e3).starts({0.0})},
-            {Need::axis_model},
-            "slow motion at constant rate in both directions, and rest with the drive off"};
+    EffectInfo one = {
+        "constant_torque",
+        Submodel::mechanical_load,
+        "torque += Nm",
+        "A weight on a pulley, a preload, or an offset of the command: a torque that nothing changes.",
+        {parameter(size_Nm, "Nm").unit("N m").within(-1e3, 1e3).starts({0.0})},
+        {Need::axis_model},
+        "slow motion at constant rate in both directions, and rest with the drive off"};
+    one.in_a_joint = in_a_joint;
+    return one;
   }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) { joint.offset_Nm += p[size_Nm]; }
 
   /// Adds the torque.
   template <class Scalar>

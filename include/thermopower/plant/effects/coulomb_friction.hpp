@@ -23,14 +23,21 @@ struct CoulombFriction {
 
   /// What it is.
   static EffectInfo info() {
-    return {"coulomb_friction",
-            Submodel::mechanical_friction,
-            "torque -= Nm film(w / transition, tail)",
-            "Dry friction: a constant torque against the motion, and sticking at rest.",
-            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             friction_transition(transition), friction_tail(tail)},
-            {Need::axis_model},
-            "slow reversals at small torque"};
+    EffectInfo one = {"coulomb_friction",
+                      Submodel::mechanical_friction,
+                      "torque -= Nm film(w / transition, tail)",
+                      "Dry friction: a constant torque against the motion, and sticking at rest.",
+                      {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       friction_transition(transition), friction_tail(tail)},
+                      {Need::axis_model},
+                      "slow reversals at small torque"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.add_friction(p[size_Nm], transition, p[transition]);
   }
 
   /// Adds dry friction.

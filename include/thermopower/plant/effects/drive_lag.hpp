@@ -29,8 +29,12 @@ struct DriveLag {
         {Need::axis_model},
         "steps of the command, recorded at a high rate"};
     info.states = {{"lagged_Nm", "N m"}};
+    info.in_a_joint = in_a_joint;
     return info;
   }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) { joint.lag_s = p[lag_s]; }
 
   /// Lets the torque follow.
   template <class Scalar>

@@ -21,17 +21,24 @@ struct Imbalance {
 
   /// What it is.
   static EffectInfo info() {
-    return {"imbalance",
-            Submodel::mechanical_load,
-            "torque -= Nm sin(theta + phase)",
-            "The load's centre of mass is off the axis: gravity pulls with the angle.",
-            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             parameter(phase_rad, "phase_rad")
-                 .unit("rad")
-                 .within(-6.4, 6.4)
-                 .starts({0.0, 1.5708, 3.1416, -1.5708})},
-            {Need::axis_model, Need::angle_deg},
-            "slow motion through a full turn"};
+    EffectInfo one = {"imbalance",
+                      Submodel::mechanical_load,
+                      "torque -= Nm sin(theta + phase)",
+                      "The load's centre of mass is off the axis: gravity pulls with the angle.",
+                      {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       parameter(phase_rad, "phase_rad")
+                           .unit("rad")
+                           .within(-6.4, 6.4)
+                           .starts({0.0, 1.5708, 3.1416, -1.5708})},
+                      {Need::axis_model, Need::angle_deg},
+                      "slow motion through a full turn"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    if (p[size_Nm] != 0.0) joint.imbalance = JointImbalance{p[size_Nm], p[phase_rad]};
   }
 
   /// Adds gravity's torque.

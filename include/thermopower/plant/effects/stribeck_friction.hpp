@@ -26,27 +26,35 @@ struct StribeckFriction {
 
   /// What it is.
   static EffectInfo info() {
-    return {"stribeck_friction",
-            Submodel::mechanical_friction,
-            "torque -= (Nm + rise exp(-|w / knee|^n)) film(w / transition, tail)",
-            "Dry friction that is larger near standstill than in motion.",
-            {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             parameter(rise_Nm, "rise_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
-             parameter(knee_rad_per_s, "knee_rad_per_s")
-                 .unit("rad/s")
-                 .within(0.005, 100.0)
-                 .logarithmic()
-                 .exceeds("transition_rad_per_s")
-                 .starts({0.1, 0.5, 2.0}),
-             friction_transition(transition), friction_tail(tail),
-             parameter(exponent, "exponent")
-                 .unit("1")
-                 .within(0.7, 6.0)
-                 .standard(2.0)
-                 .starts({2.0})
-                 .degenerate_at_bounds()},
-            {Need::axis_model},
-            "very slow motion through standstill in both directions"};
+    EffectInfo one = {"stribeck_friction",
+                      Submodel::mechanical_friction,
+                      "torque -= (Nm + rise exp(-|w / knee|^n)) film(w / transition, tail)",
+                      "Dry friction that is larger near standstill than in motion.",
+                      {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       parameter(rise_Nm, "rise_Nm").unit("N m").within(0.0, 1e3).starts({0.0}),
+                       parameter(knee_rad_per_s, "knee_rad_per_s")
+                           .unit("rad/s")
+                           .within(0.005, 100.0)
+                           .logarithmic()
+                           .exceeds("transition_rad_per_s")
+                           .starts({0.1, 0.5, 2.0}),
+                       friction_transition(transition), friction_tail(tail),
+                       parameter(exponent, "exponent")
+                           .unit("1")
+                           .within(0.7, 6.0)
+                           .standard(2.0)
+                           .starts({2.0})
+                           .degenerate_at_bounds()},
+                      {Need::axis_model},
+                      "very slow motion through standstill in both directions"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.add_friction(p[size_Nm], transition, p[transition]);
+    joint.remarks.push_back({{rise_Nm, knee_rad_per_s, exponent}, "the rise near standstill is left out"});
   }
 
   /// Adds dry friction with a rise near standstill.

@@ -20,16 +20,23 @@ struct TorqueSaturation {
 
   /// What it is.
   static EffectInfo info() {
-    return {"torque_saturation",
-            Submodel::mechanical_drive,
-            "drive = clamp(u, -A, A)",
-            "The drive cannot deliver more than a limit.",
-            {parameter(limit_A, "A")
-                 .unit("A")
-                 .within(1e-6, 1e3)
-                 .starts_as_shares_of(Input::drive_A, {0.25, 0.5, 0.75, 0.9})},
-            {Need::axis_model},
-            "short pulses at the largest command"};
+    EffectInfo one = {"torque_saturation",
+                      Submodel::mechanical_drive,
+                      "drive = clamp(u, -A, A)",
+                      "The drive cannot deliver more than a limit.",
+                      {parameter(limit_A, "A")
+                           .unit("A")
+                           .within(1e-6, 1e3)
+                           .starts_as_shares_of(Input::drive_A, {0.25, 0.5, 0.75, 0.9})},
+                      {Need::axis_model},
+                      "short pulses at the largest command"};
+    one.in_a_joint = in_a_joint;
+    return one;
+  }
+
+  /// As simulators of bodies have it.
+  static void in_a_joint(const double* p, JointDescription& joint) {
+    joint.largest_drive = p[limit_A] * joint.drive_per_A;
   }
 
   /// Limits the command.
