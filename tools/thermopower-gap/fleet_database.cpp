@@ -134,8 +134,8 @@ void fill(Database& database, const FleetResults& fleet) {
     const pool::LogResult& result = fleet.results[i];
     logs << i + 1 << log.manifest->line << log.manifest->cell("log") << log.manifest->cell("model");
     logs.text_or_null(log.manifest->cell("unit")) << log.manifest->time_days;
-    logs.text_or_null(result.verdict).text_or_null(result.reason);
-    logs.text_or_null(result.verdict.empty() ? std::string() : "reports/" + log.manifest->id + ".json");
+    logs.text_or_null(spelt(result.verdict)).text_or_null(result.reason);
+    logs.text_or_null(!result.verdict ? std::string() : "reports/" + log.manifest->id + ".json");
     logs.text_or_null(log.page).text_or_null(log.fault);
     logs.end();
     for (std::size_t place = 0; place < fleet.causes[i].size(); ++place)

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <stdexcept>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -83,7 +84,9 @@ void read_report(FleetLog& log, pool::LogResult& result, std::vector<std::string
   try {
     std::ifstream file(log.report, std::ios::binary);
     const nlohmann::json told = nlohmann::json::parse(file);
-    result.verdict = told.at("verdict").get<std::string>();
+    const std::string verdict = told.at("verdict").get<std::string>();
+    result.verdict = thermopower::gap::verdict_of(verdict);
+    if (!result.verdict) throw std::invalid_argument("\"verdict\" is \"" + verdict + "\", which is none");
     result.reason = told.value("reason", std::string());
     for (const auto& one : told.at("cause")) {
       causes.push_back(one.at("effect").get<std::string>());
@@ -119,10 +122,10 @@ std::string logs_csv(const FleetResults& fleet) {
     add(std::to_string(log.manifest->line), ',');
     add(log.manifest->cell("unit"), ',');
     add(log.manifest->cell("log"), ',');
-    add(fleet.results[i].verdict, ',');
+    add(spelt(fleet.results[i].verdict), ',');
     add(cause, ',');
     add(shortest(fleet.probability[i], "%.17g"), ',');
-    add(fleet.results[i].verdict.empty() ? std::string() : "reports/" + log.manifest->id + ".json", ',');
+    add(!fleet.results[i].verdict ? std::string() : "reports/" + log.manifest->id + ".json", ',');
     add(log.fault, '\n');
   }
   return table;
@@ -294,7 +297,7 @@ std::string fleet_summary(const FleetResults& fleet) {
   }
   std::map<std::string, std::size_t> verdicts;
   for (const pool::LogResult& one : fleet.results)
-    ++verdicts[one.verdict.empty() ? "no report" : one.verdict];
+    ++verdicts[one.verdict ? to_string(*one.verdict) : "no report"];
   for (const auto& [name, count] : verdicts) {
     std::snprintf(line, sizeof line, "  %-14s %zu\n", name.c_str(), count);
     text << line;

@@ -8,8 +8,14 @@
 #include <thermopower/gap/pool/fleet.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
+
+/// The verdict as a report spells it; empty where there is none.
+inline std::string spelt(const std::optional<thermopower::gap::Verdict>& verdict) {
+  return verdict ? to_string(*verdict) : std::string();
+}
 
 /// A log of a fleet, and what came of it.
 struct FleetLog {

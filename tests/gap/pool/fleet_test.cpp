@@ -46,7 +46,7 @@ public:
     result.unit = unit;
     result.log = unit + "_" + std::to_string(time);
     result.time = time;
-    result.verdict = cause.empty() ? "no_gap" : "explained";
+    result.verdict = cause.empty() ? thermopower::gap::Verdict::no_gap : thermopower::gap::Verdict::explained;
     result.chosen_effects = cause.empty() ? 0 : 1;
     for (const std::string& name :
          {std::string(), std::string("lag"), std::string("mass"), std::string("other")}) {
@@ -104,7 +104,7 @@ TEST_CASE("a fleet of two families, an odd unit of each kind, a drift, a bad log
   }
   LogResult bad;
   bad.log = "bad.csv";
-  bad.verdict = "insufficient";
+  bad.verdict = thermopower::gap::Verdict::insufficient;
   bad.reason = "too short";
   logs.push_back(bad);
   const FleetVerdict verdict = judge_fleet(logs);
@@ -188,7 +188,7 @@ TEST_CASE(
   // them is bad, the one that releases them is as good as any sound log's.
   const auto released = [&](const std::string& unit, double time, const std::vector<double>& truth) {
     LogResult log = draw.log(unit, time, "", truth, 5.0);
-    log.verdict = "explained";
+    log.verdict = thermopower::gap::Verdict::explained;
     log.chosen_effects = 1;
     log.ranking.front().probability = 0.001;
     log.ranking.front().fit.at[0] += 0.05;  // takes up what is held back
@@ -253,7 +253,7 @@ TEST_CASE("what a weak effect that all have makes of the constants is in the uni
       truth.push_back(value);
       LogResult log;
       log.log = log.unit = "u" + std::to_string(i);
-      log.verdict = lag ? "explained" : "no_gap";
+      log.verdict = lag ? thermopower::gap::Verdict::explained : thermopower::gap::Verdict::no_gap;
       log.chosen_effects = lag ? 1 : 0;
       const double first = error * normal(random), second = besides * normal(random);
       for (const char* name : {"", "lag", "offset"}) {

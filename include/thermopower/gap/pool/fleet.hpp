@@ -127,7 +127,7 @@ private:
     std::map<std::string, std::size_t> known;
     for (std::size_t i = 0; i < logs_.size(); ++i) {
       const LogResult& log = logs_[i];
-      if (log.verdict.empty() || log.verdict == "insufficient") {
+      if (!log.verdict || *log.verdict == Verdict::insufficient) {
         result_.bad_logs.push_back({i, log.reason});
         continue;
       }
@@ -146,8 +146,8 @@ private:
 
   /// What one log finds likely.
   static Probabilities likely(const LogResult& log) {
-    if (log.verdict == "no_gap") return {{"", 1.0}};
-    if (log.verdict == "unexplained") return {{outside, 1.0}};
+    if (log.verdict == Verdict::no_gap) return {{"", 1.0}};
+    if (log.verdict == Verdict::unexplained) return {{outside, 1.0}};
     Probabilities result;
     double total = 0.0;
     // What has more effects than the cause that was named was held to do no more than it.

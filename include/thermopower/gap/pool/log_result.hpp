@@ -3,12 +3,14 @@
 #pragma once
 
 #include <thermopower/gap/pool/mixed_effects.hpp>
+#include <thermopower/gap/verdict.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,10 +79,10 @@ struct LogResult {
   std::string log;   ///< its name
   std::string unit;  ///< the actuator that was recorded; empty: the log's own
   double time = std::numeric_limits<double>::quiet_NaN();  ///< when, in days; NaN: nobody says
-  std::string verdict;                     ///< as the report spells it; empty: there is no report
-  std::string reason;                      ///< of the verdict, or why there is no report
-  std::size_t chosen_effects = 0;          ///< how many causes it names
-  std::vector<FittedExplanation> ranking;  ///< everything weighed
+  std::optional<Verdict> verdict;                          ///< of its diagnosis; none: there is no report
+  std::string reason;                                      ///< of the verdict, or why there is no report
+  std::size_t chosen_effects = 0;                          ///< how many causes it names
+  std::vector<FittedExplanation> ranking;                  ///< everything weighed
 
   /// The explanation of a name, or none.
   const FittedExplanation* find(const std::string& name) const {
