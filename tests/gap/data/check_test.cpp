@@ -461,6 +461,74 @@ TEST_CASE(
   CHECK(taken(r, prepared, "angle_deg") == bad);
 }
 
+TEST_CASE("a frame repeated in motion is found in a log that rests nearly always") {
+  const bool flickers = GENERATE(false, true);
+  const Recording moving = axis();
+  const Eigen::Index rows = moving.rows(), all = 5 * rows;
+  Recording r;
+  r.name = "rests after some motion";
+  r.t_s.resize(all);
+  const double interval_s = moving.t_s[1] - moving.t_s[0];
+  for (Eigen::Index i = 0; i < all; ++i) r.t_s[i] = interval_s * static_cast<double>(i);
+  std::uint32_t state = 20261124;
+  const auto coin = [&] { return ((state = state * 1664525u + 1013904223u) >> 30) % 2 == 0; };
+  for (const Column& column : moving.columns) {
+    // At rest a sensor reads the same, or one of two last digits at random.
+    const bool is_rate = column.name == "rate_dps", is_angle = column.name == "angle_deg";
+    const double quantum = is_rate ? 1.0 : is_angle ? 0.1 : 0.0;
+    Eigen::VectorXd values(all);
+    for (Eigen::Index i = 0; i < all; ++i) {
+      const double whole = i < rows ? column.values[i] : is_angle ? column.values[rows - 1] : 0.0;
+      const double flicker = i < rows || !flickers || coin() ? 0.0 : quantum;
+      values[i] = quantum > 0.0 ? quantum * std::round(whole / quantum) + flicker : whole;
+    }
+    r.set(column.name, values);
+  }
+  const PreparedRecording sound(test::axis_model(), r);
+  REQUIRE(taken(r, sound, "rate_dps").empty());
+  std::set<Eigen::Index> bad;
+  const Eigen::VectorXd rate = r.column("rate_dps");
+  for (int k = 0; k < places; ++k) {
+    Eigen::Index row = place(moving, k);
+    while (std::abs(rate[row]) < 20.0 || std::abs(rate[row + 4]) < 20.0) ++row;
+    for (const char* column : {"angle_deg", "rate_dps"})
+      change(r, column, [&, before = r.column(column)[row - 1]](double x, Eigen::Index i) {
+        return i >= row && i < row + 4 ? before : x;
+      });
+    for (Eigen::Index i = 0; i < 4; ++i) bad.insert(row + i);
+  }
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+  CHECK(taken(r, prepared, "angle_deg") == bad);
+}
+
+TEST_CASE("what sticks and breaks away repeats no frame") {
+  // It stands for 5 rows of 20, and goes by 1.2 deg in the others.
+  Recording r;
+  r.name = "stick and slip";
+  const Eigen::Index rows = 3000;
+  r.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 0.01 * static_cast<double>(rows - 1));
+  Eigen::VectorXd angle(rows), rate(rows), drive(rows);
+  std::uint32_t state = 20261124;
+  const auto digit = [&] {
+    return static_cast<double>((state = state * 1664525u + 1013904223u) >> 29) - 3.5;
+  };
+  double at = 0.0;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const bool sticks = i % 20 < 5;
+    if (!sticks) at += 0.08 * ((i / 400) % 2 == 0 ? 1.0 : -1.0);
+    const double turned = 0.001 * std::round(1000.0 * at);
+    angle[i] = sticks && i > 0 && i % 20 > 0 ? angle[i - 1] : turned + (sticks ? 0.0 : 0.001 * digit());
+    rate[i] = sticks ? 0.0 : ((i / 400) % 2 == 0 ? 8.0 : -8.0) + 0.05 * digit();
+    drive[i] = 0.1 * std::sin(0.02 * static_cast<double>(i));
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK_FALSE(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked));
+}
+
 TEST_CASE("a coarse thermometer that stands still is nothing to talk about") {
   Recording r = bench();
   change(r, "motor_C", [](double x, Eigen::Index) { return std::round(x); });

@@ -17,14 +17,37 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the masks of frames.
+/// Held by tests/gap/data/check_test.cpp.
 struct FrameThresholds {
   Eigen::Index least_defaults =
-      3;  ///< masked samples of one value that make it what a sensor reads by default
+      3;                    ///< masked samples of one value that make it what a sensor reads by default
+  Eigen::Index around = 6;  ///< rows before and after that a repeated one is seen among
   Eigen::Index longest_repeat = 12;  ///< frames in a row that repeat another
   double by_chance = 0.1;            ///< share of the repeated frames that chance may make
   double never_by_chance = 0.01;     ///< repeats of a length that chance may make in a recording
-  double caught_up = 0.6;            ///< of what was missed while a frame was repeated: the step after it
+  double as_fast = 0.7;  ///< of the speed around repeated frames: rows that tell how often chance repeats one
+  double least_moving = 100;  ///< such rows; else all tell
+  double caught_up = 0.6;     ///< of what was missed while a frame was repeated: the step after it
 };
+
+/// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or over those
+/// in which it moves by a quantum a row. A slow column in coarse steps repeats by itself.
+inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+  constexpr FrameThresholds frames;
+  constexpr double hardly_equal = MaskThresholds().hardly_equal;
+  if (equal_share_of(step_sizes(values, runs)) < hardly_equal) return true;
+  const double quantum = quantum_of(values);
+  double moving = 0.0, equal = 0.0;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      const Eigen::Index from = std::max(run.begin, i - frames.around),
+                         to = std::min(run.end - 1, i + frames.around);
+      if (!(std::abs(values[to] - values[from]) > quantum * static_cast<double>(to - from))) continue;
+      moving += 1.0;
+      equal += values[i] == values[i - 1] ? 1.0 : 0.0;
+    }
+  return moving >= frames.least_moving && equal < hardly_equal * moving;
+}
 
 /// Rows that repeat all outputs of the row before them (at most a few in a row), where the outputs change at every
 /// other row around them, or catch up at once with what they missed.
@@ -32,7 +55,7 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
                                const std::vector<RunSpan>& runs) {
   constexpr MaskThresholds limit;
   constexpr FrameThresholds frames;
-  constexpr Eigen::Index around = 6;
+  constexpr Eigen::Index around = frames.around;
   RowMask mask;
   if (outputs.empty()) return mask;
   const Eigen::Index rows = outputs.front()->size();
@@ -48,20 +71,53 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       same[static_cast<std::size_t>(i)] = equal == 0 ? 0 : known > 0 && equal == outputs.size() ? 2 : 1;
     }
-  // How often all would be equal by chance: a column steps by none half as often as by one quantum either way.
-  double chance = 1.0, repeats = 0.0;
-  std::vector<double> quanta;
+  std::vector<double> quanta, scales;
   for (const Eigen::VectorXd* one : outputs) {
-    const double quantum = quantum_of(*one);
-    quanta.push_back(quantum);
-    const std::vector<double> steps = step_sizes(*one, runs);
-    const auto single = std::count_if(steps.begin(), steps.end(), [&](double step) {
-      return step > 0.5 * quantum && step < 1.5 * quantum;
-    });
-    chance *= 0.5 * static_cast<double>(single) / std::max(1.0, static_cast<double>(steps.size()));
+    quanta.push_back(quantum_of(*one));
+    scales.push_back(std::max(quanta.back(), white_scale(*one, runs)));
   }
-  for (const char one : same) repeats += one == 2 ? 1.0 : 0.0;
-  const bool is_rare = chance * static_cast<double>(rows) < frames.by_chance * repeats;
+  // How fast the fastest output moves around each row, in quanta or noise scales a row.
+  std::vector<double> speed(static_cast<std::size_t>(rows), 0.0);
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      const Eigen::Index from = std::max(run.begin, i - around), to = std::min(run.end - 1, i + around);
+      double& fastest = speed[static_cast<std::size_t>(i)];
+      for (std::size_t c = 0; c < outputs.size() && to > from; ++c) {
+        const double way = std::abs((*outputs[c])[to] - (*outputs[c])[from]);
+        if (scales[c] > 0.0 && std::isfinite(way))
+          fastest = std::max(fastest, way / (scales[c] * static_cast<double>(to - from)));
+      }
+    }
+  // How often all would be equal by chance. Over a whole log a column steps by none half as often as by one quantum
+  // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among rows that
+  // move as fast, each of several columns says how often it stands while another one does not.
+  struct Odds {
+    double chance = 1.0, rows = 0.0;
+    bool repeats_are_rare = false;
+  };
+  const auto odds_of = [&](double least_speed) {
+    Odds odds;
+    double repeats = 0.0;
+    for (std::size_t i = 0; i < same.size(); ++i)
+      if (speed[i] >= least_speed) odds.rows += 1.0, repeats += same[i] == 2 ? 1.0 : 0.0;
+    const bool by_others = least_speed > 0.0;
+    for (std::size_t c = 0; c < outputs.size(); ++c) {
+      double steps = 0.0, single = 0.0, none = 0.0;
+      for (const RunSpan& run : runs)
+        for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+          const double step = std::abs((*outputs[c])[i] - (*outputs[c])[i - 1]);
+          const auto row = static_cast<std::size_t>(i);
+          if (!std::isfinite(step) || speed[row] < least_speed || (by_others && same[row] == 2)) continue;
+          steps += 1.0;
+          single += step > 0.5 * quanta[c] && step < 1.5 * quanta[c] ? 1.0 : 0.0;
+          none += step > 0.0 ? 0.0 : 1.0;
+        }
+      odds.chance *= by_others ? (none + 1.0) / (steps + 1.0) : 0.5 * single / std::max(1.0, steps);
+    }
+    odds.repeats_are_rare = odds.chance * odds.rows < frames.by_chance * repeats;
+    return odds;
+  };
+  const Odds overall = odds_of(0.0);
   const auto around_of = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     return std::pair{std::max(run.begin + 1, begin - around), std::min(run.end, end + around)};
   };
@@ -99,10 +155,19 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       Eigen::Index end = i;
       while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
-      const double by_chance = static_cast<double>(rows) * std::pow(chance, static_cast<double>(end - i));
-      if (end - i <= frames.longest_repeat &&
-          ((is_rare && is_alone(run, i, end)) ||
-           (by_chance < frames.never_by_chance && catches_up(run, i, end))))
+      // An exact 0 is what a good sensor reads at rest: what sticks, and then breaks away, repeats no frame.
+      const bool rests = std::any_of(outputs.begin(), outputs.end(),
+                                     [&](const Eigen::VectorXd* one) { return (*one)[i] == 0.0; });
+      const bool alone = is_alone(run, i, end), caught_up = catches_up(run, i, end);
+      const auto is_no_chance = [&] {
+        const double moves =
+            std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
+        const Odds alike = odds_of(frames.as_fast * moves);
+        const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
+        const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
+        return (alone && odds.repeats_are_rare) || (caught_up && by_chance < frames.never_by_chance);
+      };
+      if (!rests && end - i <= frames.longest_repeat && (alone || caught_up) && is_no_chance())
         for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
       i = end;
     }

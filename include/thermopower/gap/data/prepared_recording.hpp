@@ -210,12 +210,8 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
                   "log each reading when it comes, or leave the cells between two empty");
   }
   std::vector<const Eigen::VectorXd*> outputs;
-  // A slow column in coarse steps repeats by itself, and tells of no frame.
-  const auto shows_frames = [&](const Eigen::VectorXd& values) {
-    return equal_share_of(step_sizes(values, believed_.runs)) < MaskThresholds().hardly_equal;
-  };
   for (const Column& column : recorded.columns)
-    if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values))
+    if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values, believed_.runs))
       outputs.push_back(&column.values);
   const RowMask repeated = repeated_frames(outputs, believed_.runs);
   list.add_rows(FindingKind::repeated_frames, Severity::warning, "", repeated, FindingAction::masked,
