@@ -55,7 +55,7 @@ class Bound:
         self.value, self.whole = (self.facts.choice(is_low, floor, self.value),
                                   self.facts.choice(is_low, floor, self.whole))
 
-    def go(self, way, chosen):
+    def advance(self, way, chosen):
         condition, heating, cooling = chosen
         self.started = self.whole + 1
         value, whole = self.facts.fresh("value"), self.facts.fresh("whole")

@@ -44,8 +44,8 @@ def part_down(text):
     return falsified([low_part >= 0], high_part + low_part / 65536 == (65536 * high_part + low_part) / 65536)
 
 
-def go(text):
-    """UpperBound::go adds way * fraction exactly, modulo nothing: four products of 16 bits, and the sign."""
+def advance(text):
+    """UpperBound::advance adds way * fraction exactly, modulo nothing: four products of 16 bits, and the sign."""
     require(text, "const uint32_t lowest = product(way_low, fraction_low), other = product(way_high, fraction_low);",
             "uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(other); uint32_t upper = other >> 16;",
             "if (fraction_high != 0) { const uint32_t another = product(way_low, fraction_high); "

@@ -358,15 +358,15 @@ TEST_CASE("a bound is raised to the higher of two, also where they differ in wha
   detail::UpperBound low, high;
   low.set(1000);
   high.set(1000);
-  high.go(1, 0x80000000u);  // half a unit
+  high.advance(1, 0x80000000u);  // half a unit
   REQUIRE(low.below() == high.below());
   detail::UpperBound raised = low;
   raised.raise(high);
-  raised.go(1, 0x80000000u);  // the other half: one unit more, which shows that the first was kept
+  raised.advance(1, 0x80000000u);  // the other half: one unit more, which shows that the first was kept
   CHECK(raised.below() == 1001);
   detail::UpperBound kept = high;
   kept.raise(low);
-  kept.go(1, 0x80000000u);
+  kept.advance(1, 0x80000000u);
   CHECK(kept.below() == 1001);
 }
 

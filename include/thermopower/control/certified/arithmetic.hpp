@@ -252,7 +252,7 @@ public:
     if (high_ < other.high_ || (high_ == other.high_ && low_ < other.low_)) *this = other;
   }
   /// Adds way * fraction, exactly.
-  void go(KelvinUnits way, FineFraction fraction) noexcept {
+  void advance(KelvinUnits way, FineFraction fraction) noexcept {
     // Four products of 16 bits without a sign, which an 8-bit chip has in hardware; what a negative way adds
     // too much is a whole `fraction` in the upper half.
     const uint16_t way_high = static_cast<uint16_t>(static_cast<uint32_t>(way) >> 16);

@@ -420,7 +420,7 @@ private:
     }
     for (uint8_t k = 0; k < node_count; ++k) {
       const detail::KelvinUnits way = end_of(k, count, most) - bounds_[k].below();
-      bounds_[k].go(way, way > 0 ? step.nodes[k].heating : step.nodes[k].cooling);
+      bounds_[k].advance(way, way > 0 ? step.nodes[k].heating : step.nodes[k].cooling);
       if (is_kept && bounds_[k].below() > fixed_.box[k]) bounds_[k].set(fixed_.box[k]);
     }
   }

@@ -130,7 +130,7 @@ public:
     const Hull passed = carry(count, step);
     // A unit for what a part of the way that cannot be a whole leaves.
     const detail::KelvinUnits way = settled_lead(count, passed.winding) - lead_.above() - 1;
-    lead_.go(way, way > 0 ? step.lead.cooling : step.lead.heating);
+    lead_.advance(way, way > 0 ? step.lead.cooling : step.lead.heating);
     if (!measured.is_any()) return;
     take_in(count, step, measured, passed);
     forget_lead();
@@ -262,7 +262,7 @@ private:
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
     const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
-    winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    winding_.advance(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
     const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
     const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
     mean_.raise(floor);
@@ -273,7 +273,7 @@ private:
     const detail::KelvinUnits coolest_way =
         base_ + detail::part_up(coolest - base_, weight_) + detail::times(to_air_now_, count) - mean_.below();
     const detail::KelvinUnits way = warmest_way > coolest_way ? warmest_way : coolest_way;
-    mean_.go(way, way > 0 ? step.mean_rise : step.body.cooling);
+    mean_.advance(way, way > 0 ? step.mean_rise : step.body.cooling);
     const Hull passed = {hottest, mean_.above() > mean_start ? mean_.above() : mean_start};
     return passed;
   }

@@ -117,7 +117,7 @@ public:
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
     const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
-    if (way > 0) node_.go(way, travel(hold_s_).body.heating);
+    if (way > 0) node_.advance(way, travel(hold_s_).body.heating);
   }
   /// Takes note of the air from now on. See CertifiedTwoNode.
   void set_air(float air_C) noexcept {
@@ -174,7 +174,7 @@ private:
     node_.raise(base_);
     const detail::KelvinUnits before = node_.above();
     const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
-    node_.go(way, way > 0 ? step.body.heating : step.body.cooling);
+    node_.advance(way, way > 0 ? step.body.heating : step.body.cooling);
     return node_.above() > before ? node_.above() : before;
   }
   detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }

@@ -334,13 +334,13 @@ private:
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
     const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
-    winding_.go(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    winding_.advance(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
     const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
     const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
     mean_.raise(floor);
     const detail::KelvinUnits mean_start = mean_.above();
     const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
-    mean_.go(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
+    mean_.advance(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
     const Hull passed = {hottest, mean_.above() > mean_start ? mean_.above() : mean_start};
     return passed;
   }
