@@ -89,7 +89,7 @@ TEST_CASE("what only some blocks prefer is weighed by how much the blocks differ
     Candidate one;
     if (id != nullptr) one.explanation.effects.push_back(standard_catalogue().find(id));
     one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
     one.fit.at_bound.assign(one.list.size(), false);
     one.train = one.held_out = sums_of(blocks(even, odd), 4000);
     return one;
@@ -146,7 +146,7 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   candidates[1].explanation.effects.push_back(standard_catalogue().find("compliance"));
   for (Candidate& one : candidates) {
     one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
     one.fit.at_bound.assign(one.list.size(), false);
     one.train = one.held_out = one.explanation.size() > 0 ? after : before;
   }
@@ -161,16 +161,16 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
   candidates[2].explanation.effects.push_back(standard_catalogue().find("asymmetric_friction"));
   for (Candidate& one : candidates) {
     one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
     one.fit.at_bound.assign(one.list.size(), false);
     one.train = one.held_out = sums_of(blocks(30.0, 30.0));
   }
   const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
   candidates[1].train = candidates[1].held_out = candidates[2].train = candidates[2].held_out =
       sums_of(blocks(1.0, 1.0));
-  candidates[1].fit.at[constants] = 0.02;
-  candidates[2].fit.at[constants] = 0.0201;
-  candidates[2].fit.at[constants + 1] = 0.0199;
+  candidates[1].fit.point[constants] = 0.02;
+  candidates[2].fit.point[constants] = 0.0201;
+  candidates[2].fit.point[constants + 1] = 0.0199;
   const auto count = static_cast<Eigen::Index>(candidates[2].list.size());
   candidates[2].fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
   Weight few;  // so few independent samples that a parameter costs next to nothing
@@ -182,10 +182,10 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
   CHECK(candidates[1].probability > 0.9);
 
   // 15 % apart, or not known to be less: then it may be the one or the other.
-  candidates[2].fit.at[constants + 1] = 0.017;
+  candidates[2].fit.point[constants + 1] = 0.017;
   weigh(candidates, few, model);
   CHECK(candidates[2].probability > 0.05);
-  candidates[2].fit.at[constants + 1] = 0.0199;
+  candidates[2].fit.point[constants + 1] = 0.0199;
   candidates[2].fit.information *= 1e-4;  // 0.02 N m of uncertainty
   weigh(candidates, few, model);
   CHECK(candidates[2].probability > 0.05);
@@ -205,8 +205,8 @@ TEST_CASE("a friction backward that no motion tells is no friction that differs 
   const auto count = static_cast<Eigen::Index>(one.list.size());
   const Eigen::Index forward = count - 4, backward = count - 3;
   REQUIRE(one.list[static_cast<std::size_t>(backward)].name == "asymmetric_friction.backward_Nm");
-  one.fit.at = Eigen::VectorXd::Zero(count);
-  one.fit.at[forward] = 0.02;
+  one.fit.point = Eigen::VectorXd::Zero(count);
+  one.fit.point[forward] = 0.02;
   one.fit.at_bound.assign(one.list.size(), false);
   one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
   CHECK_FALSE(ends_on_bounds(one, model));
@@ -221,14 +221,14 @@ TEST_CASE("a sink that does not change in a run is no sink, but air of another t
   one.list = coordinates(model, one.explanation, standard_catalogue());
   const auto count = static_cast<Eigen::Index>(one.list.size());
   REQUIRE(one.list[static_cast<std::size_t>(count - 3)].name == "contact_resistance.J_per_K");
-  one.fit.at = Eigen::VectorXd::Zero(count);
-  one.fit.at[count - 3] = std::log(100.0);
-  one.fit.at[count - 2] = std::log(10.0);  // 1000 s
+  one.fit.point = Eigen::VectorXd::Zero(count);
+  one.fit.point[count - 3] = std::log(100.0);
+  one.fit.point[count - 2] = std::log(10.0);  // 1000 s
   one.fit.at_bound.assign(one.list.size(), false);
   CHECK_FALSE(ends_on_bounds(one, model));
   CHECK_FALSE(ends_on_bounds(one, model, 1e300, 2500.0));
   CHECK(ends_on_bounds(one, model, 1e300, 1500.0));
-  one.fit.at[count - 1] = 0.1;  // half of the heat leaves by the air: 500 s
+  one.fit.point[count - 1] = 0.1;  // half of the heat leaves by the air: 500 s
   CHECK_FALSE(ends_on_bounds(one, model, 1e300, 1500.0));
 }
 
@@ -358,7 +358,7 @@ TEST_CASE("constants alone explain only what the printed table shows near the no
   result.gap.back().after = 1.7;
   CHECK(constants_fall_short(result));
   Diagnosis taken_back = result;
-  take_causes_back(taken_back, Model());
+  take_causes_back(taken_back, Model(), constants_leave_a_rest);
   CHECK(taken_back.verdict == Verdict::unexplained);
   CHECK(taken_back.cause.empty());
   CHECK(taken_back.gap.back().after == 9.0);
@@ -366,4 +366,57 @@ TEST_CASE("constants alone explain only what the printed table shows near the no
   CHECK(taken_back.gap.back().noise_floor == 1.0);
   result.cause.push_back({"radiation", 0.9, {}});  // that is a cause, and may leave a rest
   CHECK_FALSE(constants_fall_short(result));
+}
+
+TEST_CASE("a part is named only where the printed table proves it, beyond what other constants take away") {
+  Diagnosis result;
+  result.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 9.0, 9.0, 7.0, 1.0, 0.22, {0.1, 0.3}});
+  CHECK(is_proven_by_the_table(result));
+  result.gap.back().ci95 = {-0.02, 0.3};
+  CHECK_FALSE(is_proven_by_the_table(result));
+  // Other constants would take a fifth away, without any cause.
+  result.gap.back().ci95 = {0.1, 0.3};
+  result.gap.back().recalibrated = 7.2;
+  CHECK_FALSE(is_proven_by_the_table(result));
+  result.gap.back().ci95 = {0.21, 0.3};
+  CHECK(is_proven_by_the_table(result));
+  // Constants that make it worse are no excuse.
+  result.gap.back().recalibrated = 12.0;
+  result.gap.back().ci95 = {-0.1, 0.3};
+  CHECK_FALSE(is_proven_by_the_table(result));
+  // One signal is enough.
+  result.gap.push_back({Signal::angle_deg, "deg", 0.5, 9.0, 9.0, 4.0, 1.0, 0.55, {0.5, 0.6}});
+  CHECK(is_proven_by_the_table(result));
+}
+
+TEST_CASE("a cause about whose size the parts of the data disagree is not agreed upon") {
+  const Model model = axis_model();
+  Candidate one;
+  one.explanation.effects.push_back(standard_catalogue().find("cable_spring"));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  const auto n = static_cast<Eigen::Index>(one.list.size()),
+             first = static_cast<Eigen::Index>(model.calibrated().size());
+  one.fit.point = Eigen::VectorXd::Zero(n);
+  one.fit.at_bound.assign(one.list.size(), false);
+  for (Eigen::Index i = first; i < n; ++i) one.fit.point[i] = one.list[static_cast<std::size_t>(i)].start;
+  CHECK(is_agreed_upon(one, model, Weight()));  // nobody looked
+  // As many blocks as make their number no matter; each pulls by as much as moves the parameter by so many sizes.
+  one.fit.blocks = 100000;
+  const auto differing_by = [&](double sizes) {
+    one.fit.information = Eigen::MatrixXd::Identity(n, n);
+    one.fit.scatter = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = first; i < n; ++i) {
+      const double value =
+          one.list[static_cast<std::size_t>(i)].logarithmic ? 1.0 : std::abs(one.fit.point[i]);
+      const double sharp = 1e8 / (value * value);  // what noise alone would leave open is a ten thousandth
+      one.fit.information(i, i) = sharp;
+      one.fit.scatter(i, i) = std::pow(sizes * value * sharp, 2.0);
+    }
+  };
+  differing_by(0.45);
+  CHECK(is_agreed_upon(one, model, Weight()));
+  differing_by(0.55);
+  CHECK_FALSE(is_agreed_upon(one, model, Weight()));
+  one.fit.at_bound.assign(one.list.size(), true);  // what ended there has no such size
+  CHECK(is_agreed_upon(one, model, Weight()));
 }

@@ -123,9 +123,9 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
     const Eigen::VectorXd sd =
         fitted.fit.information.completeOrthogonalDecomposition().pseudoInverse().diagonal().cwiseSqrt();
     for (Eigen::Index k = static_cast<Eigen::Index>(model.calibrated().size()); k < truth.size(); ++k) {
-      INFO(fitted.list[static_cast<std::size_t>(k)].name << " is " << fitted.fit.at[k] << ", truth "
+      INFO(fitted.list[static_cast<std::size_t>(k)].name << " is " << fitted.fit.point[k] << ", truth "
                                                          << truth[k]);
-      CHECK(std::abs(fitted.fit.at[k] - truth[k]) < 5.0 * sd[k] + 1e-4 * std::abs(truth[k]));
+      CHECK(std::abs(fitted.fit.point[k] - truth[k]) < 5.0 * sd[k] + 1e-4 * std::abs(truth[k]));
     }
   }
 }

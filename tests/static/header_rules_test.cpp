@@ -237,7 +237,8 @@ TEST_CASE("dependencies point one way: the actuator knows no control, the wire k
 }
 
 TEST_CASE("upstairs no include runs back up, and each leads somewhere") {
-  // What each room must not reach. The check of the data asks for the same balances as localisation does.
+  // What each room must not reach. The check of the data asks for the same balances as localisation does. The pool knows
+  // a diagnosis by its verdict, which is a word.
   const std::map<std::string, std::string> forbidden = {
       {"plant/", "^(control|sbgc|simulation|gap|io)/|^(desktop|gap|io)\\.hpp"},
       {"simulation/", "^(gap|io)/|^(desktop|gap|io)\\.hpp"},
@@ -247,7 +248,8 @@ TEST_CASE("upstairs no include runs back up, and each leads somewhere") {
       {"gap/fit/", "^gap/(decide|report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
       {"gap/decide/", "^gap/(report|detail)/|^gap/(diagnose|definitions)\\.hpp"},
       {"gap/report/", "^gap/detail/|^gap/(diagnose|definitions)\\.hpp"},
-      {"gap/pool/", "^plant/|^gap/(data|localise|fit|decide|report|detail)/|^gap/[a-z_]+\\.hpp"}};
+      {"gap/pool/",
+       "^plant/|^gap/(data|localise|fit|decide|report|detail)/|^gap/(?!verdict\\.)[a-z_]+\\.hpp"}};
   std::set<std::string> seen;
   for (const auto& [name, header] : every_header()) {
     std::set<std::string> reached;
@@ -402,4 +404,40 @@ TEST_CASE("the checks themselves see what they look for") {
   CHECK(code_lines(code_of("int a;  // b\n\n// c\n/* d\n */\nint e;\n")) == 2);
   CHECK(code_of("\nf(\"new // \\\" x\");") == "\nf(\"\");");
   CHECK(code_of("\n#include \"a.hpp\"\n") == "\n#include \"a.hpp\"\n");
+}
+
+TEST_CASE("thresholds name the test that holds them, and each of them says what it is") {
+  const fs::path root = fs::path(THERMOPOWER_INCLUDE).parent_path().parent_path();
+  const std::regex begin(R"re(((?:///[^\n]*\n)+)struct (\w+Thresholds) \{\n)re"),
+      test(R"re(tests/[a-z_/]+\.cpp)re");
+  std::size_t structs = 0;
+  for (const auto& [name, header] : every_header())
+    for (std::sregex_iterator i(header.text.begin(), header.text.end(), begin), end; i != end; ++i) {
+      CAPTURE(name, (*i)[2].str());
+      ++structs;
+      const std::string comment = (*i)[1];
+      std::size_t tests = 0;
+      for (std::sregex_iterator t(comment.begin(), comment.end(), test); t != end; ++t, ++tests)
+        CHECK(fs::exists(root / t->str()));
+      CHECK(tests > 0);
+      // A comment behind a threshold, on its line or the next one, or before it.
+      const std::string body =
+          header.text.substr(static_cast<std::size_t>(i->position() + i->length()),
+                             header.text.find("\n};", static_cast<std::size_t>(i->position())) -
+                                 static_cast<std::size_t>(i->position() + i->length()));
+      std::istringstream lines(body);
+      std::size_t values = 0, comments = 0;
+      bool above = false;
+      for (std::string line; std::getline(lines, line);) {
+        if (std::regex_search(line, std::regex(R"re(^  [\w:]+ \w+ =)re"))) {
+          ++values;
+          comments += above ? 1 : 0;
+        }
+        if (line.find("///<") != std::string::npos) ++comments;
+        above = std::regex_search(line, std::regex("^  ///(?!<)"));
+      }
+      CHECK(values > 0);
+      CHECK(comments == values);
+    }
+  CHECK(structs > 18);
 }

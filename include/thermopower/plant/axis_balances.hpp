@@ -25,16 +25,32 @@
 
 namespace thermopower::plant {
 
+/// What the freedoms of a moving axis are tried at. Held by tests/gap/localise/localisation_test.cpp and the rows "signal and
+/// submodel right" of docs/reference/gap-benchmark.md (seed 20261201).
+struct AxisFreedomThresholds {
+  double widest_rad = 0.5;      ///< angle over which a friction builds up, at most; shares of it by the next,
+  double narrower = 0.3;        ///< each of the one before
+  double resting_noises = 4.0;  ///< noises of the rate below which the axis rests
+  double turned_noises = 2.0;   ///< noises of the rate by which its sign turns over
+  double least_late_s = 0.004;  ///< unit of how late a torque may come, at least; else the rows' interval
+  double spring_damping = 0.04;  ///< of an inertia behind a spring, of the critical one
+  double lowest_Hz = 1.5;        ///< of its frequency
+  double highest_Hz = 40.0;      ///< of its frequency
+  double of_sampling = 0.3;      ///< highest frequency, of the rows'
+  double next_frequency = 1.12;  ///< times the one before
+};
+
 namespace detail {
 
 /// Dry friction that builds up over an angle after each reversal (Dahl's state), for several angles.
 inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
-  constexpr double widest_rad = 0.5;
+  constexpr AxisFreedomThresholds limit;
   const double reach =
       a.has_angle && a.angle.size() > 0 ? std::max(a.angle.maxCoeff() - a.angle.minCoeff(), 1e-3) : 1.0;
   Eigen::MatrixXd out(a.rate.size(), 4);
   for (Eigen::Index k = 0; k < out.cols(); ++k) {
-    const double width = std::min(widest_rad, reach) * std::pow(0.3, static_cast<double>(k) + 1.0);
+    const double width =
+        std::min(limit.widest_rad, reach) * std::pow(limit.narrower, static_cast<double>(k) + 1.0);
     for (const RunSpan& run : a.rows()->runs) {
       double z = 0.0;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
@@ -102,7 +118,7 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
       [direction, sampled] { return sampled(*direction); });
   add("rate_dps", "a friction that holds the axis at rest", [a, direction, drive_Nm] {
     // At rest, dry friction takes whatever the drive gives.
-    const double rest = 4.0 * a->rate_noise;
+    const double rest = AxisFreedomThresholds().resting_noises * a->rate_noise;
     const Eigen::VectorXd moving = (a->rate.array().abs() > rest).cast<double>();
     return std::vector<Direction>{flow_sampled(direction->cwiseProduct(moving)),
                                   flow_held(drive_Nm->cwiseProduct((1.0 - moving.array()).matrix()))};
@@ -147,7 +163,7 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
   add(
       a->command_name() + "_per_s", "a torque that comes after the command",
       [a, drive_Nm] {
-        const double unit_s = std::max(a->rows()->interval_s, 0.004);
+        const double unit_s = std::max(a->rows()->interval_s, AxisFreedomThresholds().least_late_s);
         std::vector<Direction> list;
         for (const double k : {0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0})
           list.push_back({{BalancePart::Kind::flow_held, *drive_Nm, k * unit_s},
@@ -203,15 +219,16 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
   b.freedoms.push_back({Submodel::mechanical_structure, "acceleration_rad_per_s2", "another inertia",
                         [a](double) { return std::vector<Direction>{further_store(a->rate)}; }});
   // A second inertia that follows the measured motion through a spring.
-  constexpr double damping = 0.04, lowest_Hz = 1.5, highest_Hz = 40.0, of_sampling = 0.3;
+  constexpr AxisFreedomThresholds limit;
   Freedom spring{Submodel::mechanical_structure, "acceleration_rad_per_s2", "", [a](double hertz) {
                    const double w = rad_per_turn * hertz;
-                   const SpringTwist twist(a->rate, *a->rows(), w, damping);
+                   const SpringTwist twist(a->rate, *a->rows(), w, AxisFreedomThresholds().spring_damping);
                    return std::vector<Direction>{further_store(twist.rate_rad_per_s),
                                                  flow_sampled(w * w * twist.angle_rad)};
                  }};
-  for (double hertz = lowest_Hz; hertz <= std::min(highest_Hz, of_sampling / a->rows()->interval_s);
-       hertz *= 1.12)
+  for (double hertz = limit.lowest_Hz;
+       hertz <= std::min(limit.highest_Hz, limit.of_sampling / a->rows()->interval_s);
+       hertz *= limit.next_frequency)
     spring.scan.push_back(hertz);
   spring.refine = {0.93, 0.95, 0.97, 0.99, 1.01, 1.03, 1.05, 1.07};
   spring.penalty = 2;
@@ -232,7 +249,9 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   const Eigen::Index n = in.rows();
   const auto drive_Nm = std::make_shared<const Eigen::VectorXd>(v.drive_Nm);
   const auto direction = std::make_shared<const Eigen::VectorXd>(
-      (a->rate.array() / std::max(2.0 * a->rate_noise, 1e-9)).tanh().matrix());
+      (a->rate.array() / std::max(AxisFreedomThresholds().turned_noises * a->rate_noise, 1e-9))
+          .tanh()
+          .matrix());
   Balance b;
   b.quantity = Quantity::missing_torque;
   b.unit = "N m";

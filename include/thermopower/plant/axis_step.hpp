@@ -54,7 +54,7 @@ struct AxisDrive {
 /// Integrates the axis under a constant drive, with dry friction.
 ///
 /// Where the equations are smooth the classical Runge-Kutta rule integrates them, halving its step where the
-/// acceleration bends. Friction that turns over within a transition is smooth but stiff near standstill:
+/// acceleration bends by more than 0.0005 rad/s, beyond 10 rad/s in proportion to the rate. Friction that turns over within a transition is smooth but stiff near standstill:
 /// there the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length.
 /// Friction without a transition goes by events: at a zero crossing of the rate the step is cut; the axis
 /// sticks while friction holds the other torques, else it leaves with friction reversed. With an
@@ -195,6 +195,8 @@ public:
   }
 
 private:
+  static constexpr double fast_rad_per_s = 10.0;  ///< beyond, errors grow in proportion to the rate
+
   struct Slope {
     Scalar angle, rate, twist, twist_rate;
     OwnState<Scalar> own[most_own_states];  ///< how the effects' own states move
@@ -338,7 +340,9 @@ private:
   template <bool compliant>
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive,
               int depth) const {
-    const double bend_limit_rad_per_s = soft_ || state.own.count > 0 ? 1e-4 : 5e-4;
+    const double bend_limit_rad_per_s =
+        (soft_ || state.own.count > 0 ? 1e-4 : 5e-4) *
+        std::fmax(1.0, std::abs(value_of(state.rate_rad_per_s)) / fast_rad_per_s);
     for (int event = 0; event < 12; ++event) {
       const int direction = dry_ ? direction_of<compliant>(state, t_s, drive) : 1;
       Slope start;

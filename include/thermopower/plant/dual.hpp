@@ -27,7 +27,7 @@ public:
 
   Dual() = default;
   /// A constant: no derivative in any direction.
-  Dual(double value) : value_(value), slope_{} {}  // NOLINT: literals mix with duals in every law
+  Dual(double value) : slope_{}, value_(value) {}  // NOLINT: literals mix with duals in every law
 
   /// Plain value.
   double value() const { return value_; }
@@ -130,8 +130,8 @@ private:
     return result;
   }
 
+  float slope_[dual_width];  // first: vector instructions like it aligned
   double value_;
-  float slope_[dual_width];
 };
 
 /// Plain value of a scalar.

@@ -62,9 +62,9 @@ TEST_CASE("friction is found at its size whatever the shape of the film it creep
     const double level = std::sqrt(fitted.fit.chi2 / static_cast<double>(fitted.fit.samples));
     const std::size_t size = model.calibrated().size();
     INFO("film(0.01 rad/s) = " << film(0.01) << ": " << level << " times the noise, "
-                               << fitted.fit.at[static_cast<Eigen::Index>(size)] << " N m");
+                               << fitted.fit.point[static_cast<Eigen::Index>(size)] << " N m");
     CHECK(fitted.list[size].name == "coulomb_friction.Nm");
     CHECK(level < 1.3);
-    CHECK(std::abs(fitted.fit.at[static_cast<Eigen::Index>(size)] / friction_Nm - 1.0) < 0.05);
+    CHECK(std::abs(fitted.fit.point[static_cast<Eigen::Index>(size)] / friction_Nm - 1.0) < 0.05);
   }
 }

@@ -120,7 +120,7 @@ TEST_CASE("a shortened recording finds the effect that the whole one holds") {
     const Inputs thin = thinned_bench(whole, 1500, model, standard_catalogue());
     CHECK(thin.rows() < 6000);
     const Candidate fit = fitted(model, one.id, thin);
-    CHECK(fit.fit.at[fit.fit.at.size() - 1] == Approx(one.value).epsilon(0.01));
+    CHECK(fit.fit.point[fit.fit.point.size() - 1] == Approx(one.value).epsilon(0.01));
   }
 }
 
@@ -179,9 +179,9 @@ TEST_CASE("what scores alike where it matters is told apart by its number of par
     Candidate one;
     if (id != nullptr) one.explanation.effects.push_back(standard_catalogue().find(id));
     one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.at = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
     for (std::size_t i = 0; i < one.list.size(); ++i)
-      one.fit.at[static_cast<Eigen::Index>(i)] = one.list[i].start;
+      one.fit.point[static_cast<Eigen::Index>(i)] = one.list[i].start;
     one.fit.at_bound.assign(one.list.size(), false);
     one.train.samples[3] = one.held_out.samples[3] = 1e5;
     one.train.squares[3] = 1e5 * train * train;

@@ -20,6 +20,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the search for a clock.
+/// Held by tests/gap/data/check_test.cpp.
 struct ClockThresholds {
   Eigen::Index least_rows = 100;  ///< of a run: fewer tell neither a period nor whose readings are smooth
   double least_jitter = 0.01;     ///< periods: less is the rounding of stamps, and does no harm

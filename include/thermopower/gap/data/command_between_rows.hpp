@@ -25,6 +25,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the questions what a command did between the rows, and whether it is noisy.
+/// Held by tests/gap/data/command_test.cpp.
 struct CommandThresholds {
   double least_share = 0.2;  ///< every second command logged is felt by a quarter
   double least_target_share =

@@ -19,6 +19,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the question whether a command is noisy.
+/// Held by tests/gap/data/command_test.cpp.
 struct CommandNoiseThresholds {
   double flat = 1.6;                ///< largest ratio to the lowest band of a spectrum that is its floor
   std::size_t least_bins = 24;      ///< of the floor, and of what tells: less may be a shape of the command

@@ -16,6 +16,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the check of the experiment.
+/// Held by tests/gap/data/units_test.cpp.
 struct ExperimentThresholds {
   double rows_per_window = 4.0;    ///< fewer say nothing about what happens between restarts of the axis
   double not_driven = 0.02;        ///< of the training data's largest command

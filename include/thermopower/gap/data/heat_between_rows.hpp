@@ -27,6 +27,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the question when a power was switched.
+/// Held by tests/gap/data/heat_test.cpp.
 struct HeatThresholds {
   Eigen::Index block_rows = 17;  ///< through which a body goes as the terms say, but for a straight line
   std::size_t parts = 20;        ///< of the blocks, for the jackknife

@@ -24,6 +24,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the question whether rate and angle belong together.
+/// Held by tests/gap/data/lagging_output_test.cpp.
 struct LagThresholds {
   std::size_t least_rows = 300;  ///< fewer do not tell
   std::size_t blocks = 20;       ///< of the jackknife

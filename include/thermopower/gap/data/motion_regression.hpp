@@ -49,6 +49,7 @@ struct MeasuredMotion {
 };
 
 /// Thresholds of a regression of the motion on its command.
+/// Held by tests/gap/data/command_test.cpp and tests/gap/data/lagging_output_test.cpp.
 struct MotionThresholds {
   std::size_t least_rows = 300;   ///< that move: fewer do not tell
   std::size_t most_rows = 30000;  ///< that are looked at

@@ -19,6 +19,7 @@ namespace thermopower::gap::engine {
 /// differences over a lag. Noise loses its memory fast (white noise at once, an AR(1) of 0.95 within some 20 samples)
 /// and is rough: its variogram is as steep at the first lag as it ever gets. The error of a model is smooth, its
 /// variogram starts with the square of the lag; or it jumps where an input does, which is rare or slow.
+/// Held by tests/gap/data/noise_test.cpp.
 struct NoiseThresholds {
   double farthest =
       8.0;  ///< robust scales of a lag's differences beyond which one counts as a jump of its own
@@ -29,6 +30,8 @@ struct NoiseThresholds {
   double known_shape = 0.03;      ///< relative error of a variogram's values however many samples there are
   double part_penalty = 2.0;      ///< by which a further part must lower the weighted squares (Akaike)
   double quanta = 2.5;            ///< quanta up to which a difference is no jump
+  double uncorrelated = 0.05;     ///< autocorrelation below which samples are taken for independent
+  std::size_t least_for_correlation = 8;  ///< samples; fewer count one by one
 };
 
 /// Standard deviation of the noise in a residual: white, coloured up to an AR(1) of 0.97, with heavy tails, other in
@@ -73,9 +76,12 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
     return column;
   };
   std::vector<Eigen::VectorXd> noises, errors;
-  for (const double memory : {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97})
+  // Memories of noise from one sample to the next, and widths of a model's errors in samples.
+  constexpr double memories[] = {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97};
+  constexpr double widths[] = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 45.0, 68.0, 100.0, 400.0};
+  for (const double memory : memories)
     noises.push_back(shape([&](double lag) { return 1.0 - std::pow(memory, lag); }));
-  for (const double width : {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 45.0, 68.0, 100.0, 400.0})
+  for (const double width : widths)
     errors.push_back(shape([&](double lag) { return 1.0 - std::exp(-lag * lag / (width * width)); }));
   errors.push_back(shape([](double lag) { return lag; }));
   const Eigen::VectorXd wanted = shape([&, i = std::size_t{0}](double) mutable { return variogram[i++]; });
@@ -105,6 +111,7 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
 inline double half_mean_square(const std::vector<double>& scaled, const std::vector<int>& since_gap, int lag,
                                double least_jump, std::size_t& pairs) {
   constexpr NoiseThresholds limit;
+  constexpr double normal_quartile = 0.6745;  // of a standard normal distribution: its median magnitude
   std::vector<double> sizes;
   const std::size_t stride = std::max<std::size_t>(
       1, static_cast<std::size_t>(static_cast<double>(scaled.size()) / limit.pairs_per_lag));
@@ -112,7 +119,7 @@ inline double half_mean_square(const std::vector<double>& scaled, const std::vec
   for (std::size_t i = back; i < scaled.size(); i += stride)
     if (since_gap[i] >= lag) sizes.push_back(std::abs(scaled[i] - scaled[i - back]));
   std::vector<double> sorted = sizes;
-  const double scale = median_of(sorted) / 0.6745;
+  const double scale = median_of(sorted) / normal_quartile;
   double sum = 0.0;
   pairs = 0;
   for (const double size : sizes)
@@ -181,7 +188,8 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
 /// 0.05. At least 1, at most a quarter of the sequence.
 inline double correlation_samples(const std::vector<double>& sequence) {
   const std::size_t count = sequence.size();
-  if (count < 8) return 1.0;
+  constexpr NoiseThresholds limit;
+  if (count < limit.least_for_correlation) return 1.0;
   double mean = 0.0, variance = 0.0;
   for (double value : sequence) mean += value;
   mean /= static_cast<double>(count);
@@ -193,7 +201,7 @@ inline double correlation_samples(const std::vector<double>& sequence) {
     double product = 0.0;
     for (std::size_t i = lag; i < count; ++i) product += (sequence[i] - mean) * (sequence[i - lag] - mean);
     const double correlation = product / variance;
-    if (correlation < 0.05) break;
+    if (correlation < limit.uncorrelated) break;
     total += 2.0 * correlation * static_cast<double>(lag - previous);
     previous = lag;
     lag = lag < 16 ? lag + 1 : lag + lag / 4;

@@ -19,6 +19,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the masks. In white Gaussian noise of 1e6 samples none is passed; see tests/gap/data.
+/// Held by tests/gap/data/check_test.cpp.
 struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed

@@ -18,6 +18,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the cutting of runs.
+/// Held by tests/gap/data/check_test.cpp.
 struct SegmentThresholds {
   double regular_gap =
       1.6;  ///< intervals: of stamps on a grid, a row is missing (a rounded stamp moves by less)

@@ -19,6 +19,7 @@
 namespace thermopower::gap::engine {
 
 /// Thresholds of the question whether a column is held between updates of a slower sensor.
+/// Held by tests/gap/data/slow_sensors_test.cpp.
 struct SlowSensorThresholds {
   std::size_t least_updates = 30;  ///< fewer do not tell
   double repeated = 0.5;           ///< repeats for each update: less is chance

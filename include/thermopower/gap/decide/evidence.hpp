@@ -72,7 +72,7 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].unit != parameters[i].unit || candidate.list[first + k].logarithmic) continue;
     has_another = has_another || k != i;
-    largest = std::max(largest, std::abs(candidate.fit.at[static_cast<Eigen::Index>(first + k)]));
+    largest = std::max(largest, std::abs(candidate.fit.point[static_cast<Eigen::Index>(first + k)]));
   }
   return !has_another || !(largest > 0.0) || candidate.fit.information(row, row) * largest * largest > 1.0;
 }
@@ -97,7 +97,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
   std::size_t at = model.calibrated().size();
   constexpr double nearly = 0.999;
   for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
-    if (std::abs(candidate.fit.at[static_cast<Eigen::Index>(i)]) >
+    if (std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) >
         nearly * std::log(known_constants.farthest_factor))
       return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
@@ -113,7 +113,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
     if (entry->info.slowest_s != nullptr) {
       std::vector<double> values;
       for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
-      if (entry->info.slowest_s(values.data()) > 0.5 * longest_run_s) return true;
+      if (entry->info.slowest_s(values.data()) > decision.seen_within * longest_run_s) return true;
     }
   }
   return false;
@@ -121,28 +121,28 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
 
 /// Root of the mean square over training and held-out data of a signal, in units of the noise; 0 without
 /// samples.
-inline double level(const Candidate& candidate, std::size_t signal) {
+inline double noise_multiple(const Candidate& candidate, std::size_t signal) {
   const double samples = candidate.train.samples[signal] + candidate.held_out.samples[signal];
   if (!(samples > 0.0)) return 0.0;
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
 /// The root mean square of a held-out signal, in units of the noise floor.
-inline double held_out_level(const SignalSums& sums, std::size_t signal) {
+inline double noise_multiple(const SignalSums& sums, std::size_t signal) {
   return std::sqrt(sums.mean(signal));
 }
 
 /// The largest of them.
-inline double worst_level(const SignalSums& sums) {
+inline double largest_noise_multiple(const SignalSums& sums) {
   double worst = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, held_out_level(sums, i));
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, noise_multiple(sums, i));
   return worst;
 }
 
 /// The largest root mean square of a candidate over its signals, training and held-out data together.
-inline double worst_level(const Candidate& candidate) {
+inline double largest_noise_multiple(const Candidate& candidate) {
   double worst = 0.0;
-  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, level(candidate, i));
+  for (std::size_t i = 0; i < signal_count; ++i) worst = std::max(worst, noise_multiple(candidate, i));
   return worst;
 }
 
@@ -159,7 +159,8 @@ inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
     if (candidate.held_out.samples[i] > 0.0 &&
         candidate.held_out.mean(i) > held_out * held_out * other.held_out.mean(i))
       return false;
-    if (level(candidate, i) > (1.0 + decision.alike_overall + margin) * level(other, i)) return false;
+    if (noise_multiple(candidate, i) > (1.0 + decision.alike_overall + margin) * noise_multiple(other, i))
+      return false;
   }
   return true;
 }
@@ -174,7 +175,7 @@ inline double log_odds_of(double standard_errors) {
 inline bool does_nothing_more(const Candidate& candidate, const Candidate& constants) {
   if (candidate.explanation.effects.empty()) return false;
   for (int index : constants.explanation.released) {
-    const double own = candidate.fit.at[index], theirs = constants.fit.at[index];
+    const double own = candidate.fit.point[index], theirs = constants.fit.point[index];
     if (own * theirs <= 0.0 || std::abs(own) < 0.5 * std::abs(theirs)) return false;
   }
   return true;
@@ -182,8 +183,8 @@ inline bool does_nothing_more(const Candidate& candidate, const Candidate& const
 
 /// Whether a candidate scores what the noise allows.
 inline bool is_at_the_noise(const Candidate& candidate) {
-  return candidate.held_out.any() && worst_level(candidate) <= decision.no_gap &&
-         worst_level(candidate.held_out) <= decision.no_gap;
+  return candidate.held_out.any() && largest_noise_multiple(candidate) <= decision.no_gap &&
+         largest_noise_multiple(candidate.held_out) <= decision.no_gap;
 }
 
 /// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
@@ -196,8 +197,8 @@ inline bool in_the_running(const Candidate& candidate) {
 /// @param other  place of another one
 inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t other) {
   const auto a = static_cast<Eigen::Index>(one), b = static_cast<Eigen::Index>(other);
-  const double larger = std::max(std::abs(candidate.fit.at[a]), std::abs(candidate.fit.at[b]));
-  double apart = std::abs(candidate.fit.at[a] - candidate.fit.at[b]);
+  const double larger = std::max(std::abs(candidate.fit.point[a]), std::abs(candidate.fit.point[b]));
+  double apart = std::abs(candidate.fit.point[a] - candidate.fit.point[b]);
   const Eigen::MatrixXd& information = candidate.fit.information;
   if (std::max(a, b) < information.rows()) {
     constexpr double standard_errors = 2.0;

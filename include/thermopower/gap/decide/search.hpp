@@ -166,7 +166,7 @@ private:
     Candidate found = coarse_.fit(explanation, options, near);
     for (const CatalogueEntry* entry : explanation.effects)
       if (&longer_ != &coarse_ && remembers(*entry))
-        return longer_.fit(explanation, options, near, &found.fit.at);
+        return longer_.fit(explanation, options, near, &found.fit.point);
     return found;
   }
 

@@ -2,9 +2,13 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <Eigen/Core>
+
 namespace thermopower::gap::engine {
 
-/// The thresholds of the decision, each with its unit and its reason.
+/// The thresholds of the decision, each with its unit and its reason. They were chosen on recordings of
+/// `gap_benchmark_generate` with seeds of their own, and docs/reference/gap-benchmark.md judges them on seed 20261201; held by
+/// tests/gap/decide_test.cpp.
 struct DecisionThresholds {
   // Evidence
   /// Twice a log odds, for every effect beyond the first: effects are rare, one in twenty of those looked for.
@@ -20,6 +24,8 @@ struct DecisionThresholds {
   /// Share of the larger one by which two parameters may differ, two standard errors included, that are equal as far as it
   /// matters: frictions of two directions are seldom known to a tenth beforehand.
   double equal = 0.1;
+  /// Share of the longest run that the slowest time constant of a cause may last, to be seen in it.
+  double seen_within = 0.5;
   /// Standard errors by which a richer explanation must fit better than a simpler one not to stay behind it.
   double beyond_doubt = 2.0;
   /// Probability, as a share of the likeliest one's, from which a rival is an alternative. With a single rival below
@@ -37,6 +43,10 @@ struct DecisionThresholds {
   double readings_per_parameter = 15.0;
   /// Multiple of the noise floor below which nothing is missing.
   double no_gap = 1.25;
+  /// The same on every row held out, as the table is printed: many rows know their floor better than a search does.
+  double no_gap_in_full = 1.2;
+  /// Multiple of the noise, over the windows of a fit, from which no constants are looked for that bring everything to it.
+  double far_from_noise = 8.0;
   /// Share of the score by which a cause must shrink the held-out gap, beyond what re-calibration does, to be
   /// named beside a rest.
   double material = 0.15;
@@ -46,6 +56,30 @@ struct DecisionThresholds {
   double standard_errors = 1.64;
   /// Share of the score by which a held-out signal may grow with a cause that is named.
   double may_grow = 0.05;
+  /// Excess of a mean square over the noise, in units of its variance, below which there is no gap to leave a share of.
+  double some_gap = 0.1;
+  /// Probability that the cause is outside of the catalogue, where nothing inside is believed.
+  double unknown = 0.98;
+  /// Log odds of an unknown cause for each multiple of the floor that an explanation ends above `near_floor`,
+  double doubt_above_floor = 4.0;
+  /// but at most those for the share of the gap that it leaves,
+  double doubt_by_share = 30.0;
+  /// beyond this one, which the floor's own error may be.
+  double share_of_error = 0.15;
+  /// Share of the training residuals that an explanation must leave to have been absorbed by the constants.
+  double absorbed = 0.99;
+  /// Cosine of what two explanations do to the residuals, from which they are said to be confusable.
+  double confusable = 0.9;
+  /// Factor of the held-out error from which refitted constants are said to make it worse.
+  double worse = 1.05;
+  /// Multiple of the noise above which long windows may do harm: a small error sends the axis into the next dip of a load.
+  double far_for_long_windows = 3.0;
+  /// Share of it that short windows must get below to be believed instead.
+  double short_windows_lower = 0.7;
+  /// Multiple of the noise in the windows that are fitted, above which others tell no more.
+  double far_for_more_windows = 3.0;
+  /// Mean square, in units of the noise's, above which sets of causes are looked for.
+  double room_for_sets = 1.8;
   /// Probability above which a rest is taken to hide that the cause is another one, per share that is left.
   double doubt_by_rest = 0.5;
   /// Probability that one of hundreds of pairs passes for a single cause that the catalogue lacks.
@@ -60,9 +94,31 @@ struct DecisionThresholds {
   double second_takes = 0.5;
   /// Share of the blocks of held-out data in which the second cause must help.
   double second_holds = 0.75;
+  /// Share of the gap that a cause may leave whose parameters the data do not agree about: a stand-in for another one takes
+  /// what it can get wherever it looks a little like it, and that is another size in each part of a recording.
+  double may_leave = 0.6;
+  /// Standard deviation of a parameter, by how much the data's blocks differ, as a share of its value: up to it they agree.
+  double size_known = 0.5;
 };
 
 /// The values in force.
 inline constexpr DecisionThresholds decision{};
+
+/// How much a search looks at: enough for what the benchmark names (seed 20261201), and few enough for 100 000 rows in some
+/// seconds (`gap_speed`). Held by tests/gap/fit/shortened_test.cpp and tests/gap/fit/segment_choice_test.cpp.
+struct SearchThresholds {
+  Eigen::Index fitted_bench_rows = 2500;   ///< that explanations are fitted to in the end
+  Eigen::Index fitted_axis_rows = 4000;    ///< the same of an axis
+  Eigen::Index tried_bench_rows = 900;     ///< of the first look
+  Eigen::Index tried_axis_rows = 1600;     ///< the same of an axis
+  Eigen::Index shortest_axis_rows = 2000;  ///< of the first look in windows that are shorter still
+  Eigen::Index judged_rows = 20000;        ///< held out, on which explanations are weighed
+  Eigen::Index windows_together = 4;       ///< neighbours that are kept: what remembers needs some time
+  double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
+  double tried_window_s = 0.5;   ///< of the first look, at most
+};
+
+/// The values in force.
+inline constexpr SearchThresholds search_extent{};
 
 }  // namespace thermopower::gap::engine

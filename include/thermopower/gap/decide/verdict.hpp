@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/decide/covariance.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
 #include <thermopower/gap/options.hpp>
 
@@ -50,7 +51,7 @@ inline Jackknifed shrinkage(const SignalSums& before, const SignalSums& after, c
   bool any = false;
   std::size_t merge = 1;
   for (std::size_t i = 0; i < signal_count; ++i) {
-    counts[i] = before.samples[i] > 0.0 && held_out_level(before, i) > decision.no_gap;
+    counts[i] = before.samples[i] > 0.0 && noise_multiple(before, i) > decision.no_gap;
     any = any || counts[i];
     if (before.samples[i] > 0.0)
       merge = std::max(merge, blocks_to_merge(before.samples[i], weight.held_out[i]));
@@ -70,8 +71,8 @@ inline Jackknifed shrinkage(const SignalSums& before, const SignalSums& after, c
 /// Whether a cause takes a material and proven part of the held-out gap away, and makes no signal worse.
 inline bool is_proven(const Candidate& candidate, const SignalSums& before, const Weight& weight) {
   for (std::size_t i = 0; i < signal_count; ++i) {
-    const double grown = held_out_level(candidate.held_out, i);
-    if (grown > decision.no_gap && grown > (1.0 + decision.may_grow) * held_out_level(before, i))
+    const double grown = noise_multiple(candidate.held_out, i);
+    if (grown > decision.no_gap && grown > (1.0 + decision.may_grow) * noise_multiple(before, i))
       return false;
   }
   const Jackknifed shrunk = shrinkage(before, candidate.held_out, weight);
@@ -86,7 +87,7 @@ inline double left_over(const SignalSums& after, const SignalSums& before) {
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (!(after.samples[i] > 0.0)) continue;
     const double excess = std::max(after.mean(i) - 1.0, 0.0), whole = std::max(before.mean(i) - 1.0, 1e-12);
-    if (whole > 0.1) worst = std::max(worst, std::sqrt(excess / whole));
+    if (whole > decision.some_gap) worst = std::max(worst, std::sqrt(excess / whole));
   }
   return std::min(worst, 1.0);
 }
@@ -124,7 +125,7 @@ using Blames = std::function<bool(const Candidate& known, const plant::SubmodelN
 /// Whether the rows blame what a set of causes has beyond a part of it, or need not: a set that leaves only noise has
 /// the data themselves for a witness.
 inline bool is_localised(const Candidate& set, const Candidate& part, const Blames& blames) {
-  if (!blames || worst_level(set.held_out) <= decision.near_floor) return true;
+  if (!blames || largest_noise_multiple(set.held_out) <= decision.near_floor) return true;
   for (const CatalogueEntry* entry : set.explanation.effects) {
     const std::vector<const CatalogueEntry*>& known = part.explanation.effects;
     if (std::find(known.begin(), known.end(), entry) == known.end() && !blames(part, entry->info.submodel))
@@ -150,7 +151,7 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
         part = i;
     }
     if (part != 0 && !candidates[chosen].explanation.effects.empty() &&
-        (worst_level(candidates[part].held_out) < decision.room_for_second ||
+        (largest_noise_multiple(candidates[part].held_out) < decision.room_for_second ||
          excess(candidates[chosen]) > decision.second_takes * excess(candidates[part]) ||
          share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds ||
          !is_localised(candidates[chosen], candidates[part], blames))) {
@@ -191,6 +192,16 @@ inline constexpr const char* constants_leave_a_rest =
     "there is a gap; other constants take the most of it away, and no effect of the catalogue explains what they "
     "leave above the noise";
 
+/// What is said where the parts of the data disagree about a cause that leaves most of the gap.
+inline constexpr const char* stands_in_for_another =
+    "there is a gap, and the cause that lowers it most leaves most of it and is of another size in each part of the data: "
+    "it stands in for one that the catalogue lacks";
+
+/// What is said where the printed table does not prove that the causes take a part away.
+inline constexpr const char* nothing_is_proven =
+    "there is a gap, and what lowers it most takes no part of it away that all held-out rows prove, beyond what other "
+    "constants do";
+
 /// What is said beside a rest.
 inline constexpr const char* partly_explained =
     "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";
@@ -208,7 +219,7 @@ inline Conclusion nothing_missing() {
 inline Conclusion nothing_known(const char* reason) {
   Conclusion result;
   result.verdict = Verdict::unexplained;
-  result.none_of_these = 0.98;
+  result.none_of_these = decision.unknown;
   result.reason = reason;
   return result;
 }
@@ -238,24 +249,25 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
   // Several constants, each within what is known of it, can stand for one that is further off: where that one is the
   // likelier answer, and the simulation as configured does not hold, it is the answer.
-  const bool one_is_off = only_constants && worst_level(reference.as_configured) > decision.no_gap;
+  const bool one_is_off = only_constants && largest_noise_multiple(reference.as_configured) > decision.no_gap;
   if (!one_is_off && (result.chosen == 0 || !matters(best, empty, options.tolerance))) {
     // Nothing helps: either nothing is missing, or nothing known.
-    if (worst_level(empty) < decision.no_gap) return nothing_missing();
+    if (largest_noise_multiple(empty) < decision.no_gap) return nothing_missing();
     return nothing_known("there is a gap, and no effect of the catalogue lowers it on held-out data");
   }
   if (!best.explanation.effects.empty() && !has_readings_enough(best, model))
     return nothing_known(
         "there is a gap, and the explanation that lowers it most has more free parameters and moved constants than so "
         "few readings can decide");
-  const double level_left = worst_level(best.held_out);
+  const double multiple_left = largest_noise_multiple(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
-  const bool near = level_left <= decision.near_floor;
+  const bool near = multiple_left <= decision.near_floor;
   const bool proven = is_proven(best, reference.as_configured, weight) &&
                       (only_constants || is_proven(best, reference.recalibrated, weight));
   if (near) {
     // Half way between "at the noise" and "clearly not", or a share of the gap that small.
-    const double doubt = std::min(4.0 * (level_left - decision.near_floor), 30.0 * (share_left - 0.15));
+    const double doubt = std::min(decision.doubt_above_floor * (multiple_left - decision.near_floor),
+                                  decision.doubt_by_share * (share_left - decision.share_of_error));
     result.none_of_these = 1.0 / (1.0 + std::exp(-std::clamp(doubt, -30.0, 30.0)));
   } else if (only_constants) {
     return nothing_known(constants_leave_a_rest);
@@ -263,6 +275,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     return nothing_known("there is a gap, and no effect of the catalogue takes a proven part of it away");
   } else {
     const double rest = std::max(share_left, left_over(best.held_out, reference.recalibrated));
+    if (rest > decision.may_leave && !is_agreed_upon(best, model, weight))
+      return nothing_known(stands_in_for_another);
     result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);
   }
   if (best.explanation.effects.size() > 1)

@@ -23,6 +23,7 @@ namespace thermopower::gap {
 namespace engine {
 
 /// Thresholds of what a recording can show.
+/// Held by tests/gap/known_inputs_test.cpp and tests/gap/network_test.cpp.
 struct WorthThresholds {
   double step = 0.01;        ///< relative step of a constant for its derivative
   double gain = 1.1;         ///< usual size of an effect that starts as a factor of 1

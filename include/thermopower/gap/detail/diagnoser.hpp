@@ -48,13 +48,13 @@ public:
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
     Attempt attempt = thorough_search(fit_horizon_s());
-    constexpr double far_above = 3.0;  // times the noise: nearer to it long windows do no harm
     if (train_inputs_.front().axis() && options_.horizon_s < fit_horizon_s() &&
-        best_level(attempt) > far_above) {
+        best_noise_multiple(attempt) > decision.far_for_long_windows) {
       // Over long windows small errors can send the axis into the next dip of a load: short ones forgive
       // that.
       Attempt shorter = search(options_.horizon_s);
-      if (best_level(shorter) < 0.7 * best_level(attempt)) attempt = std::move(shorter);
+      if (best_noise_multiple(shorter) < decision.short_windows_lower * best_noise_multiple(attempt))
+        attempt = std::move(shorter);
     }
     stage("which");
     const Blames blames = [this](const Candidate& known, const plant::SubmodelName& submodel) {
@@ -71,7 +71,8 @@ public:
       weigh(all, attempt.weight, model_);
       conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_, blames);
     }
-    if (conclusion.verdict != Verdict::no_gap && holds(attempt, conclusion)) conclusion = nothing_missing();
+    if (conclusion.verdict != Verdict::no_gap && constants_suffice(attempt, conclusion))
+      conclusion = nothing_missing();
     report(attempt, conclusion);
     stage("how far");
     return std::move(result_);
@@ -92,28 +93,32 @@ private:
   /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
   /// training data over a narrow range leave constants open that the held-out data ask for: what fits both
   /// will do. Where constants are the answer, the model must hold as it is configured.
-  bool holds(const Attempt& attempt, const Conclusion& conclusion) {
+  bool constants_suffice(const Attempt& attempt, const Conclusion& conclusion) {
     const Candidate& empty = attempt.candidates.front();
-    constexpr double far_above = 8.0;  // times the noise, over the windows of the fit
+    // What an explanation leaves may be less than rows tell of their noise. Where nothing explains, what the best of the
+    // explanations leaves is no noise.
+    const FitProblem* witness = conclusion.verdict == Verdict::unexplained ? nullptr : &attempt.problem;
+    const auto is_enough = [&](const Model& model, const std::vector<Inputs>& inputs) {
+      return is_within_noise(model, inputs, witness, options_.horizon_s, catalogue_);
+    };
+    const auto fit_both_parts = [&](const Model& model) {
+      return is_enough(model, held_out_inputs_) && is_enough(model, train_inputs_);
+    };
     // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
-    if (worst_level(empty) > far_above)
-      return conclusion.verdict == Verdict::unexplained && holds(model_, held_out_inputs_, attempt.problem) &&
-             holds(model_, train_inputs_, attempt.problem);
+    if (largest_noise_multiple(empty) > decision.far_from_noise)
+      return conclusion.verdict == Verdict::unexplained && fit_both_parts(model_);
     if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
-      return holds(model_, held_out_inputs_, attempt.problem) &&
-             holds(model_, train_inputs_, attempt.problem);
-    if (holds(augmented(model_, empty.explanation, empty.list, empty.fit.at), held_out_inputs_,
-              attempt.problem))
+      return fit_both_parts(model_);
+    if (is_enough(augmented(model_, empty.explanation, empty.list, empty.fit.point), held_out_inputs_))
       return true;
     std::vector<Inputs> all = train_inputs_;
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
-    FitProblem together = problem_of(all, 2500, 4000, fit_horizon_s());
+    FitProblem together =
+        problem_of(all, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, fit_horizon_s());
     together.sigma = attempt.problem.sigma;
     together.correlation = attempt.problem.correlation;
     const Candidate fitted = Attribution(together).fit({}, {}, &empty);
-    const Model calibrated = augmented(model_, fitted.explanation, fitted.list, fitted.fit.at);
-    return holds(calibrated, held_out_inputs_, attempt.problem) &&
-           holds(calibrated, train_inputs_, attempt.problem);
+    return fit_both_parts(augmented(model_, fitted.explanation, fitted.list, fitted.fit.point));
   }
 
   /// Whether an explanation leaves no more than noise in the windows of its fit and, as a gap is judged, lowers it on
@@ -124,28 +129,16 @@ private:
     if (one.explanation.effects.empty()) return true;
     const std::vector<Segment> segments = judged_segments(train_inputs_);
     const Errors before = errors_of(model_, segments, catalogue_),
-                 after = errors_of(augmented(model_, one.explanation, one.list, one.fit.at), segments,
+                 after = errors_of(augmented(model_, one.explanation, one.list, one.fit.point), segments,
                                    catalogue_);
     for (int i = 0; i < signal_count; ++i)
       if (after.rms(static_cast<Signal>(i)) < lowered * before.rms(static_cast<Signal>(i))) return true;
     return false;
   }
 
-  /// Whether a model scores what the noise allows on some data.
-  bool holds(const Model& calibrated, const std::vector<Inputs>& inputs, const FitProblem& problem) const {
-    constexpr double relevant = 1.2;
-    const std::vector<Segment> full = cut(inputs, options_.horizon_s, plant_of(model_));
-    const Errors errors = errors_of(calibrated, full, catalogue_);
-    std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
-    if (problem.segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
-      for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], problem.sigma[i]);
-    const std::array<double, signal_count> floor = floor_of(calibrated, errors, sigma, full, catalogue_);
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > relevant * floor[i]) return false;
-    return true;
+  static double best_noise_multiple(const Attempt& attempt) {
+    return largest_noise_multiple(Search::best(attempt.candidates));
   }
-
-  static double best_level(const Attempt& attempt) { return worst_level(Search::best(attempt.candidates)); }
 
   void gather(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
     if (train.empty()) throw InvalidInput("there is no recording to train on");
@@ -238,7 +231,7 @@ private:
   }
 
   /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
-  double fit_horizon_s() const { return std::max(2.0, options_.horizon_s); }
+  double fit_horizon_s() const { return std::max(search_extent.fitted_window_s, options_.horizon_s); }
 
   std::vector<Explanation> singles() const {
     std::vector<Explanation> list;
@@ -260,7 +253,7 @@ private:
     std::array<std::vector<bool>, signal_count> gaps;
     const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
     const std::array<double, signal_count> wander =
-        wander_of_command(augmented(model_, candidate.explanation, candidate.list, candidate.fit.at),
+        wander_of_command(augmented(model_, candidate.explanation, candidate.list, candidate.fit.point),
                           problem.segments, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i) {
       if (residuals[i].empty()) continue;
@@ -285,7 +278,7 @@ private:
   std::vector<std::size_t> overlooked_by(const Attempt& attempt) const {
     const Candidate& best = Search::best(attempt.candidates);
     // Where even the windows that were fitted are far above the noise, others tell no more.
-    constexpr double fitted = 3.0;  // times the noise
+    constexpr double fitted = decision.far_for_more_windows;
     if (!best.train.within(fitted * fitted)) return {};
     return overlooked(attempt.problem, attempt.all, best, options_.horizon_s);
   }
@@ -296,18 +289,22 @@ private:
   Attempt search(double horizon_s, const std::vector<std::size_t>& also = {},
                  std::vector<std::size_t>* worst = nullptr) {
     Attempt attempt;
-    constexpr Eigen::Index together = 4;  // windows: what remembers needs some time
+    constexpr Eigen::Index together = search_extent.windows_together;
     FitProblem& problem = attempt.problem =
-        problem_of(train_inputs_, 2500, 4000, horizon_s, also, &attempt.all, together);
-    const double short_s = std::min(0.5, options_.horizon_s);
+        problem_of(train_inputs_, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, horizon_s,
+                   also, &attempt.all, together);
+    const double short_s = std::min(search_extent.tried_window_s, options_.horizon_s);
     FitProblem longer_problem =
-        problem_of(train_inputs_, 900, 1600, short_s,
+        problem_of(train_inputs_, search_extent.tried_bench_rows, search_extent.tried_axis_rows, short_s,
                    short_s == horizon_s ? also : std::vector<std::size_t>(), nullptr, together);
-    longer_problem.segments = thinned_runs(longer_problem.segments, 900);
+    longer_problem.segments = thinned_runs(longer_problem.segments, search_extent.tried_bench_rows);
     FitProblem coarse_problem = longer_problem;
     const double shortest_s = shortest_window_s(model_, catalogue_, train_inputs_, short_s);
     if (shortest_s < short_s)
-      coarse_problem.segments = thinned_runs(problem_of(train_inputs_, 900, 2000, shortest_s).segments, 900);
+      coarse_problem.segments = thinned_runs(problem_of(train_inputs_, search_extent.tried_bench_rows,
+                                                        search_extent.shortest_axis_rows, shortest_s)
+                                                 .segments,
+                                             search_extent.tried_bench_rows);
     std::vector<Candidate>& candidates = attempt.candidates;
     const Attribution coarse(coarse_problem), longer(longer_problem), fine(problem);
     for (int round = 0; round < 2; ++round) measure_noise(longer_problem, longer.fit({}, {}));
@@ -339,7 +336,7 @@ private:
       std::vector<Explanation> effects;
       for (const Explanation& one : causes)
         if (!one.effects.empty()) effects.push_back(one);
-      searching.run_sets(candidates, effects, options_.effects_at_once, 1.8);
+      searching.run_sets(candidates, effects, options_.effects_at_once, decision.room_for_sets);
       renew();
       if (searching.refine_shapes(candidates)) renew();
     }
@@ -362,7 +359,7 @@ private:
                          [&](const Location& one) { return one.submodel == submodel; });
     };
     if (model_.own || among(result_.where)) return true;
-    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.at);
+    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.point);
     return among(localise(with_known, train_recordings_, {}, catalogue_).where);
   }
 
@@ -382,7 +379,7 @@ private:
     for (Candidate& one : candidates)
       if (one.explanation.effects.empty() && Search::fitness(one) < Search::fitness(*best)) best = &one;
     fine.polish(*best, {});
-    const Model fitted = augmented(model_, best->explanation, best->list, best->fit.at);
+    const Model fitted = augmented(model_, best->explanation, best->list, best->fit.point);
     const std::vector<Segment> segments = judged_segments(train_inputs_);
     const Errors before = errors_of(model_, segments, catalogue_),
                  after = errors_of(fitted, segments, catalogue_);
@@ -397,8 +394,7 @@ private:
 
   /// Segments as a gap is judged, few enough to judge many explanations on.
   std::vector<Segment> judged_segments(const std::vector<Inputs>& inputs) const {
-    constexpr Eigen::Index judged_rows = 20000;
-    return thinned_axis(cut(inputs, options_.horizon_s, plant_of(model_)), judged_rows);
+    return thinned_axis(cut(inputs, options_.horizon_s, plant_of(model_)), search_extent.judged_rows);
   }
 
   /// Scores the empty explanation, those by constants alone, and the best ones on held-out data, as a gap is
@@ -407,7 +403,7 @@ private:
     std::vector<Candidate>& candidates = attempt.candidates;
     const std::vector<Segment> segments = judged_segments(held_out_inputs_);
     const auto model_of = [&](const Candidate& one) {
-      return augmented(model_, one.explanation, one.list, one.fit.at);
+      return augmented(model_, one.explanation, one.list, one.fit.point);
     };
     const Model best = model_of(Search::best(candidates));
     const Errors errors = errors_of(best, segments, catalogue_);
@@ -456,17 +452,20 @@ private:
                        conclusion.verdict == Verdict::partial;
     const Weight weight = correlation_of(chosen, attempt.problem);
     rank(result_, candidates, conclusion, attempt.problem, weight);
-    const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.at);
+    const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.point);
     if (named) name_causes(result_, candidates, conclusion, model_, fitted, weight);
     result_.recalibrated = attempt.recalibrated;
     if (named) result_.augmented = fitted;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
-    const bool taken_back = constants_fall_short(result_);
-    if (taken_back) take_causes_back(result_, model_);
+    const bool short_of_noise = constants_fall_short(result_);
+    if (short_of_noise) take_causes_back(result_, model_, constants_leave_a_rest);
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
+    const bool unproven = result_.verdict == Verdict::partial && !is_proven_by_the_table(result_);
+    if (unproven) take_causes_back(result_, model_, nothing_is_proven);
+    const bool taken_back = short_of_noise || unproven;
     if (named && leaves_a_rest && !taken_back)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()

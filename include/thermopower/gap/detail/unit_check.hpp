@@ -23,6 +23,7 @@ namespace thermopower::gap::engine {
 /// Thresholds of the unit check. A misfit is the root mean square of simulated minus measured over that of
 /// measured minus where the simulation started: 0 for a perfect simulation, 1 for one that is no better than
 /// standing still.
+/// Held by tests/gap/data/units_test.cpp.
 struct UnitThresholds {
   double follows =
       0.2;  ///< misfit below which the simulation follows the data as they are, and nothing is asked
@@ -42,6 +43,8 @@ struct UnitThresholds {
   double shifted_back =
       0.6;  ///< of the current's variance that remains when another shift of the clock is right
   double shifted_axis = 0.55;  ///< of an axis's misfit
+  double largest_square =
+      1e18;  ///< of an error: a simulation that left the number range is very bad, not undefined
 };
 
 /// Another reading of a recording: what might be wrong with it, and how to read it then.
@@ -72,7 +75,7 @@ inline double misfit(const Model& model, const Recording& recording, const Catal
       if (signal.signal != Signal::current_A &&
           std::abs(error) <= 1e-9 * std::max(1.0, std::abs(measured[i])))
         reference = measured[i];
-      errors += std::min(error * error, 1e18);
+      errors += std::min(error * error, UnitThresholds().largest_square);
       moved += (measured[i] - reference) * (measured[i] - reference);
     }
     if (!(errors > 0.0)) continue;

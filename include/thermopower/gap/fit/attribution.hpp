@@ -32,7 +32,7 @@ struct Candidate {
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
   double value(std::size_t place) const {
-    return list[place].value_of(fit.at[static_cast<Eigen::Index>(place)]);
+    return list[place].value_of(fit.point[static_cast<Eigen::Index>(place)]);
   }
 };
 
@@ -42,7 +42,7 @@ inline std::vector<int> moved_constants(const Candidate& candidate, const Model&
   std::vector<int> moved;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
-    if (std::abs(candidate.fit.at[index]) >
+    if (std::abs(candidate.fit.point[index]) >
         known_constants.within * model.uncertainty_of(constant) * (1.0 + rounding))
       moved.push_back(index);
     ++index;
@@ -55,7 +55,7 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   double price = 0.0;
   Eigen::Index at = 0;
   for (const CalibratedConstant& constant : model.calibrated())
-    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.at[at++]);
+    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.point[at++]);
   return price;
 }
 
@@ -93,7 +93,7 @@ public:
         FitResult trial = fitter.minimise(start, few);
         if (trial.cost < best.cost) best = std::move(trial);
       }
-      candidate.fit = fitter.minimise(best.at, options, &best.starts);
+      candidate.fit = fitter.minimise(best.point, options, &best.starts);
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
@@ -105,7 +105,7 @@ public:
   /// Goes on from where a fit stopped, possibly on other data.
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
-    candidate.fit = fitter.minimise(candidate.fit.at, options, starts_of(candidate));
+    candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
     if (options.iterations > 2) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
@@ -116,7 +116,7 @@ public:
     if (!candidate.explanation.can_be_refined() || candidate.train.within(noise_)) return;
     Candidate finer = with_details_free(candidate);
     finer.fit = Fitter(problem_, finer.explanation, finer.list)
-                    .minimise(candidate.fit.at, options, starts_of(candidate));
+                    .minimise(candidate.fit.point, options, starts_of(candidate));
     finer.train = sums(finer, problem_, finer.fit.starts);
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
@@ -128,7 +128,7 @@ public:
     look.iterations = 0;
     look.curvature = true;
     candidate.fit = Fitter(problem_, candidate.explanation, candidate.list)
-                        .minimise(candidate.fit.at, look, starts_of(candidate));
+                        .minimise(candidate.fit.point, look, starts_of(candidate));
   }
 
   /// What is fitted to.
@@ -160,7 +160,7 @@ public:
       const Candidate& candidate, const FitProblem& problem, const std::vector<Start>& starts,
       std::array<std::vector<bool>, signal_count>* gaps) {
     std::array<std::vector<double>, signal_count> result;
-    problem.evaluate(candidate.explanation, candidate.list, candidate.fit.at, starts, false,
+    problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, starts, false,
                      [&](std::size_t, const FitProblem::Residuals& one) {
                        std::array<bool, signal_count> first = plant::for_each_signal(true);
                        for (Eigen::Index i = 0; i < one.value.size(); ++i) {
@@ -185,11 +185,11 @@ public:
       if (takes_away(finer, candidate, share)) candidate = std::move(finer);
       return;
     }
-    Eigen::VectorXd from = candidate.fit.at;
+    Eigen::VectorXd from = candidate.fit.point;
     for (std::size_t i = 0; i < candidate.list.size(); ++i)
       for (std::size_t k = 0; k < other.list.size(); ++k)
         if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k))
-          from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.at[static_cast<Eigen::Index>(k)],
+          from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.point[static_cast<Eigen::Index>(k)],
                                                           candidate.list[i].lower, candidate.list[i].upper);
     FitResult again =
         Fitter(problem_, candidate.explanation, candidate.list).minimise(from, options, starts_of(other));
@@ -245,7 +245,7 @@ private:
   /// a start on the wrong side: then all that have a standard begin once more from it. Two families of shapes meet at
   /// the standard one, and a fit that stopped shortly below it looks at the other side.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
-    Eigen::VectorXd again = candidate.fit.at;
+    Eigen::VectorXd again = candidate.fit.point;
     bool trapped = false, far = false;
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {
       const Coordinate& one = candidate.list[i];
@@ -275,7 +275,7 @@ private:
       double value = one.start;
       if (near != nullptr)
         for (std::size_t k = 0; k < near->list.size(); ++k)
-          if (near->list[k].name == one.name) value = near->fit.at[static_cast<Eigen::Index>(k)];
+          if (near->list[k].name == one.name) value = near->fit.point[static_cast<Eigen::Index>(k)];
       base[static_cast<Eigen::Index>(i)] = std::clamp(value, one.lower, one.upper);
     }
     std::vector<Eigen::VectorXd> points{base};

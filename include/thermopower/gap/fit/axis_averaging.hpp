@@ -16,6 +16,7 @@
 namespace thermopower::gap::engine {
 
 /// When a recording of a moving axis is averaged down.
+/// Held by tests/gap/joint_effects_test.cpp: a loop of 1 kHz gets the same answer logged at any rate.
 struct AveragingThresholds {
   double rows_per_horizon =
       100.0;  ///< of a window that is scored: finer than any effect of the catalogue needs

@@ -80,7 +80,44 @@ struct FitProblem {
     for (std::size_t i = 0; i < all.size(); ++i) use(i, all[i]);
   }
 
+  /// Sum of the squares of all residuals. Ends early, with a sum above the limit, as soon as it is: whoever compares needs no
+  /// more.
+  double squares(const Explanation& explanation, const std::vector<Coordinate>& list,
+                 const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit) const {
+    if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
+    const Plant& plant = this->plant();
+    const auto rollout = plant.rollout(*model, *catalogue, point_of(*model, explanation, list, at), {},
+                                       SimulationMode::free_running);
+    Readings readings;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < segments.size() && sum <= limit; ++i) {
+      const Segment& segment = segments[i];
+      rollout->roll(segment, starts[i], readings);
+      if (segment.warm_up) continue;
+      const std::vector<Signal>& signals = plant.signals(segment);
+      double of_segment = 0.0;
+      for (std::size_t k = 0; k < signals.size(); ++k) {
+        if (!segment.inputs->judged(signals[k])) continue;
+        const Eigen::VectorXd& measured = segment.inputs->of(signals[k]);
+        for (Eigen::Index row = segment.begin; row < segment.end; ++row) {
+          if (!std::isfinite(measured[row])) continue;
+          const double residual = bounded((readings.value(row, static_cast<int>(k)) - measured[row]) *
+                                          weight_of(*segment.inputs, signals[k], row));
+          of_segment += residual * residual;
+        }
+      }
+      sum += of_segment;
+    }
+    return sum;
+  }
+
 private:
+  /// What a difference at a row is multiplied with to be in units of the noise.
+  double weight_of(const Inputs& inputs, Signal signal, Eigen::Index row) const {
+    const double repeats = inputs.repeats.size() > 0 ? std::sqrt(inputs.repeats[row]) : 1.0;
+    return repeats / sigma[static_cast<std::size_t>(signal)];
+  }
+
   static void reserve(const Plant& plant, const Segment& segment, int columns, Residuals& residuals) {
     const Inputs& inputs = *segment.inputs;
     const std::vector<Signal>& signals = plant.signals(segment);
@@ -121,8 +158,7 @@ private:
         if (!inputs.judged(signal)) continue;
         const double measured = inputs.of(signal)[row];
         if (!std::isfinite(measured)) continue;
-        const double repeats = inputs.repeats.size() > 0 ? std::sqrt(inputs.repeats[row]) : 1.0;
-        const double weight = repeats / sigma[static_cast<std::size_t>(signal)];
+        const double weight = weight_of(inputs, signal, row);
         const int place = static_cast<int>(k);
         residuals.value[filled] = bounded((readings.value(row, place) - measured) * weight);
         for (int d = 0; d < count; ++d)

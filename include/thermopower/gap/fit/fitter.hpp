@@ -22,7 +22,7 @@ struct FitOptions {
 
 /// Where a fit ended.
 struct FitResult {
-  Eigen::VectorXd at;         ///< coordinates
+  Eigen::VectorXd point;      ///< coordinates
   std::vector<Start> starts;  ///< of every segment
   double chi2 = 1e300;        ///< data only
   double cost = 1e300;        ///< data and priors
@@ -61,7 +61,7 @@ public:
   FitResult minimise(const Eigen::VectorXd& from, const FitOptions& options = {},
                      const std::vector<Start>* starts = nullptr) {
     FitResult best;
-    best.at = from;
+    best.point = from;
     best.starts = starts != nullptr ? *starts : problem_.measured_starts();
     double damping = 1e-4;
     int small_steps = 0;
@@ -70,10 +70,10 @@ public:
       bool accepted = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
-        trial.cost = cost(trial.at, trial.starts, trial.chi2);
+        trial.cost = cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
           const double decrease = (best.cost - trial.cost) / (best.cost + 1e-300);
-          best.at = trial.at;
+          best.point = trial.point;
           best.starts = trial.starts;
           best.cost = trial.cost;
           best.chi2 = trial.chi2;
@@ -96,11 +96,11 @@ public:
       best.blocks = blocks_;
       scatter_.resize(0, 0);
     }
-    for (Eigen::Index i = 0; i < best.at.size(); ++i) {
+    for (Eigen::Index i = 0; i < best.point.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
       const double margin = 1e-3 * (one.upper - one.lower);
-      best.at_bound.push_back(best.at[i] <= one.lower + std::min(margin, 1e-9) ||
-                              best.at[i] >= one.upper - std::min(margin, 1e-9));
+      best.at_bound.push_back(best.point[i] <= one.lower + std::min(margin, 1e-9) ||
+                              best.point[i] >= one.upper - std::min(margin, 1e-9));
     }
     best.samples = samples_;
     return best;
@@ -108,11 +108,11 @@ public:
 
   /// Cost after one linear step of everything from a point: for choosing where to begin.
   double scan(const Eigen::VectorXd& at) {
-    FitResult point;
-    point.at = at;
-    point.starts = problem_.measured_starts();
-    linearise(point);
-    const Eigen::VectorXd change = stepped(point, 1e-3).at - at;
+    FitResult here;
+    here.point = at;
+    here.starts = problem_.measured_starts();
+    linearise(here);
+    const Eigen::VectorXd change = stepped(here, 1e-3).point - at;
     return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
   }
 
@@ -123,31 +123,31 @@ private:
     Eigen::VectorXd gradient;
   };
 
-  void linearise(FitResult& at) {
+  void linearise(FitResult& result) {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     information_.setZero(n, n);
     gradient_.setZero(n);
     eliminated_.resize(problem_.segments.size());
-    at.chi2 = 0.0;
-    at.cost = 0.0;
+    result.chi2 = 0.0;
+    result.cost = 0.0;
     samples_ = 0;
     projected_cost_ = 0.0;
-    problem_.evaluate(explanation_, list_, at.at, at.starts, true,
+    problem_.evaluate(explanation_, list_, result.point, result.starts, true,
                       [&](std::size_t i, const FitProblem::Residuals& residuals) {
                         samples_ += residuals.value.size();
-                        add_segment(i, residuals, at.starts[i], at.chi2, at.cost);
+                        add_segment(i, residuals, result.starts[i], result.chi2, result.cost);
                       });
-    const double mean = samples_ > 0 ? at.chi2 / static_cast<double>(samples_) : 1.0;
+    const double mean = samples_ > 0 ? result.chi2 / static_cast<double>(samples_) : 1.0;
     per_prior_ = std::max(mean, 1.0) * problem_.correlation;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Prior& prior = list_[static_cast<std::size_t>(i)].prior;
-      const double weight = per_prior_ * prior.weight(at.at[i]);
+      const double weight = per_prior_ * prior.weight(result.point[i]);
       information_(i, i) += weight;
-      gradient_[i] += weight * at.at[i];
-      at.cost += per_prior_ * prior.cost(at.at[i]);
+      gradient_[i] += weight * result.point[i];
+      result.cost += per_prior_ * prior.cost(result.point[i]);
     }
-    at.cost += at.chi2;
-    projected_cost_ += at.cost;
+    result.cost += result.chi2;
+    projected_cost_ += result.cost;
   }
 
   void add_segment(std::size_t i, const FitProblem::Residuals& residuals, const Start& start, double& chi2,
@@ -197,12 +197,12 @@ private:
   }
 
   FitResult stepped(const FitResult& from, double damping) const {
-    const Eigen::Index n = from.at.size();
+    const Eigen::Index n = from.point.size();
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
-      const bool pushed_down = from.at[i] <= one.lower && gradient_[i] > 0.0;
-      const bool pushed_up = from.at[i] >= one.upper && gradient_[i] < 0.0;
+      const bool pushed_down = from.point[i] <= one.lower && gradient_[i] > 0.0;
+      const bool pushed_up = from.point[i] >= one.upper && gradient_[i] < 0.0;
       if (!pushed_down && !pushed_up && information_(i, i) > 0.0) free.push_back(i);
     }
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
@@ -226,9 +226,9 @@ private:
       for (Eigen::Index a = 0; a < m; ++a) {
         const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
         const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
-        const double target = from.at[free[a]] + step;
+        const double target = from.point[free[a]] + step;
         if (target < one.lower || target > one.upper) {
-          change[free[a]] = std::clamp(target, one.lower, one.upper) - from.at[free[a]];
+          change[free[a]] = std::clamp(target, one.lower, one.upper) - from.point[free[a]];
           clipped = true;
         } else {
           inside.push_back(free[a]);
@@ -238,7 +238,8 @@ private:
         for (Eigen::Index a = 0; a < m; ++a) {
           const Coordinate& one = list_[static_cast<std::size_t>(free[a])];
           const double step = std::isfinite(solved[a]) ? solved[a] / scale[a] : 0.0;
-          change[free[a]] = std::clamp(from.at[free[a]] + step, one.lower, one.upper) - from.at[free[a]];
+          change[free[a]] =
+              std::clamp(from.point[free[a]] + step, one.lower, one.upper) - from.point[free[a]];
         }
         break;
       }
@@ -249,7 +250,7 @@ private:
     for (Eigen::Index i = 0; i < n; ++i)
       if (list_[static_cast<std::size_t>(i)].logarithmic) change[i] = std::clamp(change[i], -1.1, 1.1);
     FitResult to;
-    to.at = from.at + change;
+    to.point = from.point + change;
     to.starts = from.starts;
     for (std::size_t i = 0; i < to.starts.size(); ++i) {
       const Eigen::VectorXd slope = eliminated_[i].gradient + eliminated_[i].coupling * change;
@@ -262,21 +263,20 @@ private:
     return to;
   }
 
-  double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double& chi2) const {
-    double total = 0.0;
-    chi2 = 0.0;
-    problem_.evaluate(explanation_, list_, at, starts, false,
-                      [&](std::size_t i, const FitProblem::Residuals& residuals) {
-                        chi2 += residuals.value.squaredNorm();
-                        const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
-                        for (Eigen::Index k = 0; k < inverse_sd.size(); ++k) {
-                          const double off = inverse_sd[k] * starts[i][k];
-                          total += off * off;
-                        }
-                      });
+  /// Data and priors; where that is above the limit, something above it.
+  double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit, double& chi2) const {
+    double priors = 0.0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
+      for (Eigen::Index k = 0; k < inverse_sd.size(); ++k) {
+        const double off = inverse_sd[k] * starts[i][k];
+        priors += off * off;
+      }
+    }
     for (std::size_t i = 0; i < list_.size(); ++i)
-      total += per_prior_ * list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
-    return total + chi2;
+      priors += per_prior_ * list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
+    chi2 = problem_.squares(explanation_, list_, at, starts, limit - priors);
+    return priors + chi2;
   }
 
   const FitProblem& problem_;

@@ -38,7 +38,7 @@ inline std::vector<std::size_t> overlooked(const FitProblem& part, const std::ve
   };
   std::vector<Sum> of(all.size());
   std::size_t place = 0;
-  whole.evaluate(best.explanation, best.list, best.fit.at, whole.measured_starts(), false,
+  whole.evaluate(best.explanation, best.list, best.fit.point, whole.measured_starts(), false,
                  [&](std::size_t i, const FitProblem::Residuals& one) {
                    while (place + 1 < all.size() && !within(whole.segments[i], all[place])) ++place;
                    of[place].add({one.value.squaredNorm(), static_cast<double>(one.value.size())});

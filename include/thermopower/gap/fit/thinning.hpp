@@ -40,6 +40,19 @@ inline double travel_rad(const std::vector<Inputs>& inputs) {
   return high > low ? (high - low) * rad_per_deg : 1e300;
 }
 
+/// When rows of a bench become one. Held by tests/gap/fit/shortened_test.cpp: the mean error of the simulation under test stays,
+/// and what the whole recording tells the short one does.
+struct ThinningThresholds {
+  double of_time_constant = 0.02;  ///< of the baseline's: as long blocks last in which the power switches,
+  double even_blocks = 4.0;        ///< and so many times that those in which it does not
+  double usual_time_constant_s = 100.0;  ///< where the baseline has none
+  double alike = 0.05;      ///< share by which a measured current or heat may differ and be the same
+  double one_level = 0.02;  ///< share by which powers may differ for their current to be observed
+  double rate_varies =
+      0.02;             ///< standard deviation of a rate, as a share, from which its square is kept, too
+  double middle = 0.6;  ///< share of a block by which the mean of its stamps must have come
+};
+
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its
@@ -135,7 +148,7 @@ private:
   void add_even(Eigen::Index begin, Eigen::Index end) {
     const Eigen::Index count = end - begin;
     const double lasts_s = full_.t_s[end - 1] - full_.t_s[begin];
-    const auto by_time = static_cast<Eigen::Index>(std::ceil(lasts_s / (4.0 * longest_s_)));
+    const auto by_time = static_cast<Eigen::Index>(std::ceil(lasts_s / (limit_.even_blocks * longest_s_)));
     const Eigen::Index parts = std::min(count, std::max((count + block_ - 1) / block_, by_time));
     if (parts <= 1) {
       add_uniform(begin, end);
@@ -146,7 +159,7 @@ private:
   }
 
   /// The value that makes the heat of a row: its power, or where that is not recorded its current.
-  double level(Eigen::Index row) const {
+  double heat_level(Eigen::Index row) const {
     if (full_.power_param.size() > 0) return full_.power_param[row];
     if (full_.heat == HeatSource::drive) return std::abs(full_.drive_A[row]);
     if (full_.heat == HeatSource::recorded) return full_.heat_W[row];
@@ -156,14 +169,14 @@ private:
   /// Whether a heat that is recorded itself is the same at two rows, to a twentieth.
   bool same_heat(Eigen::Index one, Eigen::Index other) const {
     return full_.heat_W.size() == 0 ||
-           std::abs(full_.heat_W[one] - full_.heat_W[other]) <= 0.05 * std::abs(full_.heat_W[other]);
+           std::abs(full_.heat_W[one] - full_.heat_W[other]) <= limit_.alike * std::abs(full_.heat_W[other]);
   }
 
   Eigen::Index constant_until(Eigen::Index row, Eigen::Index limit) const {
     Eigen::Index end = row + 1;
     // A measured current is never constant: what is within a twentieth counts as such.
-    const double slack = full_.power_param.size() > 0 ? 0.0 : 0.05 * std::abs(level(row));
-    while (end < limit && std::abs(level(end) - level(row)) <= slack && same_heat(end, row)) ++end;
+    const double slack = full_.power_param.size() > 0 ? 0.0 : limit_.alike * std::abs(heat_level(row));
+    while (end < limit && std::abs(heat_level(end) - heat_level(row)) <= slack && same_heat(end, row)) ++end;
     return end;
   }
 
@@ -208,7 +221,9 @@ private:
     const double rows = static_cast<double>(end - begin), since_s = full_.t_s[begin];
     const double before_s = stamps.mean() - since_s;
     const double lasts_s = (full_.t_s[end - 1] - since_s) * rows / (rows - 1.0);
-    if (!(variance > 4e-4 * mean * mean) || !(before_s < 0.6 * lasts_s)) return {};
+    if (!(variance > limit_.rate_varies * limit_.rate_varies * mean * mean) ||
+        !(before_s < limit_.middle * lasts_s))
+      return {};
     const double below = std::sqrt(variance * lasts_s / (3.0 * before_s));
     return {std::max(mean - below, 0.0), mean, mean + 2.0 * below, since_s + lasts_s - 0.5 * before_s};
   }
@@ -216,12 +231,12 @@ private:
   void add_mixed(Eigen::Index begin, Eigen::Index end, double until_s) {
     std::vector<Eigen::Index> order;
     for (Eigen::Index one = begin; one < end; ++one) order.push_back(one);
-    sort_by(order, [&](Eigen::Index row) { return level(row); });
+    sort_by(order, [&](Eigen::Index row) { return heat_level(row); });
     // Cut at the two widest steps of the level.
     std::array<std::size_t, 2> cuts{0, 0};
     std::array<double, 2> widest{0.0, 0.0};
     for (std::size_t i = 1; i < order.size(); ++i) {
-      const double step = level(order[i]) - level(order[i - 1]);
+      const double step = heat_level(order[i]) - heat_level(order[i - 1]);
       if (step > widest[0]) {
         widest[1] = widest[0], cuts[1] = cuts[0];
         widest[0] = step, cuts[0] = i;
@@ -243,8 +258,8 @@ private:
                       order.begin() + static_cast<std::ptrdiff_t>(edges[k + 1]));
         row.t_s = now_s;
         if (half == 1 && first) row.motor_begin = begin, row.motor_end = end;
-        row.current = half == 1 &&
-                      level(row.of.back()) - level(row.of.front()) <= 0.02 * std::abs(level(row.of.back()));
+        row.current = half == 1 && heat_level(row.of.back()) - heat_level(row.of.front()) <=
+                                       limit_.one_level * std::abs(heat_level(row.of.back()));
         now_s += share_s * static_cast<double>(row.of.size());
         first = false;
         rows_.push_back(std::move(row));
@@ -337,6 +352,7 @@ private:
     }
   }
 
+  static constexpr ThinningThresholds limit_{};
   const Inputs& full_;
   Eigen::Index block_ = 1;
   double longest_s_ = 1.0;
@@ -348,12 +364,13 @@ private:
 /// Shortens a bench recording; blocks of mixed power stay within a fiftieth of the baseline's time constant.
 inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& model,
                             const Catalogue& catalogue) {
-  double tau_s = 100.0;
+  constexpr ThinningThresholds limit;
+  double tau_s = limit.usual_time_constant_s;
   if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
     tau_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
   else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
     tau_s = 60.0 / polynomial->cooling_per_min;
-  return BenchThinning(full, rows, 0.02 * tau_s, model, catalogue).run();
+  return BenchThinning(full, rows, limit.of_time_constant * tau_s, model, catalogue).run();
 }
 
 }  // namespace thermopower::gap::engine

@@ -21,6 +21,7 @@
 namespace thermopower::gap::engine {
 
 /// How a plant of one's own is localised.
+/// Held by tests/gap/localise/own_balances_test.cpp.
 struct OwnPlantThresholds {
   Eigen::Index windows = 300;  ///< short simulations per recording: bins of 20 samples at 15 bins
   double noise_factor =

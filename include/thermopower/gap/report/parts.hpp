@@ -40,7 +40,7 @@ inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, st
   for (const Candidate* one : order)
     if (rivals.size() < most)
       rivals.push_back(
-          {one->explanation.ids(model), augmented(model, one->explanation, one->list, one->fit.at)});
+          {one->explanation.ids(model), augmented(model, one->explanation, one->list, one->fit.point)});
   return rivals;
 }
 
@@ -74,7 +74,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     entry.score = samples > 0.0 ? squares / samples : 0.0;
     entry.held_out_ratio = held > 0.0 && one.held_out.any() ? std::sqrt(held_squares / held) : missing;
     entry.refused = entry.held_out_ratio > 1.0;
-    entry.absorbed = one.explanation.size() > 0 && squares > 0.99 * whole;
+    entry.absorbed = one.explanation.size() > 0 && squares > decision.absorbed * whole;
     entry.at_bound = one.on_bounds;
     entry.parameters = estimates(one, *problem.model, weight);
     entry.train_gain = empty.train_deviance - one.train_deviance;
@@ -84,14 +84,14 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     entry.hidden_starts = one.hidden_starts;
     for (const Eigen::Index at : moving(one)) {
       const auto k = static_cast<std::size_t>(at);
-      entry.fitted.push_back({one.list[k].name, one.fit.at[at], one.list[k].logarithmic,
+      entry.fitted.push_back({one.list[k].name, one.fit.point[at], one.list[k].logarithmic,
                               k < one.fit.at_bound.size() && one.fit.at_bound[k]});
     }
     entry.covariance = covariance_of_moving(one, weight);
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;
       const double cosine = likeness(signatures[i], signatures[k]);
-      if (cosine >= 0.9)
+      if (cosine >= decision.confusable)
         entry.confusable.push_back({candidates[order[k]].explanation.ids(*problem.model), cosine});
     }
     result.ranking.push_back(std::move(entry));
@@ -156,7 +156,7 @@ inline void name_moved_constants(std::vector<Candidate>& candidates, const Model
 /// Says so where refitted constants do worse on held-out data than the configured ones.
 inline void note_recalibration(Diagnosis& result) {
   for (const GapScore& gap : result.gap)
-    if (gap.recalibrated > 1.05 * gap.before && gap.before > 0.0) {
+    if (gap.recalibrated > decision.worse * gap.before && gap.before > 0.0) {
       if (!result.recalibration.empty()) result.recalibration += "; ";
       char times[32];
       std::snprintf(times, sizeof times, "%.3g", gap.recalibrated / gap.before);
@@ -181,10 +181,19 @@ inline bool constants_fall_short(const Diagnosis& result) {
                      [](const Cause& one) { return plant::is_calibration(one.effect); });
 }
 
+/// Whether the printed table proves that the causes take a part of some signal's gap away: the lower end of its interval is
+/// above nothing, and above what other constants take away without any cause.
+inline bool is_proven_by_the_table(const Diagnosis& result) {
+  return std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
+    const double by_constants = gap.before > 0.0 ? 1.0 - gap.recalibrated / gap.before : 0.0;
+    return gap.ci95.low > std::max(by_constants, 0.0);
+  });
+}
+
 /// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
-/// showed. @param model  as configured
-inline void take_causes_back(Diagnosis& result, const Model& model) {
-  const Conclusion unknown = nothing_known(constants_leave_a_rest);
+/// showed. @param model  as configured  @param reason  why, in one sentence
+inline void take_causes_back(Diagnosis& result, const Model& model, const char* reason) {
+  const Conclusion unknown = nothing_known(reason);
   const double kept = (1.0 - unknown.none_of_these) / std::max(1.0 - result.none_of_these, 1e-12);
   for (RankedExplanation& one : result.ranking) one.probability *= kept;
   result.verdict = unknown.verdict;
@@ -299,6 +308,23 @@ inline std::array<double, signal_count> noise_of(const Errors& errors, const std
     sigma[i] = noise_sd(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)));
   }
   return sigma;
+}
+
+/// Whether a model scores what the noise allows on some data.
+/// @param witness  a search whose noise counts where it is less; null: there is none
+inline bool is_within_noise(const Model& model, const std::vector<Inputs>& inputs, const FitProblem* witness,
+                            double horizon_s, const Catalogue& catalogue) {
+  const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
+  const Errors errors = errors_of(model, full, catalogue);
+  std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
+  if (witness != nullptr &&
+      witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
+    for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
+  const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > decision.no_gap_in_full * floor[i])
+      return false;
+  return true;
 }
 
 /// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param rivals  drawn beside it

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// A fit compares a step's sum of squares with the best one so far. The short way must say what the residuals say.
+#include "../../catch.hpp"
+#include "../fixture.hpp"
+#include "../plants.hpp"
+
+#include <thermopower/gap/fit/fit_problem.hpp>
+
+using namespace engine_fixture;
+
+namespace {
+
+/// Residuals of every segment, squared and added by the long way.
+std::vector<double> squares_by_segment(const FitProblem& problem, const Explanation& explanation,
+                                       const std::vector<Coordinate>& list, const Eigen::VectorXd& at,
+                                       const std::vector<Start>& starts) {
+  std::vector<double> sums;
+  problem.evaluate(explanation, list, at, starts, false,
+                   [&](std::size_t, const FitProblem::Residuals& residuals) {
+                     double sum = 0.0;
+                     for (double one : residuals.value) sum += one * one;
+                     sums.push_back(sum);
+                   });
+  return sums;
+}
+
+}  // namespace
+
+TEST_CASE("a sum of squares is that of the residuals, and ends early only above its limit") {
+  const bool moving = GENERATE(false, true);
+  const char* const id =
+      moving ? "compliance" : "radiation";  // one that carries its state from window to window
+  const Model model = moving ? axis_model() : bench_model();
+  const Recording recording =
+      moving ? test::axis_recording({0.02, 0.0, 1.0, 0}, 1500, 7) : test::bench_recording({}, 1500, 7);
+  std::vector<Inputs> inputs{prepare(model, recording)};
+  inputs.front().repeats = Eigen::VectorXd::LinSpaced(inputs.front().rows(), 1.0, 4.0);
+  FitProblem problem;
+  problem.model = &model;
+  problem.catalogue = &standard_catalogue();
+  problem.sigma = thermopower::plant::for_each_signal(0.1);
+  problem.segments = cut(inputs, 0.5, plant_of(model));
+  Explanation explanation;
+  explanation.effects.push_back(standard_catalogue().find(id));
+  const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
+  Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) at[static_cast<Eigen::Index>(i)] = list[i].start;
+  std::vector<Start> starts = problem.measured_starts();
+  for (std::size_t i = 0; i < starts.size(); ++i) starts[i].setConstant(0.01 * static_cast<double>(i % 3));
+  const std::vector<double> parts = squares_by_segment(problem, explanation, list, at, starts);
+  double whole = 0.0;
+  for (double one : parts) whole += one;
+  REQUIRE(whole > 0.0);
+  CHECK(problem.squares(explanation, list, at, starts, 1e300) == Approx(whole).epsilon(1e-12));
+  CHECK(problem.squares(explanation, list, at, starts, 1.000001 * whole) == Approx(whole).epsilon(1e-12));
+  for (double share : {0.0, 0.3, 0.9}) {
+    const double sum = problem.squares(explanation, list, at, starts, share * whole);
+    CHECK(sum > share * whole);
+    CHECK(sum <= whole * (1.0 + 1e-12));
+  }
+  if (parts.size() > 10) CHECK(problem.squares(explanation, list, at, starts, 0.3 * whole) < 0.7 * whole);
+}

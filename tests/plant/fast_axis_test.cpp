@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// What turns fast is stepped in proportion to its rate, and must stay as exact as that promises.
+#include "../catch.hpp"
+
+#include <thermopower/gap/simulate.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace thermopower::gap;
+
+namespace {
+
+constexpr double inertia_kgm2 = 2e-5, viscous_Nms_per_rad = 1e-5, Nm_per_A = 0.02, unbalanced_Nm = 4e-3,
+                 phase_rad = 0.4, row_s = 0.002;
+
+double drive_A(Eigen::Index row) { return 0.25 + 0.1 * std::sin(0.05 * static_cast<double>(row)); }
+
+/// The equation of motion by the classical Runge-Kutta rule, a hundred steps a row.
+std::vector<double> rates_dps(double start_rad_per_s, Eigen::Index rows) {
+  constexpr int steps = 100;
+  const double h = row_s / steps;
+  double angle = 0.0, rate = start_rad_per_s;
+  std::vector<double> result;
+  const auto acceleration = [](double at, double w, double torque) {
+    return (torque - viscous_Nms_per_rad * w - unbalanced_Nm * std::sin(at + phase_rad)) / inertia_kgm2;
+  };
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    result.push_back(rate / rad_per_deg);
+    const double torque = Nm_per_A * drive_A(row);
+    for (int i = 0; i < steps; ++i) {
+      const double a1 = acceleration(angle, rate, torque), w2 = rate + 0.5 * h * a1;
+      const double a2 = acceleration(angle + 0.5 * h * rate, w2, torque), w3 = rate + 0.5 * h * a2;
+      const double a3 = acceleration(angle + 0.5 * h * w2, w3, torque), w4 = rate + h * a3;
+      const double a4 = acceleration(angle + h * w3, w4, torque);
+      angle += h / 6.0 * (rate + 2.0 * w2 + 2.0 * w3 + w4);
+      rate += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a fast axis keeps to fine steps within what its rate allows, a slow one within what it always did") {
+  const double start_rad_per_s = GENERATE(0.0, 60.0, 500.0);
+  constexpr Eigen::Index rows = 300;
+  Model model;
+  model.name = "rotor";
+  model.axis = RigidAxisModel{inertia_kgm2, viscous_Nms_per_rad, Nm_per_A};
+  model.effects["imbalance"] = {{"Nm", unbalanced_Nm}, {"phase_rad", phase_rad}};
+  Recording recording;
+  recording.name = "rotor";
+  recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, row_s * static_cast<double>(rows - 1));
+  const std::vector<double> truth = rates_dps(start_rad_per_s, rows);
+  Eigen::VectorXd drive(rows), rate(rows), angle = Eigen::VectorXd::Zero(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    drive[row] = drive_A(row);
+    rate[row] = truth[static_cast<std::size_t>(row)];
+  }
+  recording.set("drive_A", drive);
+  recording.set("rate_dps", rate);
+  recording.set("angle_deg", angle);
+  double worst = 0.0;
+  for (const SimulatedSignal& signal :
+       simulate(model, recording, {SimulationMode::free_running, 1e9}, standard_catalogue()))
+    if (signal.signal == Signal::rate_dps)
+      for (Eigen::Index row = 0; row < rows; ++row)
+        worst = std::max(worst, std::abs(signal.values[row] - rate[row]) /
+                                    std::max(std::abs(rate[row]), 10.0 / rad_per_deg));
+  REQUIRE(worst > 0.0);
+  CAPTURE(start_rad_per_s, worst);
+  CHECK(worst < 2e-4);
+}
