@@ -398,7 +398,7 @@ TEST_CASE("a cause about whose size the parts of the data disagree is not agreed
              first = static_cast<Eigen::Index>(model.calibrated().size());
   one.fit.point = Eigen::VectorXd::Zero(n);
   one.fit.at_bound.assign(one.list.size(), false);
-  for (Eigen::Index i = first; i < n; ++i) one.fit.point[i] = one.list[static_cast<std::size_t>(i)].start;
+  for (Eigen::Index i = first; i < n; ++i) one.fit.point[i] = 0.7;
   CHECK(is_agreed_upon(one, model, Weight()));  // nobody looked
   // As many blocks as make their number no matter; each pulls by as much as moves the parameter by so many sizes.
   one.fit.blocks = 100000;
