@@ -25,7 +25,7 @@ class Record:
 
 
 class Part:
-    """A part of a way, as `? :` chooses it."""
+    """A part of a distance, as `? :` chooses it."""
 
     def __init__(self, fraction):
         self.fraction = fraction
@@ -55,13 +55,13 @@ class Bound:
         self.value, self.whole = (self.facts.choice(is_low, floor, self.value),
                                   self.facts.choice(is_low, floor, self.whole))
 
-    def advance(self, way, chosen):
+    def advance(self, distance, chosen):
         condition, heating, cooling = chosen
         self.started = self.whole + 1
         value, whole = self.facts.fresh("value"), self.facts.fresh("whole")
         self.facts.add(
-            z3.Implies(condition, value.same(self.value + self.facts.product(way, heating))),
-            z3.Implies(z3.Not(condition), value.same(self.value + self.facts.product(way, cooling))),
+            z3.Implies(condition, value.same(self.value + self.facts.product(distance, heating))),
+            z3.Implies(z3.Not(condition), value.same(self.value + self.facts.product(distance, cooling))),
             whole <= value, value <= whole + 1)
         self.value, self.whole = value, whole
 
@@ -349,13 +349,13 @@ def coupled_granted_power(text, of_two):
                 if net.lead_now_.single() in argument.terms), room.mean)
     chosen_before = len(net.choices)
     passed = net.carry(acting, step)
-    warmest_way, coolest_way = net.choices[chosen_before + 2]
+    warmest_distance, coolest_distance = net.choices[chosen_before + 2]
     started = net.mean_.started - net.base_
     coolest_spare = room.mean - led
     for argument, fraction in [
-            (started - room.mean, net.weight_), (started, net.weight_), (warmest_way, net.hold_mean_),
-            (coolest_way, net.hold_mean_), (coolest_way - acting[names[2]], net.hold_mean_),
-            (warmest_way - acting[names[3]], net.hold_mean_), (acting[names[2]], net.hold_mean_),
+            (started - room.mean, net.weight_), (started, net.weight_), (warmest_distance, net.hold_mean_),
+            (coolest_distance, net.hold_mean_), (coolest_distance - acting[names[2]], net.hold_mean_),
+            (warmest_distance - acting[names[3]], net.hold_mean_), (acting[names[2]], net.hold_mean_),
             (acting[names[3]], net.hold_mean_), (started - room.mean, net.hold_mean_),
             (-coolest_spare, net.hold_mean_), (net.to_air_now_ - coolest_spare, net.hold_mean_),
             (acting[names[2]] - coolest_spare, net.hold_mean_)]:

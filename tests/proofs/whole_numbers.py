@@ -45,13 +45,13 @@ def part_down(text):
 
 
 def advance(text):
-    """UpperBound::advance adds way * fraction exactly, modulo nothing: four products of 16 bits, and the sign."""
-    require(text, "const uint32_t lowest = product(way_low, fraction_low), other = product(way_high, fraction_low);",
+    """UpperBound::advance adds distance * fraction exactly, modulo nothing: four products of 16 bits, and the sign."""
+    require(text, "const uint32_t lowest = product(distance_low, fraction_low), other = product(distance_high, fraction_low);",
             "uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(other); uint32_t upper = other >> 16;",
-            "if (fraction_high != 0) { const uint32_t another = product(way_low, fraction_high); "
+            "if (fraction_high != 0) { const uint32_t another = product(distance_low, fraction_high); "
             "middle += static_cast<uint16_t>(another); "
-            "upper += product(way_high, fraction_high) + (another >> 16); } upper += middle >> 16; "
-            "if (way < 0) upper -= fraction;",
+            "upper += product(distance_high, fraction_high) + (another >> 16); } upper += middle >> 16; "
+            "if (distance < 0) upper -= fraction;",
             "const uint32_t added = (middle << 16) | static_cast<uint16_t>(lowest); low_ += added; "
             "if (low_ < added) ++upper; "
             "high_ = static_cast<KelvinUnits>(static_cast<uint32_t>(high_) + upper);")

@@ -251,24 +251,24 @@ public:
   void raise(const UpperBound& other) noexcept {
     if (high_ < other.high_ || (high_ == other.high_ && low_ < other.low_)) *this = other;
   }
-  /// Adds way * fraction, exactly.
-  void advance(KelvinUnits way, FineFraction fraction) noexcept {
-    // Four products of 16 bits without a sign, which an 8-bit chip has in hardware; what a negative way adds
+  /// Adds a fraction of a distance, of either sign, exactly.
+  void advance(KelvinUnits distance, FineFraction fraction) noexcept {
+    // Four products of 16 bits without a sign, which an 8-bit chip has in hardware; what a negative distance adds
     // too much is a whole `fraction` in the upper half.
-    const uint16_t way_high = static_cast<uint16_t>(static_cast<uint32_t>(way) >> 16);
-    const uint16_t way_low = static_cast<uint16_t>(way);
+    const uint16_t distance_high = static_cast<uint16_t>(static_cast<uint32_t>(distance) >> 16);
+    const uint16_t distance_low = static_cast<uint16_t>(distance);
     const uint16_t fraction_low = static_cast<uint16_t>(fraction);
     const uint16_t fraction_high = static_cast<uint16_t>(fraction >> 16);
-    const uint32_t lowest = product(way_low, fraction_low), other = product(way_high, fraction_low);
+    const uint32_t lowest = product(distance_low, fraction_low), other = product(distance_high, fraction_low);
     uint32_t middle = (lowest >> 16) + static_cast<uint16_t>(other);
     uint32_t upper = other >> 16;
     if (fraction_high != 0) {
-      const uint32_t another = product(way_low, fraction_high);
+      const uint32_t another = product(distance_low, fraction_high);
       middle += static_cast<uint16_t>(another);
-      upper += product(way_high, fraction_high) + (another >> 16);
+      upper += product(distance_high, fraction_high) + (another >> 16);
     }
     upper += middle >> 16;
-    if (way < 0) upper -= fraction;
+    if (distance < 0) upper -= fraction;
     const uint32_t added = (middle << 16) | static_cast<uint16_t>(lowest);
     low_ += added;
     if (low_ < added) ++upper;

@@ -325,8 +325,8 @@ private:
     }
     // Where a mean goes between its neighbours, without heat; not below the truth.
     detail::KelvinUnits end(uint8_t k, detail::KelvinUnits before, detail::KelvinUnits after) const noexcept {
-      const detail::KelvinUnits way = before - after;
-      return after + detail::part_up(way, way > 0 ? back_up[k] : back_down[k]);
+      const detail::KelvinUnits distance = before - after;
+      return after + detail::part_up(distance, distance > 0 ? back_up[k] : back_down[k]);
     }
 
     float fastest_per_s[node_count], slowest_per_s[node_count];
@@ -382,8 +382,8 @@ private:
     detail::KelvinUnits most[node_count];
     for (uint8_t k = 0; k < node_count; ++k) most[k] = this->most(k, count, over, is_short);
     for (uint8_t k = 0; k < node_count; ++k) {
-      const detail::KelvinUnits now = bounds_[k].above(), way = end_of(k, count, most) - now;
-      if (way > 0 && now + detail::part_up(way, part[k]) > fixed_.box[k]) {
+      const detail::KelvinUnits now = bounds_[k].above(), distance = end_of(k, count, most) - now;
+      if (distance > 0 && now + detail::part_up(distance, part[k]) > fixed_.box[k]) {
         limiting_ = fixed_.cause[k];
         return false;
       }
@@ -419,8 +419,8 @@ private:
       if (is_kept && most[k] > fixed_.box[k]) most[k] = fixed_.box[k];
     }
     for (uint8_t k = 0; k < node_count; ++k) {
-      const detail::KelvinUnits way = end_of(k, count, most) - bounds_[k].below();
-      bounds_[k].advance(way, way > 0 ? step.nodes[k].heating : step.nodes[k].cooling);
+      const detail::KelvinUnits distance = end_of(k, count, most) - bounds_[k].below();
+      bounds_[k].advance(distance, distance > 0 ? step.nodes[k].heating : step.nodes[k].cooling);
       if (is_kept && bounds_[k].below() > fixed_.box[k]) bounds_[k].set(fixed_.box[k]);
     }
   }

@@ -129,8 +129,8 @@ public:
     }
     const Hull passed = carry(count, step);
     // A unit for what a part of the way that cannot be a whole leaves.
-    const detail::KelvinUnits way = settled_lead(count, passed.winding) - lead_.above() - 1;
-    lead_.advance(way, way > 0 ? step.lead.cooling : step.lead.heating);
+    const detail::KelvinUnits distance = settled_lead(count, passed.winding) - lead_.above() - 1;
+    lead_.advance(distance, distance > 0 ? step.lead.cooling : step.lead.heating);
     if (!measured.is_any()) return;
     take_in(count, step, measured, passed);
     forget_lead();
@@ -261,19 +261,21 @@ private:
     const detail::KelvinUnits soaked = mean_.above() + gap_ + detail::times(soak_now_, count);
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
-    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
-    winding_.advance(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    const detail::KelvinUnits winding_distance =
+        soaked + detail::times(across_now_, count) - winding_.below();
+    winding_.advance(winding_distance, winding_distance > 0 ? step.winding.heating : step.winding.cooling);
     const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
     const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
     mean_.raise(floor);
     const detail::KelvinUnits mean_start = mean_.above();
     const detail::KelvinUnits led = mean_start + lead_now_, coolest = led < hottest ? led : hottest;
     // (40): the winding at its warmest, and at its coolest.
-    const detail::KelvinUnits warmest_way = floor + detail::times(to_air_hot_, count) - mean_.below();
-    const detail::KelvinUnits coolest_way =
+    const detail::KelvinUnits warmest_distance = floor + detail::times(to_air_hot_, count) - mean_.below();
+    const detail::KelvinUnits coolest_distance =
         base_ + detail::part_up(coolest - base_, weight_) + detail::times(to_air_now_, count) - mean_.below();
-    const detail::KelvinUnits way = warmest_way > coolest_way ? warmest_way : coolest_way;
-    mean_.advance(way, way > 0 ? step.mean_rise : step.body.cooling);
+    const detail::KelvinUnits distance =
+        warmest_distance > coolest_distance ? warmest_distance : coolest_distance;
+    mean_.advance(distance, distance > 0 ? step.mean_rise : step.body.cooling);
     const Hull passed = {hottest, mean_.above() > mean_start ? mean_.above() : mean_start};
     return passed;
   }

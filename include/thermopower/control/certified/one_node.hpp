@@ -116,8 +116,8 @@ public:
   /// Carries the bound over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
-    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
-    if (way > 0) node_.advance(way, travel(hold_s_).body.heating);
+    const detail::KelvinUnits distance = base_ + detail::times(to_air_now_, count) - node_.below();
+    if (distance > 0) node_.advance(distance, travel(hold_s_).body.heating);
   }
   /// Takes note of the air from now on. See CertifiedTwoNode.
   void set_air(float air_C) noexcept {
@@ -173,8 +173,8 @@ private:
   detail::KelvinUnits carry(uint8_t count, const Travel& step) noexcept {
     node_.raise(base_);
     const detail::KelvinUnits before = node_.above();
-    const detail::KelvinUnits way = base_ + detail::times(to_air_now_, count) - node_.below();
-    node_.advance(way, way > 0 ? step.body.heating : step.body.cooling);
+    const detail::KelvinUnits distance = base_ + detail::times(to_air_now_, count) - node_.below();
+    node_.advance(distance, distance > 0 ? step.body.heating : step.body.cooling);
     return node_.above() > before ? node_.above() : before;
   }
   detail::KelvinUnits room() const noexcept { return node_.above() > base_ ? node_.above() - base_ : 0; }

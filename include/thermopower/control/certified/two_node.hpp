@@ -333,14 +333,15 @@ private:
         step.is_late ? soaked_late(count) : mean_.above() + gap_ + detail::times(soak_now_, count);
     winding_.raise(soaked);
     const detail::KelvinUnits before = winding_.above();
-    const detail::KelvinUnits winding_way = soaked + detail::times(across_now_, count) - winding_.below();
-    winding_.advance(winding_way, winding_way > 0 ? step.winding.heating : step.winding.cooling);
+    const detail::KelvinUnits winding_distance =
+        soaked + detail::times(across_now_, count) - winding_.below();
+    winding_.advance(winding_distance, winding_distance > 0 ? step.winding.heating : step.winding.cooling);
     const detail::KelvinUnits hottest = winding_.above() > before ? winding_.above() : before;
     const detail::KelvinUnits floor = base_ + detail::part_up(hottest - base_, weight_);
     mean_.raise(floor);
     const detail::KelvinUnits mean_start = mean_.above();
-    const detail::KelvinUnits mean_way = floor + detail::times(to_air_now_, count) - mean_.below();
-    mean_.advance(mean_way, mean_way > 0 ? step.body.heating : step.body.cooling);
+    const detail::KelvinUnits mean_distance = floor + detail::times(to_air_now_, count) - mean_.below();
+    mean_.advance(mean_distance, mean_distance > 0 ? step.body.heating : step.body.cooling);
     const Hull passed = {hottest, mean_.above() > mean_start ? mean_.above() : mean_start};
     return passed;
   }
