@@ -503,7 +503,7 @@ TEST_CASE("a frame repeated in motion is found in a log that rests nearly always
 }
 
 TEST_CASE("what sticks and breaks away repeats no frame") {
-  // It stands for 5 rows of 20, and goes by 1.2 deg in the others.
+  // It stands for 5 rows of 60, and goes by 4.4 deg in the others.
   Recording r;
   r.name = "stick and slip";
   const Eigen::Index rows = 3000;
@@ -511,14 +511,14 @@ TEST_CASE("what sticks and breaks away repeats no frame") {
   Eigen::VectorXd angle(rows), rate(rows), drive(rows);
   std::uint32_t state = 20261124;
   const auto digit = [&] {
-    return static_cast<double>((state = state * 1664525u + 1013904223u) >> 29) - 3.5;
+    return static_cast<double>((state = state * 1664525u + 1013904223u) >> 28) - 7.5;
   };
   double at = 0.0;
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const bool sticks = i % 20 < 5;
+    const bool sticks = i % 60 < 5;
     if (!sticks) at += 0.08 * ((i / 400) % 2 == 0 ? 1.0 : -1.0);
     const double turned = 0.001 * std::round(1000.0 * at);
-    angle[i] = sticks && i > 0 && i % 20 > 0 ? angle[i - 1] : turned + (sticks ? 0.0 : 0.001 * digit());
+    angle[i] = sticks && i > 0 && i % 60 > 0 ? angle[i - 1] : turned + (sticks ? 0.0 : 0.001 * digit());
     rate[i] = sticks ? 0.0 : ((i / 400) % 2 == 0 ? 8.0 : -8.0) + 0.05 * digit();
     drive[i] = 0.1 * std::sin(0.02 * static_cast<double>(i));
   }
