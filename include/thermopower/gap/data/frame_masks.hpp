@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/sample_masks.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -25,7 +26,8 @@ struct FrameThresholds {
   Eigen::Index longest_repeat = 12;  ///< frames in a row that repeat another
   double by_chance = 0.1;            ///< share of the repeated frames that chance may make
   double never_by_chance = 0.01;     ///< repeats of a length that chance may make in a recording
-  double as_fast = 0.7;  ///< of the speed around repeated frames: rows that tell how often chance repeats one
+  std::size_t slower_speeds =
+      2;  ///< thirds of a doubling by which rows may be slower that tell how often chance repeats
   double least_moving = 100;  ///< such rows; else all tell
   double caught_up = 0.6;     ///< of what was missed while a frame was repeated: the step after it
 };
@@ -76,48 +78,66 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     quanta.push_back(quantum_of(*one));
     scales.push_back(std::max(quanta.back(), white_scale(*one, runs)));
   }
-  // How fast the fastest output moves around each row, in quanta or noise scales a row.
-  std::vector<double> speed(static_cast<std::size_t>(rows), 0.0);
+  // How fast the fastest output moves around each row, in quanta or noise scales a row, by thirds of a doubling.
+  constexpr std::size_t speeds = 64;
+  const auto speed_class = [](double speed) {
+    constexpr double slowest = 1.0 / 1024.0, per_doubling = 3.0;
+    if (!(speed > slowest)) return std::size_t{0};
+    return std::min(speeds - 1, 1 + static_cast<std::size_t>(per_doubling * std::log2(speed / slowest)));
+  };
+  std::vector<unsigned char> speed(static_cast<std::size_t>(rows), 0);
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin; i < run.end; ++i) {
       const Eigen::Index from = std::max(run.begin, i - around), to = std::min(run.end - 1, i + around);
-      double& fastest = speed[static_cast<std::size_t>(i)];
+      double fastest = 0.0;
       for (std::size_t c = 0; c < outputs.size() && to > from; ++c) {
         const double way = std::abs((*outputs[c])[to] - (*outputs[c])[from]);
         if (scales[c] > 0.0 && std::isfinite(way))
           fastest = std::max(fastest, way / (scales[c] * static_cast<double>(to - from)));
       }
+      speed[static_cast<std::size_t>(i)] = static_cast<unsigned char>(speed_class(fastest));
     }
   // How often all would be equal by chance. Over a whole log a column steps by none half as often as by one quantum
   // either way; a log that rests for the most part would say so of a motion in which nothing ever stands. Among rows that
   // move as fast, each of several columns says how often it stands while another one does not.
   struct Odds {
-    double chance = 1.0, rows = 0.0;
-    bool repeats_are_rare = false;
+    double chance = 1.0, rows = 0.0, repeats = 0.0;
+    bool repeats_are_rare() const { return chance * rows < FrameThresholds().by_chance * repeats; }
   };
-  const auto odds_of = [&](double least_speed) {
-    Odds odds;
-    double repeats = 0.0;
-    for (std::size_t i = 0; i < same.size(); ++i)
-      if (speed[i] >= least_speed) odds.rows += 1.0, repeats += same[i] == 2 ? 1.0 : 0.0;
-    const bool by_others = least_speed > 0.0;
-    for (std::size_t c = 0; c < outputs.size(); ++c) {
-      double steps = 0.0, single = 0.0, none = 0.0;
-      for (const RunSpan& run : runs)
-        for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
-          const double step = std::abs((*outputs[c])[i] - (*outputs[c])[i - 1]);
-          const auto row = static_cast<std::size_t>(i);
-          if (!std::isfinite(step) || speed[row] < least_speed || (by_others && same[row] == 2)) continue;
-          steps += 1.0;
-          single += step > 0.5 * quanta[c] && step < 1.5 * quanta[c] ? 1.0 : 0.0;
-          none += step > 0.0 ? 0.0 : 1.0;
-        }
-      odds.chance *= by_others ? (none + 1.0) / (steps + 1.0) : 0.5 * single / std::max(1.0, steps);
+  Odds overall;
+  overall.rows = static_cast<double>(rows);
+  std::array<Odds, speeds> as_fast_as;
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    as_fast_as[speed[i]].rows += 1.0;
+    as_fast_as[speed[i]].repeats += same[i] == 2 ? 1.0 : 0.0;
+    overall.repeats += same[i] == 2 ? 1.0 : 0.0;
+  }
+  for (std::size_t c = 0; c < outputs.size(); ++c) {
+    double all = 0.0, single = 0.0;
+    std::array<double, speeds> steps{}, none{};
+    for (const RunSpan& run : runs)
+      for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+        const double step = std::abs((*outputs[c])[i] - (*outputs[c])[i - 1]);
+        if (!std::isfinite(step)) continue;
+        const auto row = static_cast<std::size_t>(i);
+        all += 1.0;
+        single += step > 0.5 * quanta[c] && step < 1.5 * quanta[c] ? 1.0 : 0.0;
+        if (same[row] == 2) continue;
+        steps[speed[row]] += 1.0;
+        none[speed[row]] += step > 0.0 ? 0.0 : 1.0;
+      }
+    overall.chance *= 0.5 * single / std::max(1.0, all);
+    double faster_steps = 0.0, faster_none = 0.0;
+    for (std::size_t k = speeds; k-- > 0;) {
+      faster_steps += steps[k];
+      faster_none += none[k];
+      as_fast_as[k].chance *= (faster_none + 1.0) / (faster_steps + 1.0);
     }
-    odds.repeats_are_rare = odds.chance * odds.rows < frames.by_chance * repeats;
-    return odds;
-  };
-  const Odds overall = odds_of(0.0);
+  }
+  for (std::size_t k = speeds - 1; k-- > 0;) {
+    as_fast_as[k].rows += as_fast_as[k + 1].rows;
+    as_fast_as[k].repeats += as_fast_as[k + 1].repeats;
+  }
   const auto around_of = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     return std::pair{std::max(run.begin + 1, begin - around), std::min(run.end, end + around)};
   };
@@ -158,16 +178,14 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       // An exact 0 is what a good sensor reads at rest: what sticks, and then breaks away, repeats no frame.
       const bool rests = std::any_of(outputs.begin(), outputs.end(),
                                      [&](const Eigen::VectorXd* one) { return (*one)[i] == 0.0; });
-      const bool alone = is_alone(run, i, end), caught_up = catches_up(run, i, end);
-      const auto is_no_chance = [&] {
-        const double moves =
-            std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
-        const Odds alike = odds_of(frames.as_fast * moves);
-        const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
-        const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
-        return (alone && odds.repeats_are_rare) || (caught_up && by_chance < frames.never_by_chance);
-      };
-      if (!rests && end - i <= frames.longest_repeat && (alone || caught_up) && is_no_chance())
+      const std::size_t moves =
+          std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
+      const Odds& alike = as_fast_as[moves - std::min(moves, frames.slower_speeds)];
+      const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
+      const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
+      if (!rests && end - i <= frames.longest_repeat &&
+          ((odds.repeats_are_rare() && is_alone(run, i, end)) ||
+           (by_chance < frames.never_by_chance && catches_up(run, i, end))))
         for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
       i = end;
     }
