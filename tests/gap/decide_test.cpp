@@ -389,6 +389,22 @@ TEST_CASE("a part is named only where the printed table proves it, beyond what o
   CHECK(is_proven_by_the_table(result));
 }
 
+TEST_CASE("a cause beside a rest is taken back where what is missing has a course of its own in time") {
+  Diagnosis result;
+  const Explanation heated{{standard_catalogue().find("enclosure")}, {}};
+  result.where.push_back({Signal::motor_C, Submodel::thermal_heating, 0.97, {}, ""});
+  result.gap.push_back({Signal::motor_C, "degC", {}, 20.0, 20.0, 4.0, 1.0, 0.8, {0.7, 0.85}});
+  CHECK_FALSE(has_own_course(result, heated));  // something recorded orders it
+  result.where.back().has_own_course = true;
+  CHECK(has_own_course(result, heated));
+  // A lag of the thermometer bends what the course was drawn from.
+  CHECK_FALSE(has_own_course(result, {{standard_catalogue().find("thermometer_lag")}, {}}));
+  result.gap.back().after = 1.2;  // the cause was hidden, and explains all of it
+  CHECK_FALSE(has_own_course(result, heated));
+  result.gap.push_back({Signal::current_A, "A", {}, 20.0, 20.0, 4.0, 1.0, 0.8, {0.7, 0.85}});
+  CHECK_FALSE(has_own_course(result, heated));  // the rest is elsewhere
+}
+
 TEST_CASE("a cause about whose size the parts of the data disagree is not agreed upon") {
   const Model model = axis_model();
   Candidate one;

@@ -46,6 +46,8 @@ struct Location {
   std::optional<Regime> regime;          ///< where in which variable it is largest
   std::string evidence;                  ///< one sentence
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
+  /// Whether what is missing follows nothing recorded, and a course of its own in time predicts it.
+  bool has_own_course = false;
 };
 
 /// Whether a place takes anything of its signal's gap away, half a per cent or more. Of places that take nothing away by

@@ -202,6 +202,11 @@ inline constexpr const char* nothing_is_proven =
     "there is a gap, and what lowers it most takes no part of it away that all held-out rows prove, beyond what other "
     "constants do";
 
+/// What is said where nothing recorded orders what is missing.
+inline constexpr const char* follows_nothing_recorded =
+    "there is a gap that follows nothing recorded but has a course of its own in time; what lowers it most follows that "
+    "course only in part";
+
 /// What is said beside a rest.
 inline constexpr const char* partly_explained =
     "the named cause takes a proven part of the held-out gap away, and the rest stays above the noise";

@@ -465,7 +465,10 @@ private:
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     const bool unproven = result_.verdict == Verdict::partial && !is_proven_by_the_table(result_);
     if (unproven) take_causes_back(result_, model_, nothing_is_proven);
-    const bool taken_back = short_of_noise || unproven;
+    const bool on_its_own =
+        named && !unproven && leaves_a_rest && has_own_course(result_, chosen.explanation);
+    if (on_its_own) take_causes_back(result_, model_, follows_nothing_recorded);
+    const bool taken_back = short_of_noise || unproven || on_its_own;
     if (named && leaves_a_rest && !taken_back)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()

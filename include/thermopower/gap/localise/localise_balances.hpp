@@ -226,7 +226,8 @@ private:
     if (const plant::Freedom* course = judgement.course()) {
       const Observed observed = observe(balance, true, limit_);
       const plant::Freedom& one = scattering(balance, *course, observed);
-      report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed);
+      report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed,
+             one.variable.empty());
       return;
     }
     const bool named = !judgement.chosen().empty() && judgement.explained() > limit_.explained;
@@ -294,8 +295,9 @@ private:
 
   void report(const plant::Freedom& freedom, const plant::SignalName& signal,
               const plant::SubmodelName& submodel, double share, const std::string& words,
-              const plant::Balance& balance, const Observed& observed) {
+              const plant::Balance& balance, const Observed& observed, bool has_own_course = false) {
     Location location;
+    location.has_own_course = has_own_course;
     location.signal = signal;
     location.submodel = submodel;
     location.share = std::clamp(share, 0.0, 1.0);
@@ -319,6 +321,7 @@ private:
       if (location.share > one.share) std::swap(one.regime, location.regime);
       one.evidence += " " + location.evidence;
       one.share = std::min(1.0, one.share + location.share);
+      one.has_own_course = one.has_own_course || location.has_own_course;
       return;
     }
     out_.where.push_back(std::move(location));

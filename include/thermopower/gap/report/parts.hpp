@@ -190,6 +190,23 @@ inline bool is_proven_by_the_table(const Diagnosis& result) {
   });
 }
 
+/// Whether causes leave a signal above the noise in which what is missing follows nothing recorded. A cause of the catalogue
+/// acts through what is recorded, or remembers it; a rest beside a course of its own in time says that the cause only
+/// follows that course as far as it can. One that leaves no rest was hidden, and is known now; and one of the instruments bends
+/// the readings that the course was drawn from.
+inline bool has_own_course(const Diagnosis& result, const Explanation& chosen) {
+  for (const CatalogueEntry* entry : chosen.effects)
+    for (const Submodel instrument : {Submodel::sensing_current, Submodel::sensing_temperature,
+                                      Submodel::sensing_angle, Submodel::sensing_rate})
+      if (entry->info.submodel == plant::SubmodelName(instrument)) return false;
+  return std::any_of(result.where.begin(), result.where.end(), [&](const Location& place) {
+    return place.has_own_course &&
+           std::any_of(result.gap.begin(), result.gap.end(), [&](const GapScore& gap) {
+             return gap.signal == place.signal && gap.after > decision.near_floor * gap.noise_floor;
+           });
+  });
+}
+
 /// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
 /// showed. @param model  as configured  @param reason  why, in one sentence
 inline void take_causes_back(Diagnosis& result, const Model& model, const char* reason) {
