@@ -50,9 +50,12 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
     covariance.of = inverse * inflation;
     return covariance;
   }
-  // Neighbouring blocks of long correlation are alike: they count as one in part.
+  // A fit leans towards each of its blocks, which then pulls less than a new one would: as much less, on average, as there
+  // are parameters for each block (the jackknife's correction, HC3 of MacKinnon & White 1985). Neighbouring blocks of
+  // long correlation are alike: they count as one in part.
+  const double leaning = blocks / free;
   covariance.of = transposed_product(inverse, transposed_product(candidate.fit.scatter, inverse)) *
-                  (blocks / free * (1.0 + longest / block_samples));
+                  (leaning * leaning * (1.0 + longest / block_samples));
   for (Eigen::Index i = 0; i < covariance.of.rows(); ++i)
     covariance.of(i, i) = std::max(covariance.of(i, i), inverse(i, i));
   const double z = 1.96;
