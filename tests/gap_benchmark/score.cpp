@@ -164,10 +164,13 @@ private:
                  text(label, "confused_with"));
       }
     } else {
-      const bool both =
-          v.named() && std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end());
+      // A constant that is off beside an effect belongs into the report's list of constants, not among the causes.
+      const Explanation told = v.told(truth);
+      const bool both = v.named() && std::includes(told.begin(), told.end(), truth.begin(), truth.end());
       tallies_.add("both", both);
-      tallies_.add("both_exactly", top);
+      tallies_.add("both_as_causes",
+                   v.named() && std::includes(v.cause.begin(), v.cause.end(), truth.begin(), truth.end()));
+      tallies_.add("both_exactly", v.named() && told == truth);
       tallies_.add("both_in_class", classed);
       if (!both) {
         std::string reason = why(v, label, truth);
@@ -184,7 +187,7 @@ private:
   /// What holds for every stated probability and every interval of a parameter, whatever the half.
   void judge_odds(const Verdict& v, const Json& label, const Explanation& truth) {
     if (!v.named() || v.cause.empty()) return;
-    const bool right = v.cause == truth && !label["unknown"].is_string();
+    const bool right = v.told(truth) == truth && !label["unknown"].is_string();
     const bool beyond_telling = !right && passes_for_truth(v, label);
     if (beyond_telling) return;  // nobody could know
     if (v.probability >= 0.95) tallies_.add("odds_95", right);

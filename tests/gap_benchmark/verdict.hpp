@@ -42,6 +42,16 @@ struct Verdict {
     bool has_interval = false;
   };
   std::map<std::string, Parameter> parameters;  ///< of the named causes, as `effect.parameter`
+  Explanation moved;                            ///< constants listed as moved, as `calibration.<constant>`
+
+  /// The causes, and those of some effects that the report lists as constants that moved beside a cause.
+  Explanation told(const Explanation& asked) const {
+    Explanation all = cause;
+    if (!cause.empty())
+      for (const auto& id : moved)
+        if (asked.count(id)) all.insert(id);
+    return all;
+  }
 
   bool named() const { return verdict == "explained" || verdict == "partial" || verdict == "ambiguous"; }
 
@@ -104,6 +114,8 @@ inline Verdict read_verdict(const std::string& directory) {
         if (id.is_string()) ids.insert(id.get<std::string>());
     if (!ids.empty()) v.alternatives.push_back(ids);
   }
+  if (report.contains("constants") && report["constants"].is_object())
+    for (const auto& entry : report["constants"].items()) v.moved.insert("calibration." + entry.key());
   for (const auto& place : list("where"))
     v.where.push_back({text(place, "signal"), text(place, "submodel"), number(place, "share")});
   if (report.contains("gap") && report["gap"].is_object())
