@@ -238,6 +238,32 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "a noisy angle that stands still at its largest value is cut off there, though the axis rests out of range") {
+  Recording r = axis();
+  test::Noise noise(11);
+  const double limit = 24.0;
+  double angle_deg = -20.0;
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> beyond;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double dps = i < 1250 ? 4.0 : i < 2300 ? 0.0 : -4.0;  // out, a rest, and back
+    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
+    const double seen = angle_deg + 0.05 * noise();
+    if (seen >= limit) beyond.insert(i);
+    angle[i] = std::min(1e-4 * std::round(1e4 * seen), limit);
+    rate[i] = dps + 0.2 * noise();
+  }
+  REQUIRE(beyond.size() > 100);
+  REQUIRE(beyond.size() < static_cast<std::size_t>(r.rows()) / 2);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "angle_deg", FindingAction::masked));
+  const std::set<Eigen::Index> out = taken(r, prepared, "angle_deg");
+  CHECK(std::includes(out.begin(), out.end(), beyond.begin(), beyond.end()));
+}
+
+TEST_CASE(
     "a noisy current that stands at its end is cut off there, under one power too, from its first sample on") {
   // A winding that warms draws less and less; the first third of it is beyond the sensor.
   Recording r = bench();

@@ -178,8 +178,10 @@ public:
       if (!is_witnessed && stands_still_besides(extreme) && !is_between_steps(extreme, next) &&
           !is_driven_at(extreme))
         continue;
-      // One sample tells little: just at the end of its range a sensor is still right.
-      if (2 * denied(extreme) < at_extreme) continue;
+      // One sample tells little: just at the end of its range a sensor is still right. Where noise of
+      // many steps shows everywhere else, it would show there, though the axis rests out of range.
+      const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still_besides(extreme);
+      if (2 * denied(extreme) < at_extreme && !noise_would_show) continue;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
         if (values_[i] == extreme) mask[static_cast<std::size_t>(i)] = 1;
     }
