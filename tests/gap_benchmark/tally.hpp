@@ -88,6 +88,7 @@ private:
       {"parameters", "interval of a parameter covers it", "93 to 97 %"},
       {"top1_all", "cause named, all single effects", ""},
       {"both_exactly", "both of two causes named and nothing else", ""},
+      {"both_as_causes", "both of two causes among the named ones, none among the moved constants", ""},
       {"both_in_class", "both of two causes inside the reported class", ""},
       {"where_exact", "submodel right to the last word", ""},
       {"coverage_sample", "interval covers the shrinkage on this very recording", ""},
