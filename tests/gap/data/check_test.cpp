@@ -380,6 +380,25 @@ TEST_CASE("frames that repeat the one before them are masked, one or many in a r
   CHECK(taken(r, prepared, "rate_dps") == bad);
 }
 
+TEST_CASE("a spike of the current in a ramp of the power is masked from the ramp's first rows on") {
+  Recording r = bench();
+  test::Noise noise(5);
+  Eigen::VectorXd power(r.rows()), current(r.rows());
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double up = static_cast<double>(i % 150) - 75.0;  // rows since the rest ended
+    power[i] = std::round(std::clamp(4.0 * up, 0.0, 250.0));
+    current[i] = 12.0 * std::sqrt(power[i] / 255.0) / 8.0 + 0.003 * noise();
+    if (i % 150 == 75 + 2 + (i / 150)) {  // the second to the eleventh row of a ramp
+      current[i] += 2.0;
+      bad.insert(i);
+    }
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  CHECK(taken(r, PreparedRecording(test::bench_model(), r), "current_A") == bad);
+}
+
 TEST_CASE("spikes a few rows apart do not hide each other") {
   const Eigen::Index apart = GENERATE(2, 3, 4);
   Recording r = axis();

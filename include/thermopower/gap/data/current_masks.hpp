@@ -37,9 +37,9 @@ inline Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A, const
                                          const Eigen::VectorXd* supply, const std::vector<RunSpan>& runs) {
   constexpr Eigen::Index around = 40;    // rows before and after
   constexpr std::ptrdiff_t nearest = 7;  // rows: three bad ones do no harm
-  constexpr double near_share = 0.08,
-                   least_share = 0.1;  // of the largest voltage: beyond the one a row tells nothing of
-                                       // another's, below the other a ratio is mostly noise
+  // Of the largest voltage: beyond the one a row tells nothing of another's (a ramp from rest may cover a fifth of it within
+  // seven rows), below the other a ratio is mostly noise.
+  constexpr double near_share = 0.2, least_share = 0.1;
   Eigen::VectorXd volts(current_A.size());
   for (Eigen::Index i = 0; i < volts.size(); ++i) {
     const double on = std::isfinite(power[i]) ? std::clamp(power[i], 0.0, 255.0) : 0.0;
