@@ -29,6 +29,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <tuple>
+#include <vector>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
@@ -155,23 +157,32 @@ void write_csv(const Recording& r, const std::string& path) {
   std::fclose(file);
 }
 
-/// One recording, in a process of its own so that its peak memory is its own.
-void measure(const char* what, const Model& model, const std::string& path, Eigen::Index rows,
-             unsigned threads) {
+/// Does something in a process of its own, whose memory nothing else has filled.
+template <class Work>
+void apart(Work&& work) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child != 0) {
     waitpid(child, nullptr, 0);
     return;
   }
+  work();
+  std::fflush(stdout);
+  _exit(0);
+}
+
+/// One recording.
+void measure(const char* what, const Model& model, const std::string& path, Eigen::Index rows,
+             unsigned threads) {
   const double begin = now_s();
   Recording recording = io::read_recording(path).recording;
   const double read = now_s();
-  auto [train, held_out] = split(recording, 0.3);
+  std::vector<Recording> train(1), held_out(1);
+  std::tie(train.front(), held_out.front()) = split(recording, 0.3);
   recording = Recording();
   Options options;
   options.threads = threads;
-  const Diagnosis diagnosis = diagnose(model, {train}, {held_out}, options);
+  const Diagnosis diagnosis = diagnose(model, train, held_out, options);
   const double end = now_s();
   std::printf("%-14s %8td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", what,
               static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(),
@@ -180,8 +191,6 @@ void measure(const char* what, const Model& model, const std::string& path, Eige
   std::printf(" (%s", to_string(diagnosis.verdict));
   for (const auto& cause : diagnosis.cause) std::printf(" %s", cause.effect.c_str());
   std::printf(")\n");
-  std::fflush(stdout);
-  _exit(0);
 }
 
 #ifdef THERMOPOWER_HAS_CERES
@@ -294,15 +303,15 @@ int main(int count, char** values) {
   for (int i = 1; i < count; ++i) lengths.push_back(std::atol(values[i]));
   if (lengths.empty()) lengths = {100000, 1000000};
   const std::string path = (std::filesystem::temp_directory_path() / "thermopower_gap_speed.csv").string();
-  const auto both = [&](const char* what, const Model& model, const Recording& recording) {
-    write_csv(recording, path);
-    for (const unsigned threads : {1u, 2u}) measure(what, model, path, recording.rows(), threads);
-  };
   for (const Eigen::Index rows : lengths) {
-    both("motor", motor(), motor_recording(rows, rows));
-    both("motor in runs", motor(), motor_recording(rows, 3000));
-    both("axis", axis(), axis_recording(rows));
-    both("axis, 2 causes", axis(), axis_recording(rows, 0.03));
+    const auto both = [&](const char* what, const Model& model, const auto& recording) {
+      apart([&] { write_csv(recording(), path); });
+      for (const unsigned threads : {1u, 2u}) apart([&] { measure(what, model, path, rows, threads); });
+    };
+    both("motor", motor(), [&] { return motor_recording(rows, rows); });
+    both("motor in runs", motor(), [&] { return motor_recording(rows, 3000); });
+    both("axis", axis(), [&] { return axis_recording(rows); });
+    both("axis, 2 causes", axis(), [&] { return axis_recording(rows, 0.03); });
   }
   std::filesystem::remove(path);
   compare_solvers();

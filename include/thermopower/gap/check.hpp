@@ -25,12 +25,11 @@ struct CheckOptions {
   bool as_recorded = false;  ///< say what is wrong, but mask and cut nothing
 };
 
-/// Checks and prepares all recordings of a diagnosis.
+/// Checks and prepares all recordings of a diagnosis. Each is let go of as soon as it is prepared: they may be long.
 /// @param held_out  may be empty where only the data are looked at
 /// @throws InvalidInput where a recording is invalid
-CheckedRecordings check(const Model& model, const std::vector<Recording>& train,
-                        const std::vector<Recording>& held_out, const CheckOptions& options,
-                        const Catalogue& catalogue);
+CheckedRecordings check(const Model& model, std::vector<Recording> train, std::vector<Recording> held_out,
+                        const CheckOptions& options, const Catalogue& catalogue);
 
 }  // namespace thermopower::gap::engine
 

@@ -139,20 +139,30 @@ public:
            (inputs_.closed_loop ? instance.servo.delay_s : 0.0);
   }
 
-  /// What changes with the logarithm of each constant that calibration may move.
-  template <class Use>
-  void for_each_constant(Use&& use) const {
-    constexpr double step = 1e-4;
-    const std::vector<CalibratedConstant> constants = model_.calibrated();
-    for (std::size_t k = 0; k < constants.size(); ++k) {
-      const bool acts =
-          constants[k].block == "axis" || (constants[k].block == "servo" && inputs_.closed_loop);
-      if (!constants[k].has_slack || !acts) continue;
-      std::vector<double> up(constants.size(), 1.0), down = up;
-      up[k] = std::exp(step);
-      down[k] = std::exp(-step);
-      use(constants[k].id, evaluate(up), evaluate(down), 0.5 / step);
+  /// Places in Model::calibrated() of the constants of an axis that calibration may move.
+  std::vector<std::size_t> constants() const {
+    std::vector<std::size_t> list;
+    const std::vector<CalibratedConstant> all = model_.calibrated();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const bool acts = all[k].block == "axis" || (all[k].block == "servo" && inputs_.closed_loop);
+      if (all[k].has_slack && acts) list.push_back(k);
     }
+    return list;
+  }
+
+  /// What one more of a constant's logarithm changes.
+  /// @param constant  its place in Model::calibrated()
+  Values slopes(std::size_t constant) const {
+    constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
+    std::vector<double> factors(model_.calibrated().size(), 1.0);
+    factors[constant] = std::exp(step);
+    Values result = evaluate(factors);
+    factors[constant] = std::exp(-step);
+    const Values down = evaluate(factors);
+    result.inertia_kgm2 = (result.inertia_kgm2 - down.inertia_kgm2) * (0.5 / step);
+    result.motion_Nm = (result.motion_Nm - down.motion_Nm) * (0.5 / step);
+    result.drive_Nm = (result.drive_Nm - down.drive_Nm) * (0.5 / step);
+    return result;
   }
 
   Eigen::VectorXd angle;      ///< true one by the model's readings, rad, without holes
@@ -167,6 +177,8 @@ public:
   const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
   /// The inputs given.
   const Inputs& inputs() const { return inputs_; }
+  /// The model given.
+  const Model& model() const { return model_; }
   /// The column that commands the axis; of a closed loop, what the servo makes of its target.
   std::string command_name() const {
     return inputs_.closed_loop ? "servo_A" : model_.axis->voltage_driven() ? "voltage_V" : "drive_A";

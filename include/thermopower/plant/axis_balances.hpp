@@ -274,17 +274,20 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
   if (in.torque_Nm.size() > 0) (b.held_delay_s > 0.0 ? b.flow_sampled : b.flow_held) += in.torque_Nm;
   b.half_widths = {4, 24};
   b.picture_half_width = 6;
-  a->for_each_constant([&](const std::string& name, const AxisAtRows::Values& up,
-                           const AxisAtRows::Values& down, double per_log) {
-    Direction parts;
-    const double store = (up.inertia_kgm2 - down.inertia_kgm2) * per_log / v.inertia_kgm2;
-    const Eigen::VectorXd motion = (up.motion_Nm - down.motion_Nm) * per_log,
-                          drive = (up.drive_Nm - down.drive_Nm) * per_log;
-    if (store != 0.0) parts.push_back({BalancePart::Kind::store, a->rate, 0.0, store});
-    if (motion.cwiseAbs().maxCoeff() > 0.0) parts.push_back({BalancePart::Kind::flow_sampled, motion});
-    if (drive.cwiseAbs().maxCoeff() > 0.0) parts.push_back({BalancePart::Kind::flow_held, drive});
-    if (!parts.empty()) b.constants.push_back({name, std::move(parts)});
-  });
+  const std::vector<CalibratedConstant> calibrated = a->model().calibrated();
+  for (const std::size_t constant : a->constants())
+    b.constants.push_back({calibrated[constant].id, [a, constant, inertia_kgm2 = v.inertia_kgm2] {
+                             AxisAtRows::Values by = a->slopes(constant);
+                             const double store = by.inertia_kgm2 / inertia_kgm2;
+                             Direction parts;
+                             if (store != 0.0)
+                               parts.push_back({BalancePart::Kind::store, a->rate, 0.0, store});
+                             if (by.motion_Nm.cwiseAbs().maxCoeff() > 0.0)
+                               parts.push_back({BalancePart::Kind::flow_sampled, std::move(by.motion_Nm)});
+                             if (by.drive_Nm.cwiseAbs().maxCoeff() > 0.0)
+                               parts.push_back({BalancePart::Kind::flow_held, std::move(by.drive_Nm)});
+                             return parts;
+                           }});
   detail::add_friction_freedoms(b, a, direction, drive_Nm);
   detail::add_drive_freedoms(b, a, drive_Nm);
   detail::add_load_freedoms(b, a);

@@ -58,10 +58,12 @@ struct BalancePart {
     reading_late,  ///< the instrument follows the state with `delay_s` as time constant; `filtered` only
   };
   Kind kind = Kind::flow_sampled;  ///< where the values enter
-  Eigen::VectorXd values;          ///< one per row; none for reading_late
+  Eigen::VectorXd values;          ///< one per row; none for reading_late, and where `make` makes them
   double delay_s = 0.0;            ///< of a held flow: it starts that much later than the balance's own
   double factor = 1.0;             ///< multiplies them
   Eigen::VectorXd weight = {};     ///< of a store: multiplies the derivative row by row; empty: 1
+  std::function<Eigen::VectorXd()> make =
+      nullptr;  ///< makes `values` when asked for, as a recording may be long
 };
 
 /// A direction in which a balance can be off: the sum of its parts.
@@ -119,6 +121,22 @@ struct RestatedQuantity {
   Eigen::VectorXd factor;  ///< multiplies the missing quantity row by row
 };
 
+/// One constant of a balance, and what moving it does.
+///
+/// How the whole works: @ref gap_method.
+struct ConstantDirection {
+  std::string name;  ///< of the constant
+  /// Flow per logarithm of the constant; made when asked for, as a recording may be long. Empty: it does nothing here.
+  std::function<Direction()> direction;
+
+  /// A direction that is at hand.
+  ConstantDirection(std::string its_name, Direction at_hand)
+      : name(std::move(its_name)), direction([at_hand = std::move(at_hand)] { return at_hand; }) {}
+  /// A direction that is made when asked for.
+  ConstantDirection(std::string its_name, std::function<Direction()> make)
+      : name(std::move(its_name)), direction(std::move(make)) {}
+};
+
 /// One balance of a plant at the rows of a recording.
 struct Balance {
   QuantityName quantity;    ///< what may be missing; balances of one quantity are alternatives of each other
@@ -139,7 +157,7 @@ struct Balance {
   Eigen::VectorXd flow_measured = {};  ///< the reading that the sampled flow is, NaN where missing; or empty
   Eigen::VectorXd noise_from = {};     ///< samples whose white noise `measured` carries; empty: itself
   double noise_gain = 1.0;             ///< multiplies the noise of `noise_from`
-  std::vector<std::pair<std::string, Direction>> constants = {};  ///< flow per logarithm of each constant
+  std::vector<ConstantDirection> constants = {};  ///< what may be off within its slack
   std::vector<SignalName> reads = {};             ///< other signals whose readings make its flows
   std::vector<Freedom> freedoms = {};             ///< what may be otherwise
   std::vector<Freedom> courses = {};              ///< of many directions, for what follows no variable
@@ -204,6 +222,18 @@ template <class One>
 std::vector<Direction> directions_of(const Eigen::MatrixXd& columns, One&& one) {
   std::vector<Direction> list;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) list.push_back(one(Eigen::VectorXd(columns.col(k))));
+  return list;
+}
+
+/// Directions of one part each, whose values are made one after the other, when asked for.
+/// @param kind   where they enter
+/// @param count  of them
+/// @param column  makes the values of the k-th, one per row
+inline std::vector<Direction> made_directions(BalancePart::Kind kind, Eigen::Index count,
+                                              const std::function<Eigen::VectorXd(Eigen::Index k)>& column) {
+  std::vector<Direction> list;
+  for (Eigen::Index k = 0; k < count; ++k)
+    list.push_back({{kind, {}, 0.0, 1.0, {}, [column, k] { return column(k); }}});
   return list;
 }
 

@@ -68,13 +68,66 @@ public:
 
   /// The laws with the constants multiplied by `factors` (as many as Model::calibrated(), or none).
   Values evaluate(HeatTold heat, const std::vector<double>& factors = {}) const {
+    return evaluate(heat, factors, true);
+  }
+
+  /// What one more of a constant's logarithm changes in the flows of a balance.
+  struct Slopes {
+    Eigen::VectorXd law_A;     ///< A
+    Eigen::VectorXd heat_W;    ///< W
+    Eigen::VectorXd loss_W;    ///< W
+    Eigen::VectorXd capacity;  ///< J/K
+  };
+
+  /// Places in Model::calibrated() of the constants of a bench that calibration may move.
+  std::vector<std::size_t> constants() const {
+    std::vector<std::size_t> list;
+    const std::vector<CalibratedConstant> all = model_.calibrated();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k].has_slack && all[k].block != "axis" && all[k].block != "servo") list.push_back(k);
+    return list;
+  }
+
+  /// The slopes by one constant.
+  /// @param constant  its place in Model::calibrated()
+  Slopes slopes(HeatTold heat, std::size_t constant) const {
+    constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
+    std::vector<double> factors(model_.calibrated().size(), 1.0);
+    const auto flows = [&](double log_factor) {
+      factors[constant] = std::exp(log_factor);
+      Values v = evaluate(heat, factors, false);
+      return Slopes{std::move(v.law_A), std::move(v.heat_W), std::move(v.loss_W), std::move(v.capacity)};
+    };
+    Slopes result = flows(step);
+    const Slopes down = flows(-step);
+    const auto differ = [](Eigen::VectorXd& up, const Eigen::VectorXd& by) { up = (up - by) * (0.5 / step); };
+    differ(result.law_A, down.law_A);
+    differ(result.heat_W, down.heat_W);
+    differ(result.loss_W, down.loss_W);
+    differ(result.capacity, down.capacity);
+    return result;
+  }
+
+  /// The rows.
+  const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
+  /// The inputs given.
+  const Inputs& inputs() const { return inputs_; }
+  /// The model given.
+  const Model& model() const { return model_; }
+
+private:
+  /// The laws.
+  /// @param all  false: the flows and the capacity alone, the rest stays empty
+  Values evaluate(HeatTold heat, const std::vector<double>& factors, bool all) const {
     const Instance<double> instance(model_, factors, {}, catalogue_);
     const BenchRollout<double> rollout(instance, inputs_);
     const Eigen::Index n = inputs_.rows();
     Values v;
-    for (Eigen::VectorXd* one : {&v.law_A, &v.ohm, &v.v_rms_V, &v.supply_V, &v.heat_W, &v.loss_W, &v.capacity,
-                                 &v.relaxation_per_s, &v.winding_C})
+    for (Eigen::VectorXd* one : {&v.law_A, &v.heat_W, &v.loss_W, &v.capacity})
       *one = Eigen::VectorXd::Zero(n);
+    if (all)
+      for (Eigen::VectorXd* one : {&v.ohm, &v.v_rms_V, &v.supply_V, &v.relaxation_per_s, &v.winding_C})
+        *one = Eigen::VectorXd::Zero(n);
     for (const RunSpan& run : inputs_.runs) {
       double charge_Ah = 0.0;
       HiddenNodes hidden;
@@ -84,18 +137,19 @@ public:
         const double winding_C = inputs_.held_motor_C.size() > 0
                                      ? rollout.start(i, inputs_.held_motor_C[i] - offset_K_).winding_C
                                      : 25.0;
-        v.winding_C[i] = winding_C;
+        if (all) v.winding_C[i] = winding_C;
         const bool powered = inputs_.power_param.size() > 0 && (instance.ohmic || instance.thesis_current);
         BenchRollout<double>::Circuit law{};
         if (powered) {
           law = rollout.circuit(i, t_s, winding_C, charge_Ah);
           v.law_A[i] = shown_A(instance, t_s, law.current_A);
-          v.v_rms_V[i] = law.v_rms_V;
-          v.supply_V[i] = law.supply_V;
+          if (all) v.v_rms_V[i] = law.v_rms_V;
+          if (all) v.supply_V[i] = law.supply_V;
         }
-        v.ohm[i] = instance.ohmic        ? instance.winding.resistance_at(winding_C)
-                   : law.current_A > 0.0 ? law.v_rms_V / law.current_A
-                                         : 0.0;
+        if (all)
+          v.ohm[i] = instance.ohmic        ? instance.winding.resistance_at(winding_C)
+                     : law.current_A > 0.0 ? law.v_rms_V / law.current_A
+                                           : 0.0;
         const double measured_A = measured_current(instance, i, t_s);
         const double true_A = std::isfinite(measured_A) ? measured_A : law.current_A;
         charge_Ah += true_A * rollout.charge_share(i) * step_s / 3600.0;
@@ -130,28 +184,6 @@ public:
     return v;
   }
 
-  /// What changes with the logarithm of each constant that calibration may move, as name and two evaluations.
-  template <class Use>
-  void for_each_constant(HeatTold heat, Use&& use) const {
-    constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
-    const std::vector<CalibratedConstant> constants = model_.calibrated();
-    for (std::size_t k = 0; k < constants.size(); ++k) {
-      if (!constants[k].has_slack || constants[k].block == "axis" || constants[k].block == "servo") continue;
-      std::vector<double> up(constants.size(), 1.0), down = up;
-      up[k] = std::exp(step);
-      down[k] = std::exp(-step);
-      use(constants[k].id, evaluate(heat, up), evaluate(heat, down), 0.5 / step);
-    }
-  }
-
-  /// The rows.
-  const std::shared_ptr<const BalanceRows>& rows() const { return rows_; }
-  /// The inputs given.
-  const Inputs& inputs() const { return inputs_; }
-  /// The model given.
-  const Model& model() const { return model_; }
-
-private:
   /// Nodes that nobody measures, carried on from row to row; they start as the first measured one.
   struct HiddenNodes {
     double surface_C = missing, soaking_C = missing, enclosed_C = missing;
@@ -183,7 +215,7 @@ private:
       const double share = shape.winding_share, coupling = shape.coupling_W_per_K;
       v.capacity[i] = rest * share * total;
       v.loss_W[i] = coupling * (winding_C - hidden.surface_C);
-      v.relaxation_per_s[i] = coupling / v.capacity[i];
+      if (v.relaxation_per_s.size() > 0) v.relaxation_per_s[i] = coupling / v.capacity[i];
       const double outer = rest * (1.0 - share) * total;
       const double decay =
           (coupling + (above.loss_W - flows.loss_W) / step_K + (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
@@ -193,10 +225,11 @@ private:
     } else {
       v.capacity[i] = rest * total;
       v.loss_W[i] = flows.loss_W + soaked_W;
-      v.relaxation_per_s[i] =
-          std::max(0.0, (above.loss_W - flows.loss_W - above.heat_W + flows.heat_W) / step_K +
-                            (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
-          (rest * total);
+      if (v.relaxation_per_s.size() > 0)
+        v.relaxation_per_s[i] =
+            std::max(0.0, (above.loss_W - flows.loss_W - above.heat_W + flows.heat_W) / step_K +
+                              (shape.soaks ? shape.soaking_W_per_K : 0.0)) /
+            (rest * total);
     }
     if (shape.soaks) {
       const double K_per_J = shape.soaking_K_per_J(1.0 / total);

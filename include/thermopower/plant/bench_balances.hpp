@@ -33,6 +33,8 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
   const Inputs& in = bench.inputs();
   const auto k = std::make_shared<Known>();
   k->v = bench.evaluate(HeatTold::by_law);
+  for (Eigen::VectorXd* of_the_body : {&k->v.heat_W, &k->v.loss_W, &k->v.capacity, &k->v.relaxation_per_s})
+    of_the_body->resize(0);  // a recording may be long
   const Eigen::Index n = in.rows();
   k->on = (k->v.v_rms_V.array() > 0.0).cast<double>();
   k->charge = Eigen::VectorXd::Zero(n);
@@ -60,11 +62,13 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
   b.noise_from = b.measured - k->v.law_A;  // a step of the power is no noise
   b.reads = {Signal::motor_C};
   b.restated = RestatedQuantity{Quantity::missing_voltage, "V", k->v.ohm.cwiseProduct(k->on)};
-  bench.for_each_constant(HeatTold::by_law, [&](const std::string& name, const BenchAtRows::Values& up,
-                                                const BenchAtRows::Values& down, double per_log) {
-    const Eigen::VectorXd slope = (up.law_A - down.law_A) * per_log;
-    if (slope.cwiseAbs().maxCoeff() > 0.0) b.constants.push_back({name, flow_sampled(slope)});
-  });
+  const std::vector<CalibratedConstant> calibrated = bench.model().calibrated();
+  for (const std::size_t constant : bench.constants())
+    b.constants.push_back({calibrated[constant].id, [bench, constant] {
+                             Eigen::VectorXd slope = bench.slopes(HeatTold::by_law, constant).law_A;
+                             return slope.cwiseAbs().maxCoeff() > 0.0 ? flow_sampled(std::move(slope))
+                                                                      : Direction();
+                           }});
   const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
                        std::function<Eigen::MatrixXd()> columns) {
     b.freedoms.push_back({std::move(submodel), variable, words, [columns](double) {
@@ -82,8 +86,15 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
     const Eigen::VectorXd warmer = (k->v.winding_C.array() - 25.0) / 10.0;
     return columns_of({k->v.law_A, k->v.law_A.cwiseProduct(warmer)});
   });
-  add(Submodel::electrical, "v_rms_V", "a voltage lost that depends on the drive",
-      [k] { return scaled(hats(k->v.v_rms_V, 6), k->v.law_A); });
+  b.freedoms.push_back(
+      {Submodel::electrical, "v_rms_V", "a voltage lost that depends on the drive", [k](double) {
+         const std::vector<double> knots = equal_count_edges(k->v.v_rms_V, 5);
+         return made_directions(
+             BalancePart::Kind::flow_sampled, static_cast<Eigen::Index>(knots.size()),
+             [k, knots](Eigen::Index i) {
+               return Eigen::VectorXd(hat(k->v.v_rms_V, knots, i).cwiseProduct(k->v.law_A));
+             });
+       }});
   add(Submodel::electrical, "v_rms_V", "a piece of the duty that is lost", [k] {
     Eigen::MatrixXd columns(k->on.size(), 2);
     columns.col(0) = k->v.law_A;
@@ -96,10 +107,12 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
     return columns_of(
         {k->v.law_A, k->v.law_A.cwiseProduct(k->v.v_rms_V.cwiseAbs2()), k->v.law_A.cwiseProduct(k->charge)});
   });
-  b.variables = {{"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held},
-                 {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C},
-                 {"law_A", "A", k->v.law_A},
-                 {"t_s", "s", in.t_s}};
+  b.variables.reserve(4 + covariates.size());
+  b.variables.push_back({"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held});
+  b.variables.push_back(
+      {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C});
+  b.variables.push_back({"law_A", "A", k->v.law_A});
+  b.variables.push_back({"t_s", "s", in.t_s});
   for (const Covariate& covariate : covariates) {
     const auto z = std::make_shared<Eigen::VectorXd>(
         covariate.name == "rate_dps" ? Eigen::VectorXd(covariate.values.cwiseAbs()) : covariate.values);
@@ -132,6 +145,7 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   const Inputs& in = bench.inputs();
   const auto k = std::make_shared<Known>();
   k->v = bench.evaluate(told);
+  for (Eigen::VectorXd* of_the_circuit : {&k->v.law_A, &k->v.ohm}) of_the_circuit->resize(0);
   const Eigen::Index n = in.rows();
   k->rise = k->v.winding_C - in.ambient_C;
   const double mean_loss = k->v.capacity.cwiseProduct(k->v.relaxation_per_s).mean();
@@ -159,24 +173,26 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   b.capacity = k->v.capacity;
   b.flow_sampled = -k->v.loss_W;
   b.flow_held = k->v.heat_W;
-  b.relaxation_per_s = k->v.relaxation_per_s;
+  b.relaxation_per_s = std::move(k->v.relaxation_per_s);
   if (told != HeatTold::by_law && told != HeatTold::by_record && in.heat != HeatSource::drive)
     b.reads = {Signal::current_A};
-  bench.for_each_constant(told, [&](const std::string& name, const BenchAtRows::Values& up,
-                                    const BenchAtRows::Values& down, double per_log) {
-    const Eigen::VectorXd heat = (up.heat_W - down.heat_W) * per_log,
-                          loss = (up.loss_W - down.loss_W) * per_log;
-    const Eigen::VectorXd store = ((up.capacity - down.capacity) * per_log).cwiseQuotient(k->v.capacity);
-    Direction direction;
-    constexpr double none = 1e-9;
-    if (heat.cwiseAbs().maxCoeff() > none) direction.push_back({BalancePart::Kind::flow_held, heat});
-    if (loss.cwiseAbs().maxCoeff() > none)
-      direction.push_back({BalancePart::Kind::flow_sampled, Eigen::VectorXd(-loss)});
-    if (store.cwiseAbs().maxCoeff() > none)
-      direction.push_back({BalancePart::Kind::store, k->v.winding_C, 0.0, 1.0, store});
-    if (!direction.empty()) b.constants.push_back({name, std::move(direction)});
-  });
-
+  const std::vector<CalibratedConstant> calibrated = bench.model().calibrated();
+  for (const std::size_t constant : bench.constants())
+    b.constants.push_back(
+        {calibrated[constant].id, [bench, told, constant, k] {
+           BenchAtRows::Slopes by = bench.slopes(told, constant);
+           by.capacity = by.capacity.cwiseQuotient(k->v.capacity);
+           Direction direction;
+           constexpr double none = 1e-9;
+           if (by.heat_W.cwiseAbs().maxCoeff() > none)
+             direction.push_back({BalancePart::Kind::flow_held, std::move(by.heat_W)});
+           if (by.loss_W.cwiseAbs().maxCoeff() > none)
+             direction.push_back({BalancePart::Kind::flow_sampled, std::move(by.loss_W), 0.0, -1.0});
+           if (by.capacity.cwiseAbs().maxCoeff() > none)
+             direction.push_back(
+                 {BalancePart::Kind::store, k->v.winding_C, 0.0, 1.0, std::move(by.capacity)});
+           return direction;
+         }});
   const auto add = [&](SubmodelName submodel, const std::string& variable, const std::string& words,
                        std::function<std::vector<Direction>()> directions,
                        double least = -std::numeric_limits<double>::infinity()) {
@@ -186,14 +202,21 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   const auto watts = [](const Eigen::MatrixXd& columns) {
     return directions_of(columns, [](Eigen::VectorXd c) { return flow_held(std::move(c)); });
   };
+  // A piecewise linear function of a variable, times a size.
+  typedef std::function<Eigen::VectorXd()> Column;
+  const auto watts_by = [](const std::vector<double>& knots, const Column& variable, const Column& size) {
+    return made_directions(BalancePart::Kind::flow_held, static_cast<Eigen::Index>(knots.size()),
+                           [knots, variable, size](Eigen::Index i) {
+                             return Eigen::VectorXd(hat(variable(), knots, i).cwiseProduct(size()));
+                           });
+  };
   const auto contents = [k](Eigen::Index bins) {
     const double from = k->v.winding_C.minCoeff(),
                  width = (k->v.winding_C.maxCoeff() - from) / static_cast<double>(bins);
-    std::vector<Direction> list;
-    for (Eigen::Index i = 0; i < bins; ++i)
-      list.push_back(further_store(
-          (k->v.winding_C.array() - (from + width * static_cast<double>(i))).max(0.0).min(width).matrix()));
-    return list;
+    return made_directions(BalancePart::Kind::store, bins, [k, from, width](Eigen::Index i) {
+      return Eigen::VectorXd(
+          (k->v.winding_C.array() - (from + width * static_cast<double>(i))).max(0.0).min(width));
+    });
   };
   add(Submodel::sensing_temperature, "rise_K", "a thermometer that shows another rise than the heat makes",
       [k, watts] { return watts(k->v.heat_W); });
@@ -202,13 +225,20 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   add(Submodel::thermal_loss, "rise_K", "another conductance", [k, watts] { return watts(-k->v.loss_W); });
   add(Submodel::thermal_loss, "rise_K", "a loss that is there without a rise",
       [k, watts] { return watts(k->loss_per_K); });
-  add(Submodel::thermal_loss, "rise_K", "a conductance that depends on the rise",
-      [k, watts] { return watts(scaled(even_hats(k->rise, 4), k->loss_per_K.cwiseProduct(k->rise))); });
+  add(Submodel::thermal_loss, "rise_K", "a conductance that depends on the rise", [k, watts_by] {
+    return watts_by(
+        even_knots(k->rise, 4), [k] { return k->rise; },
+        [k]() -> Eigen::VectorXd { return k->loss_per_K.cwiseProduct(k->rise); });
+  });
   add(Submodel::thermal_storage, "motor_C", "a heat capacity that depends on the temperature",
       [contents] { return contents(7); });
-  add(Submodel::thermal_heating, "heat_W", "a heat that is not in proportion to the law's",
-      [k, watts] { return watts(scaled(even_hats(k->v.heat_W, 4), k->v.heat_W)); });
-  if (in.power_param.size() > 0 && std::holds_alternative<ThesisThermalModel>(bench.model().thermal)) {
+  add(Submodel::thermal_heating, "heat_W", "a heat that is not in proportion to the law's", [k, watts_by] {
+    const Column heat = [k] { return k->v.heat_W; };
+    return watts_by(even_knots(k->v.heat_W, 4), heat, heat);
+  });
+  const bool by_supply =
+      in.power_param.size() > 0 && std::holds_alternative<ThesisThermalModel>(bench.model().thermal);
+  if (by_supply) {
     add(
         Submodel::thermal_heating, "v_rms_V", "heat by the power at the supply and not at the motor",
         [k, watts] {
@@ -223,12 +253,11 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   add(
       Submodel::thermal_storage, "dT_dt", "a part that follows the heat faster than the whole",
       [k, rows] {
-        std::vector<Direction> list;
-        for (int i = 0; i < 5; ++i)
-          list.push_back(further_reading(
-              lagged(k->v.heat_W, k->shortest_s * std::pow(k->longest_s / k->shortest_s, i / 4.0), true,
-                     rows->t_s, rows->runs)));
-        return list;
+        return made_directions(BalancePart::Kind::reading, 5, [k, rows](Eigen::Index i) {
+          return lagged(k->v.heat_W,
+                        k->shortest_s * std::pow(k->longest_s / k->shortest_s, static_cast<double>(i) / 4.0),
+                        true, rows->t_s, rows->runs);
+        });
       },
       0.0);
   Freedom late{Submodel::sensing_temperature,
@@ -247,12 +276,17 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
     return std::string(text);
   };
   b.freedoms.push_back(std::move(late));
-  b.variables = {{"rise_K", "K", k->rise, OrderingVariable::Kind::sampled, Signal::motor_C},
-                 {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C},
-                 {"heat_W", "W", k->v.heat_W, OrderingVariable::Kind::held},
-                 {"dT_dt", "K/s", k->v.winding_C, OrderingVariable::Kind::derivative, Signal::motor_C},
-                 {"v_rms_V", "V", k->v.v_rms_V, OrderingVariable::Kind::held},
-                 {"t_s", "s", in.t_s}};
+  b.variables.reserve(6 + covariates.size());
+  b.variables.push_back({"rise_K", "K", k->rise, OrderingVariable::Kind::sampled, Signal::motor_C});
+  b.variables.push_back(
+      {"motor_C", "degC", k->v.winding_C, OrderingVariable::Kind::sampled, Signal::motor_C});
+  b.variables.push_back({"heat_W", "W", k->v.heat_W, OrderingVariable::Kind::held});
+  b.variables.push_back(
+      {"dT_dt", "K/s", k->v.winding_C, OrderingVariable::Kind::derivative, Signal::motor_C});
+  b.variables.push_back(
+      {"v_rms_V", "V", by_supply ? k->v.v_rms_V : std::move(k->v.v_rms_V), OrderingVariable::Kind::held});
+  if (!by_supply) k->v.supply_V.resize(0);
+  b.variables.push_back({"t_s", "s", in.t_s});
   for (const Covariate& covariate : covariates) {
     const auto z = std::make_shared<Eigen::VectorXd>(
         covariate.name == "rate_dps" ? Eigen::VectorXd(covariate.values.cwiseAbs()) : covariate.values);
@@ -286,16 +320,21 @@ inline Balance heat_balance(const BenchAtRows& bench, const std::vector<Covariat
   // Both courses may lean on a loss that is constantly wrong: only what changes with time tells them apart.
   const Eigen::Index knots =
       std::max<Eigen::Index>(6, std::min<Eigen::Index>(60, std::min<Eigen::Index>(n, 8000) / 20));
-  const auto course = [k, knots](const Eigen::VectorXd& size) {
-    const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(k->rise.size(), 0.0, 1.0);
-    return beside(scaled(even_hats(order, static_cast<int>(knots)), size),
-                  columns_of({k->loss_per_K.cwiseProduct(k->rise), k->loss_per_K}));
+  const auto course = [k, watts, watts_by, knots](const Column& size) {
+    const Column order = [k]() -> Eigen::VectorXd {
+      return Eigen::VectorXd::LinSpaced(k->rise.size(), 0.0, 1.0);
+    };
+    std::vector<Direction> list = watts_by(even_knots(order(), static_cast<int>(knots)), order, size);
+    for (Direction& one : watts(columns_of({k->loss_per_K.cwiseProduct(k->rise), k->loss_per_K})))
+      list.push_back(std::move(one));
+    return list;
   };
   const std::string nothing = "nothing recorded orders it; a course of its own in time";
   b.courses.push_back({Submodel::thermal_heating, "", nothing,
-                       [k, course, watts](double) { return watts(course(k->loss_per_K)); }});
-  b.courses.push_back({Submodel::thermal_loss, "", nothing, [k, course, watts](double) {
-                         return watts(course(k->loss_per_K.cwiseProduct(k->rise)));
+                       [k, course](double) { return course([k] { return k->loss_per_K; }); }});
+  b.courses.push_back({Submodel::thermal_loss, "", nothing, [k, course](double) {
+                         return course(
+                             [k]() -> Eigen::VectorXd { return k->loss_per_K.cwiseProduct(k->rise); });
                        }});
   b.courses.back().scatters_with = "rise_K";
   b.courses.push_back({Submodel::thermal_storage, "motor_C",

@@ -31,26 +31,29 @@ inline std::vector<double> equal_count_edges(const Eigen::VectorXd& values, int 
   return edges;
 }
 
-/// Piecewise linear functions of `values`, one per knot, that sum to 1 inside the knots' range.
-inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, const std::vector<double>& knots) {
-  const Eigen::Index n = static_cast<Eigen::Index>(knots.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(values.size(), n);
-  if (n == 0) return out;
+/// The piecewise linear function of `values` that is 1 at a knot and 0 at the others; beyond the outermost knots it stays
+/// what it is there, and 0 where a value is missing.
+/// @param k  the knot's place, 0 to knots.size() - 1
+inline Eigen::VectorXd hat(const Eigen::VectorXd& values, const std::vector<double>& knots, Eigen::Index k) {
+  const auto at = static_cast<std::size_t>(k);
+  const bool first = k == 0, last = at + 1 == knots.size();
+  const auto rise = [&](double x, std::size_t to) {
+    return (x - knots[to - 1]) / (knots[to] - knots[to - 1]);
+  };
+  Eigen::VectorXd out(values.size());
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     const double x = values[i];
-    if (!std::isfinite(x)) continue;
-    const auto above = std::upper_bound(knots.begin(), knots.end(), x);
-    if (above == knots.begin()) {
-      out(i, 0) = 1.0;
-    } else if (above == knots.end()) {
-      out(i, n - 1) = 1.0;
-    } else {
-      const Eigen::Index k = above - knots.begin();
-      const double from = knots[static_cast<std::size_t>(k - 1)], to = knots[static_cast<std::size_t>(k)];
-      out(i, k) = (x - from) / (to - from);
-      out(i, k - 1) = 1.0 - out(i, k);
-    }
+    if (!std::isfinite(x)) out[i] = 0.0;
+    else if (x < knots[at]) out[i] = first ? 1.0 : x < knots[at - 1] ? 0.0 : rise(x, at);
+    else out[i] = last ? 1.0 : x >= knots[at + 1] ? 0.0 : 1.0 - rise(x, at + 1);
   }
+  return out;
+}
+
+/// The hats of all knots, one column each: they sum to 1.
+inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, const std::vector<double>& knots) {
+  Eigen::MatrixXd out(values.size(), static_cast<Eigen::Index>(knots.size()));
+  for (Eigen::Index k = 0; k < out.cols(); ++k) out.col(k) = hat(values, knots, k);
   return out;
 }
 
@@ -59,12 +62,17 @@ inline Eigen::MatrixXd hats(const Eigen::VectorXd& values, int count) {
   return hats(values, equal_count_edges(values, count - 1));
 }
 
-/// Hats on evenly spaced knots.
-inline Eigen::MatrixXd even_hats(const Eigen::VectorXd& values, int count) {
+/// Evenly spaced knots over the range of some values; none where they are all the same.
+inline std::vector<double> even_knots(const Eigen::VectorXd& values, int count) {
   const double from = values.minCoeff(), to = values.maxCoeff();
   std::vector<double> knots;
   for (int k = 0; k < count && to > from; ++k) knots.push_back(from + (to - from) * k / (count - 1));
-  return hats(values, knots);
+  return knots;
+}
+
+/// Hats on evenly spaced knots.
+inline Eigen::MatrixXd even_hats(const Eigen::VectorXd& values, int count) {
+  return hats(values, even_knots(values, count));
 }
 
 /// Each column of `columns` times `factor`, row by row.

@@ -58,7 +58,9 @@ Tank recorded(const TankFault& fault) {
 }
 
 /// The balance of the tank, as a user writes it: area dh/dt = pump - valve sqrt(h).
-plant::Balance level_balance(const Tank& tank, plant::BalanceForm form, double valve) {
+/// @param when_asked  what may be otherwise is made when it is asked for, and not before
+plant::Balance level_balance(const Tank& tank, plant::BalanceForm form, double valve,
+                             bool when_asked = false) {
   plant::Balance b;
   b.quantity = plant::QuantityName("missing inflow");
   b.unit = "m3/s";
@@ -78,9 +80,17 @@ plant::Balance level_balance(const Tank& tank, plant::BalanceForm form, double v
   b.half_widths = {8, 40};
   b.picture_half_width = 40;
   b.constants = {{"valve", plant::flow_sampled(-out)}, {"area", plant::further_store(level)}};
-  b.freedoms.push_back(
-      {plant::SubmodelName("tank.wall"), "level_m", "a leak that grows with the level",
-       [level](double) { return std::vector<plant::Direction>{plant::flow_sampled(level)}; }});
+  if (when_asked)
+    b.constants = {{"valve", [out] { return plant::flow_sampled(-out); }},
+                   {"no constant of this balance", [] { return plant::Direction(); }},
+                   {"area", [level] { return plant::further_store(level); }}};
+  b.freedoms.push_back({plant::SubmodelName("tank.wall"), "level_m", "a leak that grows with the level",
+                        [level, when_asked](double) {
+                          if (when_asked)
+                            return plant::made_directions(plant::BalancePart::Kind::flow_sampled, 1,
+                                                          [level](Eigen::Index) { return level; });
+                          return std::vector<plant::Direction>{plant::flow_sampled(level)};
+                        }});
   b.freedoms.push_back(
       {plant::SubmodelName("tank.pump"), "pump_m3_per_s", "a pump that gives another flow", [pump](double) {
          return plant::directions_of(plant::scaled(plant::hats(pump, 4), pump), plant::flow_held);
@@ -94,17 +104,33 @@ plant::Balance level_balance(const Tank& tank, plant::BalanceForm form, double v
   return b;
 }
 
-Localisation tank(const TankFault& fault, plant::BalanceForm form, double valve = valve_m25_per_s) {
+Localisation tank(const TankFault& fault, plant::BalanceForm form, double valve = valve_m25_per_s,
+                  bool when_asked = false) {
   const Tank water = recorded(fault);
   const std::vector<plant::BalanceSource> sources{
       {plant::QuantityName("missing inflow"),
        plant::SignalName("level_m"),
        {},
-       [&](const plant::ReadingOffsets&) { return level_balance(water, form, valve); }}};
+       [&](const plant::ReadingOffsets&) { return level_balance(water, form, valve, when_asked); }}};
   return localise_balances(sources, 1);
 }
 
 }  // namespace
+
+TEST_CASE("what may be otherwise in a balance may be made when it is asked for: the places are the same") {
+  for (const plant::BalanceForm form : {plant::BalanceForm::weak, plant::BalanceForm::filtered}) {
+    TankFault leak;
+    leak.leak_m2_per_s = 6e-4;
+    const Localisation at_hand = tank(leak, form), made = tank(leak, form, valve_m25_per_s, true);
+    REQUIRE(made.where.size() == at_hand.where.size());
+    for (std::size_t i = 0; i < made.where.size(); ++i) {
+      CHECK(made.where[i].submodel == at_hand.where[i].submodel);
+      CHECK(made.where[i].share == at_hand.where[i].share);
+      CHECK(made.where[i].evidence == at_hand.where[i].evidence);
+    }
+    CHECK(tank({}, form, 1.02 * valve_m25_per_s, true).where.empty());
+  }
+}
 
 TEST_CASE("a plant of one's own, in either form of its balance, is localised by the same stages") {
   for (const plant::BalanceForm form : {plant::BalanceForm::weak, plant::BalanceForm::filtered}) {

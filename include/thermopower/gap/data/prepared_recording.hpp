@@ -37,6 +37,10 @@ public:
   const Recording& recording() const { return believed_; }
   /// The same as the rollouts of the model take it.
   const Inputs& inputs() const { return inputs_; }
+  /// Gives away recording().
+  Recording take_recording() && { return std::move(believed_); }
+  /// Gives away inputs().
+  Inputs take_inputs() && { return std::move(inputs_); }
   /// What was found, in a fixed order: stamps, then column by column.
   const std::vector<Finding>& findings() const { return findings_; }
   /// For each row of recording() its row in the whole recording as it was given.

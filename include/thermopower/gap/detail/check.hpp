@@ -159,9 +159,9 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
   });
 }
 
-THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::vector<Recording>& train,
-                                               const std::vector<Recording>& held_out,
-                                               const CheckOptions& options, const Catalogue& catalogue) {
+THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<Recording> train,
+                                               std::vector<Recording> held_out, const CheckOptions& options,
+                                               const Catalogue& catalogue) {
   CheckedRecordings result;
   std::vector<Finding> others;
   double most_power = 0.0;
@@ -170,13 +170,15 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, const std::ve
       if (one.has("power_param"))
         for (const double power : one.column("power_param"))
           if (power > most_power) most_power = power;
-  const auto take = [&](const std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
-    for (const Recording& one : recordings) {
+  const auto take = [&](std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
+    to.reserve(recordings.size());
+    for (Recording& one : recordings) {
       to.emplace_back(model, one, options.as_recorded);
       const std::vector<Finding>& own = to.back().findings();
       others.insert(others.end(), own.begin(), own.end());
       for (Finding& finding : check_units(model, one, to.back(), catalogue, most_power))
         others.push_back(std::move(finding));
+      one = Recording();
     }
   };
   take(train, result.train);

@@ -151,16 +151,16 @@ private:
         one = std::move(parts.first);
         last.push_back(std::move(parts.second));
       }
-    CheckedRecordings checked =
-        check(model_, first, last, {options_.horizon_s, options_.as_recorded}, catalogue_);
+    CheckedRecordings checked = check(model_, std::move(first), std::move(last),
+                                      {options_.horizon_s, options_.as_recorded}, catalogue_);
     result_.findings = std::move(checked.findings);
-    for (const PreparedRecording& one : checked.train) {
-      train_recordings_.push_back(one.recording());
-      train_inputs_.push_back(one.inputs());
+    for (PreparedRecording& one : checked.train) {
+      train_recordings_.push_back(std::move(one).take_recording());
+      train_inputs_.push_back(std::move(one).take_inputs());
     }
-    for (const PreparedRecording& one : checked.held_out) {
-      held_out_recordings_.push_back(one.recording());
-      held_out_inputs_.push_back(one.inputs());
+    for (PreparedRecording& one : checked.held_out) {
+      held_out_recordings_.push_back(std::move(one).take_recording());
+      held_out_inputs_.push_back(std::move(one).take_inputs());
     }
     std::vector<const Inputs*> all;
     for (const auto* part : {&train_inputs_, &held_out_inputs_})
@@ -474,18 +474,17 @@ private:
           remaining(result_, model_.own ? Localisation()
                                         : localise(result_.augmented, train_recordings_, {}, catalogue_));
     if (named && !taken_back) {
-      std::vector<Recording> simulated = train_recordings_;
-      for (std::size_t i = 0; i < simulated.size(); ++i)
+      std::vector<Recording> simulated = std::move(train_recordings_);
+      for (Recording& one : simulated)
         for (SimulatedSignal& signal :
-             simulate(result_.augmented, train_recordings_[i],
-                      {SimulationMode::free_running, options_.horizon_s}, catalogue_))
-          simulated[i].set(to_string(signal.signal), std::move(signal.values));
+             simulate(result_.augmented, one, {SimulationMode::free_running, options_.horizon_s}, catalogue_))
+          one.set(to_string(signal.signal), std::move(signal.values));
       if (model_.own) {
         std::vector<Inputs> inputs;
         for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
         draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
       } else {
-        draw_effect(model_, simulated, catalogue_, result_.missing_quantities);
+        draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
       }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);

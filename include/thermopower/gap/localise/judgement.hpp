@@ -20,14 +20,14 @@ namespace thermopower::gap::engine {
 class Judgement {
 public:
   /// @param slack  how far the balance's constants may be off, as a fraction
-  Judgement(plant::Balance balance, double slack, const LocalisationThresholds& limit)
-      : balance_(std::make_shared<const plant::Balance>(std::move(balance))), limit_(limit) {
-    const std::unique_ptr<Projection> projection = projection_of(*balance_, limit_);
+  Judgement(const plant::Balance& balance, double slack, const LocalisationThresholds& limit)
+      : balance_(names_of(balance)), limit_(limit) {
+    const std::unique_ptr<Projection> projection = projection_of(balance, limit_);
     floor_ = projection->floor();
     if (projection->residual().size() < limit_.least_rows) return;
-    Problem problem = problem_of(*balance_, *projection, slack);
+    Problem problem = problem_of(balance, *projection, slack);
     std::vector<Block> blocks;
-    for (const plant::Freedom& freedom : balance_->freedoms)
+    for (const plant::Freedom& freedom : balance.freedoms)
       blocks.push_back(block_of(freedom, *projection, problem));
     const BlockFitter fitter(problem, blocks);
     choice_ = choose_blocks(fitter, floor_, limit_);
@@ -38,10 +38,10 @@ public:
       coefficient_.push_back(choice_.best.coefficients[from]);
       from += blocks[i].columns.cols();
     }
-    if (asks_for_course()) look_for_course(*projection, problem);
+    if (asks_for_course()) look_for_course(balance, *projection, problem);
   }
 
-  /// The balance.
+  /// The balance's names and words, without its rows: a recording may be long, and who needs them makes them again.
   const plant::Balance& balance() const { return *balance_; }
   /// Whether the constants within their slack leave more than noise allows.
   bool gap() const {
@@ -78,6 +78,23 @@ public:
   }
 
 private:
+  static std::shared_ptr<const plant::Balance> names_of(const plant::Balance& balance) {
+    auto names = std::make_shared<plant::Balance>();
+    names->quantity = balance.quantity;
+    names->unit = balance.unit;
+    names->signal = balance.signal;
+    names->instrument = balance.instrument;
+    names->otherwise = balance.otherwise;
+    names->given = balance.given;
+    names->form = balance.form;
+    names->reads = balance.reads;
+    names->freedoms = balance.freedoms;
+    names->courses = balance.courses;
+    for (auto* list : {&names->freedoms, &names->courses})
+      for (plant::Freedom& one : *list) one.directions = nullptr;
+    return names;
+  }
+
   void weigh(const BlockFitter& fitter) {
     excess_ = std::max(choice_.none.unseen_total - floor_, std::numeric_limits<double>::min());
     const std::vector<std::size_t>& blocks = choice_.best.blocks;
@@ -101,18 +118,18 @@ private:
            choice_.best.seen_total > limit_.course_of_seen * choice_.none.seen_total;
   }
 
-  void look_for_course(const Projection& projection, const Problem& problem) {
+  void look_for_course(const plant::Balance& balance, const Projection& projection, const Problem& problem) {
     const double rows = static_cast<double>(problem.y.size()),
                  price = balance_->form == plant::BalanceForm::weak ? limit_.weak_per_direction
                                                                     : limit_.filtered_per_direction;
     double least = std::numeric_limits<double>::infinity();
-    for (const plant::Freedom& one : balance_->courses) {
-      const Eigen::MatrixXd columns = projection.columns(one.directions(0.0));
+    for (std::size_t i = 0; i < balance.courses.size(); ++i) {
+      const Eigen::MatrixXd columns = projection.columns(balance.courses[i].directions(0.0));
       const double free_rows = std::max(1.0, rows - price * static_cast<double>(columns.cols()));
       const double left = sum_of_squares_left(problem, columns) * rows * rows / (free_rows * free_rows);
       if (!(left < least)) continue;
       least = left;
-      course_ = &one;
+      course_ = &balance_->courses[i];
     }
     if (!(least < limit_.course_better * std::min(choice_.best.seen_total, choice_.none.seen_total)))
       course_ = nullptr;

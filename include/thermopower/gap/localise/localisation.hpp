@@ -149,10 +149,11 @@ inline Localisation localise(const Model& model, const std::vector<Recording>& r
 /// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented
 /// simulation were the truth.
 /// @param simulated the recordings with their outputs replaced by the augmented model's simulation, in the
-///   same order
-inline void draw_effect(const Model& baseline, const std::vector<Recording>& simulated,
-                        const Catalogue& catalogue, std::vector<MissingQuantity>& quantities) {
+///   same order; let go of as soon as the balances have what they need: they may be long
+inline void draw_effect(const Model& baseline, std::vector<Recording> simulated, const Catalogue& catalogue,
+                        std::vector<MissingQuantity>& quantities) {
   const RecordedBalances balances(baseline, simulated, catalogue);
+  simulated.clear();
   draw_supplied(balances.sources(), actuator_signal_count, quantities);
 }
 

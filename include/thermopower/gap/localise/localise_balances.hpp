@@ -101,9 +101,17 @@ private:
   struct Group {
     std::vector<std::size_t> sources;    ///< indices
     std::optional<Judgement> judgement;  ///< of the one that counts
-    std::size_t counts = 0;              ///< its index in `sources`
+    std::size_t counts = 0;              ///< its index among all sources
+    plant::ReadingOffsets offsets;       ///< by which its readings were corrected
     bool instrument = false;             ///< the first freedom's instrument is at fault, not the plant
   };
+
+  static void settle(Group& group, std::size_t source, const plant::ReadingOffsets& offsets,
+                     Judgement judgement) {
+    group.judgement.emplace(std::move(judgement));
+    group.counts = source;
+    group.offsets = offsets;
+  }
 
   Judgement judged(std::size_t source, const plant::ReadingOffsets& offsets) const {
     return Judgement(sources_[source].make(offsets), options_.slack, limit_);
@@ -119,7 +127,8 @@ private:
       group->sources.push_back(i);
     }
     for (Group& group : groups_)
-      if (group.sources.size() == 1) group.judgement.emplace(judged(group.sources.front(), offsets_));
+      if (group.sources.size() == 1)
+        settle(group, group.sources.front(), offsets_, judged(group.sources.front(), offsets_));
   }
 
   static bool accuses(const Judgement& judgement, double explained) {
@@ -158,7 +167,8 @@ private:
       again.emplace_back(&group, std::move(judgement));
     }
     if (!(after < limit_.better_corrected * before)) return false;
-    for (auto& [group, judgement] : again) group->judgement.emplace(std::move(judgement));
+    for (auto& [group, judgement] : again)
+      settle(*group, group->sources.front(), corrected, std::move(judgement));
     return true;
   }
 
@@ -180,8 +190,7 @@ private:
         if (group.judgement && !asked) continue;
         Judgement judgement = judged(source, offsets_);
         if (group.judgement && !(judgement.cost() < group.judgement->cost())) continue;
-        group.judgement.emplace(std::move(judgement));
-        group.counts = source;
+        settle(group, source, offsets_, std::move(judgement));
       }
     }
     for (Group& group : groups_) {
@@ -221,8 +230,8 @@ private:
 
   void place(const Group& group) {
     const Judgement& judgement = *group.judgement;
-    const plant::Balance& balance = judgement.balance();
     if (!judgement.gap()) return;
+    const plant::Balance balance = sources_[group.counts].make(group.offsets);
     if (const plant::Freedom* course = judgement.course()) {
       const Observed observed = observe(balance, true, limit_);
       const plant::Freedom& one = scattering(balance, *course, observed);
@@ -351,17 +360,21 @@ inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int 
                           const LocalisationThresholds& limit = {}) {
   for (MissingQuantity& q : quantities) {
     if (q.x.size() < 2) continue;
+    // Of alternatives one that reads a simulated signal is taken: it holds by itself.
+    const plant::BalanceSource* chosen = nullptr;
+    for (const plant::BalanceSource& source : sources)
+      if (source.quantity == q.quantity &&
+          (chosen == nullptr || (chosen->reads.empty() && !source.reads.empty())))
+        chosen = &source;
+    const auto made = [&](const plant::BalanceSource& source) {
+      return source.make(plant::ReadingOffsets(signals, 0.0));
+    };
     std::optional<plant::Balance> balance;
-    bool restated = false;
-    for (const plant::BalanceSource& source : sources) {
-      // Of alternatives one that reads a simulated signal is taken: it holds by itself.
-      if (balance && source.reads.empty()) continue;
-      if (balance && !balance->reads.empty()) break;
-      plant::Balance one = source.make(plant::ReadingOffsets(signals, 0.0));
-      const bool same = one.quantity == q.quantity;
-      if (!same && !(one.restated && one.restated->quantity == q.quantity)) continue;
-      restated = !same;
-      balance = std::move(one);
+    const bool restated = chosen == nullptr;
+    if (chosen != nullptr) balance = made(*chosen);
+    for (std::size_t i = 0; restated && !balance && i < sources.size(); ++i) {
+      plant::Balance one = made(sources[i]);
+      if (one.restated && one.restated->quantity == q.quantity) balance = std::move(one);
     }
     if (!balance) continue;
     const Observed observed = observe(*balance, restated, limit);

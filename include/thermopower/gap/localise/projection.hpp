@@ -35,6 +35,20 @@ inline Eigen::VectorXd capacity_of(const plant::Balance& balance) {
                                      : Eigen::VectorXd(Eigen::VectorXd::Ones(balance.rows->size()));
 }
 
+/// The values of a part of a direction, made where they are not at hand.
+class PartValues {
+public:
+  /// Keeps a reference to `part`, which must outlive it.
+  explicit PartValues(const plant::BalancePart& part)
+      : part_(part), made_(part.make ? part.make() : Eigen::VectorXd()) {}
+  /// One per row; empty where there are none.
+  const Eigen::VectorXd& operator()() const { return part_.make ? made_ : part_.values; }
+
+private:
+  const plant::BalancePart& part_;
+  Eigen::VectorXd made_;
+};
+
 /// Rows in which a balance, and every direction in which it may be off, is compared.
 class Projection {
 public:
@@ -76,8 +90,10 @@ public:
   }
   Eigen::VectorXd column(const plant::Direction& direction) const override {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(b_.rows->size());
-    for (const plant::BalancePart& part : direction)
-      if (part.values.size() > 0) sum += part.factor * part.values;
+    for (const plant::BalancePart& part : direction) {
+      const PartValues values(part);
+      if (values().size() > 0) sum += part.factor * values();
+    }
     return average_(sum);
   }
   Eigen::MatrixXd starts() const override { return Eigen::MatrixXd(average_.rows(), 0); }
@@ -114,16 +130,17 @@ public:
     using Kind = plant::BalancePart::Kind;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(b_.rows->size());
     for (const plant::BalancePart& part : direction) {
+      const PartValues values(part);
       switch (part.kind) {
         case Kind::flow_sampled:
         case Kind::flow_held:
-          sum += part.factor * filtered(part.values.cwiseQuotient(capacity_), false);
+          sum += part.factor * filtered(values().cwiseQuotient(capacity_), false);
           break;
         case Kind::store:
-          sum += part.factor * stored(part.values, part.weight);
+          sum += part.factor * stored(values(), part.weight);
           break;
         case Kind::reading:
-          sum += part.factor * part.values;
+          sum += part.factor * values();
           break;
         case Kind::reading_late:
           sum += part.factor *
@@ -233,15 +250,16 @@ public:
     return joined([&](const TestFunctions& f) {
       Eigen::VectorXd sum = Eigen::VectorXd::Zero(f.size());
       for (const plant::BalancePart& part : direction) {
+        const PartValues values(part);
         switch (part.kind) {
           case Kind::flow_sampled:
-            sum += part.factor * f.integral(part.values);
+            sum += part.factor * f.integral(values());
             break;
           case Kind::flow_held:
-            sum += part.factor * f.held_integral(part.values, b_.held_delay_s + part.delay_s);
+            sum += part.factor * f.held_integral(values(), b_.held_delay_s + part.delay_s);
             break;
           case Kind::store: {
-            Eigen::VectorXd taken = f.integral(capacity_).cwiseProduct(f.derivative(part.values));
+            Eigen::VectorXd taken = f.integral(capacity_).cwiseProduct(f.derivative(values()));
             if (part.weight.size() > 0) taken = taken.cwiseProduct(f.integral(part.weight));
             sum -= part.factor * taken;
             break;
@@ -336,9 +354,14 @@ inline Problem problem_of(const plant::Balance& balance, const Projection& proje
   Problem problem;
   problem.slack = slack;
   problem.y = projection.residual();
-  problem.nuisance.resize(problem.y.size(), static_cast<Eigen::Index>(balance.constants.size()));
-  for (std::size_t k = 0; k < balance.constants.size(); ++k)
-    problem.nuisance.col(static_cast<Eigen::Index>(k)) = projection.column(balance.constants[k].second);
+  std::vector<Eigen::VectorXd> moved;
+  for (const plant::ConstantDirection& constant : balance.constants) {
+    const plant::Direction direction = constant.direction();
+    if (!direction.empty()) moved.push_back(projection.column(direction));
+  }
+  problem.nuisance.resize(problem.y.size(), static_cast<Eigen::Index>(moved.size()));
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    problem.nuisance.col(static_cast<Eigen::Index>(k)) = moved[k];
   problem.free = projection.starts();
   problem.fold = projection.stretches(problem.folds);
   return problem;
