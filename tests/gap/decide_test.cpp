@@ -197,6 +197,45 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
   CHECK(candidates[2].probability > 0.05);
 }
 
+TEST_CASE("friction that hardly rises near standstill is friction where that leaves what the noise allows") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates(3);
+  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
+  candidates[2].explanation.effects.push_back(standard_catalogue().find("stribeck_friction"));
+  for (Candidate& one : candidates) {
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.at_bound.assign(one.list.size(), false);
+    one.train = one.held_out = sums_of(blocks(30.0, 30.0));
+  }
+  const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
+  const auto count = static_cast<Eigen::Index>(candidates[2].list.size());
+  candidates[1].fit.point[constants] = candidates[2].fit.point[constants] = 0.02;
+  candidates[2].fit.point[constants + 1] = 0.0005;         // the rise
+  candidates[2].fit.point[constants + 2] = std::log(0.5);  // its knee, above the transition
+  candidates[2].fit.point[constants + 3] = std::log(0.01);
+  candidates[2].fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
+  candidates[1].train = candidates[1].held_out = sums_of(blocks(1.1, 1.1));
+  candidates[2].train = candidates[2].held_out = sums_of(blocks(1.0, 1.0));
+
+  weigh(candidates, Weight(), model);
+  CHECK(candidates[2].probability == 0.0);
+  CHECK(candidates[1].probability > 0.9);
+
+  // A rise that matters, or one that the data do not tell from such a one, or friction that leaves more than noise.
+  candidates[2].fit.point[constants + 1] = 0.004;
+  weigh(candidates, Weight(), model);
+  CHECK(candidates[2].probability > 0.9);
+  candidates[2].fit.point[constants + 1] = 0.0005;
+  candidates[2].fit.information *= 1e-4;  // 0.02 N m of uncertainty
+  weigh(candidates, Weight(), model);
+  CHECK(candidates[2].probability > 0.9);
+  candidates[2].fit.information *= 1e4;
+  candidates[1].train = candidates[1].held_out = sums_of(blocks(1.8, 1.8));
+  weigh(candidates, Weight(), model);
+  CHECK(candidates[2].probability > 0.9);
+}
+
 TEST_CASE("a friction backward that no motion tells is no friction that differs by direction") {
   const Model model = axis_model();
   Candidate one;

@@ -11,6 +11,7 @@
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
+#include <thermopower/plant/effects/stribeck_friction.hpp>
 #include <thermopower/plant/effects/warm_friction.hpp>
 
 #include <Eigen/QR>
@@ -217,7 +218,16 @@ TEST_CASE("the catalogue refuses what does not fit together, in a sentence that 
       return one;
     }
   };
+  struct Slight : StribeckFriction {
+    static EffectInfo info() {
+      EffectInfo one = StribeckFriction::info();
+      one.where_small->beside = knee_rad_per_s;
+      return one;
+    }
+  };
   Catalogue catalogue;
+  CHECK_THROWS_WITH(catalogue.add<Slight>(), ContainsSubstring("'knee_rad_per_s'") &&
+                                                 ContainsSubstring("one of its parameters is small"));
   CHECK_THROWS_WITH(catalogue.add<Alike>(), ContainsSubstring("two places of the list"));
   CHECK_THROWS_WITH(catalogue.add<OfItself>(), ContainsSubstring("another cause"));
   CHECK_THROWS_WITH(catalogue.add<Mixed>(),

@@ -172,6 +172,14 @@ struct WhereEqual {
   std::string cause;  ///< the other effect's id, or that of a constant, such as `calibration.viscous`
 };
 
+/// What an effect is where one of its parameters is small beside another: dry friction that hardly rises near standstill is
+/// dry friction.
+struct WhereSmall {
+  int small = -1;     ///< place of a parameter among the effect's
+  int beside = -1;    ///< place of the one that it is measured against, in the same unit
+  std::string cause;  ///< as in WhereEqual
+};
+
 /// What an effect is, for people and for the engine. The equation in code is the effect's hooks.
 struct EffectInfo {
   std::string id;                     ///< stable, snake_case
@@ -192,6 +200,8 @@ struct EffectInfo {
   double (*slowest_s)(const double* parameters) = nullptr;
   /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
   std::optional<WhereEqual> where_equal = {};
+  /// The same where one of its parameters is small beside another.
+  std::optional<WhereSmall> where_small = {};
   /// What it is to simulators of bodies: adds itself to a joint. Null: they have no words for it, and an export leaves it out
   /// with its numbers.
   void (*in_a_joint)(const double* parameters, JointDescription& joint) = nullptr;

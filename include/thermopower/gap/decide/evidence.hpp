@@ -208,27 +208,58 @@ inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t o
   return apart <= decision.equal * larger;
 }
 
-/// Whether a candidate ended where it is another one (EffectInfo::where_equal) that scores like it: both say the same,
-/// and the other says it with fewer parameters.
+/// Whether a parameter of a candidate is small beside another one as far as it matters, with what the data leave open.
+/// @param small   place of a parameter among the candidate's coordinates
+/// @param beside  place of the one that it is measured against
+inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t beside) {
+  const auto a = static_cast<Eigen::Index>(small), b = static_cast<Eigen::Index>(beside);
+  double size = std::abs(candidate.fit.point[a]);
+  const Eigen::MatrixXd& information = candidate.fit.information;
+  if (a < information.rows()) {
+    constexpr double standard_errors = 2.0;
+    size += standard_errors / std::sqrt(std::max(information(a, a), 1e-300));
+  }
+  return size <= decision.equal * std::abs(candidate.fit.point[b]);
+}
+
+/// What an effect is in fact.
+struct SpecialCase {
+  std::string cause;           ///< id; empty: the effect itself
+  bool but_for_a_bit = false;  ///< it has something small besides
+};
+
+/// What an effect of a candidate is in fact, by where its parameters ended.
+/// @param at  place of its first parameter among the candidate's coordinates
+inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& info, std::size_t at) {
+  const auto place = [&](int i) { return at + static_cast<std::size_t>(i); };
+  const auto& equal = info.where_equal;
+  if (equal && are_equal(candidate, place(equal->one), place(equal->other))) return {equal->cause};
+  const auto& small = info.where_small;
+  if (small && is_small(candidate, place(small->small), place(small->beside))) return {small->cause, true};
+  return {};
+}
+
+/// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like it:
+/// both say the same, and the other says it with fewer parameters. What has something small besides bends to the last of
+/// what others leave: there it is enough that these leave what the noise allows.
 inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, const Model& model) {
   std::size_t first = model.calibrated().size();
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     const std::size_t at = first;
     first += entry->info.parameters.size();
-    if (!entry->info.where_equal) continue;
-    const plant::WhereEqual& equal = *entry->info.where_equal;
-    if (!are_equal(candidate, at + static_cast<std::size_t>(equal.one),
-                   at + static_cast<std::size_t>(equal.other)))
-      continue;
+    const SpecialCase in_fact = special_case(candidate, entry->info, at);
+    if (in_fact.cause.empty()) continue;
     std::vector<std::string> ids;
     for (const std::string& id : candidate.explanation.ids(model))
       if (id != entry->info.id) ids.push_back(id);
     // Constants are free in every explanation.
-    if (!plant::is_calibration(equal.cause)) ids.push_back(equal.cause);
+    if (!plant::is_calibration(in_fact.cause)) ids.push_back(in_fact.cause);
     std::vector<std::string> simpler_ids = simpler.explanation.ids(model);
     std::sort(ids.begin(), ids.end());
     std::sort(simpler_ids.begin(), simpler_ids.end());
-    if (ids == simpler_ids) return in_the_running(simpler) && scores_alike(simpler, candidate);
+    if (ids == simpler_ids)
+      return in_the_running(simpler) &&
+             (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)));
   }
   return false;
 }

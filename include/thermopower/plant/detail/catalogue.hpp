@@ -14,18 +14,21 @@ namespace thermopower::plant {
 
 namespace detail {
 
-inline void check(const WhereEqual& equal, const EffectInfo& info) {
+/// @param two    places of two parameters of an effect
+/// @param words  what is said of it there
+/// @param cause  what it is there
+inline void check_special_case(const std::pair<int, int>& two, const char* words, const std::string& cause,
+                               const EffectInfo& info) {
   const auto is_place = [&](int i) { return i >= 0 && i < static_cast<int>(info.parameters.size()); };
-  const std::string where = "effect '" + info.id + "', what it is where two of its parameters are equal: ";
-  if (!is_place(equal.one) || !is_place(equal.other) || equal.one == equal.other)
+  const std::string where = "effect '" + info.id + "', what it is where " + words + ": ";
+  if (!is_place(two.first) || !is_place(two.second) || two.first == two.second)
     throw InvalidInput(where + "expected two places of the list of parameters (from 0)");
-  const Parameter &one = info.parameters[static_cast<std::size_t>(equal.one)],
-                  &other = info.parameters[static_cast<std::size_t>(equal.other)];
+  const Parameter &one = info.parameters[static_cast<std::size_t>(two.first)],
+                  &other = info.parameters[static_cast<std::size_t>(two.second)];
   if (one.unit != other.unit || one.logarithmic || other.logarithmic)
     throw InvalidInput(where + "'" + one.name + "' and '" + other.name +
                        "' need the same unit, and neither may be logarithmic");
-  if (equal.cause.empty() || equal.cause == info.id)
-    throw InvalidInput(where + "expected the id of another cause");
+  if (cause.empty() || cause == info.id) throw InvalidInput(where + "expected the id of another cause");
 }
 
 inline void check(const Parameter& parameter, int place, const std::string& effect, const HookSet& hooks) {
@@ -77,7 +80,12 @@ THERMOPOWER_GAP_INLINE void Catalogue::check(const EffectInfo& info, const HookS
     throw InvalidInput(effect + ": has more than " + std::to_string(most_own_states) + " states");
   int place = 0;
   for (const Parameter& parameter : info.parameters) detail::check(parameter, place++, effect, hooks);
-  if (info.where_equal) detail::check(*info.where_equal, info);
+  if (const auto& equal = info.where_equal)
+    detail::check_special_case({equal->one, equal->other}, "two of its parameters are equal", equal->cause,
+                               info);
+  if (const auto& small = info.where_small)
+    detail::check_special_case({small->small, small->beside}, "one of its parameters is small", small->cause,
+                               info);
 }
 
 THERMOPOWER_GAP_INLINE Catalogue& Catalogue::add(CatalogueEntry entry) {

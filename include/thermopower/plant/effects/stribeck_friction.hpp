@@ -47,6 +47,7 @@ struct StribeckFriction {
                            .degenerate_at_bounds()},
                       {Need::axis_model},
                       "very slow motion through standstill in both directions"};
+    one.where_small = WhereSmall{rise_Nm, size_Nm, "coulomb_friction"};
     one.in_a_joint = in_a_joint;
     return one;
   }
