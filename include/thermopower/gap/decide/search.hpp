@@ -22,15 +22,21 @@ namespace thermopower::gap::engine {
 /// Everything is first tried on a small part of the data (`coarse`), of a moving axis in windows so short that even
 /// friction that holds and lets go is nearly linear in its parameters; effects with states that nobody measures, which
 /// such windows do not tell, then in longer ones (`longer`). What does well there is fitted to more of the data
-/// (`fine`). Every candidate it returns has its residuals on the fine data.
+/// (`fine`). Every candidate it returns has its residuals on the fine data. Which sets are worth that is first looked at in
+/// few of the short windows (`glimpse`).
 class Search {
 public:
   /// The attributions must pose the same question to different parts of the data, and outlive this object.
   /// @param threads   1 or more; the result does not depend on it
   /// @param suspects  submodels in which the measured rows themselves say that something is missing
-  Search(const Attribution& coarse, const Attribution& longer, const Attribution& fine, unsigned threads,
-         std::vector<plant::SubmodelName> suspects = {})
-      : coarse_(coarse), longer_(longer), fine_(fine), threads_(threads), suspects_(std::move(suspects)) {}
+  Search(const Attribution& glimpse, const Attribution& coarse, const Attribution& longer,
+         const Attribution& fine, unsigned threads, std::vector<plant::SubmodelName> suspects = {})
+      : glimpse_(glimpse),
+        coarse_(coarse),
+        longer_(longer),
+        fine_(fine),
+        threads_(threads),
+        suspects_(std::move(suspects)) {}
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
@@ -244,16 +250,24 @@ private:
       for (const Explanation& single : singles)
         if (!near->explanation.includes(single))
           promises.push_back({0.0, near, near->explanation.with(single)});
-    in_parallel(promises.size(), threads_, [&](std::size_t i) {
-      promises[i].cost = coarse_.promise(*promises[i].near, promises[i].together);
-    });
-    sort_by(promises, [](const Promise& one) { return one.cost; });
+    constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
+    const auto rank = [&](const Attribution& on) {
+      in_parallel(promises.size(), threads_, [&](std::size_t i) {
+        promises[i].cost = on.promise(*promises[i].near, promises[i].together);
+      });
+      sort_by(promises, [](const Promise& one) { return one.cost; });
+    };
+    if (&glimpse_ != &coarse_ && promises.size() > looked_at) {
+      rank(glimpse_);
+      promises.resize(looked_at);
+    }
+    rank(coarse_);
     std::set<std::vector<std::string>> seen;
     std::vector<Promise> kept;
     for (Promise& one : promises) {
       std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
       std::sort(ids.begin(), ids.end());
-      if (kept.size() < 14 && seen.insert(ids).second) kept.push_back(std::move(one));
+      if (kept.size() < fitted && seen.insert(ids).second) kept.push_back(std::move(one));
     }
     add_fitted(candidates, kept);
   }
@@ -314,6 +328,7 @@ private:
     add_fitted(candidates, tries);
   }
 
+  const Attribution& glimpse_;
   const Attribution& coarse_;
   const Attribution& longer_;
   const Attribution& fine_;

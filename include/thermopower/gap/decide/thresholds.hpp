@@ -112,6 +112,7 @@ struct SearchThresholds {
   Eigen::Index tried_bench_rows = 900;     ///< of the first look
   Eigen::Index tried_axis_rows = 1600;     ///< the same of an axis
   Eigen::Index shortest_axis_rows = 2000;  ///< of the first look in windows that are shorter still
+  Eigen::Index glimpsed_axis_rows = 500;   ///< of those, in which sets are looked for that are worth a look
   Eigen::Index judged_rows = 20000;        ///< held out, on which explanations are weighed
   Eigen::Index windows_together = 4;       ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score

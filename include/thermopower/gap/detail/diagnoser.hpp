@@ -299,18 +299,25 @@ private:
                    short_s == horizon_s ? also : std::vector<std::size_t>(), nullptr, together);
     longer_problem.segments = thinned_runs(longer_problem.segments, search_extent.tried_bench_rows);
     FitProblem coarse_problem = longer_problem;
+    FitProblem glimpse_problem = longer_problem;
     const double shortest_s = shortest_window_s(model_, catalogue_, train_inputs_, short_s);
-    if (shortest_s < short_s)
-      coarse_problem.segments = thinned_runs(problem_of(train_inputs_, search_extent.tried_bench_rows,
-                                                        search_extent.shortest_axis_rows, shortest_s)
-                                                 .segments,
-                                             search_extent.tried_bench_rows);
+    if (shortest_s < short_s) {
+      const auto shortest = [&](Eigen::Index rows) {
+        return thinned_runs(
+            problem_of(train_inputs_, search_extent.tried_bench_rows, rows, shortest_s).segments,
+            search_extent.tried_bench_rows);
+      };
+      coarse_problem.segments = shortest(search_extent.shortest_axis_rows);
+      glimpse_problem.segments = shortest(search_extent.glimpsed_axis_rows);
+    }
     std::vector<Candidate>& candidates = attempt.candidates;
-    const Attribution coarse(coarse_problem), longer(longer_problem), fine(problem);
+    const Attribution glimpse(glimpse_problem), coarse(coarse_problem, glimpse_problem),
+        longer(longer_problem), fine(problem);
     for (int round = 0; round < 2; ++round) measure_noise(longer_problem, longer.fit({}, {}));
-    problem.sigma = coarse_problem.sigma = longer_problem.sigma;
-    const Search searching(coarse, shortest_s < short_s ? longer : coarse, fine, options_.threads,
-                           suspects());
+    problem.sigma = glimpse_problem.sigma = coarse_problem.sigma = longer_problem.sigma;
+    const bool in_short_windows = shortest_s < short_s;
+    const Search searching(in_short_windows ? glimpse : coarse, coarse, in_short_windows ? longer : coarse,
+                           fine, options_.threads, suspects());
     std::vector<Explanation> causes, costly;
     for (Explanation& one : singles()) {
       const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
@@ -319,7 +326,7 @@ private:
     candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
       measure_noise(problem, Search::best(candidates));
-      coarse_problem.sigma = longer_problem.sigma = problem.sigma;
+      glimpse_problem.sigma = coarse_problem.sigma = longer_problem.sigma = problem.sigma;
       problem.correlation = mean_correlation(correlation_of(Search::best(candidates), problem));
       searching.renew(candidates);
     };

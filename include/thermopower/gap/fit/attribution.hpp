@@ -63,7 +63,9 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
 class Attribution {
 public:
   /// @param problem  the training data and the model; must outlive this object
-  explicit Attribution(const FitProblem& problem) : problem_(problem) {}
+  explicit Attribution(const FitProblem& problem) : problem_(problem), glimpse_(problem) {}
+  /// @param glimpse  the same question to few of the data, on which starts are compared; must outlive this object
+  Attribution(const FitProblem& problem, const FitProblem& glimpse) : problem_(problem), glimpse_(glimpse) {}
 
   /// Fits one explanation from all its starts; `near` is a fit of part of it to begin from.
   /// @param further  where given, one more start: coordinates in the order of coordinates()
@@ -74,11 +76,12 @@ public:
     candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
-    if (starts.size() > 1) {
+    constexpr std::size_t tried = 5;
+    if (starts.size() > tried) {
       // The linear guess of every start, then a few steps from the best five, then the best of them.
-      constexpr std::size_t tried = 5;
       std::vector<std::pair<double, std::size_t>> order;
-      for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({fitter.scan(starts[i]), i});
+      Fitter scanner(glimpse_, candidate.explanation, candidate.list);
+      for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({scanner.scan(starts[i]), i});
       std::sort(order.begin(), order.end());
       std::vector<Eigen::VectorXd> best;
       for (std::size_t i = 0; i < std::min(tried, order.size()); ++i) best.push_back(starts[order[i].second]);
@@ -332,6 +335,7 @@ private:
   static constexpr double noise_ = 1.2;  ///< mean square up to which there is nothing left but noise
 
   const FitProblem& problem_;
+  const FitProblem& glimpse_;
 };
 
 /// Whether recordings tell of the block that a constant belongs to.
