@@ -88,6 +88,9 @@ struct Inputs {
   std::vector<Eigen::VectorXd> own_inputs;  ///< of a plant of one's own, in its order; held, complete
   bool own = false;                         ///< the signals are those of a plant of one's own
   Eigen::VectorXd repeats;                  ///< samples averaged in each row; empty: one
+  std::array<double, actuator_signal_count>
+      sample_noise{};  ///< of what was averaged: standard deviation of one sample's
+                       ///< noise, as all of them tell it; 0: not told
   Eigen::MatrixXd
       command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
                        ///< rows x parts; empty: it holds

@@ -46,6 +46,12 @@ struct NoiseThresholds {
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
 double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0);
 
+/// Memory of noise from one sample to the next, at most: what remembers longer is the error of a model.
+inline constexpr double longest_memory = 0.97;
+
+/// Factor by which the noise of a mean of samples is larger than that of as many independent ones, at most: an AR(1)'s.
+inline double most_of_a_mean() { return std::sqrt((1.0 + longest_memory) / (1.0 - longest_memory)); }
+
 /// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
 inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
   constexpr int sweeps = 200;
@@ -77,7 +83,7 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
   };
   std::vector<Eigen::VectorXd> noises, errors;
   // Memories of noise from one sample to the next, and widths of a model's errors in samples.
-  constexpr double memories[] = {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97};
+  constexpr double memories[] = {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, longest_memory};
   constexpr double widths[] = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 45.0, 68.0, 100.0, 400.0};
   for (const double memory : memories)
     noises.push_back(shape([&](double lag) { return 1.0 - std::pow(memory, lag); }));

@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -249,6 +250,19 @@ private:
     return list;
   }
 
+  /// Noise of a signal beyond which the residuals of averages hold something else: where the power is another one in each of
+  /// them, an error of the current looks like noise. Infinite where the samples do not tell.
+  static double most_noise(const FitProblem& problem, Signal signal) {
+    double most = 0.0;
+    for (const Segment& segment : problem.segments) {
+      if (!segment.inputs->judged(signal)) continue;
+      const double of_samples = segment.inputs->sample_noise[static_cast<std::size_t>(signal)];
+      if (!(of_samples > 0.0)) return std::numeric_limits<double>::infinity();
+      most = std::max(most, of_samples);
+    }
+    return most_of_a_mean() * most;
+  }
+
   void measure_noise(FitProblem& problem, const Candidate& candidate) {
     std::array<std::vector<bool>, signal_count> gaps;
     const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
@@ -260,7 +274,8 @@ private:
       const double quantum = problem.segments.front().inputs->repeats.size() > 0
                                  ? 0.0
                                  : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / problem.sigma[i];
-      const double sd = noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i],
+      const double sd = std::min(noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i],
+                                 most_noise(problem, static_cast<Signal>(i))),
                    rms = rms_of(residuals[i]) * problem.sigma[i];
       problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
     }

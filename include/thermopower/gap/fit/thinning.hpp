@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
@@ -106,6 +107,10 @@ public:
     observe(Signal::motor_C, thin);
     observe(Signal::current_A, thin);
     const Simulated whole = simulated(full_), shortened = simulated(thin);
+    for (const Signal signal : {Signal::motor_C, Signal::current_A})
+      if (full_.judged(signal))
+        thin.sample_noise[static_cast<std::size_t>(signal)] =
+            noise_of_samples(signal, whole[static_cast<std::size_t>(signal)]);
     make_up_for(Signal::motor_C, whole, shortened, thin);
     make_up_for(Signal::current_A, whole, shortened, thin);
     return thin;
@@ -340,6 +345,21 @@ private:
                                 readings.value(row, static_cast<int>(k));
                       });
     return result;
+  }
+
+  /// The noise of single samples. A step of the power moves the errors of a model, too: it is no noise.
+  double noise_of_samples(Signal signal, const Eigen::VectorXd& simulated) const {
+    const Eigen::VectorXd& measured = full_.of(signal);
+    std::vector<double> errors;
+    std::vector<bool> gaps;
+    for (const RunSpan& run : full_.runs)
+      for (Eigen::Index row = run.begin; row < run.end; ++row) {
+        const double error = simulated[row] - measured[row];
+        if (!std::isfinite(error)) continue;
+        errors.push_back(error);
+        gaps.push_back(row == run.begin || heat_level(row) != heat_level(row - 1));
+      }
+    return noise_sd(errors, gaps, quantum_of(measured));
   }
 
   void make_up_for(Signal signal, const Simulated& whole, const Simulated& shortened, Inputs& thin) const {
