@@ -195,6 +195,16 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
   candidates[1].train = candidates[1].held_out = sums_of(blocks(1.2, 1.2));
   weigh(candidates, few, model);
   CHECK(candidates[2].probability > 0.05);
+
+  // Unless they are the same to a hundredth, and friction alone leaves what the noise allows: so small a difference is not what
+  // a rest comes from.
+  candidates[2].fit.point[constants + 1] = 0.02005;
+  candidates[2].fit.information *= 1e2;
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability == 0.0);
+  candidates[1].train = candidates[1].held_out = sums_of(blocks(1.8, 1.8));
+  weigh(candidates, few, model);
+  CHECK(candidates[2].probability > 0.05);
 }
 
 TEST_CASE("friction that hardly rises near standstill is friction where that leaves what the noise allows") {

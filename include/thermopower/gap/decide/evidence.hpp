@@ -195,7 +195,9 @@ inline bool in_the_running(const Candidate& candidate) {
 /// Whether two parameters of a candidate are equal as far as it matters, with what the data leave open.
 /// @param one    place of a parameter among the candidate's coordinates
 /// @param other  place of another one
-inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t other) {
+/// @param within  share of the larger one by which they may differ
+inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t other,
+                      double within = decision.equal) {
   const auto a = static_cast<Eigen::Index>(one), b = static_cast<Eigen::Index>(other);
   const double larger = std::max(std::abs(candidate.fit.point[a]), std::abs(candidate.fit.point[b]));
   double apart = std::abs(candidate.fit.point[a] - candidate.fit.point[b]);
@@ -205,7 +207,7 @@ inline bool are_equal(const Candidate& candidate, std::size_t one, std::size_t o
     const double curvature = 0.25 * (information(a, a) + information(b, b) - 2.0 * information(a, b));
     apart += standard_errors / std::sqrt(std::max(curvature, 1e-300));
   }
-  return apart <= decision.equal * larger;
+  return apart <= within * larger;
 }
 
 /// Whether a parameter of a candidate is small beside another one as far as it matters, with what the data leave open.
@@ -225,7 +227,7 @@ inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t 
 /// What an effect is in fact.
 struct SpecialCase {
   std::string cause;           ///< id; empty: the effect itself
-  bool but_for_a_bit = false;  ///< it has something small besides
+  bool but_for_a_bit = false;  ///< what else it has is too small to be what it fits better by
 };
 
 /// What an effect of a candidate is in fact, by where its parameters ended.
@@ -233,7 +235,8 @@ struct SpecialCase {
 inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& info, std::size_t at) {
   const auto place = [&](int i) { return at + static_cast<std::size_t>(i); };
   const auto& equal = info.where_equal;
-  if (equal && are_equal(candidate, place(equal->one), place(equal->other))) return {equal->cause};
+  if (equal && are_equal(candidate, place(equal->one), place(equal->other)))
+    return {equal->cause, are_equal(candidate, place(equal->one), place(equal->other), decision.the_same)};
   const auto& small = info.where_small;
   if (small && is_small(candidate, place(small->small), place(small->beside))) return {small->cause, true};
   return {};

@@ -24,6 +24,8 @@ struct DecisionThresholds {
   /// Share of the larger one by which two parameters may differ, two standard errors included, that are equal as far as it
   /// matters: frictions of two directions are seldom known to a tenth beforehand.
   double equal = 0.1;
+  /// The same, below which it cannot be what one fits better by than the other.
+  double the_same = 0.01;
   /// Share of the longest run that the slowest time constant of a cause may last, to be seen in it.
   double seen_within = 0.5;
   /// Standard errors by which a richer explanation must fit better than a simpler one not to stay behind it.
