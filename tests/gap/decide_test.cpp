@@ -343,8 +343,9 @@ TEST_CASE("a second cause beside a rest is named only where the rows blame its s
     one.deviance = deviance;
     return one;
   };
-  const Blames all = [](const Candidate&, const thermopower::plant::SubmodelName&) { return true; };
-  const Blames only_friction = [](const Candidate&, const thermopower::plant::SubmodelName& name) {
+  const Witness all{[](const Candidate&, const thermopower::plant::SubmodelName&) { return true; }, {}};
+  Witness only_friction;
+  only_friction.blames = [](const Candidate&, const thermopower::plant::SubmodelName& name) {
     return name == thermopower::plant::SubmodelName(Submodel::mechanical_friction);
   };
   std::vector<Candidate> candidates{candidate({}, 900.0, 3000.0), candidate({friction}, 100.0, 2000.0),
@@ -354,6 +355,31 @@ TEST_CASE("a second cause beside a rest is named only where the rows blame its s
   // What leaves nothing but noise needs no other witness.
   candidates[2].held_out = sums_of(blocks(1.1, 1.1));
   CHECK(parsimonious(candidates, 2, only_friction) == 2);
+}
+
+TEST_CASE("an instrument beside a rest is named where what followed nothing recorded is over with it") {
+  const CatalogueEntry* neighbour = standard_catalogue().find("neighbour_heating");
+  const CatalogueEntry* lag = standard_catalogue().find("thermometer_lag");
+  const CatalogueEntry* mass = standard_catalogue().find("second_thermal_mass");
+  const auto candidate = [](std::vector<const CatalogueEntry*> effects, double mean_square) {
+    Candidate one;
+    one.explanation.effects = std::move(effects);
+    one.held_out = sums_of(blocks(mean_square, mean_square));
+    return one;
+  };
+  const Candidate part = candidate({neighbour}, 100.0), late = candidate({neighbour, lag}, 25.0),
+                  massive = candidate({neighbour, mass}, 25.0);
+  double with_both = 0.0;
+  Witness rows{
+      [](const Candidate&, const thermopower::plant::SubmodelName&) { return false; },
+      [&](const Candidate& known) { return known.explanation.effects.size() < 2 ? 1000.0 : with_both; }};
+  CHECK(is_localised(late, part, rows));
+  CHECK_FALSE(is_localised(massive, part, rows));  // a node that nobody measures can hold whatever is missing
+  with_both = 700.0;  // what no column shows is missing whatever the thermometer does
+  CHECK_FALSE(is_localised(late, part, rows));
+  with_both = 0.0;
+  rows.course_beside = [](const Candidate&) { return 0.0; };  // there was none
+  CHECK_FALSE(is_localised(late, part, rows));
 }
 
 TEST_CASE("what the printed table contradicts is not called explained") {

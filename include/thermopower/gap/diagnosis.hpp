@@ -48,6 +48,9 @@ struct Location {
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
   /// Whether what is missing follows nothing recorded, and a course of its own in time predicts it.
   bool has_own_course = false;
+  /// How much is missing, in multiples of what noise leaves: the mean square of what constants within their slack do not
+  /// make up for, on stretches that they were not fitted to.
+  double times_noise = 0.0;
 };
 
 /// Whether a place takes anything of its signal's gap away, half a per cent or more. Of places that take nothing away by

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
@@ -16,6 +17,14 @@
 #include <vector>
 
 namespace thermopower::gap::engine {
+
+/// The submodels in which places say that something is missing, where there are several: then two causes may be.
+inline std::vector<plant::SubmodelName> suspects_among(const std::vector<Location>& where) {
+  std::vector<plant::SubmodelName> found;
+  for (const Location& one : where)
+    if (std::find(found.begin(), found.end(), one.submodel) == found.end()) found.push_back(one.submodel);
+  return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
+}
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///

@@ -119,17 +119,50 @@ inline double share_of_blocks(const Candidate& better, const Candidate& than) {
   return blocks > 0.0 ? won / blocks : 0.0;
 }
 
-/// Whether the measured rows blame a submodel, as they are or once the causes of a candidate are in the model.
-using Blames = std::function<bool(const Candidate& known, const plant::SubmodelName& submodel)>;
+/// What the measured rows say, as a witness of the causes of candidates.
+struct Witness {
+  /// Whether they blame a submodel, as they are or once the causes of a candidate are in the model; not asked where empty.
+  std::function<bool(const Candidate& known, const plant::SubmodelName& submodel)> blames;
+  /// How much is missing beside the causes of a candidate that follows nothing recorded but has a course of its own in time.
+  std::function<double(const Candidate& known)> course_beside;
+};
 
-/// Whether the rows blame what a set of causes has beyond a part of it, or need not: a set that leaves only noise has
-/// the data themselves for a witness.
-inline bool is_localised(const Candidate& set, const Candidate& part, const Blames& blames) {
-  if (!blames || largest_noise_multiple(set.held_out) <= decision.near_floor) return true;
+/// How much of what follows nothing recorded is among places, in multiples of what noise leaves; 0 where nothing is.
+inline double own_course_in(const std::vector<Location>& where) {
+  double most = 0.0;
+  for (const Location& one : where)
+    if (one.has_own_course) most = std::max(most, one.times_noise);
+  return most;
+}
+
+/// Whether little of a course that followed nothing recorded is left once causes are in the model. A balance remembers
+/// nothing: what stands in for a heat that no column shows leaves it missing where and when it was.
+inline bool ends_the_course(double beside, double before) {
+  return before > 0.0 && beside < decision.course_left * before;
+}
+
+/// Whether a cause is one of an instrument: it changes what is read, and not what is there.
+inline bool is_of_an_instrument(const CatalogueEntry& entry) {
+  for (const Submodel instrument : {Submodel::sensing_current, Submodel::sensing_temperature,
+                                    Submodel::sensing_angle, Submodel::sensing_rate})
+    if (entry.info.submodel == plant::SubmodelName(instrument)) return true;
+  return false;
+}
+
+/// Whether the rows bear witness to what a set of causes has beyond a part of it, or need not: a set that leaves only noise
+/// has the data themselves for a witness. What is missing beside the part may follow nothing recorded because an instrument
+/// bends the readings that it is drawn from; then that is over with the readings put right, and the rows are a witness of
+/// that instrument though they blame nothing.
+inline bool is_localised(const Candidate& set, const Candidate& part, const Witness& rows) {
+  if (!rows.blames || largest_noise_multiple(set.held_out) <= decision.near_floor) return true;
+  const auto is_witnessed = [&](const CatalogueEntry& entry) {
+    return rows.blames(part, entry.info.submodel) ||
+           (rows.course_beside && is_of_an_instrument(entry) &&
+            ends_the_course(rows.course_beside(set), rows.course_beside(part)));
+  };
   for (const CatalogueEntry* entry : set.explanation.effects) {
     const std::vector<const CatalogueEntry*>& known = part.explanation.effects;
-    if (std::find(known.begin(), known.end(), entry) == known.end() && !blames(part, entry->info.submodel))
-      return false;
+    if (std::find(known.begin(), known.end(), entry) == known.end() && !is_witnessed(*entry)) return false;
   }
   return true;
 }
@@ -139,7 +172,7 @@ inline bool is_localised(const Candidate& set, const Candidate& part, const Blam
 /// the held-out data, and where the rows blame its submodel, too, or nothing but noise is left. Otherwise it mends
 /// small errors of the others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
-                                const Blames& blames = {}) {
+                                const Witness& rows = {}) {
   for (bool smaller = true; smaller;) {
     smaller = false;
     std::size_t part = 0;
@@ -154,7 +187,7 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
         (largest_noise_multiple(candidates[part].held_out) < decision.room_for_second ||
          excess(candidates[chosen]) > decision.second_takes * excess(candidates[part]) ||
          share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds ||
-         !is_localised(candidates[chosen], candidates[part], blames))) {
+         !is_localised(candidates[chosen], candidates[part], rows))) {
       chosen = part;
       smaller = true;
     }
@@ -241,15 +274,15 @@ inline bool has_readings_enough(const Candidate& candidate, const Model& model) 
 }
 
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
-/// @param blames  what the measured rows say; where not given, they blame whatever is asked
+/// @param rows  what the measured rows say; where not given, they blame whatever is asked
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Reference& reference,
                            const Weight& weight, const Options& options, const Model& model,
-                           const Blames& blames = {}) {
+                           const Witness& rows = {}) {
   Conclusion result;
   const Candidate& empty = candidates.front();
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
-  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen, blames);
+  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen, rows);
   const Candidate& best = candidates[result.chosen];
   const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
   // Several constants, each within what is known of it, can stand for one that is further off: where that one is the

@@ -58,11 +58,12 @@ public:
         attempt = std::move(shorter);
     }
     stage("which");
-    const Blames blames = [this](const Candidate& known, const plant::SubmodelName& submodel) {
-      return is_blamed(known, submodel);
-    };
+    const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
+                         return is_blamed(known, submodel);
+                       },
+                       [this](const Candidate& known) { return own_course_in(left_beside(known)); }};
     Conclusion conclusion =
-        conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, blames);
+        conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
     if (conclusion.second_is_open) {
       // What is left looks a little like several effects: it is named as a rest.
       std::vector<Candidate>& all = attempt.candidates;
@@ -70,7 +71,7 @@ public:
                                [](const Candidate& one) { return one.explanation.effects.size() > 1; }),
                 all.end());
       weigh(all, attempt.weight, model_);
-      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_, blames);
+      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_, rows);
     }
     if (conclusion.verdict != Verdict::no_gap && constants_suffice(attempt, conclusion))
       conclusion = nothing_missing();
@@ -332,7 +333,7 @@ private:
     problem.sigma = glimpse_problem.sigma = coarse_problem.sigma = longer_problem.sigma;
     const bool in_short_windows = shortest_s < short_s;
     const Search searching(in_short_windows ? glimpse : coarse, coarse, in_short_windows ? longer : coarse,
-                           fine, options_.threads, suspects());
+                           fine, options_.threads, suspects_among(result_.where));
     std::vector<Explanation> causes, costly;
     for (Explanation& one : singles()) {
       const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
@@ -380,18 +381,19 @@ private:
       return std::any_of(where.begin(), where.end(),
                          [&](const Location& one) { return one.submodel == submodel; });
     };
-    if (model_.own || among(result_.where)) return true;
-    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.point);
-    return among(localise(with_known, train_recordings_, {}, catalogue_).where);
+    return model_.own || among(result_.where) || among(left_beside(known));
   }
 
-  /// The submodels in which the measured rows say that something is missing, where there are several: then two causes
-  /// may be.
-  std::vector<plant::SubmodelName> suspects() const {
-    std::vector<plant::SubmodelName> found;
-    for (const Location& one : result_.where)
-      if (std::find(found.begin(), found.end(), one.submodel) == found.end()) found.push_back(one.submodel);
-    return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
+  /// Where a model with the causes of a candidate and the training rows part.
+  std::vector<Location> left_beside(const Candidate& known) const {
+    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.point);
+    return localise(with_known, train_recordings_, {}, catalogue_).where;
+  }
+
+  /// Whether nothing that has a course of its own in time is missing once the causes of a candidate are in the model. A node
+  /// that nobody measures can hold whatever heat is missing: a balance with one says nothing.
+  bool ends_its_course(const Candidate& chosen) const {
+    return !model_.own && chosen.hidden_starts == 0 && own_course_in(left_beside(chosen)) == 0.0;
   }
 
   /// The model with its constants refitted: the best explanation by constants alone, or as configured where that
@@ -487,8 +489,8 @@ private:
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     const bool unproven = result_.verdict == Verdict::partial && !is_proven_by_the_table(result_);
     if (unproven) take_causes_back(result_, model_, nothing_is_proven);
-    const bool on_its_own =
-        named && !unproven && leaves_a_rest && has_own_course(result_, chosen.explanation);
+    const bool on_its_own = named && !unproven && leaves_a_rest &&
+                            has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
     if (on_its_own) take_causes_back(result_, model_, follows_nothing_recorded);
     const bool taken_back = short_of_noise || unproven || on_its_own;
     if (named && leaves_a_rest && !taken_back)

@@ -236,7 +236,7 @@ private:
       const Observed observed = observe(balance, true, limit_);
       const plant::Freedom& one = scattering(balance, *course, observed);
       report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed,
-             one.variable.empty());
+             judgement.before(), one.variable.empty());
       return;
     }
     const bool named = !judgement.chosen().empty() && judgement.explained() > limit_.explained;
@@ -253,7 +253,7 @@ private:
       plant::SignalName signal = balance.signal;
       if (instrument && freedom.correction) signal = signal_of(freedom.correction->signal, balance);
       report(freedom, signal, submodel, judgement.worth(k), judgement.words(k), balance,
-             observe(balance, !own, limit_));
+             observe(balance, !own, limit_), judgement.before());
     }
     // Of two instruments that part without an order nobody can say which it is.
     if (named || excused || judgement.before() < limit_.large || balance.otherwise == balance.instrument)
@@ -263,7 +263,7 @@ private:
     plant::Freedom none;
     none.variable = axis;
     report(none, balance.signal, submodel_of(balance, axis), std::max(0.0, judgement.explained()),
-           "no freedom in one submodel helps much; the best", balance, observed);
+           "no freedom in one submodel helps much; the best", balance, observed, judgement.before());
   }
 
   /// The name of a signal whose reading was corrected: one that the balance reads.
@@ -304,8 +304,10 @@ private:
 
   void report(const plant::Freedom& freedom, const plant::SignalName& signal,
               const plant::SubmodelName& submodel, double share, const std::string& words,
-              const plant::Balance& balance, const Observed& observed, bool has_own_course = false) {
+              const plant::Balance& balance, const Observed& observed, double times_noise,
+              bool has_own_course = false) {
     Location location;
+    location.times_noise = times_noise;
     location.has_own_course = has_own_course;
     location.signal = signal;
     location.submodel = submodel;
@@ -331,6 +333,7 @@ private:
       one.evidence += " " + location.evidence;
       one.share = std::min(1.0, one.share + location.share);
       one.has_own_course = one.has_own_course || location.has_own_course;
+      one.times_noise = std::max(one.times_noise, location.times_noise);
       return;
     }
     out_.where.push_back(std::move(location));

@@ -193,12 +193,11 @@ inline bool is_proven_by_the_table(const Diagnosis& result) {
 /// Whether causes leave a signal above the noise in which what is missing follows nothing recorded. A cause of the catalogue
 /// acts through what is recorded, or remembers it; a rest beside a course of its own in time says that the cause only
 /// follows that course as far as it can. One that leaves no rest was hidden, and is known now; and one of the instruments bends
-/// the readings that the course was drawn from.
+/// the readings that the course was drawn from. Two causes at once can
+/// look like such a course; whether it is over once the larger is known, the caller asks.
 inline bool has_own_course(const Diagnosis& result, const Explanation& chosen) {
   for (const CatalogueEntry* entry : chosen.effects)
-    for (const Submodel instrument : {Submodel::sensing_current, Submodel::sensing_temperature,
-                                      Submodel::sensing_angle, Submodel::sensing_rate})
-      if (entry->info.submodel == plant::SubmodelName(instrument)) return false;
+    if (is_of_an_instrument(*entry)) return false;
   return std::any_of(result.where.begin(), result.where.end(), [&](const Location& place) {
     return place.has_own_course &&
            std::any_of(result.gap.begin(), result.gap.end(), [&](const GapScore& gap) {
