@@ -39,7 +39,7 @@ enum class FindingKind {
   clock_shift,      ///< an input stamped by another clock than the outputs
   lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate; it is not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
-  noisy_command,    ///< a command with noise that no motion follows; the noise floor counts it
+  noisy_command,  ///< a command or current with noise that no motion or heat follows; the noise floor counts it
   // The experiment.
   sampled_too_slowly,     ///< hardly a row in each window of the horizon
   never_driven,           ///< an input that is 0 throughout

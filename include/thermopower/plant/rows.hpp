@@ -94,7 +94,8 @@ struct Inputs {
   Eigen::MatrixXd
       command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
                        ///< rows x parts; empty: it holds
-  double command_noise = 0.0;          ///< standard deviation of what is noise in the command, in its unit
+  double command_noise = 0.0;    ///< standard deviation of what is noise in the command, in its unit
+  double current_noise_A = 0.0;  ///< the same of a recorded current that heats: its variance heats nothing
   HeatSource heat = HeatSource::none;  ///< what drives the thermal model
   Eigen::VectorXd
       next_share;  ///< of a bench: part of the interval after each row in which the next row's inputs are in

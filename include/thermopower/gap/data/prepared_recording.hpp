@@ -74,6 +74,8 @@ public:
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
+  /// Says how noisy the current is that heats the bench: its variance heats nothing. @param sd_A  standard deviation
+  void set_current_noise(double sd_A) { inputs_.current_noise_A = inputs_.command_noise = sd_A; }
   /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row
   void take_next_before_it(Eigen::VectorXd share) { inputs_.next_share = std::move(share); }
   /// Leaves an output out. Comes before what is said of the command. @param sentence  why it is not judged

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
+#include <thermopower/gap/data/current_noise.hpp>
 #include <thermopower/gap/data/experiment.hpp>
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -125,6 +127,40 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
   });
 }
 
+/// Takes off the heat of a bench what its current sensor reads where nothing flows in the training recordings, in all
+/// recordings.
+inline void read_current_noise(const Model& model, CheckedRecordings& checked,
+                               std::vector<Finding>& findings) {
+  // The other laws' heat goes with the current itself, of which noise is no part on average.
+  const bool goes_with_square = std::holds_alternative<OhmicCurrentModel>(model.current);
+  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis()) return;
+  const auto is_heated = [](const PreparedRecording& one) {
+    const Inputs& inputs = one.inputs();
+    return inputs.judged(Signal::motor_C) && inputs.heat_W.size() == 0 &&
+           (inputs.heat == HeatSource::measured || inputs.heat == HeatSource::drive);
+  };
+  CurrentNoise noise;
+  for (const PreparedRecording& one : checked.train)
+    if (is_heated(one))
+      noise.add(one.inputs().heat == HeatSource::drive ? one.inputs().drive_A : one.inputs().held_current_A,
+                one.inputs().runs);
+  const std::optional<double> sd_A = noise.sd_A();
+  if (!sd_A) return;
+  for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::noisy_command,
+                        Severity::note,
+                        one.recording().name,
+                        heat_column(one.inputs()),
+                        "has noise of " + short_number(*sd_A) +
+                            " A where nothing flows: its square is taken off the heat, and what a simulation "
+                            "wanders by the rest of it counts as noise",
+                        "log the mean square of the current between the rows",
+                        FindingAction::none,
+                        {}});
+    one.set_current_noise(*sd_A);
+  });
+}
+
 /// Lets the power of a bench be switched when the training recordings say that it was, in all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
@@ -187,6 +223,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
     leave_out_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);
     read_targets_between_rows(model, result, others);
+    read_current_noise(model, result, others);
     read_when_switched(model, result, catalogue, others);
   }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))

@@ -101,6 +101,8 @@ public:
     gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
     gather(full_.held_current_A, thin.held_current_A, true);
     gather(full_.heat_W, thin.heat_W, false);
+    thin.command_noise *=
+        std::sqrt(static_cast<double>(count) / static_cast<double>(full_.rows()));  // of means
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (std::isfinite(rows_[i].rate_dps))
         thin.covariate_rate_dps[static_cast<Eigen::Index>(i)] = rows_[i].rate_dps;

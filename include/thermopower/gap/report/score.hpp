@@ -108,8 +108,8 @@ inline std::array<double, signal_count> rms_between(const Errors& one, const Err
   return apart;
 }
 
-/// How far a simulation wanders from itself because the command of the axis was measured with noise, or the power of the
-/// bench switched at any time between two rows: root mean squares by signal, 0 where neither is so. One draw, the same each time.
+/// How far a simulation wanders from itself because the command of the axis or the current that heats the bench was measured
+/// with noise, or the power of the bench switched at any time between two rows: root mean squares by signal, 0 where neither is so. One draw, the same each time.
 inline std::array<double, signal_count> wander_of_command(const Model& model,
                                                           const std::vector<Segment>& segments,
                                                           const Catalogue& catalogue) {
@@ -120,11 +120,15 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
     const Inputs& inputs = *segment.inputs;
     if ((!(inputs.command_noise > 0.0) && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
+    // More noise on a current that heats is no more heat.
+    if (inputs.current_noise_A > 0.0)
+      copy.current_noise_A = std::hypot(copy.current_noise_A, copy.command_noise);
     for (double& share : copy.next_share)  // of its mean; within the interval
       share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
     for (Eigen::Index row = 0; row < inputs.rows() && inputs.command_noise > 0.0; ++row) {
       const double by = inputs.command_noise * dice.normal();
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
+      if (inputs.heat == HeatSource::measured) copy.held_current_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
       if (copy.command_within.size() > 0) copy.command_within.row(row).array() += by;
     }
