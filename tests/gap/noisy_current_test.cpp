@@ -93,6 +93,28 @@ TEST_CASE("the noise of a current sensor heats no motor, and makes no gap") {
     }
 }
 
+TEST_CASE("a ripple of the current that heats the motor stays") {
+  Bench bench;
+  bench.ripple = 0.5;  // 8 % more heat
+  const Diagnosis found = bench.answer(3);
+  CHECK_FALSE(says_noisy(found));
+  CHECK(found.verdict == Verdict::no_gap);
+}
+
+TEST_CASE(
+    "a disturbance of the training data alone is no gap where the simulation holds on what is held out") {
+  Bench bench;
+  Recording train = bench.recording(5, 10800);
+  Eigen::VectorXd motor = train.column("motor_C");
+  // Somebody leans on the housing for a minute: 0.4 K, gone after ten.
+  for (Eigen::Index k = 4000; k < motor.size(); ++k)
+    motor[k] -= 0.4 * std::min(1.0, static_cast<double>(k - 4000) / 120.0) *
+                std::exp(-static_cast<double>(std::max<Eigen::Index>(k - 4120, 0)) / 1156.0);
+  train.set("motor_C", motor);
+  const Diagnosis found = diagnose(Bench::model(), {train}, {bench.recording(105, 5400)});
+  CHECK(found.verdict == Verdict::no_gap);
+}
+
 TEST_CASE("the noise of a current sensor hides no winding apart from the stator") {
   Bench bench;
   bench.sensor_A = 12.0;

@@ -109,6 +109,8 @@ private:
     // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
     if (largest_noise_multiple(empty) > decision.far_from_noise)
       return conclusion.verdict == Verdict::unexplained && fit_both_parts(model_);
+    // A gap is measured on held-out data. Where they show none, what nothing explains is the training data's own.
+    if (conclusion.verdict == Verdict::unexplained && is_enough(model_, held_out_inputs_)) return true;
     if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
       return fit_both_parts(model_);
     if (is_enough(augmented(model_, empty.explanation, empty.list, empty.fit.point), held_out_inputs_))
