@@ -49,6 +49,17 @@ TEST_CASE("a power that is switched between the rows makes no gap, and hides non
   }
 }
 
+TEST_CASE("an hour in which switches between the rows are too few to be told names no winding") {
+  test::SwitchedBench bench;
+  for (const unsigned seed : {1u, 3u, 4u, 5u}) {
+    CAPTURE(seed);
+    const Diagnosis sound = diagnose(test::SwitchedBench::model(), {bench.recording(3600.0, seed)},
+                                     {bench.recording(3600.0, seed + 100)});
+    CHECK(sound.cause.empty());
+    CHECK(sound.verdict == Verdict::no_gap);
+  }
+}
+
 TEST_CASE("a power that is written after its interval makes no gap, and hides none") {
   test::SwitchedBench bench;
   bench.log = Log::afterwards;

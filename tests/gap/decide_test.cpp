@@ -433,7 +433,7 @@ TEST_CASE("constants alone explain only what the printed table shows near the no
   result.gap.back().after = 1.7;
   CHECK(constants_fall_short(result));
   Diagnosis taken_back = result;
-  take_causes_back(taken_back, Model(), constants_leave_a_rest);
+  take_causes_back(taken_back, Model(), nothing_known(constants_leave_a_rest));
   CHECK(taken_back.verdict == Verdict::unexplained);
   CHECK(taken_back.cause.empty());
   CHECK(taken_back.gap.back().after == 9.0);
@@ -462,6 +462,25 @@ TEST_CASE("a part is named only where the printed table proves it, beyond what o
   // One signal is enough.
   result.gap.push_back({Signal::angle_deg, "deg", 0.5, 9.0, 9.0, 4.0, 1.0, 0.55, {0.5, 0.6}});
   CHECK(is_proven_by_the_table(result));
+}
+
+TEST_CASE(
+    "an explanation that shrinks nothing for sure is none, and no gap where the simulation is near the noise") {
+  Diagnosis result;
+  result.gap.push_back({Signal::motor_C, "degC", {}, 1.35, 1.35, 1.2, 1.0, 0.11, {-0.1, 0.25}});
+  CHECK_FALSE(is_shrunk_by_the_table(result));
+  CHECK(is_near_as_configured(result));
+  result.gap.back().ci95 = {0.02, 0.25};
+  CHECK(is_shrunk_by_the_table(result));
+  // One signal is enough for the first, and all are asked for the second.
+  result.gap.push_back({Signal::current_A, "A", {}, 1.6, 1.6, 1.4, 1.0, 0.12, {-0.1, 0.25}});
+  CHECK(is_shrunk_by_the_table(result));
+  CHECK_FALSE(is_near_as_configured(result));
+  result.verdict = Verdict::explained;
+  result.cause.push_back({});
+  take_causes_back(result, Model(), nothing_worth_a_cause());
+  CHECK(result.verdict == Verdict::no_gap);
+  CHECK(result.cause.empty());
 }
 
 TEST_CASE("a cause beside a rest is taken back where what is missing has a course of its own in time") {

@@ -253,6 +253,15 @@ inline Conclusion nothing_missing() {
   return result;
 }
 
+/// The conclusion that the simulation is near the noise, and what it is above it by too little for a cause.
+inline Conclusion nothing_worth_a_cause() {
+  Conclusion result = nothing_missing();
+  result.reason =
+      "the simulation is as near the noise as an explanation would have to bring it, and no cause makes that better on "
+      "all held-out rows";
+  return result;
+}
+
 /// The conclusion that nothing known is to blame.
 inline Conclusion nothing_known(const char* reason) {
   Conclusion result;

@@ -486,14 +486,13 @@ private:
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
     score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
     const bool short_of_noise = constants_fall_short(result_);
-    if (short_of_noise) take_causes_back(result_, model_, constants_leave_a_rest);
+    if (short_of_noise) take_causes_back(result_, model_, nothing_known(constants_leave_a_rest));
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
-    const bool unproven = result_.verdict == Verdict::partial && !is_proven_by_the_table(result_);
-    if (unproven) take_causes_back(result_, model_, nothing_is_proven);
+    const bool unproven = named && take_back_the_unproven(result_, model_, chosen.explanation);
     const bool on_its_own = named && !unproven && leaves_a_rest &&
                             has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
-    if (on_its_own) take_causes_back(result_, model_, follows_nothing_recorded);
+    if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));
     const bool taken_back = short_of_noise || unproven || on_its_own;
     if (named && leaves_a_rest && !taken_back)
       result_.remaining =

@@ -190,6 +190,20 @@ inline bool is_proven_by_the_table(const Diagnosis& result) {
   });
 }
 
+/// Whether the printed table proves that causes shrink some signal at all. What brings every signal near the noise has not
+/// taken anything away for that.
+inline bool is_shrunk_by_the_table(const Diagnosis& result) {
+  return std::any_of(result.gap.begin(), result.gap.end(),
+                     [](const GapScore& gap) { return gap.ci95.low > 0.0; });
+}
+
+/// Whether every signal of the simulation as configured is as near the noise as one that is called explained.
+inline bool is_near_as_configured(const Diagnosis& result) {
+  return std::all_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
+    return gap.noise_floor > 0.0 && gap.before <= decision.near_floor * gap.noise_floor;
+  });
+}
+
 /// Whether causes leave a signal above the noise in which what is missing follows nothing recorded. A cause of the catalogue
 /// acts through what is recorded, or remembers it; a rest beside a course of its own in time says that the cause only
 /// follows that course as far as it can. One that leaves no rest was hidden, and is known now; and one of the instruments bends
@@ -207,14 +221,13 @@ inline bool has_own_course(const Diagnosis& result, const Explanation& chosen) {
 }
 
 /// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
-/// showed. @param model  as configured  @param reason  why, in one sentence
-inline void take_causes_back(Diagnosis& result, const Model& model, const char* reason) {
-  const Conclusion unknown = nothing_known(reason);
-  const double kept = (1.0 - unknown.none_of_these) / std::max(1.0 - result.none_of_these, 1e-12);
-  for (RankedExplanation& one : result.ranking) one.probability *= kept;
-  result.verdict = unknown.verdict;
-  result.reason = unknown.reason;
-  result.none_of_these = unknown.none_of_these;
+/// showed. @param model  as configured  @param instead  what is concluded
+inline void take_causes_back(Diagnosis& result, const Model& model, const Conclusion& instead) {
+  const double kept = (1.0 - instead.none_of_these) / std::max(1.0 - result.none_of_these, 1e-12);
+  for (RankedExplanation& one : result.ranking) one.probability *= std::min(kept, 1.0);
+  result.verdict = instead.verdict;
+  result.reason = instead.reason;
+  result.none_of_these = instead.none_of_these;
   result.cause.clear();
   result.alternatives.clear();
   result.constants.clear();
@@ -226,6 +239,17 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const char* 
     gap.ci95 = {};
   }
   for (SignalSeries& series : result.series) series.augmented = series.baseline;
+}
+
+/// Takes causes back where the printed table does not prove their part. @return whether it did
+inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
+  const bool shrinks_nothing = !chosen.effects.empty() && !is_shrunk_by_the_table(result);
+  const bool proves_no_part = result.verdict == Verdict::partial && !is_proven_by_the_table(result);
+  if (!shrinks_nothing && !proves_no_part) return false;
+  take_causes_back(
+      result, model,
+      is_near_as_configured(result) ? nothing_worth_a_cause() : nothing_known(nothing_is_proven));
+  return true;
 }
 
 /// Takes back that causes bring every signal near the noise where the printed table shows one above it: the decision is
