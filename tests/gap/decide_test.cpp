@@ -464,6 +464,18 @@ TEST_CASE("a part is named only where the printed table proves it, beyond what o
   CHECK(is_proven_by_the_table(result));
 }
 
+TEST_CASE("errors that last prove a gap only where they are in most parts of the data") {
+  // 600 errors of 1.4 throughout, and as many with the same root mean square, a good part of it in one sixth.
+  std::vector<double> steady(600, 1.4), burst(600, 1.0);
+  for (std::size_t i = 0; i < steady.size(); i += 2) steady[i] = -1.4;
+  for (std::size_t i = 200; i < 300; ++i) burst[i] = std::sqrt(6.0 * 1.96 - 5.0);
+  CHECK(std::abs(rms_of(steady) - rms_of(burst)) < 1e-9);
+  CHECK(is_proven_above(steady, 1.2));
+  CHECK_FALSE(is_proven_above(burst, 1.2));
+  CHECK_FALSE(is_proven_above(steady, 1.5));
+  CHECK_FALSE(is_proven_above({9.0, 9.0}, 1.2));
+}
+
 TEST_CASE(
     "an explanation that shrinks nothing for sure is none, and no gap where the simulation is near the noise") {
   Diagnosis result;

@@ -110,7 +110,9 @@ private:
     if (largest_noise_multiple(empty) > decision.far_from_noise)
       return conclusion.verdict == Verdict::unexplained && fit_both_parts(model_);
     // A gap is measured on held-out data. Where they show none, what nothing explains is the training data's own.
-    if (conclusion.verdict == Verdict::unexplained && is_enough(model_, held_out_inputs_)) return true;
+    if (conclusion.verdict == Verdict::unexplained &&
+        is_within_noise(model_, held_out_inputs_, nullptr, options_.horizon_s, catalogue_, true))
+      return true;
     if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
       return fit_both_parts(model_);
     if (is_enough(augmented(model_, empty.explanation, empty.list, empty.fit.point), held_out_inputs_))

@@ -13,6 +13,7 @@
 #include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -350,10 +351,26 @@ inline std::array<double, signal_count> noise_of(const Errors& errors, const std
   return sigma;
 }
 
+/// Whether sixths of a sequence of errors, in order, prove that their root mean square is above a level: the lower end of its
+/// one-sided 95 % interval is (Student's t with five degrees of freedom). A few errors that last can be any size by chance.
+inline bool is_proven_above(const std::vector<double>& errors, double level) {
+  constexpr std::size_t blocks = 6;
+  constexpr double student = 2.015;
+  if (errors.size() < blocks) return false;
+  std::array<double, blocks> squares{};
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    squares[i * blocks / errors.size()] += errors[i] * errors[i];
+  double mean = 0.0, scatter = 0.0;
+  for (double& one : squares) mean += (one *= blocks / static_cast<double>(errors.size())) / blocks;
+  for (const double one : squares) scatter += (one - mean) * (one - mean) / (blocks * (blocks - 1.0));
+  return mean - student * std::sqrt(scatter) > level * level;
+}
+
 /// Whether a model scores what the noise allows on some data.
 /// @param witness  a search whose noise counts where it is less; null: there is none
+/// @param proven   whether a signal near its floor counts as above it only where its errors prove that
 inline bool is_within_noise(const Model& model, const std::vector<Inputs>& inputs, const FitProblem* witness,
-                            double horizon_s, const Catalogue& catalogue) {
+                            double horizon_s, const Catalogue& catalogue, bool proven = false) {
   const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
   const Errors errors = errors_of(model, full, catalogue);
   std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
@@ -361,9 +378,12 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
       witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
   const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
-  for (std::size_t i = 0; i < signal_count; ++i)
-    if (!errors.of[i].empty() && errors.rms(static_cast<Signal>(i)) > decision.no_gap_in_full * floor[i])
-      return false;
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    const double rms = errors.rms(static_cast<Signal>(i)), within = decision.no_gap_in_full * floor[i];
+    const bool may_be_chance =
+        proven && rms <= decision.near_floor * floor[i] && !is_proven_above(errors.of[i], within);
+    if (rms > within && !may_be_chance) return false;
+  }
   return true;
 }
 
