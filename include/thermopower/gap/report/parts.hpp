@@ -191,8 +191,7 @@ inline bool is_proven_by_the_table(const Diagnosis& result) {
   });
 }
 
-/// Whether the printed table proves that causes shrink some signal at all. What brings every signal near the noise has not
-/// taken anything away for that.
+/// Whether the printed table proves that causes shrink some signal at all.
 inline bool is_shrunk_by_the_table(const Diagnosis& result) {
   return std::any_of(result.gap.begin(), result.gap.end(),
                      [](const GapScore& gap) { return gap.ci95.low > 0.0; });
@@ -242,14 +241,16 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const Conclu
   for (SignalSeries& series : result.series) series.augmented = series.baseline;
 }
 
-/// Takes causes back where the printed table does not prove their part. @return whether it did
+/// Takes causes back where the printed table does not prove their part. Near the noise that is asked where the simulation was
+/// near it from the start: an effect that brought it there may have acted in a few seconds only, of which few blocks tell.
+/// @return whether it did
 inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
-  const bool shrinks_nothing = !chosen.effects.empty() && !is_shrunk_by_the_table(result);
-  const bool proves_no_part = result.verdict == Verdict::partial && !is_proven_by_the_table(result);
-  if (!shrinks_nothing && !proves_no_part) return false;
-  take_causes_back(
-      result, model,
-      is_near_as_configured(result) ? nothing_worth_a_cause() : nothing_known(nothing_is_proven));
+  if (!chosen.effects.empty() && is_near_as_configured(result) && !is_shrunk_by_the_table(result)) {
+    take_causes_back(result, model, nothing_worth_a_cause());
+    return true;
+  }
+  if (result.verdict != Verdict::partial || is_proven_by_the_table(result)) return false;
+  take_causes_back(result, model, nothing_known(nothing_is_proven));
   return true;
 }
 
