@@ -101,8 +101,10 @@ struct DecisionThresholds {
   double may_leave = 0.6;
   /// Standard deviation of a parameter, by how much the data's blocks differ, as a share of its value: up to it they agree.
   double size_known = 0.5;
-  /// Share of the mean square of what follows nothing recorded up to which it is over once a cause is in the model. Causes that
-  /// stood in for a fan, a load or a door that no column shows left two thirds of it and more, true ones a tenth.
+  /// Share of the mean square of what follows nothing recorded up to which it is over once an instrument's cause is in the
+  /// model. Beside a fan or a load that no column shows, instruments that are sound left four fifths of it and more; a
+  /// thermometer that did lag, a tenth and less. Of other causes nothing may be left: a bias of the air alone takes most of a
+  /// periodic load away.
   double course_left = 0.3;
 };
 
