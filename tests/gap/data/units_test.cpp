@@ -99,6 +99,44 @@ TEST_CASE("a wrong unit decides, with the option that mends it") {
   }
 }
 
+TEST_CASE("a drive that pushes against a stop is in amperes, and in milliamperes where it is") {
+  // An arm of 1.9 kg m^2 and 22 N m under a stiff position servo whose target swings by 60 degrees; padded stops let it go to
+  // 35. A simulation without stops is thrown off by what pushes against them, and follows best where nothing drives it.
+  Model model;
+  model.axis = RigidAxisModel{1.9, 6.0, 14.0};
+  model.effects["imbalance"] = {{"Nm", 22.0}, {"phase_rad", 0.0}};
+  constexpr int rows = 3000;
+  const auto arm = [&](double stop_rad) {
+    Recording r;
+    r.name = "arm";
+    r.t_s.resize(rows);
+    Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+    double theta = 0.0, omega = 0.0;
+    for (int i = 0; i < rows; ++i) {
+      r.t_s[i] = 0.004 * i;
+      angle[i] = theta * 57.29577951308232;
+      rate[i] = omega * 57.29577951308232;
+      const double target = 60.0 * std::sin(3.1416 * r.t_s[i]);
+      drive[i] = std::clamp(0.9 * (target - angle[i]) - 0.1 * rate[i], -9.0, 9.0);
+      for (int k = 0; k < 80; ++k) {
+        constexpr double h = 5e-5;
+        const double past = std::abs(theta) - stop_rad, side = theta > 0.0 ? 1.0 : -1.0;
+        const double pad = past > 0.0 ? side * 900.0 * past + 5.0 * omega : 0.0;
+        omega += h * (14.0 * drive[i] - 6.0 * omega - 22.0 * std::sin(theta) - pad) / 1.9;
+        theta += h * omega;
+      }
+    }
+    r.set("drive_A", drive);
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    return r;
+  };
+  CHECK(decision(model, arm(0.61)).empty());
+  Recording written = arm(10.0);
+  change(written, "drive_A", [](double x) { return 1000.0 * x; });
+  CHECK(decision(model, written) == "wrong_unit(drive_A) --column drive_A=drive_A:mA");
+}
+
 TEST_CASE("several columns in the same wrong unit are mended together") {
   Recording r = bench();
   for (const char* column : {"motor_C", "ambient_C"})

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -30,6 +31,8 @@ struct UnitThresholds {
   double far_better =
       3.0;  ///< times by which another unit must lower the misfit: no effect of a real motor does that
   double believable = 0.7;  ///< misfit that the data must have in the other unit
+  double better_than_without =
+      0.9;  ///< of the misfit without a column: what that column must lower it to in the unit that makes it small
   double off_by_factor =
       0.1;  ///< of the factor by which an output is said to be too small: what the misfit must be as it is
   double kelvin_C = 200.0;     ///< air is never so hot: kelvin
@@ -55,6 +58,8 @@ struct Reading {
   std::string mend;                            ///< options of the program
   std::function<void(Recording&)> apply;       ///< turns the recording into what it should be
   double least_misfit = 0.0;                   ///< misfit as recorded below which it cannot be that
+  std::function<void(Recording&)> without =
+      nullptr;  ///< takes away what it makes small; empty where it does not
 };
 
 /// How far a simulation is from a recording, as UnitThresholds says; NaN where nothing can be compared.
@@ -162,6 +167,9 @@ private:
     const std::string name = column;
     list_.push_back({FindingKind::wrong_unit, name, words, option(name, unit),
                      [name, factor](Recording& r) { scale(r, name.c_str(), factor); }});
+    constexpr const char* outputs[] = {"current_A", "angle_deg", "rate_dps"};
+    if (factor < 1.0 && std::find(std::begin(outputs), std::end(outputs), name) == std::end(outputs))
+      list_.back().without = [name](Recording& r) { scale(r, name.c_str(), 0.0); };
   }
   void turned(const char* column, const char* unit, const std::string& words) {
     if (!recording_.has(column)) return;
@@ -428,7 +436,14 @@ inline std::vector<Finding> check_units(const Model& model, const Recording& rec
       Recording other = sample;
       one.apply(other);
       const double left = misfit(model, other, catalogue);
-      if (left < least) least = left, best = &one;
+      if (!(left < least)) continue;
+      // A drive that pushes against a stop or a brake had better not push at all. That is no unit: in its own, it moves.
+      if (one.without) {
+        Recording idle = sample;
+        one.without(idle);
+        if (!(left < limit.better_than_without * misfit(model, idle, catalogue))) continue;
+      }
+      least = left, best = &one;
     }
     if (best != nullptr && least * limit.far_better < now && least < limit.believable) {
       more.add(best->kind, Severity::error, best->column,
