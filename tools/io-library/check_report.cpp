@@ -59,8 +59,9 @@ std::string check_text(const DataReport& report) {
                   "with all unknown");
     out += row;
     for (const auto& one : report.constants) {
-      std::snprintf(row, sizeof row, "  %-22s%24s%24s\n", one.constant.c_str(), percent(one.alone).c_str(),
-                    percent(one.together).c_str());
+      const auto known = [&](double sd) { return one.is_place ? readable(sd) + " rad" : percent(sd); };
+      std::snprintf(row, sizeof row, "  %-22s%24s%24s\n", one.constant.c_str(), known(one.alone).c_str(),
+                    known(one.together).c_str());
       out += row;
     }
     for (const auto& one : report.only_together)
@@ -104,6 +105,8 @@ std::string check_json(const DataReport& report) {
   for (const auto& one : report.constants)
     root["constants"][one.constant] = {{"sd_alone", number(one.alone)},
                                        {"sd_together", number(one.together)}};
+  for (const auto& one : report.constants)
+    if (one.is_place) root["constants"][one.constant]["unit"] = "rad";
   root["only_together"] = Json::array();
   for (const auto& one : report.only_together)
     root["only_together"].push_back({{"constants", one.constants}, {"sd", number(one.sd)}});

@@ -655,11 +655,14 @@ private:
     for (const auto& constant : d_.constants) {
       const double moved = constant.configured != 0.0 ? constant.fitted / constant.configured - 1.0 : 0.0;
       char text[24];
-      std::snprintf(text, sizeof text, "%+.1f\u00a0%%", 100.0 * moved);
+      if (constant.is_place)
+        std::snprintf(text, sizeof text, "%+.3g\u00a0rad", constant.fitted - constant.configured);
+      else std::snprintf(text, sizeof text, "%+.1f\u00a0%%", 100.0 * moved);
+      const std::string known = constant.is_place ? readable(constant.uncertainty) + "\u00a0rad"
+                                                  : percent_html(constant.uncertainty);
       out_ += "<tr><td class=\"t\"><code>" + breakable(constant.name) + "</code></td><td>" +
               readable(constant.configured, 4) + "</td><td>" + readable(constant.fitted, 4) + "</td><td>" +
-              text + "</td><td>" +
-              (constant.uncertainty > 0.0 ? "\u00b1\u2009" + percent_html(constant.uncertainty) : "\u2013") +
+              text + "</td><td>" + (constant.uncertainty > 0.0 ? "\u00b1\u2009" + known : "\u2013") +
               "</td></tr>\n";
     }
     out_ += "</table>\n";
@@ -678,7 +681,10 @@ private:
     };
     const auto is_constant = [&](std::size_t i) {
       const std::string& name = names[i];
-      return name.size() > 6 && name.compare(name.size() - 6, 6, ".scale") == 0;
+      const auto ends = [&](const char* ending) {
+        return name.size() > 6 && name.compare(name.size() - 6, 6, ending) == 0;
+      };
+      return ends(".scale") || ends(".shift");
     };
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < names.size(); ++i) order.push_back(i);

@@ -172,6 +172,7 @@ std::string report_json(const Diagnosis& diagnosis) {
     root["constants"][constant.name] = {{"configured", number(constant.configured)},
                                         {"fitted", number(constant.fitted)},
                                         {"uncertainty", number(constant.uncertainty)}};
+    if (constant.is_place) root["constants"][constant.name]["unit"] = "rad";
   }
   Json matrix = Json::array();
   for (Eigen::Index i = 0; i < diagnosis.correlation.of.rows(); ++i) {

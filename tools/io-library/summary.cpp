@@ -146,9 +146,11 @@ std::string summary(const Diagnosis& diagnosis) {
     const bool is_cause = std::any_of(diagnosis.cause.begin(), diagnosis.cause.end(),
                                       [&](const Cause& cause) { return cause.effect == as; });
     if (!is_cause)
-      out +=
-          line("with", constant.name + " " + readable(constant.configured) + " -> " +
-                           readable(constant.fitted) + " (known to " + percent(constant.uncertainty) + ")");
+      out += line("with", constant.name + " " + readable(constant.configured) + " -> " +
+                              readable(constant.fitted) + " (known to " +
+                              (constant.is_place ? readable(constant.uncertainty) + " rad"
+                                                 : percent(constant.uncertainty)) +
+                              ")");
   }
   if (diagnosis.remaining) {
     const Remaining& rest = *diagnosis.remaining;

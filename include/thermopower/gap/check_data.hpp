@@ -30,6 +30,7 @@ struct ConstantReport {
   std::string constant;   ///< id as in `calibration.<id>`
   double alone = 0.0;     ///< standard deviation as a share of its value, if all others were known
   double together = 0.0;  ///< the same with all of them unknown
+  bool is_place = false;  ///< an angle at which something is: both are in rad
 };
 
 /// Constants that a recording determines only together.

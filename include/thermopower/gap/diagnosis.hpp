@@ -165,13 +165,16 @@ struct MovedConstant {
   double configured = 0.0;   ///< as the model file has it, first field where several scale together
   double fitted = 0.0;       ///< as the explanation has it; its ratio to `configured` is that of all fields
   double uncertainty = 0.0;  ///< standard deviation that was stated or assumed, as a share of `configured`
+  bool is_place =
+      false;  ///< an angle at which something is: it moved by a difference, and `uncertainty` is in rad
 };
 
 /// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of
 /// them than one combination.
 struct ParameterCorrelation {
-  std::vector<std::string> names;  ///< `<effect>.<parameter>`, and `<constant>.scale` of the model's own
-  Eigen::MatrixXd of;              ///< symmetric, 1 on its diagonal; NaN where nothing is known
+  std::vector<std::string>
+      names;  ///< `<effect>.<parameter>`, and `<constant>.scale` of the model's own (`.shift` of a place)
+  Eigen::MatrixXd of;  ///< symmetric, 1 on its diagonal; NaN where nothing is known
 };
 
 /// What the named causes leave of the gap on held-out data.

@@ -150,15 +150,12 @@ public:
     return list;
   }
 
-  /// What one more of a constant's logarithm changes.
+  /// What one more of a constant's logarithm changes, or of a place's value.
   /// @param constant  its place in Model::calibrated()
   Values slopes(std::size_t constant) const {
     constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
-    std::vector<double> factors(model_.calibrated().size(), 1.0);
-    factors[constant] = std::exp(step);
-    Values result = evaluate(factors);
-    factors[constant] = std::exp(-step);
-    const Values down = evaluate(factors);
+    Values result = evaluate(model_.moved(constant, step));
+    const Values down = evaluate(model_.moved(constant, -step));
     result.inertia_kgm2 = (result.inertia_kgm2 - down.inertia_kgm2) * (0.5 / step);
     result.motion_Nm = (result.motion_Nm - down.motion_Nm) * (0.5 / step);
     result.drive_Nm = (result.drive_Nm - down.drive_Nm) * (0.5 / step);

@@ -71,7 +71,7 @@ public:
     return evaluate(heat, factors, true);
   }
 
-  /// What one more of a constant's logarithm changes in the flows of a balance.
+  /// What one more of a constant's logarithm changes in the flows of a balance, or of a place's value.
   struct Slopes {
     Eigen::VectorXd law_A;     ///< A
     Eigen::VectorXd heat_W;    ///< W
@@ -92,10 +92,8 @@ public:
   /// @param constant  its place in Model::calibrated()
   Slopes slopes(HeatTold heat, std::size_t constant) const {
     constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits
-    std::vector<double> factors(model_.calibrated().size(), 1.0);
-    const auto flows = [&](double log_factor) {
-      factors[constant] = std::exp(log_factor);
-      Values v = evaluate(heat, factors, false);
+    const auto flows = [&](double distance) {
+      Values v = evaluate(heat, model_.moved(constant, distance), false);
       return Slopes{std::move(v.law_A), std::move(v.heat_W), std::move(v.loss_W), std::move(v.capacity)};
     };
     Slopes result = flows(step);

@@ -71,7 +71,7 @@ struct Instance {
   std::vector<Bound<Scalar>> friction;        ///< on FrictionTerms, after those on AxisTerms
   std::vector<Bound<Scalar>> axis_readings;   ///< on AxisReadings
 
-  /// @param factors  one per entry of `model.calibrated()`: multiplies that constant
+  /// @param factors  one per entry of `model.calibrated()`: moves that constant (CalibratedConstant::moved)
   /// @param added    act besides the model's own effects
   /// @throws InvalidInput for an effect or parameter of the model that the catalogue does not know
   Instance(const Model& model, const std::vector<Scalar>& factors,
@@ -180,7 +180,7 @@ private:
       values.push_back(constant<Scalar>(found->second));
       for (std::size_t i = 0; i < calibrated.size() && i < factors.size(); ++i)
         if (calibrated[i].effect() == entry.info.id && calibrated[i].fields.front() == parameter.name)
-          values.back() *= factors[i];
+          values.back() = calibrated[i].moved(values.back(), factors[i]);
     }
     for (const auto& value : given) {
       bool known = false;

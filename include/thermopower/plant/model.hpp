@@ -5,6 +5,7 @@
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/invalid_input.hpp>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -113,10 +114,33 @@ struct CalibratedConstant {
   std::vector<std::string> fields;  ///< the model's fields that scale with it
   bool may_be_cause = true;         ///< off by more than what is known of it, it is a cause of its own
   bool has_slack = true;  ///< is known by itself; of a polynomial each coefficient is, not all together
+  /// It is a place and no size, such as the angle at which a load hangs: it is off by so much and not by a factor, and may be 0
+  /// or of the other sign. What is known of it is known in its unit.
+  bool is_place = false;
+
+  /// What a fit that leaves the constant as it is moves it by: a place is moved by adding, another constant by a factor.
+  double unmoved() const { return is_place ? 0.0 : 1.0; }
+
+  /// The constant moved. @param by  a factor, of a place what is added
+  template <class Scalar, class By>
+  Scalar moved(const Scalar& value, const By& by) const {
+    return is_place ? Scalar(value + by) : Scalar(value * by);
+  }
+
+  /// How far it is from `from` to `to`: the logarithm of the factor, of a place the difference.
+  double distance(double from, double to) const { return is_place ? to - from : std::log(to / from); }
 
   /// Id of the effect whose parameter it is; empty for a constant of a block.
   std::string effect() const { return block.rfind("effects.", 0) == 0 ? block.substr(8) : std::string(); }
 };
+
+/// Whether a parameter of an effect is a place and no size: a name says so that ends in `phase_rad` or `centre_rad`.
+inline bool names_a_place(std::string_view parameter) {
+  for (const std::string_view ending : {std::string_view("phase_rad"), std::string_view("centre_rad")})
+    if (parameter.size() >= ending.size() && parameter.substr(parameter.size() - ending.size()) == ending)
+      return true;
+  return false;
+}
 
 class Plant;
 
@@ -183,9 +207,16 @@ struct Model {
   /// The constants that calibration may move, the parameters of the model's own effects included.
   std::vector<CalibratedConstant> calibrated() const;
 
+  /// By what each of calibrated() is moved where one of them alone is: as ParameterPoint::factors has it.
+  /// @param constant  its place in calibrated()
+  /// @param distance  the logarithm of a factor; of a place a difference in its unit
+  std::vector<double> moved(std::size_t constant, double distance) const;
+
   /// How well a constant is known, as a share of its value; of fields that scale together the worst known
   /// counts. `otherwise` where nothing is stated.
   double uncertainty_of(const CalibratedConstant& constant, double otherwise = 0.05) const;
+  /// The same of a place where nothing is stated, rad: the zero of an angle is read from a log at rest, to a degree.
+  static constexpr double place_known_to_rad = 0.02;
 
   /// What is wrong with it, naming the field and what was expected, or nothing. Effects are not looked into:
   /// the catalogue knows them.

@@ -27,7 +27,7 @@ struct PlantInfo;
 /// @snippet plant_examples.cpp rollout
 /// How to: @ref gap_method, @ref diagnose_a_gap.
 struct ParameterPoint {
-  std::vector<double> factors;                 ///< on each of Model::calibrated(), > 0; empty: all 1
+  std::vector<double> factors;  ///< by which each of Model::calibrated() is moved; empty: none is
   std::vector<const CatalogueEntry*> effects;  ///< that act in addition, not owned
   std::vector<double> parameters;              ///< of `effects`, one effect after the other, in their units
   /// Derivative of each factor, then of each parameter, by the coordinate that a fit moves it with; empty: 1.

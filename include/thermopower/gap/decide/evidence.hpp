@@ -96,9 +96,9 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
     if (at_bound[static_cast<std::size_t>(index)]) return true;
   std::size_t at = model.calibrated().size();
   constexpr double nearly = 0.999;
+  const std::vector<CalibratedConstant> constants = model.calibrated();
   for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
-    if (std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) >
-        nearly * std::log(known_constants.farthest_factor))
+    if (std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) > nearly * farthest(constants[i]))
       return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;

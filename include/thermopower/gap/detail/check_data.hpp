@@ -173,18 +173,21 @@ inline Eigen::MatrixXd judge_constants(const Model& model, const Responses& resp
   const std::vector<CalibratedConstant> constants = model.calibrated();
   Eigen::MatrixXd slopes(responses.base().size(), 0);
   std::vector<std::string> names;
+  std::vector<bool> places;
   for (const CalibratedConstant& constant : constants) {
     if (!constant.may_be_cause) continue;
     Model moved = model;
     for (const std::string& field : constant.fields) {
       const std::string name = constant.block + "." + field;
-      moved.set(name, moved.get(name) * (1.0 + limit.step));
+      moved.set(name, constant.moved(moved.get(name),
+                                     constant.is_place ? std::log1p(limit.step) : 1.0 + limit.step));
     }
     const Eigen::VectorXd slope = (responses.of(moved) - responses.base()) / std::log1p(limit.step);
     if (!(slope.squaredNorm() > 0.0)) continue;  // its block is not judged
     slopes.conservativeResize(Eigen::NoChange, slopes.cols() + 1);
     slopes.col(slopes.cols() - 1) = slope;
     names.push_back(constant.id);
+    places.push_back(constant.is_place);
   }
   if (names.empty()) return slopes;
   const Eigen::MatrixXd information = slopes.transpose() * slopes;
@@ -196,7 +199,7 @@ inline Eigen::MatrixXd judge_constants(const Model& model, const Responses& resp
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     report.constants.push_back({names[i], 1.0 / std::sqrt(std::max(information(at, at), 1e-300)),
-                                std::sqrt(std::max(covariance(at, at), 0.0))});
+                                std::sqrt(std::max(covariance(at, at), 0.0)), places[i]});
   }
   for (Eigen::Index k = 0; k < variances.size(); ++k) {
     const double sd = std::sqrt(variances[k]);

@@ -19,13 +19,13 @@ namespace thermopower::gap::engine {
 
 /// One coordinate of a fit.
 struct Coordinate {
-  std::string name;                     ///< `calibration.<id>` or `<effect>.<parameter>`
-  std::string unit;                     ///< of the value; "1" for the factor on a constant
-  double lower = 0.0;                   ///< bound, in the fit's coordinate
-  double upper = 0.0;                   ///< bound, in the fit's coordinate
-  double start = 0.0;                   ///< where a fit begins, in the fit's coordinate
-  Prior prior = {};                     ///< around 0: what is known of a constant
-  bool logarithmic = false;             ///< value = exp(coordinate)
+  std::string name;          ///< `calibration.<id>` or `<effect>.<parameter>`
+  std::string unit;          ///< of the value; "1" for the factor on a constant, its own for a place
+  double lower = 0.0;        ///< bound, in the fit's coordinate
+  double upper = 0.0;        ///< bound, in the fit's coordinate
+  double start = 0.0;        ///< where a fit begins, in the fit's coordinate
+  Prior prior = {};          ///< around 0: what is known of a constant
+  bool logarithmic = false;  ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
   bool still = false;                   ///< it stays at its start: a detail that is not looked at
   bool two_families = false;            ///< below its standard it is of another shape than above
@@ -104,6 +104,11 @@ inline void stay_within_effect(const Model& model, const Catalogue& catalogue,
   for (const Parameter& parameter : entry->info.parameters) {
     if (parameter.name != constant.fields.front()) continue;
     const double value = model.get(constant.block + "." + parameter.name);
+    if (constant.is_place) {
+      coordinate.lower = std::max(coordinate.lower, std::min(parameter.lower - value, 0.0));
+      coordinate.upper = std::min(coordinate.upper, std::max(parameter.upper - value, 0.0));
+      continue;
+    }
     const auto factor = [&](double bound, double otherwise) {
       return bound / value > 0.0 ? std::log(bound / value) : otherwise;
     };
@@ -115,7 +120,12 @@ inline void stay_within_effect(const Model& model, const Catalogue& catalogue,
   }
 }
 
-/// The coordinates of an explanation: first one per constant (logarithm of its factor), then its effects'
+/// How far a constant may be moved, in its coordinate: further away it is a wrong unit, or stands for something else.
+inline double farthest(const CalibratedConstant& constant) {
+  return constant.is_place ? known_constants.farthest_place_rad : std::log(known_constants.farthest_factor);
+}
+
+/// The coordinates of an explanation: first one per constant (logarithm of its factor, of a place what is added), then its effects'
 /// parameters. A constant that is a cause has no prior; the others have that of what is known of them, and in
 /// the empty explanation they also stay within it: further away, the constant is the cause.
 /// @param catalogue  knows the bounds of the model's own effects
@@ -127,10 +137,17 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
     const bool free = std::find(explanation.released.begin(), explanation.released.end(), index) !=
                       explanation.released.end();
     const double sd = model.uncertainty_of(constant);
-    const double reach = explanation.size() > 0 ? std::log(known_constants.farthest_factor)
+    const double reach = explanation.size() > 0 ? farthest(constant)
                          : constant.has_slack   ? known_constants.within * sd
                                                 : 0.0;
-    list.push_back({plant::calibration_id(constant.id), "1", -reach, reach, 0.0, {}, true, {}});
+    list.push_back({plant::calibration_id(constant.id),
+                    constant.is_place ? "rad" : "1",
+                    -reach,
+                    reach,
+                    0.0,
+                    {},
+                    !constant.is_place,
+                    {}});
     if (!free) list.back().prior.sd = sd;
     if (!free && !constant.has_slack) list.back().lower = list.back().upper = 0.0;
     stay_within_effect(model, catalogue, constant, list.back());
@@ -181,7 +198,8 @@ inline Model augmented(const Model& model, const Explanation& explanation,
   for (const CalibratedConstant& constant : model.calibrated()) {
     for (const std::string& field : constant.fields) {
       const std::string name = constant.block + "." + field;
-      result.set(name, result.get(name) * std::exp(at[index]));
+      result.set(name, constant.moved(result.get(name),
+                                      coordinates[static_cast<std::size_t>(index)].value_of(at[index])));
     }
     ++index;
   }

@@ -9,7 +9,8 @@ namespace thermopower::gap::engine {
 /// What is taken to be known of a model's constants.
 struct KnownConstants {
   /// Standard deviation of a constant as a share of its value, where the model file states none. Data sheets
-  /// and careful fits are that good.
+  /// and careful fits are that good. A place is known to
+  /// plant::Model::place_known_to_rad.
   double uncertainty = 0.05;
   /// In standard deviations: a constant that moved by more is listed, and by more than that it does not move
   /// where nothing else explains it. 95 % of a normal distribution.
@@ -24,6 +25,8 @@ struct KnownConstants {
   double degrees_of_freedom_of_price = 1.0;
   /// A constant further away than this factor is a wrong unit, or stands for something else.
   double farthest_factor = 10.0;
+  /// The same of a place (CalibratedConstant::is_place), in radians: a quarter of a turn away a load pulls the other way.
+  double farthest_place_rad = 1.5707963;
 };
 
 /// The values in force.

@@ -18,6 +18,11 @@
 
 namespace thermopower::gap::engine {
 
+/// What a report calls the move of a constant: a factor on it, or of a place what is added.
+inline std::string name_of_move(const Coordinate& constant) {
+  return constant.name + (constant.logarithmic ? ".scale" : ".shift");
+}
+
 /// Values and intervals of an explanation's own parameters. The intervals are those of the fit's coordinate
 /// carried over.
 inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,
@@ -37,7 +42,7 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                              ? one.upper - one.lower
                              : covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
     ParameterEstimate estimate;
-    estimate.name = i < constants ? one.name + ".scale" : one.name;
+    estimate.name = i < constants ? name_of_move(one) : one.name;
     estimate.value = one.value_of(value);
     estimate.ci95 = {one.value_of(std::max(value - reach, one.lower)),
                      one.value_of(std::min(value + reach, one.upper))};
@@ -80,7 +85,8 @@ inline ParameterCorrelation correlation_of_parameters(const Candidate& candidate
   correlation.of = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto place = static_cast<std::size_t>(places[static_cast<std::size_t>(i)]);
-    correlation.names.push_back(candidate.list[place].name + (place < constants ? ".scale" : ""));
+    correlation.names.push_back(place < constants ? name_of_move(candidate.list[place])
+                                                  : candidate.list[place].name);
     for (Eigen::Index k = 0; k < n; ++k)
       if (k != i)
         correlation.of(i, k) =

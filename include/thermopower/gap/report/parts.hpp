@@ -125,9 +125,10 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
   for (const CalibratedConstant& constant : model.calibrated()) {
     const std::string name = constant.block + "." + constant.fields.front();
-    const double sd = model.uncertainty_of(constant), moved = std::log(fitted.get(name) / model.get(name));
+    const double sd = model.uncertainty_of(constant),
+                 moved = constant.distance(model.get(name), fitted.get(name));
     if (constant.fields.size() == 1 && std::abs(moved) > known_constants.within * sd)
-      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd});
+      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd, constant.is_place});
   }
 }
 

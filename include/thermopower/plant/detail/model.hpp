@@ -173,9 +173,13 @@ THERMOPOWER_GAP_INLINE std::vector<CalibratedConstant> Model::calibrated() const
   if (!own)
     for (const auto& effect : effects)
       for (const auto& parameter : effect.second)
-        if (parameter.second != 0.0)
-          list.push_back(
-              {effect.first + "." + parameter.first, "effects." + effect.first, {parameter.first}});
+        if (parameter.second != 0.0 || names_a_place(parameter.first))
+          list.push_back({effect.first + "." + parameter.first,
+                          "effects." + effect.first,
+                          {parameter.first},
+                          true,
+                          true,
+                          names_a_place(parameter.first)});
   return list;
 }
 
@@ -213,6 +217,14 @@ THERMOPOWER_GAP_INLINE std::optional<std::string> Model::validate() const {
   return problem;
 }
 
+THERMOPOWER_GAP_INLINE std::vector<double> Model::moved(std::size_t constant, double distance) const {
+  const std::vector<CalibratedConstant> all = calibrated();
+  std::vector<double> by;
+  for (const CalibratedConstant& one : all) by.push_back(one.unmoved());
+  by[constant] = all[constant].is_place ? distance : std::exp(distance);
+  return by;
+}
+
 THERMOPOWER_GAP_INLINE double Model::uncertainty_of(const CalibratedConstant& constant,
                                                     double otherwise) const {
   double worst = 0.0;
@@ -220,7 +232,7 @@ THERMOPOWER_GAP_INLINE double Model::uncertainty_of(const CalibratedConstant& co
     const auto found = uncertainty.find(constant.block + "." + field);
     if (found != uncertainty.end() && found->second > worst) worst = found->second;
   }
-  return worst > 0.0 ? worst : otherwise;
+  return worst > 0.0 ? worst : constant.is_place ? place_known_to_rad : otherwise;
 }
 
 }  // namespace thermopower::plant
