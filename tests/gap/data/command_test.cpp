@@ -34,6 +34,38 @@ double noise_of(const Recording& r) {
   return between.noise();
 }
 
+/// A geared joint under a position loop of 1 kHz, in steps of 0.05 ms: it balances nearly all of its drive by viscous friction
+/// and gravity, and moves slowly against its rows. A row for each step of the loop, or for some.
+/// @param quantum_deg  of the encoder
+/// @param each         steps of the loop for a row
+Recording geared(double quantum_deg, int each, double length_s) {
+  constexpr double loop_s = 1e-3, h = 5e-5;
+  std::vector<double> t_s, drive_A, angle_deg;
+  double rad = 0.0, radps = 0.0;
+  for (int step = 0; step * loop_s < length_s; ++step) {
+    const double now_s = step * loop_s;
+    double target_deg = 0.0;
+    for (const double hz : {0.13, 0.31, 0.62, 1.1, 1.9})
+      target_deg += 9.0 * std::sin(6.2832 * hz * now_s) * std::min(1.0, now_s);
+    const double command_A = 0.4 * (target_deg - 57.29578 * rad) - 0.03 * 57.29578 * radps;
+    if (step % each == 0) {
+      t_s.push_back(now_s);
+      drive_A.push_back(command_A);
+      angle_deg.push_back(quantum_deg * std::floor(57.29578 * rad / quantum_deg + 0.5));
+    }
+    for (int i = 0; i < 20; ++i) {
+      radps += h * (9.5 * command_A - 4.0 * radps - 8.0 * std::sin(rad)) / 0.35;
+      rad += h * radps;
+    }
+  }
+  Recording r;
+  r.name = "geared";
+  r.t_s = Eigen::Map<Eigen::VectorXd>(t_s.data(), static_cast<Eigen::Index>(t_s.size()));
+  r.set("drive_A", Eigen::Map<Eigen::VectorXd>(drive_A.data(), r.t_s.size()));
+  r.set("angle_deg", Eigen::Map<Eigen::VectorXd>(angle_deg.data(), r.t_s.size()));
+  return r;
+}
+
 /// An axis that follows a command which is rough from row to row through a drive with a time constant, in steps of 0.1 ms.
 Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -140,6 +172,22 @@ TEST_CASE("noise in a command is told by what no motion follows") {
   const Recording noisy =
       test::with_noise(test::SampledAxis(Effect::none, 60.0, 34).logged_each(10), "drive_A", 0.03, 35);
   CHECK(noise_of(without(noisy, "angle_deg")) == Approx(0.03).epsilon(0.1));
+}
+
+TEST_CASE(
+    "noise in a measured current is told where gear and gravity balance it, and positions are rough from row to row") {
+  const Recording clean =
+      geared(360.0 / 524288.0, 1, 30.0);  // an encoder of 19 bits, a thousand rows a second
+  CHECK(noise_of(clean) == 0.0);
+  for (const double sd : {0.02, 0.05})
+    CHECK(noise_of(test::with_noise(clean, "drive_A", sd, 41)) == Approx(sd).epsilon(0.1));
+}
+
+TEST_CASE("a command that went on is told by means of rows, where single ones are too rough") {
+  // Every fourth step of the loop: a row's command holds a quarter of the interval, and the motion shows 3/8 of its next step.
+  const std::optional<double> share = share_of(geared(360.0 / 32768.0, 4, 15.0));
+  REQUIRE(share);
+  CHECK(*share == Approx(0.375).epsilon(0.2));
 }
 
 TEST_CASE("a rough command that the motion follows late or slowly is no noise") {

@@ -139,7 +139,22 @@ private:
 
   std::optional<double> share_of_clean() const {
     const auto fit = motion_.fit(held_and_next);
-    return fit ? share_of(*fit) : std::nullopt;
+    if (!fit) return std::nullopt;
+    const std::optional<double> from_rows = share_of(*fit);
+    if (tells(*fit)) return from_rows;
+    // Rows that are too noisy to tell a command that holds from one that goes on: their means may.
+    for (const Eigen::Index together : {Eigen::Index{4}, Eigen::Index{8}})
+      if (const auto smoother = motion_.fit(held_and_next, together))
+        if (tells(*smoother)) return share_of(*smoother);
+    return from_rows;
+  }
+
+  /// Whether a share of none can be told from the least that is believed.
+  static bool tells(const MotionFit& fit) {
+    constexpr CommandThresholds limit;
+    if (fit.value[0] == 0.0) return false;
+    const double error = fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }).second;
+    return limit.sure * error < limit.least_share;
   }
 
   /// Of the next step of what the first term is.
@@ -183,10 +198,15 @@ private:
     if (!fit) return 0.0;
     const double response = this->response();
     double step_s = 0.0;
-    CommandNoise spectra;
+    Eigen::Index rows = 0;
     for (const auto& one : motion_.recordings()) {
       step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
-      spectra.add(*one.inputs, *one.command);
+      rows += one.inputs->rows();
+    }
+    CommandNoise spectra(step_s, rows);
+    for (const auto& one : motion_.recordings()) {
+      spectra.add(*one.inputs, *one.command,
+                  [&](double dps, double rad) { return MotionRegression::beside(*fit, dps, rad); });
     }
     const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
     // A random walk of the rate, and its sum.

@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <vector>
 
 /// @file command_noise.hpp
 /// What of a command is noise. A log often keeps the current that a sensor measured, not the one that was asked for: its
@@ -21,12 +21,18 @@ namespace thermopower::gap::engine {
 /// Thresholds of the question whether a command is noisy.
 /// Held by tests/gap/data/command_test.cpp.
 struct CommandNoiseThresholds {
-  double flat = 1.6;                ///< largest ratio to the lowest band of a spectrum that is its floor
-  std::size_t least_bins = 24;      ///< of the floor, and of what tells: less may be a shape of the command
-  std::size_t least_windows = 20;   ///< fewer tell nothing
-  Eigen::Index most_windows = 600;  ///< of a recording
-  double not_followed = 0.5;        ///< share of what a band's noise leaves: bands above it are no witnesses
-  double mostly = 0.7;              ///< of a band without noise that the motion must follow
+  double flat = 1.6;               ///< largest ratio to the lowest band of a spectrum that is its floor
+  std::size_t least_bins = 24;     ///< of the floor, and of what tells: less may be a shape of the command
+  std::size_t least_windows = 20;  ///< fewer tell nothing
+  Eigen::Index most_rows = 76800;  ///< of a recording that are looked at
+  Eigen::Index shortest = 128;     ///< rows of a window
+  Eigen::Index longest = 1024;     ///< the same: sums over all its frequencies take its square
+  /// That a window lasts where its rows are many: an arm follows little above 10 Hz, and what nobody follows shows best just
+  /// above, before the differences of positions drown it.
+  double window_s = 1.1;
+  double most_holes = 0.05;   ///< share of a window's rows that may be missing: masked samples leave some
+  double not_followed = 0.5;  ///< share of what a band's noise leaves: bands above it are no witnesses
+  double mostly = 0.7;        ///< of a band without noise that the motion must follow
   double error = 0.1;   ///< standard error of what is followed in a band from which on the band tells nothing
   double match = 0.12;  ///< what is followed may differ by from what the noise leaves
 };
@@ -38,19 +44,36 @@ struct CommandNoiseThresholds {
 /// follows less, too, but with another phase and whatever the spectrum.
 class CommandNoise {
 public:
+  /// @param step_s  between rows
+  /// @param rows    of all recordings together
+  CommandNoise(double step_s, Eigen::Index rows) : length_(CommandNoiseThresholds().shortest) {
+    constexpr CommandNoiseThresholds limit;
+    while (2 * length_ <= limit.longest && 2.0 * static_cast<double>(length_) * step_s <= limit.window_s &&
+           rows / length_ >= 2 * static_cast<Eigen::Index>(limit.least_windows))
+      length_ *= 2;
+    spectrum_.resize(static_cast<std::size_t>(length_ / 2));
+  }
+
   /// Adds a recording of an axis that is driven by `command`, one for each row.
-  void add(const Inputs& inputs, const Eigen::VectorXd& command) {
+  ///
+  /// What turns the axis beside its command is taken off the acceleration first: a stiff gear or a heavy arm that moves slowly
+  /// balances nearly all of the command, and its acceleration alone follows none of it.
+  /// @param beside  what that is, in deg/s^2, by rate in deg/s and angle in rad
+  template <class Beside>
+  void add(const Inputs& inputs, const Eigen::VectorXd& command, Beside&& beside) {
     // Windows that overlap by a half, or fewer of a long recording.
     const Eigen::Index stride =
-        std::max<Eigen::Index>(length / 2, inputs.rows() / CommandNoiseThresholds().most_windows);
+        std::max<Eigen::Index>(length_ / 2, inputs.rows() * length_ / CommandNoiseThresholds().most_rows);
     for (const RunSpan& run : inputs.runs)
-      for (Eigen::Index from = run.begin + 1; from + length + 1 < run.end; from += stride) {
-        Eigen::Matrix<double, length, 1> response, driven;
-        for (Eigen::Index i = 0; i < length; ++i) {
-          response[i] = MeasuredMotion(inputs, from + i).acceleration_dps2;
+      for (Eigen::Index from = run.begin + 1; from + length_ + 1 < run.end; from += stride) {
+        Eigen::VectorXd response(length_), driven(length_);
+        for (Eigen::Index i = 0; i < length_; ++i) {
+          const MeasuredMotion motion(inputs, from + i);
+          response[i] = motion.acceleration_dps2 -
+                        beside(motion.rate_dps, MotionRegression::angle_rad(inputs, from + i));
           driven[i] = command[from + i];
         }
-        if (response.allFinite() && driven.allFinite()) take(response, driven);
+        if (fill_holes(response) && driven.allFinite()) take(response, driven);
       }
     before_rows_ = inputs.judged(Signal::rate_dps) ? 0.0 : 0.5;
   }
@@ -61,15 +84,16 @@ public:
   double sd(double response, double share) const {
     constexpr CommandNoiseThresholds limit;
     if (windows_ < limit.least_windows || !(response > 0.0)) return 0.0;
-    std::array<Band, bands> all{};
+    std::vector<Band> all(bands());
     double lowest = 1e300;
-    for (std::size_t b = 0; b < bands; ++b) {
+    for (std::size_t b = 0; b < all.size(); ++b) {
       for (std::size_t bin = std::size_t{1} << b; bin < std::size_t{2} << b; ++bin) {
         all[b].command += spectrum_[bin].command / count();
         all[b].response += spectrum_[bin].response / count();
         // A second difference of angles lies around a row, the difference of two rates after it.
         all[b].cross += spectrum_[bin].cross / count() *
-                        std::polar(1.0, -(share - before_rows_) * turn * static_cast<double>(bin) / length);
+                        std::polar(1.0, -(share - before_rows_) * turn * static_cast<double>(bin) /
+                                            static_cast<double>(length_));
         ++all[b].bins;
       }
       lowest = std::min(lowest, all[b].command / all[b].bins);
@@ -81,23 +105,34 @@ public:
     floor /= bins;
     if (!(floor > 0.0)) return 0.0;
     bool is_followed = false;
-    double witnesses = 0.0;
+    double witnesses = 0.0, rough_bins = 0.0, rough_weight = 0.0;
+    std::complex<double> rough = 0.0;
     for (const Band& one : all) {
       const double left = std::max(0.0, 1.0 - floor / (one.command / one.bins));
       const std::complex<double> followed = one.cross / (response * one.command);
       const double error =
           std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response;
       is_followed = is_followed || (left > limit.mostly && followed.real() > limit.mostly);
-      if (left > limit.not_followed || error > limit.error) continue;
+      if (left > limit.not_followed) continue;
+      if (error > limit.error) {
+        const double weight = 1.0 / (error * error);
+        rough += weight * (followed - left);
+        rough_weight += weight;
+        rough_bins += one.bins;
+        continue;
+      }
       if (std::abs(followed - left) > limit.match + 3.0 * error) return 0.0;
       witnesses += one.bins;
+    }
+    // Bands of which each alone is too rough may tell together.
+    if (rough_weight * limit.error * limit.error > 1.0) {
+      if (std::abs(rough / rough_weight) > limit.match + 3.0 / std::sqrt(rough_weight)) return 0.0;
+      witnesses += rough_bins;
     }
     return is_followed && witnesses >= static_cast<double>(limit.least_bins) ? std::sqrt(floor) : 0.0;
   }
 
 private:
-  static constexpr Eigen::Index length = 128;  ///< rows of a window
-  static constexpr std::size_t bands = 6;      ///< octaves
   static constexpr double turn = 6.283185307179586;
   static constexpr double independent = 0.5;  ///< windows that overlap by a half, under a bell
   struct Band {
@@ -105,21 +140,38 @@ private:
     std::complex<double> cross = 0.0;
   };
 
+  /// Puts the mean where samples are missing; no where those are many.
+  static bool fill_holes(Eigen::VectorXd& values) {
+    const auto known = values.array().isFinite();
+    const double holes = static_cast<double>(values.size() - known.count());
+    if (holes > CommandNoiseThresholds().most_holes * static_cast<double>(values.size())) return false;
+    if (holes == 0.0) return true;
+    const double mean = known.select(values.array(), 0.0).sum() / static_cast<double>(known.count());
+    values = known.select(values.array(), mean).matrix().eval();
+    return true;
+  }
+
+  /// Octaves of a window.
+  std::size_t bands() const {
+    std::size_t octaves = 0;
+    while ((std::size_t{2} << octaves) <= spectrum_.size()) ++octaves;
+    return octaves;
+  }
+
   double count() const { return static_cast<double>(windows_); }
 
-  void take(const Eigen::Matrix<double, length, 1>& response,
-            const Eigen::Matrix<double, length, 1>& driven) {
+  void take(const Eigen::VectorXd& response, const Eigen::VectorXd& driven) {
     ++windows_;
-    Eigen::Matrix<double, length, 1> bell;
-    for (Eigen::Index i = 0; i < length; ++i)
-      bell[i] = 0.5 - 0.5 * std::cos(turn * (static_cast<double>(i) + 0.5) / length);
+    Eigen::VectorXd bell(length_);
+    for (Eigen::Index i = 0; i < length_; ++i)
+      bell[i] = 0.5 - 0.5 * std::cos(turn * (static_cast<double>(i) + 0.5) / static_cast<double>(length_));
     const double unit = 1.0 / bell.norm();
     const double mean = driven.mean(), mean_response = response.mean();
     for (std::size_t bin = 1; bin < spectrum_.size(); ++bin) {
-      const double radians = turn * static_cast<double>(bin) / length;
+      const double radians = turn * static_cast<double>(bin) / static_cast<double>(length_);
       const std::complex<double> step = std::polar(1.0, -radians);
       std::complex<double> at = 1.0, command = 0.0, acceleration = 0.0;
-      for (Eigen::Index i = 0; i < length; ++i, at *= step) {
+      for (Eigen::Index i = 0; i < length_; ++i, at *= step) {
         command += at * (bell[i] * (driven[i] - mean) * unit);
         acceleration += at * (bell[i] * (response[i] - mean_response) * unit);
       }
@@ -129,7 +181,8 @@ private:
     }
   }
 
-  std::array<Band, 64> spectrum_;
+  Eigen::Index length_;         ///< rows of a window, a power of two
+  std::vector<Band> spectrum_;  ///< of each frequency
   std::size_t windows_ = 0;
   double before_rows_ = 0.0;
 };

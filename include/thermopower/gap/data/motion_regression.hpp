@@ -64,6 +64,8 @@ struct MotionFit {
   Eigen::VectorXd value;                 ///< deg/s^2 for each unit of a term
   std::vector<Eigen::VectorXd> without;  ///< the same without a block each
   double first_dps = 0.0;  ///< root mean square of what the first term changes the rate by between two rows
+  Eigen::VectorXd beside_value = {};  ///< coefficients of what turns the axis beside the command
+  std::vector<int> cogs = {};         ///< periods a turn among that
 
   /// A number made of the coefficients, and its standard error.
   template <class Of>
@@ -108,10 +110,26 @@ public:
     return scale;
   }
 
+  /// What turns the axis beside its command, by a fit: friction, a spring, an imbalance, a constant and cogs, in deg/s^2.
+  /// @param dps  the rate
+  /// @param rad  the angle
+  static double beside(const MotionFit& fit, double dps, double rad) {
+    return beside_terms(dps, rad, fit.cogs).dot(fit.beside_value);
+  }
+
+  /// The angle of a row as the regression has it, 0 where none is judged, rad.
+  static double angle_rad(const Inputs& inputs, Eigen::Index row) {
+    if (!inputs.judged(Signal::angle_deg)) return 0.0;
+    const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
+    return (inputs.judged(Signal::rate_dps) ? 0.5 * (deg[row] + deg[row + 1]) : deg[row]) * rad_per_deg;
+  }
+
   /// The coefficients; nothing where too few rows move.
-  std::optional<MotionFit> fit(const TermsOf& terms_of) const {
+  /// @param together  rows whose mean, under a bell, is a sample of the regression. The regression is linear, so that means obey it, too,
+  ///                  but differences of positions from row to row are mostly their noise, and its means hardly any
+  std::optional<MotionFit> fit(const TermsOf& terms_of, Eigen::Index together = 1) const {
     constexpr MotionThresholds limit;
-    const std::vector<Row> rows = moving_rows(terms_of);
+    const std::vector<Row> rows = moving_rows(terms_of, together);
     if (rows.size() < limit.least_rows) return std::nullopt;
     const std::vector<int> cogs = cogging_of(rows);
     const Eigen::Index terms = rows.front().terms.size();
@@ -120,8 +138,11 @@ public:
     Sums all(terms, cogs);
     for (const Sums& one : blocks) all.add(one, 1.0);
     MotionFit fit;
-    fit.value = all.solve().head(terms);
+    const Eigen::VectorXd solved = all.solve();
+    fit.value = solved.head(terms);
     if (!fit.value.allFinite()) return std::nullopt;
+    fit.beside_value = solved.tail(solved.size() - terms);
+    fit.cogs = cogs;
     for (const Sums& one : blocks) {
       Sums rest = all;
       rest.add(one, -1.0);
@@ -142,6 +163,61 @@ private:
     Terms terms;
   };
 
+  /// Makes means of neighbours, each window half a window after the one before.
+  class Means {
+  public:
+    explicit Means(Eigen::Index together) : together_(static_cast<std::size_t>(together)) {}
+
+    /// Takes a row of a recording. @param next  it is the neighbour of the one before
+    void take(const Row& row, bool next, std::vector<Row>& means) {
+      if (!next) rows_.clear();
+      rows_.push_back(row);
+      if (rows_.size() < together_) return;
+      means.push_back(mean());
+      rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>((together_ + 1) / 2));
+    }
+
+  private:
+    Row mean() const {
+      Row all = rows_.front();
+      if (rows_.size() == 1) return all;
+      all.response = all.dps = all.rad = all.step_s = 0.0;
+      all.terms.setZero();
+      double sum = 0.0;
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        constexpr double turn = 6.283185307179586;
+        const double weight =
+            1.0 - std::cos(turn * (static_cast<double>(i) + 0.5) / static_cast<double>(rows_.size()));
+        sum += weight;
+        all.response += weight * rows_[i].response;
+        all.dps += weight * rows_[i].dps;
+        all.rad += weight * rows_[i].rad;
+        all.step_s += weight * rows_[i].step_s;
+        all.terms += weight * rows_[i].terms;
+      }
+      for (double* one : {&all.response, &all.dps, &all.rad, &all.step_s}) *one /= sum;
+      all.terms /= sum;
+      return all;
+    }
+
+    std::size_t together_;
+    std::vector<Row> rows_;
+  };
+
+  static constexpr Eigen::Index others =
+      7;  ///< of what turns the axis beside the command, the cogs not counted
+
+  static Eigen::VectorXd beside_terms(double dps, double rad, const std::vector<int>& cogs_a_turn) {
+    Eigen::VectorXd x(others + 2 * static_cast<Eigen::Index>(cogs_a_turn.size()));
+    x.head(others) << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, std::sin(rad), std::cos(rad), 1.0;
+    Eigen::Index at = others;
+    for (const int cogs : cogs_a_turn) {
+      x[at++] = std::sin(cogs * rad);
+      x[at++] = std::cos(cogs * rad);
+    }
+    return x;
+  }
+
   /// Sums of the regression.
   class Sums {
   public:
@@ -153,19 +229,11 @@ private:
 
     Eigen::VectorXd regressors(const Row& row) const {
       Eigen::VectorXd x(all());
-      x.head(terms_) = row.terms;
-      x.segment(terms_, others) << row.dps, std::abs(row.dps), row.dps > 0.0 ? 1.0 : -1.0, row.rad,
-          std::sin(row.rad), std::cos(row.rad), 1.0;
-      Eigen::Index at = terms_ + others;
-      for (const int cogs : cogs_) {
-        x[at++] = std::sin(cogs * row.rad);
-        x[at++] = std::cos(cogs * row.rad);
-      }
+      x << row.terms, beside_terms(row.dps, row.rad, cogs_);
       return x;
     }
 
   private:
-    static constexpr Eigen::Index others = 7;
     Eigen::Index all() const { return terms_ + others + 2 * static_cast<Eigen::Index>(cogs_.size()); }
 
     Eigen::Index terms_;
@@ -186,7 +254,7 @@ private:
   }
 
   /// Rows that move, at most as many as are needed.
-  std::vector<Row> moving_rows(const TermsOf& terms_of) const {
+  std::vector<Row> moving_rows(const TermsOf& terms_of, Eigen::Index together) const {
     constexpr MotionThresholds limit;
     std::vector<double> speeds;
     for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, const MeasuredMotion& motion) {
@@ -195,21 +263,22 @@ private:
     const double slowest = limit.moving * quantile_of(speeds, 0.95);
     const auto fast =
         std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > slowest; });
-    const std::size_t stride = static_cast<std::size_t>(fast) / limit.most_rows + 1;
+    const std::size_t stride =
+        together > 1 ? 1 : static_cast<std::size_t>(fast) / limit.most_rows + 1;  // means need neighbours
     std::vector<Row> moving;
+    Means means(together);
+    const RunSpan* last_run = nullptr;
+    Eigen::Index last = -1;
     std::size_t count = 0;
     for_each_row([&](const Driven& one, const RunSpan& run, Eigen::Index k, const MeasuredMotion& motion) {
       if (!(std::abs(motion.rate_dps) > slowest) || count++ % stride != 0) return;
       const Inputs& inputs = *one.inputs;
-      const bool by_rate = inputs.judged(Signal::rate_dps), angle = inputs.judged(Signal::angle_deg);
+      const bool by_rate = inputs.judged(Signal::rate_dps);
       Row row;
       row.response = motion.acceleration_dps2;
       row.dps = motion.rate_dps;
       row.step_s = inputs.t_s[k + 1] - inputs.t_s[k];
-      if (angle) {
-        const Eigen::VectorXd& deg = inputs.of(Signal::angle_deg);
-        row.rad = (by_rate ? 0.5 * (deg[k] + deg[k + 1]) : deg[k]) * rad_per_deg;
-      }
+      row.rad = angle_rad(inputs, k);
       row.terms = terms_of(inputs, *one.command, run, k);
       if (!by_rate && row.terms.size() > 0) {  // a second difference: of the intervals before and after
         const Terms before = terms_of(inputs, *one.command, run, k - 1);
@@ -217,8 +286,11 @@ private:
         row.terms = 0.5 * (row.terms + before);
       }
       if (row.terms.size() > 0 && row.terms.allFinite() && std::isfinite(row.response) &&
-          std::isfinite(row.rad))
-        moving.push_back(row);
+          std::isfinite(row.rad)) {
+        means.take(row, last_run == &run && last + 1 == k, moving);
+        last_run = &run;
+        last = k;
+      }
     });
     return moving;
   }
