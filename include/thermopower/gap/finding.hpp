@@ -30,6 +30,7 @@ enum class FindingKind {
   frozen_samples,      ///< an output that stands still where it cannot
   clipped_samples,     ///< an output cut off at the end of its sensor's range
   impossible_samples,  ///< outside what the quantity can be
+  position_reset,      ///< an axis that was put elsewhere between two rows; a new run begins there
   wrapped_angle,       ///< an angle given inside one turn; it is unwrapped
   coarse_quantum,      ///< steps that limit what any model can score
   // Columns against each other and the simulation.
@@ -88,6 +89,8 @@ inline const char* to_string(FindingKind kind) {
       return "impossible_samples";
     case FindingKind::wrapped_angle:
       return "wrapped_angle";
+    case FindingKind::position_reset:
+      return "position_reset";
     case FindingKind::coarse_quantum:
       return "coarse_quantum";
     case FindingKind::wrong_unit:

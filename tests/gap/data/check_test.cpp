@@ -682,3 +682,44 @@ TEST_CASE("a column that is removed was never recorded, and one that is not ther
   CHECK_FALSE(r.remove("motor"));
   CHECK(r.columns.size() == columns - 1);
 }
+
+TEST_CASE("swings that were held, let go and logged on end begin runs of their own") {
+  // A pendulum of 0.012 kg m^2 and 0.55 N m, let go at six angles for four seconds each, in rows of 10 ms without labels.
+  Model model;
+  model.axis = RigidAxisModel{0.012, 0.02, 0.3};
+  model.effects["imbalance"] = {{"Nm", 0.55}, {"phase_rad", 0.0}};
+  const double let_go_deg[] = {70.0, -40.0, 95.0, 25.0, -80.0, 50.0};
+  constexpr int swing_rows = 400, rows = 6 * swing_rows;
+  test::Noise noise(11);
+  Recording r;
+  r.name = "swings";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive = Eigen::VectorXd::Zero(rows), angle(rows), rate(rows);
+  double theta = 0.0, omega = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    r.t_s[i] = 0.01 * i;
+    if (i % swing_rows == 0) theta = let_go_deg[i / swing_rows] / 57.29577951308232, omega = 0.0;
+    angle[i] = theta * 57.29577951308232 + 0.02 * noise();
+    rate[i] = omega * 57.29577951308232 + 0.2 * noise();
+    for (int k = 0; k < 100; ++k) {
+      omega += 1e-4 * (-0.02 * omega - 0.55 * std::sin(theta)) / 0.012;
+      theta += 1e-4 * omega;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording swings(model, r);
+  const std::vector<RunSpan> runs = swings.recording().spans();
+  REQUIRE(runs.size() == 6);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    CHECK(runs[i].begin == static_cast<Eigen::Index>(i) * swing_rows);
+  // One swing, and a sensor that reads another angle for a while, are one run.
+  Recording one = r;
+  for (int i = 0; i < rows; ++i) angle[i] = 30.0 * std::sin(0.02 * i) + 0.02 * noise();
+  one.set("angle_deg", angle);
+  CHECK(PreparedRecording(model, one).recording().spans().size() == 1);
+  for (int i = 900; i < 920; ++i) angle[i] = -170.0;
+  one.set("angle_deg", angle);
+  CHECK(PreparedRecording(model, one).recording().spans().size() == 1);
+}

@@ -150,6 +150,11 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   if (model.own) own_ = model.own->equations->info();
   moves_ = model.has_axis();
   read_the_clock(list);
+  if (moves_ && believed_.has("angle_deg")) {
+    RowMask elsewhere(unknown_.size(), 0);
+    check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.runs, elsewhere);
+    believed_.runs = cut_at(believed_.runs, elsewhere);
+  }
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
                        model.has_thermal();

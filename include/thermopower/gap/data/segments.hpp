@@ -28,6 +28,12 @@ struct SegmentThresholds {
   Eigen::Index bridged_rows = 5;  ///< a hole in a slow input (air, supply) of at most so many rows is bridged
   Eigen::Index held_rows = 20;    ///< a command is believed to have stood still for at most so many rows
   double slow_noise = 4.0;        ///< noise units within which a slow input counts as unchanged over a hole
+  double reset_speeds =
+      10.0;  ///< times the rates of the rows around at which an angle that jumps would have moved
+  double reset_noise = 30.0;      ///< noise scales of the angle, and quanta, that it jumps by at least
+  Eigen::Index reset_rows = 5;    ///< on both sides that know nothing of such a rate
+  Eigen::Index glitch_rows = 50;  ///< what comes back within so many is a sensor's fault
+  double comes_back = 0.2;        ///< of a jump by which the next one may miss where the first began
   Eigen::Index least_rows = 4;    ///< shorter segments tell nothing and are left out
 };
 
@@ -147,6 +153,43 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
                     " s where the usual interval is " + short_number(usual) +
                     " s) in which the inputs are unknown",
                 "log without losing rows");
+}
+
+/// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
+/// go and logged on end. The rows before and after move slowly, or stand, at places that no motion between them joins.
+/// @param angle  without wraps, degrees
+inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const std::vector<RunSpan>& runs,
+                         RowMask& starts) {
+  constexpr SegmentThresholds limit;
+  const Eigen::VectorXd& t_s = list.recording().t_s;
+  const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
+  RowMask cut(starts.size(), 0);
+  double largest = 0.0;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index k = run.begin + limit.reset_rows; k + 1 + limit.reset_rows < run.end; ++k) {
+      const double jump = angle[k + 1] - angle[k];
+      if (!(std::abs(jump) > least)) continue;
+      const double speed = std::abs(jump) / (t_s[k + 1] - t_s[k]);
+      bool is_reset = true;
+      for (Eigen::Index i = k - limit.reset_rows; i <= k + limit.reset_rows && is_reset; ++i)
+        is_reset =
+            i == k || limit.reset_speeds * std::abs(angle[i + 1] - angle[i]) < speed * (t_s[i + 1] - t_s[i]);
+      // A jump back, soon after or before: this one is an end of a burst.
+      const auto is_burst = [&](Eigen::Index from, Eigen::Index to, Eigen::Index step) {
+        return std::abs(angle[step + 1] - angle[step]) > (1.0 - limit.comes_back) * std::abs(jump) &&
+               std::abs(angle[to] - angle[from]) < limit.comes_back * std::abs(jump);
+      };
+      for (Eigen::Index i = 1; i <= limit.glitch_rows && is_reset; ++i)
+        is_reset = !(k + 1 + i < run.end && is_burst(k, k + 1 + i, k + i)) &&
+                   !(k - i >= run.begin && is_burst(k - i, k + 1, k - i));
+      if (!is_reset) continue;
+      cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
+      largest = std::max(largest, std::abs(jump));
+    }
+  list.add_rows(FindingKind::position_reset, Severity::note, "angle_deg", cut, FindingAction::segmented,
+                "begin elsewhere (by up to " + short_number(largest) +
+                    " deg) than the row before them, as no motion around them does: the axis was put there",
+                "give each swing a label in the column run");
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
