@@ -5,11 +5,14 @@
 
 #include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/diagnose.hpp>
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/plant/axis_at_rows.hpp>
 
 // Pendulums whose model file has the angle at which they hang: a place, known to some degrees, whatever its value. They are
 // stepped here, in steps of a two hundredth of a row, and rest where friction holds them.
 
 using namespace thermopower::gap;
+namespace plant = thermopower::plant;
 
 namespace {
 
@@ -108,4 +111,28 @@ TEST_CASE("what data tell of an angle is told in radians, and does not go with i
   const double at_zero = known(0.0), beside = known(0.003);
   CHECK(at_zero > 0.0);
   CHECK(std::abs(beside / at_zero - 1.0) < 0.1);
+}
+
+TEST_CASE("a balance moves a place by a difference: a load is felt as its torque turns with the angle") {
+  constexpr double hangs_rad = 0.3;
+  const Model model = simulation(hangs_rad);
+  const plant::Inputs inputs = engine::prepare(model, record({hangs_rad, 0.0}, 400, 2));
+  const plant::AxisAtRows axis(model, plant::standard_catalogue(), inputs, plant::ReadingOffsets());
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  int places = 0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (!constants[k].is_place) continue;
+    ++places;
+    const plant::AxisAtRows::Values by = axis.slopes(k);
+    for (Eigen::Index i = 0; i < inputs.rows(); ++i)
+      CHECK(by.motion_Nm[i] == Approx(-weight_Nm * std::cos(axis.angle[i] + hangs_rad)).margin(1e-6));
+  }
+  CHECK(places == 1);
+  // A balance of the bench's kind asks Model::moved(), too: the others stay where they are.
+  const std::size_t weight = 3;
+  REQUIRE(constants[weight].id == "imbalance.Nm");
+  const std::vector<double> moved = model.moved(weight, std::log(1.1));
+  REQUIRE(moved.size() == constants.size());
+  for (std::size_t k = 0; k < moved.size(); ++k)
+    CHECK(moved[k] == Approx(k == weight ? 1.1 : constants[k].is_place ? 0.0 : 1.0));
 }
