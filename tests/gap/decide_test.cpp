@@ -28,6 +28,22 @@ std::vector<double> blocks(double even, double odd) {
   return list;
 }
 
+/// No cause, dry friction, and another cause, known to 1e-4 of their units; the data are far above the noise without one.
+std::vector<Candidate> nothing_friction_and(const Model& model, const char* other) {
+  std::vector<Candidate> candidates(3);
+  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
+  candidates[2].explanation.effects.push_back(standard_catalogue().find(other));
+  for (Candidate& one : candidates) {
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    const auto count = static_cast<Eigen::Index>(one.list.size());
+    one.fit.point = Eigen::VectorXd::Zero(count);
+    one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
+    one.fit.at_bound.assign(one.list.size(), false);
+    one.train = one.held_out = sums_of(blocks(30.0, 30.0));
+  }
+  return candidates;
+}
+
 }  // namespace
 
 TEST_CASE("the price of a constant grows like a square near what is known and like a logarithm far away") {
@@ -156,23 +172,13 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
 
 TEST_CASE("friction that is alike in both directions is friction, and no rival of it") {
   const Model model = axis_model();
-  std::vector<Candidate> candidates(3);
-  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
-  candidates[2].explanation.effects.push_back(standard_catalogue().find("asymmetric_friction"));
-  for (Candidate& one : candidates) {
-    one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
-    one.fit.at_bound.assign(one.list.size(), false);
-    one.train = one.held_out = sums_of(blocks(30.0, 30.0));
-  }
+  std::vector<Candidate> candidates = nothing_friction_and(model, "asymmetric_friction");
   const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
   candidates[1].train = candidates[1].held_out = candidates[2].train = candidates[2].held_out =
       sums_of(blocks(1.0, 1.0));
   candidates[1].fit.point[constants] = 0.02;
   candidates[2].fit.point[constants] = 0.0201;
   candidates[2].fit.point[constants + 1] = 0.0199;
-  const auto count = static_cast<Eigen::Index>(candidates[2].list.size());
-  candidates[2].fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
   Weight few;  // so few independent samples that a parameter costs next to nothing
   few.correlation.fill(1000.0);
   few.held_out.fill(1000.0);
@@ -209,22 +215,12 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
 
 TEST_CASE("friction that hardly rises near standstill is friction where that leaves what the noise allows") {
   const Model model = axis_model();
-  std::vector<Candidate> candidates(3);
-  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
-  candidates[2].explanation.effects.push_back(standard_catalogue().find("stribeck_friction"));
-  for (Candidate& one : candidates) {
-    one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
-    one.fit.at_bound.assign(one.list.size(), false);
-    one.train = one.held_out = sums_of(blocks(30.0, 30.0));
-  }
+  std::vector<Candidate> candidates = nothing_friction_and(model, "stribeck_friction");
   const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
-  const auto count = static_cast<Eigen::Index>(candidates[2].list.size());
   candidates[1].fit.point[constants] = candidates[2].fit.point[constants] = 0.02;
   candidates[2].fit.point[constants + 1] = 0.0005;         // the rise
   candidates[2].fit.point[constants + 2] = std::log(0.5);  // its knee, above the transition
   candidates[2].fit.point[constants + 3] = std::log(0.01);
-  candidates[2].fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
   candidates[1].train = candidates[1].held_out = sums_of(blocks(1.1, 1.1));
   candidates[2].train = candidates[2].held_out = sums_of(blocks(1.0, 1.0));
 
