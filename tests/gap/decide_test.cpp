@@ -259,6 +259,25 @@ TEST_CASE("a friction backward that no motion tells is no friction that differs 
   CHECK(ends_on_bounds(one, model));
 }
 
+TEST_CASE("what is damped too much to ring is no part on a spring, and what rings without an end is one") {
+  const Model model = axis_model();
+  Candidate one;
+  one.explanation.effects.push_back(standard_catalogue().find("compliance"));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  const std::size_t damping = one.list.size() - 1;
+  REQUIRE(one.list[damping].name == "compliance.damping");
+  const auto at = static_cast<Eigen::Index>(damping);
+  one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+  for (const auto& [damped, is_at_bound] : {std::pair(0.05, false), std::pair(1e-4, true)}) {
+    one.fit.point[at] = std::log(damped);
+    one.fit.at_bound.assign(one.list.size(), false);
+    one.fit.at_bound[damping] = is_at_bound;
+    CHECK_FALSE(ends_on_bounds(one, model));
+  }
+  one.fit.point[at] = std::log(2.0);
+  CHECK(ends_on_bounds(one, model));
+}
+
 TEST_CASE("a sink that does not change in a run is no sink, but air of another temperature") {
   const Model model = bench_model();
   Candidate one;

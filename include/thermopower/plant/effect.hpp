@@ -93,6 +93,8 @@ struct Parameter {
   std::optional<double> standard = {};     ///< its value where a model leaves it out; none: it must be given
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   bool degenerate_at_bounds = false;
+  /// The same at its upper bound alone.
+  bool degenerate_at_upper = false;
   /// It is a detail of the effect's shape: it stays at its standard, which it must have, until the effect without it is
   /// fitted and leaves what the detail takes away.
   bool refines = false;
@@ -146,6 +148,8 @@ public:
   ParameterBuilder& two_families() { return parameter_.two_families = true, *this; }
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   ParameterBuilder& degenerate_at_bounds() { return parameter_.degenerate_at_bounds = true, *this; }
+  /// The same at its upper bound alone.
+  ParameterBuilder& degenerate_at_upper() { return parameter_.degenerate_at_upper = true, *this; }
 
   /// What was built.
   operator Parameter() const { return parameter_; }  // NOLINT: lists of parameters are lists of these

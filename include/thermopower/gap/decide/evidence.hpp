@@ -106,6 +106,10 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
     for (const Parameter& parameter : entry->info.parameters) {
       if (!parameter.standard && !is_told(candidate, *entry, first, at - first)) return true;
       if (at_bound[at] && parameter.degenerate_at_bounds) return true;
+      const Coordinate& coordinate = candidate.list[at];
+      const bool in_upper_half =
+          candidate.fit.point[static_cast<Eigen::Index>(at)] > 0.5 * (coordinate.lower + coordinate.upper);
+      if (at_bound[at] && in_upper_half && parameter.degenerate_at_upper) return true;
       if (!shows(candidate, *entry, parameter, at, travel_rad)) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }

@@ -34,7 +34,13 @@ struct Compliance {
              .within(0.2, 300.0)
              .logarithmic()
              .starts({1.5, 2.2, 3.3, 5.0, 7.5, 11.0, 16.0, 25.0, 40.0, 60.0}),
-         parameter(damping, "damping").unit("1").within(1e-4, 2.0).logarithmic().starts({0.03})},
+         // What is damped more than that does not ring: it is a drag, or a command that comes early or late.
+         parameter(damping, "damping")
+             .unit("1")
+             .within(1e-4, 2.0)
+             .logarithmic()
+             .starts({0.03})
+             .degenerate_at_upper()},
         {Need::axis_model},
         "fast reversals and a frequency sweep"};
     one.in_a_joint = in_a_joint;
