@@ -279,6 +279,11 @@ TEST_CASE("what is damped too much to ring is no part on a spring, and what ring
 }
 
 TEST_CASE("a sink that does not change in a run is no sink, but air of another temperature") {
+  const auto lasts = [](double longest_run_s) {
+    Shown shown;
+    shown.longest_run_s = longest_run_s;
+    return shown;
+  };
   const Model model = bench_model();
   Candidate one;
   one.explanation.effects.push_back(standard_catalogue().find("contact_resistance"));
@@ -290,10 +295,43 @@ TEST_CASE("a sink that does not change in a run is no sink, but air of another t
   one.fit.point[count - 2] = std::log(10.0);  // 1000 s
   one.fit.at_bound.assign(one.list.size(), false);
   CHECK_FALSE(ends_on_bounds(one, model));
-  CHECK_FALSE(ends_on_bounds(one, model, 1e300, 2500.0));
-  CHECK(ends_on_bounds(one, model, 1e300, 1500.0));
+  CHECK_FALSE(ends_on_bounds(one, model, lasts(2500.0)));
+  CHECK(ends_on_bounds(one, model, lasts(1500.0)));
   one.fit.point[count - 1] = 0.1;  // half of the heat leaves by the air: 500 s
-  CHECK_FALSE(ends_on_bounds(one, model, 1e300, 1500.0));
+  CHECK_FALSE(ends_on_bounds(one, model, lasts(1500.0)));
+}
+
+TEST_CASE("a rise of friction whose knee no motion reaches is not told from a drag") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates = nothing_friction_and(model, "stribeck_friction");
+  Candidate& one = candidates[2];
+  const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
+  one.fit.point[constants + 1] = 0.02;  // the rise
+  one.fit.point[constants + 2] = std::log(2.0);
+  one.fit.point[constants + 3] = std::log(0.01);
+  REQUIRE(one.list[static_cast<std::size_t>(constants) + 2].name == "stribeck_friction.knee_rad_per_s");
+  Shown shown;
+  CHECK_FALSE(ends_on_bounds(one, model, shown));
+  shown.fastest_rad_per_s = 5.0;
+  CHECK_FALSE(ends_on_bounds(one, model, shown));
+  shown.fastest_rad_per_s = 1.5;
+  CHECK(ends_on_bounds(one, model, shown));
+}
+
+TEST_CASE("how fast an axis went is read from its rate, or from its angle, and not from their noise") {
+  Recording r = axis_inputs(4000, 0.01, 3);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  Noise noise(4);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    angle[i] = 100.0 * std::sin(0.02 * static_cast<double>(i)) + 0.05 * noise.normal();
+    rate[i] = 200.0 * std::cos(0.02 * static_cast<double>(i)) + 0.5 * noise.normal();
+  }
+  r.set("angle_deg", angle);
+  const double fastest = 200.0 * rad_per_deg;
+  CHECK(shown_by({prepare(axis_model(), r)}).fastest_rad_per_s == Approx(fastest).epsilon(0.02));
+  r.set("rate_dps", rate);
+  CHECK(shown_by({prepare(axis_model(), r)}).fastest_rad_per_s == Approx(fastest).epsilon(0.02));
+  CHECK(shown_by({}).fastest_rad_per_s == Shown().fastest_rad_per_s);
 }
 
 TEST_CASE("a fit's coordinate is the value or its logarithm, there and back") {

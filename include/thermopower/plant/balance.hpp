@@ -48,6 +48,8 @@ struct BalanceRows {
 };
 
 /// One way in which values that a plant computes enter its balance, one value per row.
+///
+/// How the whole works: @ref gap_method.
 struct BalancePart {
   /// Where they enter.
   enum class Kind {

@@ -106,6 +106,8 @@ struct Parameter {
   /// It counts periods of the angle in radians per radian; so many of them must lie within the recorded travel, or
   /// they only imitate something slower. 0: any.
   double periods_in_travel = 0.0;
+  /// A rate that the motion must reach: beyond its fastest nothing shows it, and a fit that ends there explains nothing.
+  bool within_the_motion = false;
   int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
 };
 
@@ -141,6 +143,8 @@ public:
   /// It must exceed another parameter of the effect, by name: below, the effect does not show.
   ParameterBuilder& exceeds(std::string_view other) { return parameter_.exceeds = other, *this; }
   /// It counts periods in the angle, and so many must lie within the recorded travel.
+  /// A rate that the motion must reach.
+  ParameterBuilder& within_the_motion() { return parameter_.within_the_motion = true, *this; }
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// It stays at its standard until the effect without it leaves what it takes away.
   ParameterBuilder& refines() { return parameter_.refines = true, *this; }

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/decide/block_jackknife.hpp>
 #include <thermopower/gap/decide/search.hpp>
+#include <thermopower/gap/decide/shown.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
@@ -22,8 +23,7 @@ struct Weight {
       plant::for_each_signal(1.0);  ///< training samples that count as one
   std::array<double, signal_count> held_out =
       plant::for_each_signal(1.0);  ///< held-out samples that count as one
-  double travel_rad = 1e300;        ///< range of the angle in the training data
-  double longest_run_s = 1e300;     ///< of the training data
+  Shown shown = {};                 ///< by the training data
 };
 
 /// How many residuals of a candidate count as one, signal by signal, in the data it was fitted to.
@@ -46,10 +46,11 @@ inline double mean_correlation(const Weight& weight) {
 /// Whether a parameter ended where a recording can show it.
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
-                  std::size_t at, double travel_rad) {
+                  std::size_t at, const Shown& shown) {
   if (parameter.periods_in_travel > 0.0 &&
-      candidate.value(at) * travel_rad < parameter.periods_in_travel * rad_per_turn)
+      candidate.value(at) * shown.travel_rad < parameter.periods_in_travel * rad_per_turn)
     return false;
+  if (parameter.within_the_motion && candidate.value(at) > shown.fastest_rad_per_s) return false;
   if (parameter.exceeds.empty()) return true;
   for (std::size_t i = 0; i < candidate.list.size(); ++i)
     if (candidate.list[i].name == entry.info.id + "." + parameter.exceeds)
@@ -84,12 +85,10 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
 /// Nor is one beside which a constant went as far as it may: then the equation is another one.
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, a period longer than the travel holds, a time constant longer than half a run, a
+/// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than half a run, a
 /// friction backward of what never moved backward.
-/// @param travel_rad     range of the angle in the training data; 1e300: whatever it is
-/// @param longest_run_s  of the training data; 1e300: whatever it is
-inline bool ends_on_bounds(const Candidate& candidate, const Model& model, double travel_rad = 1e300,
-                           double longest_run_s = 1e300) {
+/// @param shown  by the training data; anything where it is not given
+inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const Shown& shown = {}) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
   if (at_bound.size() < candidate.list.size()) return false;
   for (int index : candidate.explanation.released)
@@ -110,14 +109,14 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, doubl
       const bool in_upper_half =
           candidate.fit.point[static_cast<Eigen::Index>(at)] > 0.5 * (coordinate.lower + coordinate.upper);
       if (at_bound[at] && in_upper_half && parameter.degenerate_at_upper) return true;
-      if (!shows(candidate, *entry, parameter, at, travel_rad)) return true;
+      if (!shows(candidate, *entry, parameter, at, shown)) return true;
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
     if (all && !entry->info.parameters.empty()) return true;
     if (entry->info.slowest_s != nullptr) {
       std::vector<double> values;
       for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
-      if (entry->info.slowest_s(values.data()) > decision.seen_within * longest_run_s) return true;
+      if (entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s) return true;
     }
   }
   return false;
@@ -333,9 +332,10 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.train_deviance = part(one.train, weight.correlation);
     one.held_out_deviance = part(one.held_out, weight.held_out);
     one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
+    Shown shown = weight.shown;
     // What brings everything to the noise was shown, however little of a period the travel holds.
-    one.on_bounds =
-        ends_on_bounds(one, model, is_at_the_noise(one) ? 1e300 : weight.travel_rad, weight.longest_run_s);
+    if (is_at_the_noise(one)) shown.travel_rad = Shown().travel_rad;
+    one.on_bounds = ends_on_bounds(one, model, shown);
   }
   mark_twins(candidates, model);
   for (const Candidate& one : candidates)

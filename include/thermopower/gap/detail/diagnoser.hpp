@@ -9,6 +9,7 @@
 #include <thermopower/gap/fit/axis_averaging.hpp>
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/options.hpp>
+#include <thermopower/gap/report/fit_noise.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
@@ -21,7 +22,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -255,37 +255,6 @@ private:
     return list;
   }
 
-  /// Noise of a signal beyond which the residuals of averages hold something else: where the power is another one in each of
-  /// them, an error of the current looks like noise. Infinite where the samples do not tell.
-  static double most_noise(const FitProblem& problem, Signal signal) {
-    double most = 0.0;
-    for (const Segment& segment : problem.segments) {
-      if (!segment.inputs->judged(signal)) continue;
-      const double of_samples = segment.inputs->sample_noise[static_cast<std::size_t>(signal)];
-      if (!(of_samples > 0.0)) return std::numeric_limits<double>::infinity();
-      most = std::max(most, of_samples);
-    }
-    return most_of_a_mean() * most;
-  }
-
-  void measure_noise(FitProblem& problem, const Candidate& candidate) {
-    std::array<std::vector<bool>, signal_count> gaps;
-    const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
-    const std::array<double, signal_count> wander =
-        wander_of_command(augmented(model_, candidate.explanation, candidate.list, candidate.fit.point),
-                          problem.segments, catalogue_);
-    for (std::size_t i = 0; i < signal_count; ++i) {
-      if (residuals[i].empty()) continue;
-      const double quantum = problem.segments.front().inputs->repeats.size() > 0
-                                 ? 0.0
-                                 : coarsest_quantum(train_inputs_, static_cast<Signal>(i)) / problem.sigma[i];
-      const double sd = std::min(noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i],
-                                 most_noise(problem, static_cast<Signal>(i))),
-                   rms = rms_of(residuals[i]) * problem.sigma[i];
-      problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
-    }
-  }
-
   /// A search, and another one with what the first overlooked.
   Attempt thorough_search(double horizon_s) {
     std::vector<std::size_t> worst;
@@ -333,7 +302,7 @@ private:
     std::vector<Candidate>& candidates = attempt.candidates;
     const Attribution glimpse(glimpse_problem), coarse(coarse_problem, glimpse_problem),
         longer(longer_problem), fine(problem);
-    for (int round = 0; round < 2; ++round) measure_noise(longer_problem, longer.fit({}, {}));
+    for (int round = 0; round < 2; ++round) measure_noise(longer_problem, longer.fit({}, {}), train_inputs_);
     problem.sigma = glimpse_problem.sigma = coarse_problem.sigma = longer_problem.sigma;
     const bool in_short_windows = shortest_s < short_s;
     const Search searching(in_short_windows ? glimpse : coarse, coarse, in_short_windows ? longer : coarse,
@@ -345,7 +314,7 @@ private:
     }
     candidates = searching.run_singles(with_pairs_of_constants(causes));
     const auto renew = [&] {
-      measure_noise(problem, Search::best(candidates));
+      measure_noise(problem, Search::best(candidates), train_inputs_);
       glimpse_problem.sigma = coarse_problem.sigma = longer_problem.sigma = problem.sigma;
       problem.correlation = mean_correlation(correlation_of(Search::best(candidates), problem));
       searching.renew(candidates);
@@ -370,8 +339,7 @@ private:
     searching.refit_rivals(candidates);
     name_moved_constants(candidates, model_);
     attempt.weight = correlation_of(Search::best(candidates), problem);
-    attempt.weight.travel_rad = travel_rad(train_inputs_);
-    attempt.weight.longest_run_s = longest_run_s(train_inputs_);
+    attempt.weight.shown = shown_by(train_inputs_);
     attempt.recalibrated = recalibrate(candidates, fine);
     judge(attempt, fine);
     weigh(candidates, attempt.weight, model_);

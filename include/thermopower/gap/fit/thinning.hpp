@@ -22,25 +22,6 @@ inline Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
   return rows;
 }
 
-/// Seconds of the longest run of several recordings.
-inline double longest_run_s(const std::vector<Inputs>& inputs) {
-  double longest_s = 0.0;
-  for (const Inputs& one : inputs)
-    for (const RunSpan& run : one.runs)
-      if (run.size() > 0) longest_s = std::max(longest_s, one.t_s[run.end - 1] - one.t_s[run.begin]);
-  return longest_s;
-}
-
-/// Range of the angle in rad; without an angle any (1e300).
-inline double travel_rad(const std::vector<Inputs>& inputs) {
-  double low = 1e300, high = -1e300;
-  for (const Inputs& one : inputs)
-    if (one.judged(Signal::angle_deg))
-      for (double angle : one.of(Signal::angle_deg))
-        if (std::isfinite(angle)) low = std::min(low, angle), high = std::max(high, angle);
-  return high > low ? (high - low) * rad_per_deg : 1e300;
-}
-
 /// When rows of a bench become one. Held by tests/gap/fit/shortened_test.cpp: the mean error of the simulation under test stays,
 /// and what the whole recording tells the short one does.
 struct ThinningThresholds {

@@ -37,6 +37,7 @@ struct StribeckFriction {
                            .within(0.005, 100.0)
                            .logarithmic()
                            .exceeds("transition_rad_per_s")
+                           .within_the_motion()
                            .starts({0.1, 0.5, 2.0}),
                        friction_transition(transition), friction_tail(tail),
                        parameter(exponent, "exponent")
