@@ -224,7 +224,8 @@ inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t 
     constexpr double standard_errors = 2.0;
     size += standard_errors / std::sqrt(std::max(information(a, a), 1e-300));
   }
-  return size <= decision.equal * std::abs(candidate.fit.point[b]);
+  const double large = std::abs(candidate.fit.point[b]);
+  return large > 0.0 && size <= decision.equal * large;  // beside nothing, nothing is small
 }
 
 /// What an effect is in fact.
