@@ -722,4 +722,20 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
   for (int i = 900; i < 920; ++i) angle[i] = -170.0;
   one.set("angle_deg", angle);
   CHECK(PreparedRecording(model, one).recording().spans().size() == 1);
+  // So are one whose angle stops for a while, though its rate goes on, and one whose frames are repeated.
+  for (const bool rate_stops : {false, true}) {
+    for (int i = 0; i < rows; ++i) {
+      angle[i] = 60.0 * std::sin(0.04 * i) + 0.02 * noise();
+      rate[i] = 240.0 * std::cos(0.04 * i) + 0.2 * noise();
+    }
+    for (int i = 1401; i < 1412; ++i) {
+      angle[i] = angle[1400];
+      if (rate_stops) rate[i] = rate[1400];
+    }
+    one.set("angle_deg", angle);
+    one.set("rate_dps", rate);
+    const PreparedRecording stopped(model, one);
+    CHECK(stopped.recording().spans().size() == 1);
+    for (const Finding& finding : stopped.findings()) CHECK(finding.kind != FindingKind::position_reset);
+  }
 }

@@ -152,7 +152,8 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   read_the_clock(list);
   if (moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
-    check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.runs, elsewhere);
+    check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
+                 believed_.runs, elsewhere);
     believed_.runs = cut_at(believed_.runs, elsewhere);
   }
   electrical_ = model.has_current() && recorded.has("power_param");

@@ -34,7 +34,8 @@ struct SegmentThresholds {
   Eigen::Index reset_rows = 5;    ///< on both sides that know nothing of such a rate
   Eigen::Index glitch_rows = 50;  ///< what comes back within so many is a sensor's fault
   double comes_back = 0.2;        ///< of a jump by which the next one may miss where the first began
-  Eigen::Index least_rows = 4;    ///< shorter segments tell nothing and are left out
+  double went_on = 0.3;  ///< of a jump by which the rate may miss it where the angle stood still before
+  Eigen::Index least_rows = 4;  ///< shorter segments tell nothing and are left out
 };
 
 /// How an input behaves between its rows.
@@ -155,11 +156,28 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
                 "log without losing rows");
 }
 
+/// How far a rate says that an axis went while its angle stood still up to a row, the interval after that included; degrees.
+/// Where the rate stood still, too, it went on to what it is in the next row.
+inline double went_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
+                                  const Eigen::VectorXd& t_s, Eigen::Index row, Eigen::Index begin) {
+  double went = 0.0;
+  Eigen::Index first = row;
+  bool stood = true;
+  for (Eigen::Index i = row; i >= begin && angle[i] == angle[row]; first = i--) {
+    stood = stood && rate_dps[i] == rate_dps[row];
+    if (std::isfinite(rate_dps[i])) went += rate_dps[i] * (t_s[i + 1] - t_s[i]);
+  }
+  const bool repeats = stood && first < row && std::isfinite(rate_dps[row + 1]);
+  return repeats ? 0.5 * (rate_dps[row] + rate_dps[row + 1]) * (t_s[row + 1] - t_s[first]) : went;
+}
+
 /// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
 /// go and logged on end. The rows before and after move slowly, or stand, at places that no motion between them joins.
-/// @param angle  without wraps, degrees
-inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const std::vector<RunSpan>& runs,
-                         RowMask& starts) {
+/// An angle that stood still while its rate went on as far was a sensor's that had stopped.
+/// @param angle     without wraps, degrees
+/// @param rate_dps  null: none was recorded
+inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
+                         const std::vector<RunSpan>& runs, RowMask& starts) {
   constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
   const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
@@ -182,6 +200,9 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
       for (Eigen::Index i = 1; i <= limit.glitch_rows && is_reset; ++i)
         is_reset = !(k + 1 + i < run.end && is_burst(k, k + 1 + i, k + i)) &&
                    !(k - i >= run.begin && is_burst(k - i, k + 1, k - i));
+      if (is_reset && rate_dps != nullptr)
+        is_reset = std::abs(went_while_standing(angle, *rate_dps, t_s, k, run.begin) - jump) >
+                   limit.went_on * std::abs(jump);
       if (!is_reset) continue;
       cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
