@@ -142,9 +142,9 @@ public:
   ParameterBuilder& standard(double value) { return parameter_.standard = value, *this; }
   /// It must exceed another parameter of the effect, by name: below, the effect does not show.
   ParameterBuilder& exceeds(std::string_view other) { return parameter_.exceeds = other, *this; }
-  /// It counts periods in the angle, and so many must lie within the recorded travel.
   /// A rate that the motion must reach.
   ParameterBuilder& within_the_motion() { return parameter_.within_the_motion = true, *this; }
+  /// It counts periods in the angle, and so many must lie within the recorded travel.
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// It stays at its standard until the effect without it leaves what it takes away.
   ParameterBuilder& refines() { return parameter_.refines = true, *this; }
