@@ -557,6 +557,14 @@ TEST_CASE("a place that takes none of the gap away says so instead of 0 %") {
   CHECK_THAT(io::report_html(d, "motor", {}), !ContainsSubstring("no one place"));
 }
 
+TEST_CASE("the summary says that a parameter ended on a bound, as its interval tells nothing there") {
+  Diagnosis d = example();
+  CHECK_THAT(io::summary(d), !ContainsSubstring("on its bound"));
+  d.cause.front().parameters.front().at_bound = true;
+  CHECK_THAT(std::regex_replace(io::summary(d), std::regex("\n +"), " "),
+             ContainsSubstring("], on its bound"));
+}
+
 TEST_CASE("outputs appear together and complete, or not at all") {
   const auto folder = std::filesystem::temp_directory_path() / "thermopower_outputs";
   std::filesystem::remove_all(folder);

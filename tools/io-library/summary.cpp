@@ -136,7 +136,7 @@ std::string summary(const Diagnosis& diagnosis) {
     for (const auto& parameter : cause.parameters) {
       text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
               plain_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
-              ", " + readable(parameter.ci95.high) + "]";
+              ", " + readable(parameter.ci95.high) + "]" + (parameter.at_bound ? ", on its bound" : "");
     }
     out += line(first ? "which" : "", text);
     first = false;
