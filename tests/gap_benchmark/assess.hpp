@@ -25,7 +25,13 @@ struct Suspect {
 struct Assessment {
   double visible_train = 0.0;    ///< RMS over the floor, best signal, after re-calibration within the slack
   double visible_heldout = 0.0;  ///< the same on the held-out recording
-  double left_over = 1e9;        ///< RMS over the floor that the best wrong cause, or two of them, leave
+
+  /// Whether the recording that shows less of it shows so much.
+  bool is_within(double least, double most) const {
+    const double shown = std::min(visible_train, visible_heldout);
+    return shown >= least && shown <= most;
+  }
+  double left_over = 1e9;  ///< RMS over the floor that the best wrong cause, or two of them, leave
   std::vector<Suspect> suspects;
 
   /// The likeness of the best wrong cause.

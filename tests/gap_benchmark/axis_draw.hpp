@@ -197,7 +197,7 @@ inline void measure_session(AxisSetup& s, const AxisSession& session, Random ran
 /// One case on an axis, drawn until its cause is plain in both recordings; throws when that does not happen.
 inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
   int patience = 6;
-  for (int attempt = 0; attempt < 80; ++attempt) {
+  for (int attempt = 0; attempt < most_drawings(order, 80); ++attempt) {
     AxisSetup setup = draw_axis(order.effects, random);
     AxisContext& c = setup.context;
     setup.servo = order.half == Half::servo;
@@ -264,8 +264,7 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
                       inquiry);
       };
       drawn.assessment = judge(axis_horizon_s);
-      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate)
-        continue;
+      if (!drawn.assessment.is_within(order.gate, order.ceiling)) continue;
       if (order.thorough) {
         if (drawn.assessment.confusability() >= 0.9) {
           // What looks alike over half a second may not do so over three.

@@ -237,7 +237,7 @@ inline void add_errors(const BenchOutput& y, const BenchRecording& recording, Sq
 /// happen.
 inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
   int patience = 8;
-  for (int attempt = 0; attempt < 100; ++attempt) {
+  for (int attempt = 0; attempt < most_drawings(order, 100); ++attempt) {
     BenchSetup setup = draw_bench(order.effects, order.thesis, random);
     const BenchContext& c = setup.context;
     bool possible = true;
@@ -296,8 +296,7 @@ inline DrawnCase draw_bench_case(const CaseOrder& order, Random& random) {
       if (unknown != BenchUnknown::none || (order.clear && patience > 1)) inquiry.hopeless = 0.9;
       drawn.assessment = assess(bench_scenario(setup, first, floors), bench_scenario(setup, second, floors),
                                 c, bench_effects(), bench_slack(c), inquiry);
-      if (drawn.assessment.visible_train < order.gate || drawn.assessment.visible_heldout < order.gate)
-        continue;
+      if (!drawn.assessment.is_within(order.gate, order.ceiling)) continue;
       if (order.thorough) {
         if (unknown != BenchUnknown::none && !drawn.assessment.beyond_catalogue()) continue;
         if (order.clear && drawn.assessment.confusability() >= 0.9 && --patience > 0) continue;

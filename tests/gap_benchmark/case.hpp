@@ -62,8 +62,14 @@ struct CaseOrder {
   bool thorough = true;  ///< look for the best wrong cause, too
   bool clear = false;    ///< draw again, a few times, when a wrong cause passes for the true one
   double gate = 3.0;     ///< least RMS of the cause over the floor, in train and in held-out
+  double ceiling = 1e9;  ///< the largest one, in whichever shows less of it
   int replicates = 12;   ///< further held-out recordings for the shrinkage of the population
 };
+
+/// How often a case is drawn before there is said to be none: a narrow range of sizes takes patience.
+inline int most_drawings(const CaseOrder& order, int usually) {
+  return order.ceiling < 1e9 ? 12 * usually : usually;
+}
 
 struct DrawnCase {
   nlohmann::ordered_json model, label;

@@ -28,6 +28,7 @@ struct Options {
   std::string out, only;
   unsigned long long seed = 1;
   int count = 5, threads = 2, one = -1;
+  double least_visible = 0.0, most_visible = 0.0;  // 0: as planned
   bool quick = false, leave_one_out = true;
 };
 
@@ -37,6 +38,7 @@ constexpr const char* usage =
     "  --only LIST   effect ids, none, pairs, unknown, dirty, misspecified, with commas between\n"
     "  --case N      draw only this case of the plan\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
+    "  --visible LOW,HIGH  only causes whose RMS over the floor is in this range, in whichever recording shows less\n"
     "  --quick       do not look for the best wrong cause (no confusability in the labels)\n"
     "  --no-leave-one-out\n";
 
@@ -54,7 +56,15 @@ bool parse(int argc, char** argv, Options& options) {
       else if (option == "--count") options.count = std::stoi(value());
       else if (option == "--case") options.one = std::stoi(value());
       else if (option == "--threads") options.threads = std::stoi(value());
-      else if (option == "--quick") options.quick = true;
+      else if (option == "--visible") {
+        const std::string range = value();
+        const std::size_t comma = range.find(',');
+        if (comma == std::string::npos) throw std::invalid_argument("--visible expects LOW,HIGH");
+        options.least_visible = std::stod(range.substr(0, comma));
+        options.most_visible = std::stod(range.substr(comma + 1));
+        if (!(options.least_visible > 0.0) || !(options.most_visible > options.least_visible))
+          throw std::invalid_argument("--visible expects 0 < LOW < HIGH");
+      } else if (option == "--quick") options.quick = true;
       else if (option == "--no-leave-one-out") options.leave_one_out = false;
       else throw std::invalid_argument("unknown option " + option);
     }
@@ -90,7 +100,12 @@ Json complete(DrawnCase& drawn, const CaseOrder& order) {
 int main(int argc, char** argv) {
   Options options;
   if (!parse(argc, argv, options)) return 2;
-  const std::vector<CaseOrder> orders = plan(options.seed, options.count, options.only, !options.quick);
+  std::vector<CaseOrder> orders = plan(options.seed, options.count, options.only, !options.quick);
+  if (options.most_visible > 0.0)
+    for (CaseOrder& order : orders) {
+      order.gate = options.least_visible;
+      order.ceiling = options.most_visible;
+    }
   if (orders.empty()) {
     std::cerr << "gap_benchmark_generate: nothing is called " << options.only << "\n";
     return 2;

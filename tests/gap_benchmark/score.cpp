@@ -66,6 +66,12 @@ private:
     double confusability = 0.0;
   };
   std::map<std::string, Row> rows_;
+  /// Causes of like size: what they change, over the floor, in the recording that shows less of it.
+  struct Size {
+    double below;
+    int cases = 0, named = 0, in_class = 0, unseen = 0, wrong = 0;
+  };
+  std::vector<Size> sizes_ = {{1.6}, {3.0}, {5.0}, {10.0}, {30.0}, {1e300}};
   std::vector<double> seconds_, processor_s_, class_sizes_, floor_ratios_;
 
   void miss(const std::string& job, const std::string& what, const std::string& truth, const Verdict& v,
@@ -150,6 +156,14 @@ private:
       row.in_class += classed;
       const double confusability = number(label, "confusability", -1.0);
       row.confusability += std::max(0.0, confusability);
+      const double visible = std::min(number(label["visible"], "train"), number(label["visible"], "heldout"));
+      Size& size =
+          *std::find_if(sizes_.begin(), sizes_.end(), [&](const Size& s) { return visible < s.below; });
+      ++size.cases;
+      size.named += top;
+      size.in_class += classed;
+      size.unseen += v.verdict == "no_gap";
+      size.wrong += v.named() && !classed;
       tallies_.add("class", classed);
       tallies_.add("top1_all", top);
       if (v.named()) class_sizes_.push_back(static_cast<double>(all.size()));
@@ -448,6 +462,18 @@ void Score::print(std::ostream& out) const {
   line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5),
        quantile(floor_ratios_, 0.95), "");
 
+  out << "\n## How small a cause is still named\n\nSingle causes by what they change, over the noise floor, in the recording "
+         "that shows less of it, once the simulation's own constants have used their slack.\n\n"
+         "| RMS over the floor | cases | named | in class | no gap seen | another cause named |\n|---|---|---|---|---|---|\n";
+  double from = 0.0;
+  for (const Size& size : sizes_) {
+    if (size.cases)
+      out << "| "
+          << (size.below < 1e300 ? rounded(from) + " to " + rounded(size.below) : rounded(from) + " and more")
+          << " | " << size.cases << " | " << size.named << " | " << size.in_class << " | " << size.unseen
+          << " | " << size.wrong << " |\n";
+    from = size.below;
+  }
   out << "\n## Effect by effect\n\n| effect | cases | named | of those told apart | in class | where | mean "
          "confusability |\n|---|---|---|---|---|---|---|\n";
   for (const auto& entry : rows_) {
