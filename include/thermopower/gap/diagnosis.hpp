@@ -46,7 +46,8 @@ struct Location {
   std::optional<Regime> regime;          ///< where in which variable it is largest
   std::string evidence;                  ///< one sentence
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
-  /// Whether what is missing follows nothing recorded, and a course of its own in time predicts it.
+  /// Whether what is missing follows nothing that a cause follows, and a course of its own predicts it: in time, or of a
+  /// torque over the angle.
   bool has_own_course = false;
   /// How much is missing, in multiples of what noise leaves: the mean square of what constants within their slack do not
   /// make up for, on stretches that they were not fitted to.

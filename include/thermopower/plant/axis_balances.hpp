@@ -330,6 +330,8 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
                            return directions_of(columns(),
                                                 [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
                          }});
+    // What causes of a catalogue do is among the freedoms, and these did not do.
+    b.courses.back().is_nobodys = true;
   };
   const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };
   course(Submodel::mechanical_friction, "t_s", "a friction that changes in the course of time",

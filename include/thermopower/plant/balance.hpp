@@ -99,6 +99,8 @@ struct Freedom {
   std::optional<Correction> correction =
       {};                          ///< see `or_instrument`; also of a fault of the instrument itself
   std::string scatters_with = {};  ///< of a course without an order: its size goes with this variable
+  /// Of a course: that no cause has it, whatever it follows, so that one which leaves it stands in for another.
+  bool is_nobodys = false;
 };
 
 /// Something that may order a missing quantity.

@@ -236,7 +236,7 @@ private:
       const Observed observed = observe(balance, true, limit_);
       const plant::Freedom& one = scattering(balance, *course, observed);
       report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed,
-             judgement.before(), one.variable.empty());
+             judgement.before(), one.variable.empty() || one.is_nobodys);
       return;
     }
     const bool named = !judgement.chosen().empty() && judgement.explained() > limit_.explained;
