@@ -104,6 +104,7 @@ inline thermopower::gap::Recording bench_recording(const BenchFault& fault, int 
 /// What is wrong with an axis.
 struct AxisFault {
   double coulomb_Nm = 0.0;
+  double run_out_share = 0.0;  ///< of that friction, with the sine of the angle: a bent shaft
   double spring_Nm_per_rad = 0.0;
   double angle_gain = 1.0;
   int delay_rows = 0;
@@ -136,7 +137,7 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
       const double push = torque * (1.0 + fault.ripple_share * std::sin(6.0 * theta)) - 1e-3 * thin * omega -
                           fault.spring_Nm_per_rad * theta;
       const double next = omega + h * push / 1e-3;
-      const double brake = h * fault.coulomb_Nm / 1e-3;
+      const double brake = h * fault.coulomb_Nm * (1.0 + fault.run_out_share * std::sin(theta)) / 1e-3;
       omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
       theta += h * omega;
     }

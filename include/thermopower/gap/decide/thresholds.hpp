@@ -99,6 +99,17 @@ struct DecisionThresholds {
   /// Share of the gap that a cause may leave whose parameters the data do not agree about: a stand-in for another one takes
   /// what it can get wherever it looks a little like it, and that is another size in each part of a recording.
   double may_leave = 0.6;
+  /// Factor beside which a constant stands for something else where causes leave a rest and constants alone do little. Leaving a
+  /// cause out of the simulation bends a fit of its constants by up to 2 or so, which the cause then undoes; a factor beyond
+  /// that is another device.
+  double bent_by = 2.5;
+  /// Share of the gap that a cause may leave in the place that it should mend: plain laws of friction leave 3 to 15 % of
+  /// what a joint with a bristle, another exponent or a gear does, and this is twice as much.
+  double may_leave_in_place = 0.3;
+  /// Factor by which one of several causes alone is further from the rows than none of them, from which, where each alone is
+  /// further, they are a difference of large numbers. Causes in fact do some of what is seen each; that they happen to cancel
+  /// to a third is rare.
+  double opposites = 3.0;
   /// Standard deviation of a parameter, by how much the data's blocks differ, as a share of its value: up to it they agree.
   double size_known = 0.5;
   /// Share of the mean square of what follows nothing recorded up to which it is over once an instrument's cause is in the

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -125,6 +126,12 @@ struct Witness {
   std::function<bool(const Candidate& known, const plant::SubmodelName& submodel)> blames;
   /// How much is missing beside the causes of a candidate that follows nothing recorded but has a course of its own in time.
   std::function<double(const Candidate& known)> course_beside;
+  /// What they blame as they are, the largest first.
+  std::vector<Location> where = {};
+  /// The submodel that is blamed most once the causes of a candidate are in the model, if any is.
+  std::function<std::optional<plant::SubmodelName>(const Candidate& known)> blamed_beside = {};
+  /// Whether the causes of a candidate nearly cancel each other: each alone leads further from the rows than none of them.
+  std::function<bool(const Candidate& set)> cancels = {};
 };
 
 /// How much of what follows nothing recorded is among places, in multiples of what noise leaves; 0 where nothing is.
@@ -133,6 +140,13 @@ inline double own_course_in(const std::vector<Location>& where) {
   for (const Location& one : where)
     if (one.has_own_course) most = std::max(most, one.times_noise);
   return most;
+}
+
+/// The submodel that is blamed most, of those that take anything of the gap away; none where nobody is blamed.
+inline std::optional<plant::SubmodelName> most_blamed(const std::vector<Location>& where) {
+  for (const Location& one : where)
+    if (takes_gap_away(one)) return one.submodel;
+  return std::nullopt;
 }
 
 /// Whether little of a course that followed nothing recorded is left once causes are in the model. A balance remembers
@@ -230,15 +244,30 @@ inline constexpr const char* stands_in_for_another =
     "there is a gap, and the cause that lowers it most leaves most of it and is of another size in each part of the data: "
     "it stands in for one that the catalogue lacks";
 
+/// What is said where a cause that leaves a rest takes a constant along that nothing else asks to move.
+inline constexpr const char* bends_a_constant =
+    "there is a gap, and the cause that lowers it most leaves a rest and needs a constant further off than a constant can be "
+    "that other constants alone do not show: together they stand in for a cause that the catalogue lacks";
+
+/// What is said where the place of a cause, or the place that was at fault, is still to blame with the cause in the model.
+inline constexpr const char* does_not_mend_its_place =
+    "there is a gap, and the cause that lowers it most leaves a good part of it and its place at fault: it stands in for one "
+    "that the catalogue lacks";
+
+/// What is said of causes that are large and of opposite sign.
+inline constexpr const char* cancel_each_other =
+    "there is a gap, and the causes that lower it most leave a rest and nearly cancel each other, each of them larger than "
+    "what is seen: their difference stands in for a cause that the catalogue lacks";
+
 /// What is said where the printed table does not prove that the causes take a part away.
 inline constexpr const char* nothing_is_proven =
     "there is a gap, and what lowers it most takes no part of it away that all held-out rows prove, beyond what other "
     "constants do";
 
-/// What is said where nothing recorded orders what is missing.
+/// What is said where nothing that a cause follows orders what is missing.
 inline constexpr const char* follows_nothing_recorded =
-    "there is a gap that follows nothing recorded but has a course of its own in time; what lowers it most follows that "
-    "course only in part";
+    "there is a gap that follows nothing that a cause follows but has a course of its own, in time or over the angle; what "
+    "lowers it most follows that course only in part";
 
 /// What is said beside a rest.
 inline constexpr const char* partly_explained =
@@ -280,6 +309,66 @@ inline bool has_readings_enough(const Candidate& candidate, const Model& model) 
   double readings = 0.0;
   for (double samples : candidate.train.samples) readings += samples;
   return readings >= decision.readings_per_parameter * free;
+}
+
+/// Whether some constant moved beside causes by more than a constant can be off by (DecisionThresholds::bent_by) and by more
+/// than is known of it. A constant that is that far off in fact takes most of the gap away by itself; one that moves that far
+/// only beside a cause bends the equation towards another one.
+inline bool needs_a_bent_constant(const Candidate& candidate, const Reference& reference,
+                                  const Model& model) {
+  if (left_over(reference.recalibrated, reference.as_configured) < decision.may_leave) return false;
+  Eigen::Index at = 0;
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    const double moved = std::abs(candidate.fit.point[at++]);
+    if (!constant.is_place && moved > std::log(decision.bent_by) &&
+        moved > known_constants.within * model.uncertainty_of(constant))
+      return true;
+  }
+  return false;
+}
+
+/// Whether one of the causes of a candidate acts in a submodel.
+inline bool acts_in(const Candidate& candidate, const plant::SubmodelName& submodel) {
+  const std::vector<const CatalogueEntry*>& effects = candidate.explanation.effects;
+  return std::any_of(effects.begin(), effects.end(),
+                     [&](const CatalogueEntry* entry) { return entry->info.submodel == submodel; });
+}
+
+/// Whether one of the causes of a candidate is one of an instrument.
+inline bool has_an_instrument(const Candidate& candidate) {
+  const std::vector<const CatalogueEntry*>& effects = candidate.explanation.effects;
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const CatalogueEntry* entry) { return is_of_an_instrument(*entry); });
+}
+
+/// Whether some cause of a candidate brings a state that nobody measures.
+inline bool has_hidden_states(const Candidate& candidate) {
+  const std::vector<const CatalogueEntry*>& effects = candidate.explanation.effects;
+  return candidate.hidden_starts > 0 ||
+         std::any_of(effects.begin(), effects.end(),
+                     [](const CatalogueEntry* entry) { return !entry->info.states.empty(); });
+}
+
+/// Whether the rows blame a place in another signal than the one that they blame most, and none of the causes of a candidate
+/// acts there: what the causes leave may be that fault's.
+inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<Location>& where) {
+  return std::any_of(where.begin(), where.end(), [&](const Location& one) {
+    return one.signal != where.front().signal && takes_gap_away(one) && !acts_in(candidate, one.submodel);
+  });
+}
+
+/// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the
+/// model the rows blame a submodel most that one of them acts in, or the one that they blamed most before, where none of
+/// them acts. A balance does not know a state that nobody measures, and an instrument bends the readings that balances
+/// are drawn from: those are not asked.
+/// @param rest  share of the gap that the causes leave
+inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, const Witness& rows) {
+  if (!rows.blamed_beside || rest <= decision.may_leave_in_place || has_hidden_states(candidate) ||
+      misses_a_second_fault(candidate, rows.where))
+    return false;
+  const std::optional<plant::SubmodelName> blamed = rows.blamed_beside(candidate);
+  return blamed && (acts_in(candidate, *blamed) ||
+                    (blamed == most_blamed(rows.where) && !has_an_instrument(candidate)));
 }
 
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
@@ -324,6 +413,10 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     const double rest = std::max(share_left, left_over(best.held_out, reference.recalibrated));
     if (rest > decision.may_leave && !is_agreed_upon(best, model, weight))
       return nothing_known(stands_in_for_another);
+    if (needs_a_bent_constant(best, reference, model)) return nothing_known(bends_a_constant);
+    if (leaves_its_place_at_fault(best, rest, rows)) return nothing_known(does_not_mend_its_place);
+    if (best.explanation.effects.size() > 1 && rows.cancels && rows.cancels(best))
+      return nothing_known(cancel_each_other);
     result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);
   }
   if (best.explanation.effects.size() > 1)

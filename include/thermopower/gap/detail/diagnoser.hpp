@@ -10,6 +10,7 @@
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
@@ -58,10 +59,16 @@ public:
         attempt = std::move(shorter);
     }
     stage("which");
-    const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
-                         return is_blamed(known, submodel);
-                       },
-                       [this](const Candidate& known) { return own_course_in(left_beside(known)); }};
+    const Witness rows{
+        [this](const Candidate& known, const plant::SubmodelName& submodel) {
+          return is_blamed(known, submodel);
+        },
+        [this](const Candidate& known) { return own_course_in(left_beside(known)); }, result_.where,
+        [this](const Candidate& known) { return most_blamed(left_beside(known)); },
+        [this](const Candidate& set) {
+          return are_opposites(augmented(model_, set.explanation, set.list, set.fit.point),
+                               set.explanation.ids(model_), judged_segments(held_out_inputs_), catalogue_);
+        }};
     Conclusion conclusion =
         conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
     if (conclusion.second_is_open) {
@@ -356,8 +363,9 @@ private:
     return model_.own || among(result_.where) || among(left_beside(known));
   }
 
-  /// Where a model with the causes of a candidate and the training rows part.
+  /// Where a model with the causes of a candidate and the training rows part. A plant of one's own need not say.
   std::vector<Location> left_beside(const Candidate& known) const {
+    if (model_.own) return {};
     const Model with_known = augmented(model_, known.explanation, known.list, known.fit.point);
     return localise(with_known, train_recordings_, {}, catalogue_).where;
   }

@@ -250,7 +250,11 @@ inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const 
     take_causes_back(result, model, nothing_worth_a_cause());
     return true;
   }
-  if (result.verdict != Verdict::partial || is_proven_by_the_table(result)) return false;
+  const bool in_part =
+      result.verdict == Verdict::partial ||
+      (result.verdict == Verdict::ambiguous &&
+       std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) && !chosen.effects.empty());
+  if (!in_part || is_proven_by_the_table(result)) return false;
   take_causes_back(result, model, nothing_known(nothing_is_proven));
   return true;
 }

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#include "../catch.hpp"
+#include "plants.hpp"
+
+#include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/gap/diagnose.hpp>
+#include <thermopower/gap/report/opposites.hpp>
+#include <thermopower/gap/report/parts.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+/// @file
+/// Causes that stand in for one that the catalogue lacks: what gives them away.
+
+using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
+namespace plant = thermopower::plant;
+
+namespace {
+
+SignalSums level(double mean_square) {
+  SignalSums sums;
+  sums.set(3, std::vector<double>(2400, std::sqrt(mean_square)), 1.0);
+  return sums;
+}
+
+/// Effects whose fit leaves a mean square, the constants as the model has them, every size known to a thousandth.
+Candidate candidate(const Model& model, const std::vector<const char*>& ids, double mean_square) {
+  Candidate one;
+  for (const char* id : ids) one.explanation.effects.push_back(standard_catalogue().find(id));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  const auto count = static_cast<Eigen::Index>(one.list.size());
+  one.fit.point = Eigen::VectorXd::Zero(count);
+  for (auto i = static_cast<Eigen::Index>(model.calibrated().size()); i < count; ++i) one.fit.point[i] = 1.0;
+  one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e6;
+  one.fit.at_bound.assign(one.list.size(), false);
+  one.train = one.held_out = level(mean_square);
+  one.probability = ids.empty() ? 0.0 : 1.0;
+  return one;
+}
+
+Conclusion concluded(const std::vector<Candidate>& candidates, double recalibrated,
+                     const Witness& rows = {}) {
+  return conclude(candidates, {level(900.0), level(recalibrated)}, Weight(), Options(), test::axis_model(),
+                  rows);
+}
+
+}  // namespace
+
+TEST_CASE("a constant that moves far only beside a cause and a rest gives the cause away as a stand-in") {
+  const Model model = test::axis_model();
+  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"drive_deadband"}, 50.0)};
+  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
+  all[1].fit.point[0] = -std::log(2.2);  // what a fit without the cause was bent by, and is put right
+  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
+  all[1].fit.point[0] = -std::log(3.0);
+  const Conclusion stood_in = concluded(all, 850.0);
+  CHECK(stood_in.verdict == Verdict::unexplained);
+  CHECK(stood_in.reason == bends_a_constant);
+  // A constant that is that far off takes most of the gap away by itself.
+  CHECK(concluded(all, 150.0).verdict == Verdict::partial);
+  // Nothing above the noise is left: the constant was that far off, and the cause explains the rest.
+  all[1].train = all[1].held_out = level(1.1);
+  CHECK(concluded(all, 850.0).verdict == Verdict::explained);
+}
+
+TEST_CASE("a cause that leaves a good part of the gap in the place that it should mend is a stand-in") {
+  const Model model = test::axis_model();
+  const plant::SubmodelName friction(Submodel::mechanical_friction), drive(Submodel::mechanical_drive);
+  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 150.0)};
+  Witness rows;
+  rows.where.push_back({Signal::rate_dps, friction, 0.9, {}, ""});
+  std::optional<plant::SubmodelName> left;
+  rows.blamed_beside = [&](const Candidate&) { return left; };
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  left = drive;  // something else acts, too
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  left = friction;
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
+  // Another signal has a fault of its own that no cause mends: what is left may be that one's.
+  rows.where.push_back({Signal::angle_deg, Submodel::sensing_angle, 0.7, {}, ""});
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  rows.where.back().share = 0.0;  // a trace
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
+  // A law of friction that is a little wrong leaves a little in its place.
+  all[1].train = all[1].held_out = level(40.0);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  // What acts elsewhere and leaves the fault where it was mends nothing of it.
+  all[1] = candidate(model, {"torque_ripple"}, 150.0);
+  CHECK(concluded(all, 850.0, rows).reason == does_not_mend_its_place);
+  left = Submodel::mechanical_load;
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  // Of a state that nobody measures the rows know nothing; an instrument bends what they say.
+  left = friction;
+  all[1] = candidate(model, {"presliding_friction"}, 150.0);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  all[1] = candidate(model, {"rate_bias"}, 150.0);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+}
+
+TEST_CASE(
+    "two causes of which each is larger than what is seen are a difference that stands for something else") {
+  test::AxisFault fault;
+  fault.spring_Nm_per_rad = 0.01;
+  fault.coulomb_Nm = 0.004;
+  const Recording recording = test::axis_recording(fault, 1500, 3);
+  const Model model = test::axis_model();
+  const std::vector<Inputs> inputs{prepare(model, recording)};
+  const std::vector<Segment> segments = cut(inputs, 0.5, plant_of(model));
+  Model with = model;
+  with.effects["cable_spring"] = {{"Nm_per_rad", 0.01}, {"centre_rad", 0.0}};
+  with.effects["coulomb_friction"] = {{"Nm", 0.004}};
+  CHECK_FALSE(are_opposites(with, {"cable_spring", "coulomb_friction"}, segments, standard_catalogue()));
+  // The same stiffness as the difference of a spring and a load that falls over.
+  with.effects = {{"cable_spring", {{"Nm_per_rad", 0.11}, {"centre_rad", 0.0}}},
+                  {"imbalance", {{"Nm", 0.1}, {"phase_rad", 3.141592653589793}}}};
+  CHECK(are_opposites(with, {"cable_spring", "imbalance"}, segments, standard_catalogue()));
+  CHECK_FALSE(are_opposites(with, {"cable_spring"}, segments, standard_catalogue()));
+}
+
+TEST_CASE("friction that varies over the turn is no friction of one size, and is not called one") {
+  test::AxisFault bent;
+  bent.coulomb_Nm = 0.004;
+  bent.run_out_share = 0.9;
+  const Diagnosis diagnosis = diagnose(test::axis_model(), {test::axis_recording(bent, 4000, 3)},
+                                       {test::axis_recording(bent, 2000, 8)});
+  INFO(diagnosis.reason);
+  CHECK(diagnosis.verdict == Verdict::unexplained);
+  CHECK(diagnosis.cause.empty());
+  REQUIRE_FALSE(diagnosis.where.empty());
+  CHECK(diagnosis.where.front().submodel == plant::SubmodelName(Submodel::mechanical_friction));
+  CHECK(diagnosis.where.front().has_own_course);
+  // The same friction all round is.
+  bent.run_out_share = 0.0;
+  const Diagnosis even = diagnose(test::axis_model(), {test::axis_recording(bent, 4000, 3)},
+                                  {test::axis_recording(bent, 2000, 8)});
+  REQUIRE(even.cause.size() == 1);
+  CHECK(even.cause.front().effect == "coulomb_friction");
+  CHECK_FALSE(even.where.front().has_own_course);
+}
+
+TEST_CASE("several explanations beside a rest are named only where the printed table proves one's part") {
+  const Explanation bent{{standard_catalogue().find("presliding_friction")}, {}};
+  Diagnosis result;
+  result.verdict = Verdict::ambiguous;
+  result.cause.push_back({});
+  result.gap.push_back({Signal::rate_dps, "deg/s", {}, 14.0, 14.0, 9.0, 1.0, 0.36, {0.1, 0.5}});
+  CHECK_FALSE(take_back_the_unproven(result, Model(), bent));
+  result.gap.back().ci95 = {-0.2, 0.5};
+  CHECK(take_back_the_unproven(result, Model(), bent));
+  CHECK(result.verdict == Verdict::unexplained);
+  CHECK(result.cause.empty());
+  // Near the noise the data themselves bear witness.
+  result.verdict = Verdict::ambiguous;
+  result.gap.back().after = 1.2;
+  CHECK_FALSE(take_back_the_unproven(result, Model(), bent));
+}
