@@ -98,6 +98,9 @@ TEST_CASE("a cause that leaves a good part of the gap in the place that it shoul
   left = friction;
   all[1] = candidate(model, {"presliding_friction"}, 150.0);
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  all[1] = candidate(model, {"compliance"},
+                     150.0);  // but acts elsewhere than where they find the fault, before and after
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
   all[1] = candidate(model, {"rate_bias"}, 150.0);
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
 }

@@ -359,16 +359,18 @@ inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<
 
 /// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the
 /// model the rows blame a submodel most that one of them acts in, or the one that they blamed most before, where none of
-/// them acts. A balance does not know a state that nobody measures, and an instrument bends the readings that balances
-/// are drawn from: those are not asked.
+/// them acts. A balance does not know a state that nobody measures and blames the place that has it: a cause with one is
+/// asked about the other place only. Instruments bend the readings that balances are drawn from: they are asked about their
+/// own place only.
 /// @param rest  share of the gap that the causes leave
 inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, const Witness& rows) {
-  if (!rows.blamed_beside || rest <= decision.may_leave_in_place || has_hidden_states(candidate) ||
+  if (!rows.blamed_beside || rest <= decision.may_leave_in_place ||
       misses_a_second_fault(candidate, rows.where))
     return false;
   const std::optional<plant::SubmodelName> blamed = rows.blamed_beside(candidate);
-  return blamed && (acts_in(candidate, *blamed) ||
-                    (blamed == most_blamed(rows.where) && !has_an_instrument(candidate)));
+  if (!blamed) return false;
+  if (acts_in(candidate, *blamed)) return !has_hidden_states(candidate);
+  return blamed == most_blamed(rows.where) && !has_an_instrument(candidate);
 }
 
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
