@@ -74,13 +74,16 @@ TEST_CASE("a cause that leaves a good part of the gap in the place that it shoul
   std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 150.0)};
   Witness rows;
   rows.where.push_back({Signal::rate_dps, friction, 0.9, {}, ""});
-  std::optional<plant::SubmodelName> left;
+  std::vector<Location> left;
   rows.blamed_beside = [&](const Candidate&) { return left; };
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  left = drive;  // something else acts, too
+  left.push_back({Signal::rate_dps, drive, 0.8, {}, ""});  // something else acts, too
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  left = friction;
+  left.back().submodel = friction;
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
+  left.back().share = 0.0;  // no freedom there helps: the place is a guess
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  left.back().share = 0.8;
   // Another signal has a fault of its own that no cause mends: what is left may be that one's.
   rows.where.push_back({Signal::angle_deg, Submodel::sensing_angle, 0.7, {}, ""});
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
@@ -92,10 +95,10 @@ TEST_CASE("a cause that leaves a good part of the gap in the place that it shoul
   // What acts elsewhere and leaves the fault where it was mends nothing of it.
   all[1] = candidate(model, {"torque_ripple"}, 150.0);
   CHECK(concluded(all, 850.0, rows).reason == does_not_mend_its_place);
-  left = Submodel::mechanical_load;
+  left.back().submodel = Submodel::mechanical_load;
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
   // Of a state that nobody measures the rows know nothing; an instrument bends what they say.
-  left = friction;
+  left.back().submodel = friction;
   all[1] = candidate(model, {"presliding_friction"}, 150.0);
   CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
   all[1] = candidate(model, {"compliance"},

@@ -128,8 +128,8 @@ struct Witness {
   std::function<double(const Candidate& known)> course_beside;
   /// What they blame as they are, the largest first.
   std::vector<Location> where = {};
-  /// The submodel that is blamed most once the causes of a candidate are in the model, if any is.
-  std::function<std::optional<plant::SubmodelName>(const Candidate& known)> blamed_beside = {};
+  /// What they blame once the causes of a candidate are in the model, the largest first.
+  std::function<std::vector<Location>(const Candidate& known)> blamed_beside = {};
   /// Whether the causes of a candidate nearly cancel each other: each alone leads further from the rows than none of them.
   std::function<bool(const Candidate& set)> cancels = {};
 };
@@ -367,9 +367,10 @@ inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, c
   if (!rows.blamed_beside || rest <= decision.may_leave_in_place ||
       misses_a_second_fault(candidate, rows.where))
     return false;
-  const std::optional<plant::SubmodelName> blamed = rows.blamed_beside(candidate);
-  if (!blamed) return false;
-  if (acts_in(candidate, *blamed)) return !has_hidden_states(candidate);
+  const std::vector<Location> left = rows.blamed_beside(candidate);
+  if (left.empty()) return false;
+  const plant::SubmodelName& blamed = left.front().submodel;
+  if (acts_in(candidate, blamed)) return takes_gap_away(left.front()) && !has_hidden_states(candidate);
   return blamed == most_blamed(rows.where) && !has_an_instrument(candidate);
 }
 

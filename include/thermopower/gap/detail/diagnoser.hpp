@@ -59,16 +59,16 @@ public:
         attempt = std::move(shorter);
     }
     stage("which");
-    const Witness rows{
-        [this](const Candidate& known, const plant::SubmodelName& submodel) {
-          return is_blamed(known, submodel);
-        },
-        [this](const Candidate& known) { return own_course_in(left_beside(known)); }, result_.where,
-        [this](const Candidate& known) { return most_blamed(left_beside(known)); },
-        [this](const Candidate& set) {
-          return are_opposites(augmented(model_, set.explanation, set.list, set.fit.point),
-                               set.explanation.ids(model_), judged_segments(held_out_inputs_), catalogue_);
-        }};
+    const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
+                         return is_blamed(known, submodel);
+                       },
+                       [this](const Candidate& known) { return own_course_in(left_beside(known)); },
+                       result_.where, [this](const Candidate& known) { return left_beside(known); },
+                       [this](const Candidate& set) {
+                         return are_opposites(augmented(model_, set.explanation, set.list, set.fit.point),
+                                              set.explanation.ids(model_), judged_segments(held_out_inputs_),
+                                              catalogue_);
+                       }};
     Conclusion conclusion =
         conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
     if (conclusion.second_is_open) {
