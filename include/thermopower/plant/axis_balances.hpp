@@ -380,12 +380,19 @@ inline Balance instrument_balance(const AxisAtRows& a) {
   b.freedoms.push_back({Submodel::sensing_angle, "rate_dps",
                         "the angle moves by another factor than the rate says",
                         [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
-  b.freedoms.push_back({Submodel::sensing_angle, "angle_deg", "the angle's error repeats every turn",
-                        [rate_dps, angle](double) {
-                          return std::vector<Direction>{
-                              flow_sampled(rate_dps->cwiseProduct(detail::sine(*angle, 1.0))),
-                              flow_sampled(rate_dps->cwiseProduct(detail::cosine(*angle, 1.0)))};
-                        }});
+  Freedom off_centre{Submodel::sensing_angle, "angle_deg", "", [rate_dps, angle](double count) {
+                       return std::vector<Direction>{
+                           flow_sampled(rate_dps->cwiseProduct(detail::sine(*angle, count))),
+                           flow_sampled(rate_dps->cwiseProduct(detail::cosine(*angle, count)))};
+                     }};
+  // A disc off its centre errs once a turn, an oval one twice, a magnet as often as it has pairs of poles.
+  off_centre.scan = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
+  off_centre.penalty = 2;
+  off_centre.words_at = [](double count) {
+    return count == 1.0 ? "an error of the angle that repeats every turn"
+                        : detail::repeating("an error of the angle", count);
+  };
+  b.freedoms.push_back(std::move(off_centre));
   b.variables = {
       {"rate_dps", "deg/s", *rate_dps, OrderingVariable::Kind::sampled, Signal::rate_dps},
       {"angle_deg", "deg", a.angle * deg_per_rad, OrderingVariable::Kind::sampled, Signal::angle_deg},

@@ -8,6 +8,7 @@
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -90,6 +91,19 @@ TEST_CASE("friction, spring, delay and a wrong angle are told apart") {
   fault = {};
   fault.angle_gain = 1.1;
   check_first(axis(fault), Signal::angle_deg, plant::Submodel::sensing_angle);
+}
+
+TEST_CASE("an encoder that errs several times a turn is placed in the angle") {
+  for (const double repeats : {1.0, 2.0, 8.0}) {
+    CAPTURE(repeats);
+    Recording recording = test::axis_recording({}, 4000, 3);
+    Eigen::VectorXd angle = recording.column("angle_deg");
+    for (double& one : angle) one += 0.8 * std::sin(repeats * one / 57.29577951308232);
+    recording.set("angle_deg", angle);
+    const Localisation found = localise(test::axis_model(), {recording}, {}, standard_catalogue());
+    check_first(found, Signal::angle_deg, plant::Submodel::sensing_angle);
+    CHECK(found.where.front().regime->variable == "angle_deg");
+  }
 }
 
 TEST_CASE(
