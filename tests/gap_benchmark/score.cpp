@@ -395,12 +395,19 @@ private:
         tallies_.add("coverage_sample", g.has_interval && g.low <= sample && sample <= g.high);
         if (!covers) tallies_.add("coverage_below", g.has_interval && population < g.low);
       }
-      const double recomputed = predicted_rms(directory_ + "/cases/" + job, report, entry.key());
-      if (recomputed >= 0.0 && g.after > 0.0)
-        tallies_.add("honest", std::fabs(recomputed / g.after - 1.0) < 0.05);
+      const double recomputed = predicted_rms(directory_ + "/cases/" + job, report, entry.key(), v);
+      if (recomputed >= 0.0 && g.after > 0.0) honest(job, entry.key(), recomputed / g.after);
     }
     tallies_.add("after", low);
     if (!low) misses_.push_back({job, "after", name, join(v.cause), worst});
+  }
+
+  /// Whether a report's score is that of its own predictions.
+  void honest(const std::string& job, const std::string& signal, double ratio) {
+    const bool agrees = std::fabs(ratio - 1.0) < 0.05;
+    tallies_.add("honest", agrees);
+    if (!agrees)
+      misses_.push_back({job, "predictions", signal, rounded(ratio) + " times what the report says", ""});
   }
 
   void judge_left_out(const std::string& job, const Json& entry) {

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gap_benchmark {
@@ -43,6 +44,8 @@ struct Verdict {
   };
   std::map<std::string, Parameter> parameters;  ///< of the named causes, as `effect.parameter`
   Explanation moved;                            ///< constants listed as moved, as `calibration.<constant>`
+  /// Rows [begin, end) of the held-out log that the report does not believe, by column; of all outputs under "".
+  std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> masked;
 
   /// The causes, and those of some effects that the report lists as constants that moved beside a cause.
   Explanation told(const Explanation& asked) const {
@@ -116,6 +119,12 @@ inline Verdict read_verdict(const std::string& directory) {
   }
   if (report.contains("constants") && report["constants"].is_object())
     for (const auto& entry : report["constants"].items()) v.moved.insert("calibration." + entry.key());
+  for (const auto& finding : list("findings")) {
+    const bool held_out = std::filesystem::path(text(finding, "recording")).filename() == "heldout.csv";
+    if (!held_out || text(finding, "action") != "masked" || !finding.contains("rows")) continue;
+    for (const auto& range : finding["rows"])
+      v.masked[text(finding, "column")].push_back({range[0].get<std::size_t>(), range[1].get<std::size_t>()});
+  }
   for (const auto& place : list("where"))
     v.where.push_back({text(place, "signal"), text(place, "submodel"), number(place, "share")});
   if (report.contains("gap") && report["gap"].is_object())
@@ -155,17 +164,26 @@ inline std::map<std::string, std::vector<double>> read_columns(const std::string
   return columns;
 }
 
-/// RMSE of the predictions a run left behind against the held-out log; negative where there are none.
+/// RMSE of the predictions a run left behind against the held-out log, on the rows that its report believes; negative where
+/// there are none.
 inline double predicted_rms(const std::string& case_directory, const std::string& report_directory,
-                            const std::string& signal) {
+                            const std::string& signal, const Verdict& v) {
   const auto predicted = read_columns(report_directory + "/predictions.csv");
   const auto measured = read_columns(case_directory + "/heldout.csv");
   const auto p = predicted.find(signal + "_augmented");
   const auto m = measured.find(signal);
   if (p == predicted.end() || m == measured.end() || p->second.size() != m->second.size()) return -1.0;
+  std::vector<char> believed(p->second.size(), 1);
+  for (const std::string& column : {signal, std::string()}) {
+    const auto found = v.masked.find(column);
+    if (found == v.masked.end()) continue;
+    for (const auto& rows : found->second)
+      for (std::size_t i = rows.first; i < std::min(rows.second, believed.size()); ++i) believed[i] = 0;
+  }
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < p->second.size(); ++i) {
+    if (!believed[i]) continue;
     const double error = p->second[i] - m->second[i];
     if (std::isnan(error)) continue;
     sum += error * error;

@@ -10,11 +10,15 @@
 
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 using namespace thermopower::gap;
 namespace io = thermopower::io;
@@ -175,6 +179,87 @@ TEST_CASE("a loss that grows with the rise is diagnosed from files to files") {
     CHECK(rows > 900 * 0.2);
     CHECK(rows < 900 * 0.4);
   }
+}
+
+namespace {
+
+/// Columns of a CSV file by their names; an empty cell is NaN.
+std::map<std::string, std::vector<double>> columns_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line, cell;
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<double>> columns;
+  std::getline(file, line);
+  std::istringstream header(line);
+  while (std::getline(header, cell, ',')) names.push_back(cell);
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    for (const std::string& name : names) {
+      cell.clear();
+      std::getline(cells, cell, ',');
+      columns[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+TEST_CASE("a report's score is that of its own predictions, though its data have holes and spikes") {
+  const Folder folder("honest");
+  test::BenchFault fault;
+  fault.series_ohm = 1.5;
+  folder.bench(fault);
+  const Recording whole = test::bench_recording(fault, 600, 2);
+  Recording broken;
+  std::vector<Eigen::Index> kept;  // an hour at another power was not logged
+  for (Eigen::Index i = 0; i < whole.rows(); ++i)
+    if (i < 130 || i >= 260) kept.push_back(i);
+  const auto rows = static_cast<Eigen::Index>(kept.size());
+  broken.t_s.resize(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) broken.t_s[i] = whole.t_s[kept[static_cast<std::size_t>(i)]];
+  for (const auto& column : whole.columns) {
+    Eigen::VectorXd values(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      values[i] = column.values[kept[static_cast<std::size_t>(i)]];
+      if (column.name == "motor_C" && i % 40 == 17) values[i] += 15.0;
+    }
+    broken.set(column.name, values);
+  }
+  write(folder.path / "heldout.csv", csv(broken));
+  REQUIRE(folder.run("diagnose " + inputs + "--report report.json --predictions predictions.csv").status ==
+          0);
+  const auto report = nlohmann::json::parse(text_of(folder.path / "report.json"));
+  std::map<std::string, std::vector<bool>> masked;
+  bool segmented = false;
+  for (const auto& finding : report["findings"]) {
+    if (finding["recording"] != "heldout.csv") continue;
+    segmented = segmented || finding["action"] == "segmented";
+    std::vector<bool>& mask = masked[finding["column"].get<std::string>()];
+    mask.resize(static_cast<std::size_t>(rows), false);
+    for (const auto& range : finding["rows"])
+      for (auto i = range[0].get<std::size_t>(); finding["action"] == "masked" && i < range[1]; ++i)
+        mask[i] = true;
+  }
+  REQUIRE(segmented);
+  REQUIRE(masked.count("motor_C") == 1);
+  REQUIRE(std::count(masked["motor_C"].begin(), masked["motor_C"].end(), true) > 5);
+  auto predicted = columns_of(folder.path / "predictions.csv"),
+       measured = columns_of(folder.path / "heldout.csv");
+  REQUIRE(predicted["t_s"].size() == static_cast<std::size_t>(rows));
+  for (const char* signal : {"current_A", "motor_C"})
+    for (const auto& [column, score] : {std::pair("_baseline", "before"), std::pair("_augmented", "after")}) {
+      CAPTURE(signal, score);
+      double squares = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
+        const double error = predicted[std::string(signal) + column][i] - measured[signal][i];
+        const auto mask = masked.find(signal);
+        if (!std::isfinite(error) || (mask != masked.end() && mask->second[i])) continue;
+        squares += error * error;
+        count += 1.0;
+      }
+      CHECK(std::sqrt(squares / count) == Approx(report["gap"][signal][score].get<double>()).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("a motor that matches has no gap, and nothing is accused") {

@@ -64,6 +64,59 @@ Recording with_own_starts(Recording recording, const plant::PlantInfo& info,
   return recording;
 }
 
+// The file of what was simulated before and after, by recording.
+std::string predictions_csv(const std::vector<HeldOutPrediction>& predictions,
+                            const std::vector<Recording>& recordings) {
+  std::vector<std::string> signals;  // of all recordings, in order of appearance: one header fits all rows
+  std::size_t runs = 0;
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    runs += recordings[r].spans().size();
+    for (const auto* simulated : {&predictions[r].baseline, &predictions[r].augmented}) {
+      for (const auto& one : *simulated) {
+        const std::string name = to_string(one.signal);
+        if (std::find(signals.begin(), signals.end(), name) == signals.end()) signals.push_back(name);
+      }
+    }
+  }
+  if (signals.empty()) {
+    throw InputError(
+        (recordings.empty() ? std::string() : recordings.front().name + ": ") +
+        "nothing to predict: the columns that the model's laws need (power_param with a supply and "
+        "ambient_C, or heat_W and ambient_C, or drive_A, voltage_V or a servo's target) are not recorded");
+  }
+  std::string out = "t_s";
+  if (runs > 1) out += ",run";
+  for (const auto& signal : signals) out += "," + signal + "_baseline," + signal + "_augmented";
+  out += "\n";
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    std::vector<const Eigen::VectorXd*> columns;
+    for (const auto& signal : signals) {
+      columns.push_back(find(predictions[r].baseline, signal));
+      columns.push_back(find(predictions[r].augmented, signal));
+    }
+    const auto spans = recordings[r].spans();
+    for (std::size_t s = 0; s < spans.size(); ++s) {
+      // Labels may repeat (the same file twice) or be empty; a reader needs to see where a run begins.
+      std::string label = spans[s].label;
+      if (label.empty()) label = std::to_string(s + 1);
+      if (recordings.size() > 1) label = std::to_string(r + 1) + ":" + label;
+      for (Eigen::Index row = spans[s].begin; row < spans[s].end; ++row) {
+        append(out, recordings[r].t_s[row]);
+        if (runs > 1) {
+          out += ',';
+          append_csv_cell(out, label);
+        }
+        for (const auto* column : columns) {
+          out += ',';
+          if (column != nullptr) append(out, (*column)[row]);
+        }
+        out += '\n';
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
@@ -101,57 +154,20 @@ std::string predictions_csv(const Model& baseline, const Model& augmented,
                             const Catalogue& catalogue) {
   SimulationOptions options;
   options.horizon_s = horizon_s;
-  std::vector<std::vector<SimulatedSignal>> before, after;
-  std::vector<std::string> signals;  // of all recordings, in order of appearance: one header fits all rows
-  std::size_t runs = 0;
+  std::vector<HeldOutPrediction> predictions;
   for (const auto& recording : recordings) {
-    before.push_back(simulate(baseline, recording, options, catalogue));
-    after.push_back(simulate(augmented, recording, options, catalogue));
-    runs += recording.spans().size();
-    for (const auto* simulated : {&before.back(), &after.back()}) {
-      for (const auto& one : *simulated) {
-        const std::string name = to_string(one.signal);
-        if (std::find(signals.begin(), signals.end(), name) == signals.end()) signals.push_back(name);
-      }
-    }
+    predictions.push_back({simulate(baseline, recording, options, catalogue),
+                           simulate(augmented, recording, options, catalogue)});
   }
-  if (signals.empty()) {
-    throw InputError(
-        (recordings.empty() ? std::string() : recordings.front().name + ": ") +
-        "nothing to predict: the columns that the model's laws need (power_param with a supply and "
-        "ambient_C, or heat_W and ambient_C, or drive_A, voltage_V or a servo's target) are not recorded");
-  }
-  std::string out = "t_s";
-  if (runs > 1) out += ",run";
-  for (const auto& signal : signals) out += "," + signal + "_baseline," + signal + "_augmented";
-  out += "\n";
-  for (std::size_t r = 0; r < recordings.size(); ++r) {
-    std::vector<const Eigen::VectorXd*> columns;
-    for (const auto& signal : signals) {
-      columns.push_back(find(before[r], signal));
-      columns.push_back(find(after[r], signal));
-    }
-    const auto spans = recordings[r].spans();
-    for (std::size_t s = 0; s < spans.size(); ++s) {
-      // Labels may repeat (the same file twice) or be empty; a reader needs to see where a run begins.
-      std::string label = spans[s].label;
-      if (label.empty()) label = std::to_string(s + 1);
-      if (recordings.size() > 1) label = std::to_string(r + 1) + ":" + label;
-      for (Eigen::Index row = spans[s].begin; row < spans[s].end; ++row) {
-        append(out, recordings[r].t_s[row]);
-        if (runs > 1) {
-          out += ',';
-          append_csv_cell(out, label);
-        }
-        for (const auto* column : columns) {
-          out += ',';
-          if (column != nullptr) append(out, (*column)[row]);
-        }
-        out += '\n';
-      }
-    }
-  }
-  return out;
+  return predictions_csv(predictions, recordings);
+}
+
+std::string predictions_csv(const Model& model, const Diagnosis& diagnosis,
+                            const std::vector<Recording>& held_out, double horizon_s,
+                            const Catalogue& catalogue) {
+  if (diagnosis.predictions.size() != held_out.size())  // the data were not believed
+    return predictions_csv(model, diagnosis.augmented, held_out, horizon_s, catalogue);
+  return predictions_csv(diagnosis.predictions, held_out);
 }
 
 }  // namespace thermopower::io

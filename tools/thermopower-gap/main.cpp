@@ -272,7 +272,7 @@ int diagnose(const Arguments& arguments) {
                                                   gap::catalogue_of(model, catalogue).list(), held_out));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
-                  io::predictions_csv(model, diagnosis.augmented, held_out, arguments.horizon_s, catalogue));
+                  io::predictions_csv(model, diagnosis, held_out, arguments.horizon_s, catalogue));
     }
     if (!arguments.augmented.empty()) outputs.put(arguments.augmented, io::to_json(diagnosis.augmented));
     write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);

@@ -5,6 +5,7 @@
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/verdict.hpp>
 #include <thermopower/gap/model.hpp>
+#include <thermopower/gap/simulated_signal.hpp>
 #include <thermopower/plant/quantity.hpp>
 #include <thermopower/plant/signal.hpp>
 #include <thermopower/plant/submodel.hpp>
@@ -212,6 +213,8 @@ struct Diagnosis {
   ParameterCorrelation correlation;        ///< of the chosen explanation; empty where none is
   std::optional<Remaining> remaining;      ///< of a partial verdict
   std::string recalibration;  ///< one sentence where refitted constants do worse on held-out data; else empty
+  /// One per held-out recording: what `gap` was measured on, restarted where that was. Empty where nothing was simulated.
+  std::vector<HeldOutPrediction> predictions;
   std::vector<SignalSeries> series;  ///< curves of every judged signal over the held-out recordings
   std::vector<MissingQuantity> missing_quantities;  ///< what the residuals ask for, where that can be said
   Model augmented;                   ///< the model with the causes added and its constants moved along

@@ -4,8 +4,8 @@
 
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/gap/simulated_signal.hpp>
 #include <thermopower/plant/simulation_mode.hpp>
-#include <thermopower/plant/signal.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <Eigen/Core>
@@ -19,12 +19,6 @@ namespace thermopower::gap {
 struct SimulationOptions {
   SimulationMode mode = SimulationMode::free_running;  ///< which signals are fed in
   double horizon_s = 0.5;                              ///< axis only; 0 or infinite: whole runs
-};
-
-/// One simulated signal, a value per row of the recording; NaN where it could not be simulated.
-struct SimulatedSignal {
-  plant::SignalName signal;  ///< which
-  Eigen::VectorXd values;    ///< in the signal's unit: A, degC, deg or deg/s
 };
 
 /// Simulates every signal that the model has a law for and the recording has the inputs for.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -29,6 +30,18 @@ Recording with_starts(Recording recording, const Model& model, const std::map<st
 /// @throws InputError where no recording has what any law of the models needs
 std::string predictions_csv(const Model& baseline, const Model& augmented,
                             const std::vector<Recording>& recordings, double horizon_s,
+                            const Catalogue& catalogue = standard_catalogue());
+
+/// The predictions of a diagnosis, as its gap was measured: restarted where the check cut the recordings, from the states
+/// that it believes. A cell is empty at a row that it left out.
+/// @param model      that was diagnosed
+/// @param diagnosis  where it simulated nothing, as the data cannot be believed, the recordings are taken as they are
+/// @param held_out   as they were given to the diagnosis, one after the other
+/// @param horizon_s  length of an axis' windows
+/// @param catalogue  knows the effects
+/// @throws InputError where no signal can be predicted
+std::string predictions_csv(const Model& model, const Diagnosis& diagnosis,
+                            const std::vector<Recording>& held_out, double horizon_s,
                             const Catalogue& catalogue = standard_catalogue());
 
 }  // namespace thermopower::io

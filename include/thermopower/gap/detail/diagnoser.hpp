@@ -10,6 +10,7 @@
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/report/held_out_predictions.hpp>
 #include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
@@ -172,6 +173,9 @@ private:
       train_inputs_.push_back(std::move(one).take_inputs());
     }
     for (PreparedRecording& one : checked.held_out) {
+      RowsAsGiven& rows = held_out_rows_.emplace_back();
+      rows.count = one.recorded_rows();
+      for (const Eigen::Index row : one.source_rows()) rows.place.push_back(row - one.recording().first_row);
       held_out_recordings_.push_back(std::move(one).take_recording());
       held_out_inputs_.push_back(std::move(one).take_inputs());
     }
@@ -491,6 +495,8 @@ private:
       }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
+    result_.predictions =
+        predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);
   }
 
   void stage(const char* name) {
@@ -505,6 +511,7 @@ private:
   Diagnosis result_;
   std::vector<Recording> train_recordings_, held_out_recordings_;
   std::vector<Inputs> train_inputs_, held_out_inputs_;
+  std::vector<RowsAsGiven> held_out_rows_;
   std::vector<std::shared_ptr<std::vector<Inputs>>> kept_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
