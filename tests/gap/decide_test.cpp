@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #include "../catch.hpp"
 #include "fixture.hpp"
+#include "plants.hpp"
 
 #include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/gap/report/parts.hpp>
@@ -582,16 +583,15 @@ TEST_CASE("a cause about whose size the parts of the data disagree is not agreed
   for (Eigen::Index i = first; i < n; ++i) one.fit.point[i] = 0.7;
   CHECK(is_agreed_upon(one, model, Weight()));  // nobody looked
   // As many blocks as make their number no matter; each pulls by as much as moves the parameter by so many sizes.
-  one.fit.blocks = 100000;
   const auto differing_by = [&](double sizes) {
     one.fit.information = Eigen::MatrixXd::Identity(n, n);
-    one.fit.scatter = Eigen::MatrixXd::Zero(n, n);
+    one.fit.pulls = Eigen::MatrixXd::Zero(n, 20000);
     for (Eigen::Index i = first; i < n; ++i) {
       const double value =
           one.list[static_cast<std::size_t>(i)].logarithmic ? 1.0 : std::abs(one.fit.point[i]);
       const double sharp = 1e8 / (value * value);  // what noise alone would leave open is a ten thousandth
       one.fit.information(i, i) = sharp;
-      one.fit.scatter(i, i) = std::pow(sizes * value * sharp, 2.0);
+      one.fit.pulls(i, 1000 * (i + 1)) = sizes * value * sharp;
     }
   };
   differing_by(0.45);
@@ -600,4 +600,95 @@ TEST_CASE("a cause about whose size the parts of the data disagree is not agreed
   CHECK_FALSE(is_agreed_upon(one, model, Weight()));
   one.fit.at_bound.assign(one.list.size(), true);  // what ended there has no such size
   CHECK(is_agreed_upon(one, model, Weight()));
+}
+
+namespace {
+
+/// A fit of one parameter, a mean of residuals of variance 1, of which as many as make a block pull together.
+Candidate mean_of_blocks(const Eigen::VectorXd& pulls, double samples_of_block) {
+  Candidate one;
+  one.list.resize(1);
+  one.fit.point = Eigen::VectorXd::Zero(1);
+  one.fit.information = Eigen::MatrixXd::Constant(1, 1, samples_of_block * static_cast<double>(pulls.size()));
+  one.fit.priors = Eigen::VectorXd::Zero(1);
+  one.fit.pulls = pulls.transpose();
+  return one;
+}
+
+/// How often an interval of a mean of noise holds it. @param remembered  from one block to the next
+double coverage_of_means(double remembered, int blocks) {
+  constexpr int draws = 2000;
+  constexpr double samples_of_block = 100.0;
+  test::Noise noise(static_cast<std::uint64_t>(blocks) + 7);
+  int held = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    Eigen::VectorXd sums(blocks);
+    double last = noise();
+    for (double& sum : sums) {
+      last = remembered * last + std::sqrt(1.0 - remembered * remembered) * noise();
+      sum = std::sqrt(samples_of_block) * last;
+    }
+    const double mean = sums.sum() / (samples_of_block * blocks);
+    const Eigen::VectorXd pulls =
+        sums.array() - samples_of_block * mean;  // at the minimum they pull against each other
+    const Covariance covariance = covariance_of(mean_of_blocks(pulls, samples_of_block), Weight());
+    held += std::abs(mean) <= covariance.quantile * std::sqrt(covariance.of(0, 0)) ? 1 : 0;
+  }
+  return static_cast<double>(held) / draws;
+}
+
+}  // namespace
+
+TEST_CASE("an interval of a parameter holds it as often as it says, though noise lasts longer than a block") {
+  CHECK(coverage_of_means(0.0, 40) == Approx(0.955).margin(0.02));
+  CHECK(coverage_of_means(0.5, 80) == Approx(0.945).margin(0.025));
+  CHECK(coverage_of_means(0.8, 200) == Approx(0.945).margin(0.025));
+}
+
+TEST_CASE("what only a prior knows stays as uncertain as that, however many samples it counts for") {
+  constexpr double sd = 0.05;
+  for (const double samples_as_one : {1.0, 40.0}) {
+    CAPTURE(samples_as_one);
+    Candidate one = mean_of_blocks(Eigen::VectorXd::Zero(40), 1.0);
+    one.fit.per_prior = samples_as_one;
+    one.fit.priors[0] = one.fit.information(0, 0) = samples_as_one / (sd * sd);
+    CHECK(std::sqrt(covariance_of(one, Weight()).of(0, 0)) == Approx(sd));
+  }
+}
+
+TEST_CASE(
+    "what a simulation makes of the noise of its starts is noise only where it follows the data it was fitted to") {
+  Candidate one;
+  one.train =
+      sums_of(blocks(4.0, 4.0));  // twice the noise, as blows make that hang on the last digit of a start
+  CHECK(follows_its_data(one));
+  one.train = sums_of(blocks(64.0, 64.0));
+  CHECK_FALSE(follows_its_data(one));
+
+  Model loose = axis_model();
+  loose.effects["backlash"] = {{"gap_rad", 0.1}, {"far_share", 0.6}, {"contact_Hz", 20.0}, {"damping", 0.02}};
+  Recording recording;
+  recording.name = "shaken";
+  constexpr Eigen::Index rows = 1500;
+  recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 0.01 * (rows - 1));
+  Eigen::VectorXd drive(rows), still = Eigen::VectorXd::Zero(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) drive[i] = (i / 20) % 3 == 0 ? 0.4 : -0.2;
+  recording.set("drive_A", drive);
+  recording.set("angle_deg", still);
+  recording.set("rate_dps", still);
+  const std::vector<Inputs> inputs{prepare(loose, recording)};
+  const std::vector<Segment> segments = cut(inputs, 0.5, plant_of(loose));
+  const Errors errors = errors_of(loose, segments, standard_catalogue());
+  auto sigma = thermopower::plant::for_each_signal(1.0);
+  sigma[static_cast<std::size_t>(Signal::angle_deg)] = 0.02;
+  sigma[static_cast<std::size_t>(Signal::rate_dps)] = 0.15;
+  const auto rate = static_cast<std::size_t>(Signal::rate_dps);
+  const double stiff = floor_of(axis_model(), errors, sigma, segments, standard_catalogue())[rate];
+  CHECK(floor_of(loose, errors, sigma, segments, standard_catalogue())[rate] > 3.0 * stiff);
+  Diagnosis followed, missed;
+  score(followed, axis_model(), segments, inputs, loose, true, {}, {}, standard_catalogue());
+  score(missed, axis_model(), segments, inputs, loose, false, {}, {}, standard_catalogue());
+  REQUIRE(followed.gap.size() == missed.gap.size());
+  for (std::size_t i = 0; i < followed.gap.size(); ++i)
+    CHECK(missed.gap[i].noise_floor < followed.gap[i].noise_floor);
 }

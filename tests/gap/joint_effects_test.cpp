@@ -124,6 +124,55 @@ TEST_CASE("a loop of 1 kHz gets the same answer logged at 1 kHz, at 200 Hz, at 5
   }
 }
 
+namespace {
+
+/// A motor whose current does nothing inside a band, driven by a loop of 1 kHz that answers to its noisy sensors: its command
+/// is another one in each row.
+Recording dithered(double band_A, double length_s, std::uint64_t seed) {
+  constexpr double period_s = 1e-3;
+  const auto rows = static_cast<Eigen::Index>(length_s / period_s);
+  test::Noise noise(seed);
+  Recording r;
+  r.name = "dithered";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  double theta = 0.0, omega = 0.0;
+  const double kept = std::exp(-viscous / inertia * period_s);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double t = period_s * static_cast<double>(i), phase = static_cast<double>(seed);
+    r.t_s[i] = t;
+    drive[i] = 0.08 * std::sin(2.1 * t + phase) + 0.06 * std::sin(5.3 * t + 1.0) + 0.03 * noise();
+    angle[i] = theta * 57.29577951308232 + 0.02 * noise();
+    rate[i] = omega * 57.29577951308232 + 0.15 * noise();
+    const double arrives_A = std::copysign(std::fmax(0.0, std::fabs(drive[i]) - band_A), drive[i]);
+    const double final_rate = torque_constant * arrives_A / viscous;  // of a rate that nears it exponentially
+    theta += final_rate * period_s + (omega - final_rate) * (1.0 - kept) * inertia / viscous;
+    omega = final_rate + (omega - final_rate) * kept;
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("a band is measured on the rows as they are, where their mean would smear it") {
+  constexpr double band_A = 0.03;
+  Model model;
+  model.name = "joint";
+  model.axis = RigidAxisModel{inertia, viscous, torque_constant};
+  const Diagnosis diagnosis = diagnose(model, {dithered(band_A, 20.0, 3)}, {dithered(band_A, 12.0, 8)});
+  CHECK(diagnosis.verdict == Verdict::explained);
+  REQUIRE(diagnosis.cause.size() == 1);
+  REQUIRE(diagnosis.cause.front().effect == "drive_deadband");
+  const ParameterEstimate& band = diagnosis.cause.front().parameters.front();
+  CHECK(band.value == Approx(band_A).epsilon(0.005));
+  CHECK(band.ci95.low < band_A);
+  CHECK(band.ci95.high > band_A);
+  CHECK(diagnosis.ranking.front().parameters.front().value == band.value);  // the ranking says the same
+}
+
 TEST_CASE("a measured current in the place of the command makes no gap of its noise, and hides no cause") {
   using Effect = test::SampledAxis::Effect;
   const auto [sound, rough] = check_sound_and_rough([](Effect effect, int part) {

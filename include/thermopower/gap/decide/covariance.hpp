@@ -22,42 +22,67 @@ struct Covariance {
   double quantile = 1.96;  ///< two-sided, 95 %
 };
 
+/// What noise that is remembered adds to the standard deviation of a sum of blocks: of a process of first order,
+/// sqrt((1 + r) / (1 - r)) with the correlation r of neighbours. Blocks that pull against their neighbours are chance.
+/// @param pulls  on one coordinate, block after block
+inline double remembered_by_blocks(const Eigen::VectorXd& pulls) {
+  constexpr double most = 0.9;  // beyond, the blocks say no more than that they are all one
+  const Eigen::Index count = pulls.size();
+  const double square = pulls.squaredNorm();
+  if (count < 5 || !(square > 0.0)) return 1.0;
+  const double seen = pulls.head(count - 1).dot(pulls.tail(count - 1)) / square;
+  // Of pulls that add up to nothing it comes out smaller by (1 + 4 r) / n (Marriott & Pope 1954).
+  const double n = static_cast<double>(count), r = std::clamp((seen * n + 1.0) / (n - 4.0), 0.0, most);
+  return std::sqrt((1.0 + r) / (1.0 - r));
+}
+
 /// The covariance that the data's blocks show (the sandwich of White 1982, clustered): how much the pull on the
 /// parameters differs between contiguous blocks, whatever the reason, noise, its correlation, or a model that is a
 /// little wrong. At least that of the noise alone. With few blocks the noise's, widened with the residuals' level
 /// and correlation. Of a fit whose curvature nobody looked at nothing is known: `of` is 0 by 0.
+///
+/// What a prior is wrong by pulls, too: where the fit lets it count for as many samples as make one, that is no more knowledge of
+/// the constant, and where only the prior knows a direction, its own standard deviation is what is left open.
 inline Covariance covariance_of(const Candidate& candidate, const Weight& weight) {
-  constexpr int fewest_blocks = 12;      // below, the blocks themselves say little
-  constexpr double block_samples = 120;  // of a long run, as the fitter cuts it
-  if (candidate.fit.information.size() == 0) return {};
+  constexpr int fewest_blocks = 12;  // below, the blocks themselves say little
+  const FitResult& fit = candidate.fit;
+  if (fit.information.size() == 0) return {};
   // Each coordinate in the unit that the data resolve it in: beside a parameter that is known to a millionth of its
   // unit, what only the prior knows would be taken for rounding, and its share of the intervals would be lost.
-  Eigen::VectorXd unit = candidate.fit.information.diagonal();
+  Eigen::VectorXd unit = fit.information.diagonal();
   for (double& one : unit) one = one > 0.0 ? 1.0 / std::sqrt(one) : 1.0;
-  const LeastSquares scaled(scaled_both_ways(candidate.fit.information, unit));
+  const LeastSquares scaled(scaled_both_ways(fit.information, unit));
   Eigen::MatrixXd inverse(unit.size(), unit.size());
   for (Eigen::Index k = 0; k < unit.size(); ++k)
     inverse.col(k) = unit[k] * scaled.solve(Eigen::VectorXd::Unit(unit.size(), k)).cwiseProduct(unit);
-  double inflation = 1.0, longest = 1.0;
+  // H^-1 of the whole is that of the data's curvature and of the priors', both between the same inverses.
+  Eigen::MatrixXd by_priors = Eigen::MatrixXd::Zero(unit.size(), unit.size());
+  for (Eigen::Index k = 0; k < fit.priors.size(); ++k)
+    if (fit.priors[k] > 0.0) by_priors += fit.priors[k] * inverse.col(k) * inverse.col(k).transpose();
+  const Eigen::MatrixXd by_noise = inverse - by_priors;
+  by_priors *= fit.per_prior;
+  double inflation = 1.0;
   for (std::size_t i = 0; i < signal_count; ++i)
-    if (candidate.train.samples[i] > 0.0) {
+    if (candidate.train.samples[i] > 0.0)
       inflation = std::max(inflation, candidate.train.mean(i) * weight.correlation[i]);
-      longest = std::max(longest, weight.correlation[i]);
-    }
-  const double blocks = candidate.fit.blocks, free = blocks - static_cast<double>(candidate.list.size());
+  const double blocks = static_cast<double>(fit.pulls.cols()),
+               free = blocks - static_cast<double>(candidate.list.size());
   Covariance covariance;
-  if (candidate.fit.blocks < fewest_blocks || free < 0.5 * fewest_blocks) {
-    covariance.of = inverse * inflation;
+  if (blocks < fewest_blocks || free < 0.5 * fewest_blocks) {
+    covariance.of = by_noise * inflation + by_priors;
     return covariance;
   }
   // A fit leans towards each of its blocks, which then pulls less than a new one would: as much less, on average, as there
-  // are parameters for each block (the jackknife's correction, HC3 of MacKinnon & White 1985). Neighbouring blocks of
-  // long correlation are alike: they count as one in part.
+  // are parameters for each block (the jackknife's correction, HC3 of MacKinnon & White 1985).
   const double leaning = blocks / free;
-  covariance.of = transposed_product(inverse, transposed_product(candidate.fit.scatter, inverse)) *
-                  (leaning * leaning * (1.0 + longest / block_samples));
+  Eigen::MatrixXd moves(unit.size(), fit.pulls.cols());  // of the coordinates, by each block
+  for (Eigen::Index k = 0; k < moves.rows(); ++k) {
+    moves.row(k) = (inverse.row(k) * fit.pulls);
+    moves.row(k) *= leaning * remembered_by_blocks(moves.row(k).transpose());
+  }
+  covariance.of = moves * moves.transpose() + by_priors;
   for (Eigen::Index i = 0; i < covariance.of.rows(); ++i)
-    covariance.of(i, i) = std::max(covariance.of(i, i), inverse(i, i));
+    covariance.of(i, i) = std::max(covariance.of(i, i), by_noise(i, i) + by_priors(i, i));
   const double z = 1.96;
   covariance.quantile = z + (z * z * z + z) / (4.0 * free);  // Student's t (Cornish & Fisher)
   return covariance;

@@ -184,6 +184,12 @@ inline bool does_nothing_more(const Candidate& candidate, const Candidate& const
   return true;
 }
 
+/// Whether a candidate follows the data it was fitted to, so that what it makes of the noise of its starts tells of a perfect
+/// model, too.
+inline bool follows_its_data(const Candidate& candidate) {
+  return candidate.train.within(decision.follows * decision.follows);
+}
+
 /// Whether a candidate scores what the noise allows.
 inline bool is_at_the_noise(const Candidate& candidate) {
   return candidate.held_out.any() && largest_noise_multiple(candidate) <= decision.no_gap &&

@@ -78,6 +78,9 @@ struct DecisionThresholds {
   double far_for_long_windows = 3.0;
   /// Share of it that short windows must get below to be believed instead.
   double short_windows_lower = 0.7;
+  /// Multiple of the noise in the windows that are fitted, their starts with them, above which a simulation does not follow
+  /// its data: noise alone makes 1, and blows of teeth that hang on the last digit of a start came to 2.2.
+  double follows = 3.0;
   /// Multiple of the noise in the windows that are fitted, above which others tell no more.
   double far_for_more_windows = 3.0;
   /// Mean square, in units of the noise's, above which sets of causes are looked for.

@@ -11,6 +11,7 @@
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/fit_noise.hpp>
 #include <thermopower/gap/report/held_out_predictions.hpp>
+#include <thermopower/gap/report/last_fit.hpp>
 #include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/gap/report/score.hpp>
@@ -91,6 +92,7 @@ public:
 private:
   /// A search with windows of one length.
   struct Attempt {
+    double horizon_s = 0.0;    ///< length of the windows
     FitProblem problem;        ///< of training data
     std::vector<Segment> all;  ///< what it has a part of
     std::vector<Candidate> candidates;
@@ -173,9 +175,7 @@ private:
       train_inputs_.push_back(std::move(one).take_inputs());
     }
     for (PreparedRecording& one : checked.held_out) {
-      RowsAsGiven& rows = held_out_rows_.emplace_back();
-      rows.count = one.recorded_rows();
-      for (const Eigen::Index row : one.source_rows()) rows.place.push_back(row - one.recording().first_row);
+      held_out_rows_.push_back(rows_as_given(one));
       held_out_recordings_.push_back(std::move(one).take_recording());
       held_out_inputs_.push_back(std::move(one).take_inputs());
     }
@@ -289,6 +289,7 @@ private:
   Attempt search(double horizon_s, const std::vector<std::size_t>& also = {},
                  std::vector<std::size_t>* worst = nullptr) {
     Attempt attempt;
+    attempt.horizon_s = horizon_s;
     constexpr Eigen::Index together = search_extent.windows_together;
     FitProblem& problem = attempt.problem =
         problem_of(train_inputs_, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, horizon_s,
@@ -414,9 +415,10 @@ private:
       return augmented(model_, one.explanation, one.list, one.fit.point);
     };
     const Model best = model_of(Search::best(candidates));
+    const Model& witness = follows_its_data(Search::best(candidates)) ? best : model_;
     const Errors errors = errors_of(best, segments, catalogue_);
     const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_inputs_),
-                                           floor = floor_of(best, errors, sigma, segments, catalogue_);
+                                           floor = floor_of(witness, errors, sigma, segments, catalogue_);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
     // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its
@@ -455,18 +457,20 @@ private:
     result_.verdict = conclusion.verdict;
     result_.reason = conclusion.reason;
     result_.none_of_these = conclusion.none_of_these;
-    const Candidate& chosen = candidates[conclusion.chosen];
+    Candidate& chosen = candidates[conclusion.chosen];
     const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous ||
                        conclusion.verdict == Verdict::partial;
-    const Weight weight = correlation_of(chosen, attempt.problem);
+    Weight weight = correlation_of(chosen, attempt.problem);
     rank(result_, candidates, conclusion, attempt.problem, weight);
+    if (named) fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
     const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.point);
     if (named) name_causes(result_, candidates, conclusion, model_, fitted, weight);
     result_.recalibrated = attempt.recalibrated;
     if (named) result_.augmented = fitted;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
     const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
-    score(result_, model_, full, held_out_inputs_, fitted, rivals, options_, catalogue_);
+    score(result_, model_, full, held_out_inputs_, fitted, follows_its_data(chosen), rivals, options_,
+          catalogue_);
     const bool short_of_noise = constants_fall_short(result_);
     if (short_of_noise) take_causes_back(result_, model_, nothing_known(constants_leave_a_rest));
     note_recalibration(result_);

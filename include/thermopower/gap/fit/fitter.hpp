@@ -28,8 +28,9 @@ struct FitResult {
   double cost = 1e300;        ///< data and priors
   Eigen::MatrixXd
       information;           ///< half the cost's curvature in the coordinates, starts projected out; or empty
-  Eigen::MatrixXd scatter;   ///< of the gradients of contiguous blocks of the data, summed over the blocks
-  int blocks = 0;            ///< how many blocks that were
+  Eigen::MatrixXd pulls;     ///< gradients of contiguous blocks of the data, one column each, in their order
+  Eigen::VectorXd priors;    ///< what the priors have in the diagonal of `information`
+  double per_prior = 1.0;    ///< samples that a prior counts for
   Eigen::Index samples = 0;  ///< residuals that counted
   int iterations = 0;        ///< steps taken; fewer than allowed: converged
   std::vector<bool> at_bound;  ///< by coordinate
@@ -88,13 +89,16 @@ public:
     }
     if (options.curvature) {
       const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
-      scatter_.setZero(count, count);
-      blocks_ = 0;
+      pulls_.clear();
+      wants_pulls_ = true;
       linearise(best);
+      wants_pulls_ = false;
       best.information = information_;
-      best.scatter = std::move(scatter_);
-      best.blocks = blocks_;
-      scatter_.resize(0, 0);
+      best.pulls.resize(count, static_cast<Eigen::Index>(pulls_.size()));
+      for (std::size_t k = 0; k < pulls_.size(); ++k)
+        best.pulls.col(static_cast<Eigen::Index>(k)) = pulls_[k];
+      best.per_prior = per_prior_;
+      best.priors = priors_;
     }
     for (Eigen::Index i = 0; i < best.point.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
@@ -127,6 +131,7 @@ private:
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     information_.setZero(n, n);
     gradient_.setZero(n);
+    priors_.setZero(n);
     eliminated_.resize(problem_.segments.size());
     result.chi2 = 0.0;
     result.cost = 0.0;
@@ -143,6 +148,7 @@ private:
       const Prior& prior = list_[static_cast<std::size_t>(i)].prior;
       const double weight = per_prior_ * prior.weight(result.point[i]);
       information_(i, i) += weight;
+      priors_[i] = weight;
       gradient_[i] += weight * result.point[i];
       result.cost += per_prior_ * prior.cost(result.point[i]);
     }
@@ -175,12 +181,11 @@ private:
     gradient_ -= transposed_times(part.coupling, transposed_times(part.inverse, part.gradient));
     chi2 += residuals.value.squaredNorm();
     projected_cost_ -= quadratic_form(part.inverse, part.gradient);
-    if (scatter_.size() > 0) add_scatter(residuals, part);
+    if (wants_pulls_) add_pulls(residuals, part);
   }
 
-  /// Adds the gradients of a segment's blocks to the scatter. A segment of an axis is one block; a long run has
-  /// several.
-  void add_scatter(const FitProblem::Residuals& residuals, const Eliminated& part) {
+  /// Adds the gradients of a segment's blocks: a short window is one, a long run has several.
+  void add_pulls(const FitProblem::Residuals& residuals, const Eliminated& part) {
     constexpr Eigen::Index longest =
         120;  // rows that count of a fit of some thousand: twenty blocks and more
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size()), rows = residuals.value.size();
@@ -190,9 +195,7 @@ private:
       const VectorView value = residuals.value.segment(begin, count);
       const Eigen::VectorXd all = transposed_times(residuals.jacobian.middleRows(begin, count), value);
       const Eigen::VectorXd by_start = transposed_times(part.inverse, all.tail(all.size() - n));
-      const Eigen::VectorXd gradient = all.head(n) - transposed_times(part.coupling, by_start);
-      for (Eigen::Index a = 0; a < n; ++a) scatter_.col(a) += gradient[a] * gradient;
-      ++blocks_;
+      pulls_.push_back(all.head(n) - transposed_times(part.coupling, by_start));
     }
   }
 
@@ -289,8 +292,9 @@ private:
   double projected_cost_ = 0.0;
   double per_prior_ = 1.0;                        ///< samples that a prior counts for
   std::vector<std::vector<HiddenStart>> hidden_;  ///< of every segment
-  Eigen::MatrixXd scatter_;                       ///< empty: not asked for
-  int blocks_ = 0;
+  Eigen::VectorXd priors_;                        ///< their part of the information's diagonal
+  bool wants_pulls_ = false;                      ///< whether the next pass adds to `pulls_`
+  std::vector<Eigen::VectorXd> pulls_;            ///< gradients of blocks, in order
 };
 
 }  // namespace thermopower::gap::engine

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/gap/simulated_signal.hpp>
@@ -21,6 +22,13 @@ struct RowsAsGiven {
   std::vector<Eigen::Index> place;  ///< of each row
   Eigen::Index count = 0;           ///< rows that were given
 };
+
+/// Where the rows of a recording are that the check has prepared.
+inline RowsAsGiven rows_as_given(const PreparedRecording& prepared) {
+  RowsAsGiven rows{prepared.source_rows(), prepared.recorded_rows()};
+  for (Eigen::Index& place : rows.place) place -= prepared.recording().first_row;
+  return rows;
+}
 
 /// What a model gives for recordings, simulated in the segments that a gap is measured in, at all rows as they were given.
 /// @param segments  of `inputs`

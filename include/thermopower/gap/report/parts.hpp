@@ -45,6 +45,19 @@ inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, st
   return rivals;
 }
 
+/// What the fit of an explanation says of its parameters.
+inline void describe_fit(RankedExplanation& entry, const Candidate& one, const Model& model,
+                         const Weight& weight) {
+  entry.parameters = estimates(one, model, weight);
+  entry.fitted.clear();
+  for (const Eigen::Index at : moving(one)) {
+    const auto k = static_cast<std::size_t>(at);
+    entry.fitted.push_back({one.list[k].name, one.fit.point[at], one.list[k].logarithmic,
+                            k < one.fit.at_bound.size() && one.fit.at_bound[k]});
+  }
+  entry.covariance = covariance_of_moving(one, weight);
+}
+
 /// Every explanation weighed, likeliest first.
 inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
                  const FitProblem& problem, const Weight& weight) {
@@ -77,18 +90,12 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     entry.refused = entry.held_out_ratio > 1.0;
     entry.absorbed = one.explanation.size() > 0 && squares > decision.absorbed * whole;
     entry.at_bound = one.on_bounds;
-    entry.parameters = estimates(one, *problem.model, weight);
     entry.train_gain = empty.train_deviance - one.train_deviance;
     entry.held_out_gain = one.held_out.any() && empty.held_out.any()
                               ? empty.held_out_deviance - one.held_out_deviance
                               : missing;
     entry.hidden_starts = one.hidden_starts;
-    for (const Eigen::Index at : moving(one)) {
-      const auto k = static_cast<std::size_t>(at);
-      entry.fitted.push_back({one.list[k].name, one.fit.point[at], one.list[k].logarithmic,
-                              k < one.fit.at_bound.size() && one.fit.at_bound[k]});
-    }
-    entry.covariance = covariance_of_moving(one, weight);
+    describe_fit(entry, one, *problem.model, weight);
     for (std::size_t k = 0; k < compared; ++k) {
       if (k == i || i >= compared) continue;
       const double cosine = likeness(signatures[i], signatures[k]);
@@ -393,10 +400,12 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
   return true;
 }
 
-/// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param rivals  drawn beside it
+/// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param fits  whether it follows the data it was
+/// fitted to: else what it makes of the noise of its starts is its own fault, and the floor is that of the model as configured.
+/// @param rivals  drawn beside it
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
-                  const std::vector<Inputs>& inputs, const Model& fitted, const std::vector<Rival>& rivals,
-                  const Options& options, const Catalogue& catalogue) {
+                  const std::vector<Inputs>& inputs, const Model& fitted, bool fits,
+                  const std::vector<Rival>& rivals, const Options& options, const Catalogue& catalogue) {
   const Errors before = errors_of(model, segments, catalogue);
   const Errors recalibrated = errors_of(result.recalibrated, segments, catalogue);
   const Errors best = errors_of(fitted, segments, catalogue);
@@ -406,7 +415,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   // The augmented model is the fitted one where there is a cause, else the model as configured.
   const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
-      floor_of(fitted, best, noise_of(best, segments, inputs), segments, catalogue);
+      floor_of(fits ? fitted : model, best, noise_of(best, segments, inputs), segments, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);

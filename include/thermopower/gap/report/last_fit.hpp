@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/report/estimates.hpp>
+#include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/report/parts.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+/// @file last_fit.hpp
+/// The fit that the reported parameters come from, where the search looked at averages.
+
+namespace thermopower::gap::engine {
+
+/// Takes the estimates of a fit in the place of those of an explanation that is ranked.
+inline void take_estimates(Diagnosis& result, const Candidate& candidate, const Model& model,
+                           const Weight& weight) {
+  const std::vector<std::string> ids = candidate.explanation.ids(model);
+  for (RankedExplanation& entry : result.ranking)
+    if (entry.effects == ids) describe_fit(entry, candidate, model, weight);
+}
+
+/// Fits an explanation once more, to the rows as they were recorded, where the search fitted averages of a fast recording.
+///
+/// A mean command over some rows is the command to a model that is linear in it, and only to that: inside a deadband, where
+/// a friction turns, or where sides meet and part, what averages leave out is a bias that no number of rows makes smaller,
+/// and intervals that tell of the noise alone do not hold it.
+/// @param result     its ranking says the same then
+/// @param searched   what the search fitted
+/// @param recordings as recorded, which that is made of
+/// @param horizon_s  length of the windows
+/// @param weight     receives what the rows' residuals say of their correlation
+inline void fit_to_rows(Diagnosis& result, Candidate& candidate, const FitProblem& searched,
+                        const std::vector<Inputs>& recordings, double horizon_s, Weight& weight) {
+  constexpr Eigen::Index most_rows = 20000;  // a second's work at most; of 1 kHz, all of 20 s
+  const auto is_average = [](const Segment& one) { return one.axis && one.inputs->repeats.size() > 0; };
+  if (std::none_of(searched.segments.begin(), searched.segments.end(), is_average)) return;
+  FitProblem problem = searched;
+  problem.segments = thinned_axis(cut(recordings, horizon_s, searched.plant()), most_rows, {},
+                                  search_extent.windows_together);
+  const Attribution fit(problem);
+  FitOptions options;
+  options.iterations = 15;  // as a search ends with; it begins close to the end
+  options.relative_decrease = 1e-7;
+  fit.polish(candidate, options);
+  measure_noise(problem, candidate, recordings);
+  const Weight of_rows = correlation_of(candidate, problem);
+  problem.correlation = mean_correlation(of_rows);
+  options.curvature = true;
+  fit.polish(candidate, options);
+  weight.correlation = of_rows.correlation;
+  take_estimates(result, candidate, *problem.model, weight);
+}
+
+}  // namespace thermopower::gap::engine
