@@ -120,6 +120,52 @@ TEST_CASE("runs may differ in their noise, and readings in coarse steps have the
         }) == Approx(1.0).epsilon(0.2));
 }
 
+TEST_CASE(
+    "noise that remembers is known at the levels of a sweep, where the error of a model jumps with the level and not") {
+  // 2.0: the error of a model that follows the level, which is another one in most rows.
+  const double jump = GENERATE(0.0, 2.0);
+  std::vector<double> ratios;
+  for (unsigned seed = 1; seed <= 21; ++seed) {
+    Random random(seed);
+    constexpr int count = 3000;
+    std::vector<double> x = coloured(count, 0.95, random), levels;
+    for (int i = 0; i < count; ++i) {
+      const int step = static_cast<int>(random() % 8);
+      levels.push_back(jump > 0.0 ? 0.125 * step : 0.5 + 0.5 * std::sin(0.2 * i));
+      x[static_cast<std::size_t>(i)] += jump * (levels.back() - 0.5);
+    }
+    ratios.push_back(noise_sd(x, std::vector<bool>(count, false), 0.0, levels));
+  }
+  std::sort(ratios.begin(), ratios.end());
+  CHECK(ratios[10] == Approx(1.0).epsilon(0.2));
+}
+
+TEST_CASE("noise alone is seldom larger than it may be by chance, and white noise with an error is") {
+  const auto beyond = [](int count, double memory, const std::function<double(int)>& error) {
+    int larger = 0;
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      Random random(seed);
+      std::vector<double> x = coloured(count, memory, random);
+      double squares = 0.0;
+      for (int i = 0; i < count; ++i) {
+        double& one = x[static_cast<std::size_t>(i)];
+        one += error(i);
+        squares += one * one;
+      }
+      const NoiseEstimate noise = noise_of_sequence(x, std::vector<bool>(x.size(), false));
+      larger += std::sqrt(squares / count) > std::max(1.2 * noise.sd, noise.by_chance) ? 1 : 0;
+    }
+    return larger;
+  };
+  const auto none = [](int) { return 0.0; };
+  const int count = GENERATE(250, 1000, 4000);
+  CHECK(beyond(count, 0.0, none) == 0);
+  CHECK(beyond(count, 0.8, none) <= 7);
+  CHECK(beyond(count, 0.95, none) <= 7);
+  // A few hundred samples do not tell it from noise that remembers.
+  if (count >= 1000) CHECK(beyond(count, 0.0, [&](int i) { return 2.0 * std::sin(25.0 * i / count); }) >= 90);
+}
+
 TEST_CASE("a step that happens to repeat among smaller ones is no quantum") {
   // A wide motion logged to 0.01: none of its many steps repeats often, but one of them.
   Eigen::VectorXd values(2000);

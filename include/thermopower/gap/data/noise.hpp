@@ -30,7 +30,10 @@ struct NoiseThresholds {
   double known_shape = 0.03;      ///< relative error of a variogram's values however many samples there are
   double part_penalty = 2.0;      ///< by which a further part must lower the weighted squares (Akaike)
   double quanta = 2.5;            ///< quanta up to which a difference is no jump
-  double uncorrelated = 0.05;     ///< autocorrelation below which samples are taken for independent
+  double same_level = 0.01;       ///< by which levels may differ that are the same, where the largest is 1
+  double as_likely = 4.0;  ///< penalised squares by which a sum may be behind the best: two standard errors
+  double standard_errors = 1.64;          ///< of a mean square: one-sided 95 %
+  double uncorrelated = 0.05;             ///< autocorrelation below which samples are taken for independent
   std::size_t least_for_correlation = 8;  ///< samples; fewer count one by one
 };
 
@@ -43,8 +46,25 @@ struct NoiseThresholds {
 /// @param sequence  residuals in order
 /// @param gaps      as long; `gaps[i]` true: entry i does not follow on entry i-1
 /// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
+/// @param levels    as long, or empty: of what the error of a model jumps with; samples at levels farther apart than
+///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
-double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0);
+double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0,
+                const std::vector<double>& levels = {});
+
+/// The noise in a residual.
+struct NoiseEstimate {
+  double sd = 0.0;  ///< as noise_sd() has it
+  double by_chance =
+      0.0;  ///< root mean square up to which the residual may be noise alone, see noise_of_sequence()
+};
+
+/// The same, and how large the residual may be with nothing but noise in it: of the sums that explain the variogram as
+/// well (NoiseThresholds::as_likely), the one with the most noise, whose mean square over so few samples may be larger by
+/// chance the longer it remembers (one-sided 95 %). White noise knows itself; a few hundred samples of noise that remembers
+/// twenty know it to a third.
+NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
+                                double quantum = 0.0, const std::vector<double>& levels = {});
 
 /// Memory of noise from one sample to the next, at most: what remembers longer is the error of a model.
 inline constexpr double longest_memory = 0.97;
@@ -64,13 +84,21 @@ inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Ei
   return x;
 }
 
+/// Noise in a variogram.
+struct VariogramNoise {
+  double variance = 0.0;       ///< the mean over all sums
+  double most = 0.0;           ///< the largest among those that are as likely
+  double squares_alike = 1.0;  ///< samples of that one whose squares count as one
+};
+
 /// Variance of the noise in a variogram: the mean over all sums of white noise, one AR(1) and one error of a model
 /// (smooth of one width, or slow), weighted by how well each fits for its number of parts (Akaike weights).
 /// @param lags       in samples, ascending
 /// @param variogram  there, > 0
 /// @param weights    of the relative errors there
-inline double noise_of_variogram(const std::vector<double>& lags, const std::vector<double>& variogram,
-                                 const std::vector<double>& weights) {
+inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
+                                         const std::vector<double>& variogram,
+                                         const std::vector<double>& weights) {
   constexpr NoiseThresholds limit;
   const auto rows = static_cast<Eigen::Index>(lags.size());
   const auto shape = [&](auto&& function) {
@@ -91,7 +119,7 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
     errors.push_back(shape([&](double lag) { return 1.0 - std::exp(-lag * lag / (width * width)); }));
   errors.push_back(shape([](double lag) { return lag; }));
   const Eigen::VectorXd wanted = shape([&, i = std::size_t{0}](double) mutable { return variogram[i++]; });
-  std::vector<double> costs, variances;
+  std::vector<double> costs, variances, alike;
   for (std::size_t k = 0; k < noises.size(); ++k)
     for (std::size_t e = 0; e <= errors.size(); ++e) {
       const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows);
@@ -102,20 +130,30 @@ inline double noise_of_variogram(const std::vector<double>& lags, const std::vec
                           limit.part_penalty * static_cast<double>((parts.array() > 0.0).count());
       costs.push_back(cost);
       variances.push_back(parts[0] + parts[1]);
+      // Squares of Gaussian samples correlate as the squares of the samples' correlation (Isserlis).
+      const double remembered = variances.back() > 0.0 ? parts[1] / variances.back() : 0.0,
+                   square = memories[k] * memories[k];
+      alike.push_back(1.0 + 2.0 * remembered * remembered * square / (1.0 - square));
     }
   const double least = *std::min_element(costs.begin(), costs.end());
-  double sum = 0.0, total = 0.0;
+  VariogramNoise noise;
+  double total = 0.0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const double share = std::exp(-0.5 * (costs[i] - least));
-    sum += share * variances[i];
+    noise.variance += share * variances[i];
     total += share;
+    if (costs[i] <= least + limit.as_likely && variances[i] > noise.most)
+      noise.most = variances[i], noise.squares_alike = alike[i];
   }
-  return sum / total;
+  noise.variance /= total;
+  return noise;
 }
 
 /// Squares of the differences over one lag, in units of the blocks' scales, without jumps.
-inline double half_mean_square(const std::vector<double>& scaled, const std::vector<int>& since_gap, int lag,
-                               double least_jump, std::size_t& pairs) {
+/// @param alike  (i, k) -> whether two samples may be compared
+template <class Alike>
+double half_mean_square(const std::vector<double>& scaled, const std::vector<int>& since_gap, int lag,
+                        double least_jump, std::size_t& pairs, Alike&& alike) {
   constexpr NoiseThresholds limit;
   constexpr double normal_quartile = 0.6745;  // of a standard normal distribution: its median magnitude
   std::vector<double> sizes;
@@ -123,7 +161,7 @@ inline double half_mean_square(const std::vector<double>& scaled, const std::vec
       1, static_cast<std::size_t>(static_cast<double>(scaled.size()) / limit.pairs_per_lag));
   const auto back = static_cast<std::size_t>(lag);
   for (std::size_t i = back; i < scaled.size(); i += stride)
-    if (since_gap[i] >= lag) sizes.push_back(std::abs(scaled[i] - scaled[i - back]));
+    if (since_gap[i] >= lag && alike(i, i - back)) sizes.push_back(std::abs(scaled[i] - scaled[i - back]));
   std::vector<double> sorted = sizes;
   const double scale = median_of(sorted) / normal_quartile;
   double sum = 0.0;
@@ -133,16 +171,47 @@ inline double half_mean_square(const std::vector<double>& scaled, const std::vec
   return pairs > 0 ? 0.5 * sum / static_cast<double>(pairs) : 0.0;
 }
 
-inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum) {
+/// Whether two samples are at the same level.
+inline bool are_alike(const std::vector<double>& levels, std::size_t i, std::size_t k) {
+  return std::abs(levels[i] - levels[k]) <= NoiseThresholds().same_level;
+}
+
+/// Whether neighbours at different levels differ by more than those at the same one, medians, beyond two standard errors.
+/// Where they do not, nothing jumps there, and all samples may be compared: those that come back to a level may be few, and
+/// at the ends of a sweep only.
+inline bool jumps_with(const std::vector<double>& levels, const std::vector<double>& sequence,
+                       const std::vector<int>& since_gap) {
+  if (levels.empty()) return false;
+  std::vector<double> same, apart;
+  for (std::size_t i = 1; i < sequence.size(); ++i)
+    if (since_gap[i] > 0)
+      (are_alike(levels, i, i - 1) ? same : apart).push_back(std::abs(sequence[i] - sequence[i - 1]));
+  if (same.empty() || apart.empty()) return !apart.empty();
+  constexpr double of_a_median =
+      1.17;  // its relative standard error times the root of the samples, of normal magnitudes
+  const double error = of_a_median * std::sqrt(1.0 / static_cast<double>(same.size()) +
+                                               1.0 / static_cast<double>(apart.size()));
+  return median_of(apart) > (1.0 + 2.0 * error) * median_of(same);
+}
+
+inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum,
+                       const std::vector<double>& levels) {
+  return noise_of_sequence(sequence, gaps, quantum, levels).sd;
+}
+
+inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
+                                       double quantum, const std::vector<double>& levels) {
   constexpr NoiseThresholds limit;
   const std::size_t count = sequence.size();
-  if (count < limit.least_pairs) return 0.0;
+  if (count < limit.least_pairs) return {};
   std::vector<int> since_gap(count, 0);
   int longest = 0;
   for (std::size_t i = 1; i < count; ++i) {
     since_gap[i] = gaps[i] ? 0 : since_gap[i - 1] + 1;
     longest = std::max(longest, since_gap[i]);
   }
+  const bool jumps = jumps_with(levels, sequence, since_gap);
+  const auto alike = [&](std::size_t i, std::size_t k) { return !jumps || are_alike(levels, i, k); };
   // Each block in units of its own scale; the mean square of the scales brings the units back.
   const std::size_t blocks = std::max<std::size_t>(1, count / limit.block);
   std::vector<double> scaled = sequence, steps;
@@ -151,7 +220,7 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
   for (std::size_t b = 0; b < blocks; ++b) {
     steps.clear();
     for (std::size_t i = b * count / blocks + 1; i < (b + 1) * count / blocks; ++i)
-      if (since_gap[i] > 0) steps.push_back(std::abs(sequence[i] - sequence[i - 1]));
+      if (since_gap[i] > 0 && alike(i, i - 1)) steps.push_back(std::abs(sequence[i] - sequence[i - 1]));
     scales[b] = median_of(steps);
   }
   // In coarse steps most neighbours read nearly the same and some a step more: the median tells nothing of those, and no block
@@ -172,22 +241,31 @@ inline double noise_sd(const std::vector<double>& sequence, const std::vector<bo
   double mean_square = 0.0;
   for (const double value : sequence) mean_square += value * value / static_cast<double>(count);
   const double rounding = std::min(quantum / std::sqrt(12.0), std::sqrt(mean_square));
-  if (!(squares > 0.0)) return std::sqrt(mean_square);
+  if (!(squares > 0.0)) return {std::sqrt(mean_square), std::sqrt(mean_square)};
   std::vector<double> lags, variogram, weights;
   for (const int lag : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
     if (lag > std::max(longest / 2, 1) || lag > limit.longest_lag) break;
     std::size_t pairs = 0;
     const double value =
-        half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs);
-    if (pairs < limit.least_pairs) break;
+        half_mean_square(scaled, since_gap, lag, limit.quanta * quantum / std::sqrt(squares), pairs, alike);
+    if (pairs < limit.least_pairs) {
+      if (jumps) continue;  // of levels that a sweep goes through neighbours are rarely alike
+      break;
+    }
     lags.push_back(lag);
     variogram.push_back(std::max(value, 1e-300));
-    // Neighbouring pairs share their samples: about n / lag of them are independent.
-    weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 * lag / static_cast<double>(count)));
+    // Neighbouring pairs share their samples: about n / lag of them are independent, where levels leave so many.
+    double independent = static_cast<double>(count) / lag;
+    if (jumps) independent = std::min(independent, static_cast<double>(pairs));
+    weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 / independent));
   }
-  if (lags.empty()) return std::sqrt(mean_square);
-  const double variance = noise_of_variogram(lags, variogram, weights) * squares;
-  return std::max(std::sqrt(std::min(variance, mean_square)), rounding);
+  if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
+  const VariogramNoise noise = noise_of_variogram(lags, variogram, weights);
+  const double variance = std::min(noise.variance * squares, mean_square);
+  const double by_chance =
+      limit.standard_errors * std::sqrt((noise.squares_alike - 1.0) / (2.0 * static_cast<double>(count)));
+  return {std::max(std::sqrt(variance), rounding),
+          std::max(std::sqrt(noise.most * squares) * (1.0 + by_chance), rounding)};
 }
 
 /// How many samples in a row count as one: 1 + 2 sum of the autocorrelations, up to their first fall below

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
@@ -345,22 +346,38 @@ inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal)
   return quantum;
 }
 
-/// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: differences
-/// over a step of it are left out.
+/// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: a current's errors
+/// are compared where it has the same voltage, whatever was between. A sweep has another one in every row, and neighbours
+/// alone would not tell how long the noise remembers.
+inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& errors,
+                                                                  const std::vector<Segment>& segments,
+                                                                  const std::vector<Inputs>& inputs) {
+  std::array<NoiseEstimate, signal_count> noise{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    const std::size_t count = errors.of[i].size();
+    std::vector<bool> gaps(count, false);
+    std::vector<double> levels;
+    for (std::size_t k = 0; k < count; ++k) {
+      const int segment = errors.segment[i][k];
+      gaps[k] = k > 0 && segment != errors.segment[i][k - 1];
+      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
+      if (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A)
+        levels.push_back(
+            v_rms_from_duty<double>(1.0, duty_from_power(std::clamp(power[errors.row[i][k]], 0.0, 255.0))));
+    }
+    if (levels.size() < count) levels.clear();
+    noise[i] =
+        noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels);
+  }
+  return noise;
+}
+
+/// Its standard deviation.
 inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
                                                  const std::vector<Inputs>& inputs) {
   std::array<double, signal_count> sigma{};
-  for (std::size_t i = 0; i < signal_count; ++i) {
-    std::vector<bool> gaps(errors.of[i].size(), false);
-    for (std::size_t k = 1; k < gaps.size(); ++k) {
-      const int segment = errors.segment[i][k];
-      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
-      gaps[k] = segment != errors.segment[i][k - 1] ||
-                (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A &&
-                 power[errors.row[i][k]] != power[errors.row[i][k - 1]]);
-    }
-    sigma[i] = noise_sd(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)));
-  }
+  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, segments, inputs);
+  for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
   return sigma;
 }
 
@@ -386,13 +403,18 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
                             double horizon_s, const Catalogue& catalogue, bool proven = false) {
   const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
   const Errors errors = errors_of(model, full, catalogue);
-  std::array<double, signal_count> sigma = noise_of(errors, full, inputs);
+  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, full, inputs);
+  std::array<double, signal_count> sigma{};
+  for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
   if (witness != nullptr &&
       witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
   const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
-    const double rms = errors.rms(static_cast<Signal>(i)), within = decision.no_gap_in_full * floor[i];
+    // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it.
+    const double by_chance = witness == nullptr && noise[i].sd > 0.0 ? noise[i].by_chance / noise[i].sd : 1.0;
+    const double rms = errors.rms(static_cast<Signal>(i)),
+                 within = std::max(decision.no_gap_in_full, by_chance) * floor[i];
     const bool may_be_chance =
         proven && rms <= decision.near_floor * floor[i] && !is_proven_above(errors.of[i], within);
     if (rms > within && !may_be_chance) return false;
