@@ -307,6 +307,150 @@ TEST_CASE("a current in coarse steps that stands at its end while the power move
   CHECK_FALSE(found(sound, FindingKind::clipped_samples, "current_A", FindingAction::masked));
 }
 
+TEST_CASE(
+    "a range ends on both sides alike: where one end is proven, a rest out of range at the other is cut off, too") {
+  // An angle in fine steps that swings past one end, and rests beyond the other.
+  Recording r = axis();
+  const double limit = 30.0, step = 0.02;
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  double angle_deg = 0.0;
+  std::size_t beyond = 0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double dps = i < 300 ? 12.0 : i < 600 ? -12.0 : i < 950 ? -10.0 : i < 2600 ? 0.0 : 10.0;
+    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
+    beyond += std::abs(angle_deg) > limit ? 1 : 0;
+    angle[i] = std::clamp(step * std::round(angle_deg / step), -limit, limit);
+    rate[i] = dps;
+  }
+  REQUIRE(beyond > 1650);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(taken(r, prepared, "angle_deg").size() >= beyond);
+}
+
+TEST_CASE("a fine thermometer that stands at its end for most of a recording is cut off there, not at rest") {
+  Recording r = bench();
+  test::Noise noise(5);
+  Eigen::VectorXd whole = r.column("motor_C");
+  for (double& one : whole) one = 0.001 * std::round(1000.0 * (one + 0.1 * noise()));
+  std::vector<double> sorted(whole.begin(), whole.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double limit = sorted[sorted.size() / 3];
+  r.set("motor_C", whole.cwiseMin(limit));
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "motor_C", FindingAction::masked));
+}
+
+TEST_CASE("a limit of three samples between two steps of a rate is one on both sides") {
+  Recording r = axis();
+  const double quantum = 0.1, limit = 0.97 * r.column("rate_dps").cwiseAbs().maxCoeff();
+  const double between = quantum * (std::floor(limit / quantum) + 0.4);
+  std::size_t cut = 0;
+  change(r, "rate_dps", [&](double x, Eigen::Index) {
+    const double coarse = quantum * std::round(x / quantum);
+    cut += std::abs(coarse) > between ? 1 : 0;
+    return std::clamp(coarse, -between, between);
+  });
+  REQUIRE(cut > 1);
+  REQUIRE(cut < 60);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(taken(r, prepared, "rate_dps").size() >= cut);
+}
+
+TEST_CASE("a coarse rate that stands while its angle goes elsewhere is frozen") {
+  Recording r = axis();
+  const double quantum = 20.0;
+  const Eigen::Index from = 1000, length = 120;
+  change(r, "rate_dps", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("rate_dps");
+  Eigen::Index at = from;
+  while (std::abs(whole[at]) < 5.0 * quantum) ++at;
+  change(r, "rate_dps", [&](double x, Eigen::Index i) { return i >= at && i < at + length ? whole[at] : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "rate_dps");
+  CHECK(found(prepared, FindingKind::frozen_samples, "rate_dps", FindingAction::masked));
+  CHECK(out.size() >= static_cast<std::size_t>(length - 1));
+  CHECK(out.size() < static_cast<std::size_t>(length + 40));  // so coarse that it stands elsewhere, too
+}
+
+TEST_CASE(
+    "an angle that stood through a motion and most of the rest after it is frozen until it catches up") {
+  Recording r = axis();
+  const double step = 0.09;
+  test::Noise noise(6);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  double angle_deg = -20.0;
+  const bool stands = GENERATE(true, false);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double dps = i % 1000 < 150 ? (i / 1000 % 2 == 0 ? 20.0 : -20.0) : 0.0;
+    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
+    angle[i] = step * std::round(angle_deg / step);
+    rate[i] = dps + 0.1 * noise();
+  }
+  if (stands)
+    for (Eigen::Index i = 1050; i < 1600; ++i) angle[i] = angle[1050];
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::frozen_samples, "angle_deg", FindingAction::masked) == stands);
+  if (stands) CHECK(taken(r, prepared, "angle_deg").size() >= 549);
+}
+
+TEST_CASE("a coarse thermometer that stands longer than where it rests, and then catches up, is frozen") {
+  // A motor that warms, rests and cools, read in steps of twice the noise; the logger may pause before it catches up.
+  Recording r = bench();
+  const double quantum = 0.1;
+  test::Noise noise(8);
+  const bool stands = GENERATE(true, false), pauses = GENERATE(true, false);
+  Eigen::VectorXd values(r.rows());
+  const auto truth = [&](Eigen::Index i) {
+    const double k = static_cast<double>(i % 500);
+    return k < 200 ? 30.0 + 0.1 * k : 30.0 + 20.0 * std::exp(-(k - 200.0) / 40.0);
+  };
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    values[i] = quantum * std::round((truth(i) + 0.05 * noise()) / quantum);
+  const Eigen::Index from = 660, length = 34;
+  if (stands)
+    for (Eigen::Index i = from; i < from + length; ++i) values[i] = values[from];
+  r.set("motor_C", values);
+  if (pauses)
+    for (Eigen::Index i = from + length - 4; i < r.rows(); ++i) r.t_s[i] += 40.0;
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::frozen_samples, "motor_C", FindingAction::masked) == stands);
+}
+
+TEST_CASE(
+    "what a command did around a turning point nobody tells, though both ends of the hole are the same") {
+  Recording r = axis();
+  Eigen::VectorXd drive(r.rows());
+  const Eigen::Index length = 16;
+  const bool turns = GENERATE(true, false);
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    drive[i] = turns ? 0.1 * std::cos(0.03 * static_cast<double>(i - 1008)) : i / 400 % 2 == 0 ? 0.1 : -0.1;
+  for (Eigen::Index i = 1000; i < 1000 + length; ++i) drive[i] = missing;
+  r.set("drive_A", drive);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(prepared.recording().rows() == (turns ? r.rows() - length : r.rows()));
+}
+
+TEST_CASE("a current that heats is unknown where its sensor's range ended") {
+  Recording r = bench();
+  r.remove("power_param");
+  const Eigen::VectorXd whole = r.column("current_A");
+  const double limit = 0.7 * whole.maxCoeff() + 1e-5;
+  std::size_t cut = 0;
+  change(r, "current_A", [&](double x, Eigen::Index) {
+    cut += x > limit ? 1 : 0;
+    return std::min(x, limit);
+  });
+  REQUIRE(cut > 100);
+  const PreparedRecording prepared(test::bench_model(), r);
+  REQUIRE(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));
+  CHECK(static_cast<double>(prepared.recording().rows()) <
+        static_cast<double>(r.rows()) - 0.9 * static_cast<double>(cut));
+}
+
 TEST_CASE("stamps that stray around a clock are the clock's again, where the readings were taken by it") {
   const Recording by_the_clock = axis();
   const double period_s = by_the_clock.t_s[1] - by_the_clock.t_s[0];

@@ -117,6 +117,8 @@ private:
   bool drives_by_current_ = false;         ///< current_A is an input: nothing else tells the heat
   Recording believed_;
   RowMask unknown_;
+  RowMask
+      untold_current_;  ///< samples of a current that heats which stood still or at the end of the sensor's range
   Inputs inputs_;
   std::vector<Finding> findings_;
   std::vector<Eigen::Index> source_rows_;
@@ -361,6 +363,10 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
                   "repeat the value before them where noise or motion would show",
                   "look at what reads the sensor");
+    if (name == "current_A" && drives_by_current_) {
+      untold_current_ = clipped;
+      for (std::size_t i = 0; i < frozen.size(); ++i) untold_current_[i] |= frozen[i];
+    }
     if (still.equal_share() > 0.999999 && present > 20)
       list.add(FindingKind::constant_column, Severity::note, name, "never changes");
   }
@@ -416,7 +422,8 @@ inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingLis
     const Eigen::Index holes = recorded.rows() - recorded.find(input.name)->array().isFinite().count();
     RowMask mask(unknown_.size(), 0);
     found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask,
-                                stands_between_samples(recorded, input.name));
+                                stands_between_samples(recorded, input.name),
+                                std::string(input.name) == "current_A" ? untold_current_ : RowMask());
     for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",

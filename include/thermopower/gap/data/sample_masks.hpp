@@ -140,8 +140,13 @@ public:
   /// Stretches of one value where noise or motion would show: all but their first row.
   RowMask frozen() {
     RowMask mask = empty();
-    for (const RunSpan& run : runs_) {
-      const std::vector<Eigen::Index> rows = finite_rows(run);
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
+      // A temperature does not jump while the logger pauses, either.
+      while (traits_.cannot_jump && r + 1 < runs_.size() && runs_[r + 1].label == runs_[r].label) {
+        const std::vector<Eigen::Index> more = finite_rows(runs_[++r]);
+        rows.insert(rows.end(), more.begin(), more.end());
+      }
       for (std::size_t begin = 0; begin < rows.size();) {
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
@@ -154,36 +159,20 @@ public:
     return mask;
   }
 
-  /// Samples at the largest or the least value, where far more stand there than next to it.
+  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
+  /// other samples come in. A range ends at the same magnitude on both sides: what one side proves, the other need not.
   RowMask clipped() {
     RowMask mask = empty();
     std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
     std::sort(list.begin(), list.end());
-    const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
-    for (const bool top : {true, false}) {
-      const double extreme = top ? list.back() : list.front();
-      const auto at_extreme = std::count(list.begin(), list.end(), extreme);
-      const double next = top ? list[list.size() - 1 -
-                                     static_cast<std::size_t>(std::min<std::ptrdiff_t>(
-                                         at_extreme, static_cast<std::ptrdiff_t>(list.size()) - 1))]
-                              : list[static_cast<std::size_t>(std::min<std::ptrdiff_t>(
-                                    at_extreme, static_cast<std::ptrdiff_t>(list.size()) - 1))];
-      const auto at_next = std::count(list.begin(), list.end(), next);
-      if (at_extreme < limit_.least_clipped || extreme == 0.0 ||
-          static_cast<double>(at_extreme) < limit_.clip_ratio * static_cast<double>(at_next))
-        continue;
-      // A slow signal in coarse steps stands still by itself; but not between two of its steps, nor where what drives
-      // it moves, nor where another column sees it move.
-      if (!is_witnessed && stands_still_besides(extreme) && !is_between_steps(extreme, next) &&
-          !is_driven_at(extreme))
-        continue;
-      // One sample tells little: just at the end of its range a sensor is still right. Where noise of
-      // many steps shows everywhere else, it would show there, though the axis rests out of range.
-      const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still_besides(extreme);
-      if (2 * denied(extreme) < at_extreme && !noise_would_show) continue;
+    const bool is_mirrored = list.back() == -list.front();
+    const std::array<Extreme, 2> ends{extreme_of(list, true), extreme_of(list, false)};
+    const std::array<bool, 2> proven{is_clipped(ends[0]), is_clipped(ends[1])};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!proven[k] && !(is_mirrored && proven[1 - k])) continue;
       for (Eigen::Index i = 0; i < values_.size(); ++i)
-        if (values_[i] == extreme) mask[static_cast<std::size_t>(i)] = 1;
+        if (values_[i] == ends[k].value) mask[static_cast<std::size_t>(i)] = 1;
     }
     take(mask);
     return mask;
@@ -285,34 +274,87 @@ private:
     return true;
   }
 
+  /// The largest or the least value of a column.
+  struct Extreme {
+    double value = 0.0;         ///< itself
+    double next = 0.0;          ///< the one next to it
+    std::ptrdiff_t count = 0;   ///< samples that have it
+    std::ptrdiff_t beside = 0;  ///< samples that have the one next to it
+  };
+
+  static Extreme extreme_of(const std::vector<double>& sorted, bool top) {
+    Extreme one;
+    one.value = top ? sorted.back() : sorted.front();
+    one.count = std::count(sorted.begin(), sorted.end(), one.value);
+    const auto last = static_cast<std::ptrdiff_t>(sorted.size()) - 1;
+    const std::ptrdiff_t at = std::min(one.count, last);
+    one.next = sorted[static_cast<std::size_t>(top ? last - at : at)];
+    one.beside = std::count(sorted.begin(), sorted.end(), one.next);
+    return one;
+  }
+
+  /// Whether far more samples have an extreme than the value next to it.
+  static bool piles_up(const Extreme& one) {
+    return one.count >= limit_.least_clipped && one.value != 0.0 &&
+           static_cast<double>(one.count) >= limit_.clip_ratio * static_cast<double>(one.beside);
+  }
+
+  /// Whether the sensor's range ends at an extreme.
+  bool is_clipped(const Extreme& one) const {
+    if (one.value == 0.0) return false;
+    if (one.count > 1 && is_between_steps(one.value, one.next))
+      return true;  // no converter reads that: a limit is set
+    if (!piles_up(one)) return false;
+    // A slow signal in coarse steps stands still by itself; but not where what drives it moves, nor where another column
+    // sees it move.
+    const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
+    if (!is_witnessed && stands_still_besides(one.value) && !is_driven_at(one.value)) return false;
+    // One sample tells little: just at the end of its range a sensor is still right. Where noise of
+    // many steps shows everywhere else, it would show there, though the axis rests out of range.
+    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still_besides(one.value);
+    return 2 * denied(one.value) >= one.count || noise_would_show;
+  }
+
   Eigen::VectorXd others_than(double value) const {
     return (values_.array() == value).select(missing, values_);
   }
 
-  /// Whether a value is none of those that the other samples, in steps of a quantum, take.
+  /// Whether a value is none of those that the other samples, in steps of a quantum, take: off their grid by more than they are
+  /// themselves, whose quantum is known to a digit more or less.
   bool is_between_steps(double value, double neighbour) const {
-    constexpr double on = 0.05, off = 0.1, nearly_all = 0.95;  // of a step; of the samples
-    const Eigen::VectorXd others = others_than(value);
-    const double quantum = quantum_of(others);
+    constexpr double on = 0.05, off = 0.02, times = 3.0,
+                     nearly_all = 0.95;  // of a step; of the others' own; of the samples
+    Eigen::VectorXd others = others_than(value);
+    others = (others.array() == -value)
+                 .select(missing, others);  // the other end of the range is off the grid, too
+    double quantum = quantum_of(others);
     if (!(quantum > 0.0)) return false;
+    // Many steps tell a step to more digits than were logged of it: some first, which the logged digits count safely.
+    for (const double most : {50.0 * quantum, 1e300}) {
+      double farthest = 0.0;
+      for (const double one : others)
+        if (std::abs(one - neighbour) < most) farthest = std::max(farthest, std::abs(one - neighbour));
+      const double steps = std::round(farthest / quantum);
+      if (steps > 0.0) quantum = farthest / steps;
+    }
     const auto off_step = [&](double one) {
       const double steps = (one - neighbour) / quantum;
       return std::abs(steps - std::round(steps));
     };
-    double known = 0.0, stepped = 0.0;
-    for (const double one : others) {
-      if (!std::isfinite(one)) continue;
-      known += 1.0;
-      stepped += off_step(one) < on ? 1.0 : 0.0;
-    }
-    return off_step(value) > off && stepped >= nearly_all * known;
+    std::vector<double> stray;
+    for (const double one : others)
+      if (std::isfinite(one)) stray.push_back(off_step(one));
+    const double usual = quantile_of(stray, nearly_all);
+    return usual < on && off_step(value) > std::max(off, times * usual);
   }
 
-  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest
-  /// there: of it all neighbours count.
+  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest there: of it
+  /// all neighbours count, unless noise of many steps shows everywhere else, which it would at rest, too.
   bool stands_still_besides(double value) const {
-    if (traits_.cannot_jump) return !(equal_share_ < limit_.hardly_equal);
-    return !(equal_share_of(step_sizes(others_than(value), runs_)) < limit_.hardly_equal);
+    const Eigen::VectorXd others = others_than(value);
+    const bool may_rest =
+        traits_.cannot_jump && !(white_scale(others, runs_) > limit_.quanta * quantum_of(others));
+    return !((may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_))) < limit_.hardly_equal);
   }
 
   /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.
@@ -366,6 +408,60 @@ private:
            (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
   }
 
+  /// Whether the column that this one is the rate of moves by something else than `rate`, though rounded, between two rows.
+  bool moves_otherwise(Eigen::Index from, Eigen::Index to, double rate) const {
+    if (traits_.integral == nullptr) return false;
+    constexpr double share = 0.1, quanta = 4.0;
+    const Eigen::VectorXd& position = *traits_.integral;
+    while (from < to && !std::isfinite(position[from])) ++from;
+    while (from < to && !std::isfinite(position[to])) --to;
+    const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
+    const double off = std::abs(position[to] - position[from] - rate * lasts_s);
+    return off > (share * std::abs(rate) + quantum_) * lasts_s + quanta * position_step();
+  }
+
+  /// Whether an angle that stood from a row on reads at another one, at once, about what its rate says it moved by in
+  /// between: it did not rest, though its rate does for most of the time.
+  bool catches_up(Eigen::Index from, Eigen::Index to) const {
+    constexpr Eigen::Index least = 6;  // rows of a motion: a rate may have spikes
+    constexpr double at_least = 0.5, at_most = 2.0;
+    const Eigen::VectorXd &rate = *traits_.at_rest, &t_s = *traits_.t_s;
+    double moved = 0.0, part = 0.0;
+    Eigen::Index in_a_row = 0;
+    for (Eigen::Index row = from; row < to; ++row) {
+      const bool moves = !resting(row) && std::isfinite(rate[row]);
+      in_a_row = moves ? in_a_row + 1 : 0;
+      part = moves ? part + rate[row] * (t_s[row + 1] - t_s[row]) : 0.0;
+      if (in_a_row == least) moved += part;
+      else if (in_a_row > least) moved += rate[row] * (t_s[row + 1] - t_s[row]);
+    }
+    const double jump = values_[to] - values_[from];
+    return std::abs(moved) > limit_.jump_scales * std::max(scale_, quantum_) && jump * moved > 0.0 &&
+           std::abs(jump) > at_least * std::abs(moved) && std::abs(jump) < at_most * std::abs(moved);
+  }
+
+  /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the same twice, and
+  /// how rarely it steps as far as it does after that. A slow one in coarse steps does stand, but its noise shows.
+  bool rests_otherwise(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
+    constexpr std::size_t around =
+        6;  // samples before and after, over which one that rests moves by a quantum at most
+    double still = 0.0, equal = 0.0, as_far = 0.0, steps = 0.0;
+    const double step = end < rows.size() ? std::abs(values_[rows[end]] - values_[rows[begin]]) : 0.0;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      if (k >= begin && k <= end) continue;
+      const double own = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
+      steps += 1.0;
+      as_far += own >= step ? 1.0 : 0.0;
+      if (k < around || k + around >= rows.size() || (k + around >= begin && k < end + around)) continue;
+      if (std::abs(values_[rows[k + around]] - values_[rows[k - around]]) > 1.5 * quantum_) continue;
+      still += 1.0;
+      equal += own == 0.0 ? 1.0 : 0.0;
+    }
+    const double share = (equal + 1.0) / (still + 1.0);
+    const double far = step > limit_.quanta * quantum_ ? std::log((steps + 1.0) / (as_far + 1.0)) : 0.0;
+    return -std::log(share) * static_cast<double>(end - begin - 1) + far > limit_.log_chance;
+  }
+
   /// How many samples of this value no other column bears out: nothing rests there, nor does what this one is the rate
   /// of move on by it, stretch by stretch. (Between two rows a coarse position hardly moves.)
   std::ptrdiff_t denied(double value) const {
@@ -392,12 +488,15 @@ private:
     if (traits_.at_rest != nullptr) {
       std::size_t moving = 0;
       for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
-      if (2 * moving < end - begin) return false;
+      if (2 * moving < end - begin) return end < rows.size() && catches_up(rows[begin], rows[end]);
     }
     if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value)) return false;
     const double share = std::max(equal_share_, 1e-4);
     const bool improbable = -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
-    if (equal_share_ < limit_.rarely_equal && quantum_ < scale_ && improbable) return true;
+    if (equal_share_ < limit_.rarely_equal && improbable &&
+        (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value)))
+      return true;
+    if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
     // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
     // a current that somebody sets.
     if (end == rows.size() || is_set()) return false;

@@ -213,12 +213,29 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
                 "give each swing a label in the column run");
 }
 
+/// How far an input that went on as it does beside a hole, the median of some steps there, would go until the hole's middle.
+/// The ends of a hole around a turning point are the same, and nothing stood still.
+inline double goes_on_by(const Eigen::VectorXd& values, const RunSpan& run, Eigen::Index row,
+                         Eigen::Index end) {
+  constexpr Eigen::Index beside = 5;  // steps: one jump among them does not count
+  const auto usual_step = [&](Eigen::Index from, Eigen::Index to) {
+    std::vector<double> steps;
+    for (Eigen::Index i = std::max(from, run.begin + 1); i < std::min(to, run.end); ++i)
+      if (std::isfinite(values[i] - values[i - 1])) steps.push_back(values[i] - values[i - 1]);
+    return std::abs(median_of(steps));
+  };
+  return 0.5 * static_cast<double>(end - row) *
+         std::max(usual_step(row - beside, row), usual_step(end + 1, end + 1 + beside));
+}
+
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
 /// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ
+/// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole of them
+///                  are the same whatever was between
 /// @return the column with known holes filled
 inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
-                                   RowMask& unknown, double stands_s = 0.0) {
+                                   RowMask& unknown, double stands_s = 0.0, const RowMask& untold = {}) {
   constexpr SegmentThresholds limit;
   Eigen::VectorXd filled = values;
   const CommandRange range(values);
@@ -236,12 +253,15 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
                    after = end < run.end ? values[end] : missing;
       bool known = false;
       if (input.pace == InputPace::command)
-        known = inside && end - row <= limit.held_rows && range.same(before, after);
+        known = inside && end - row <= limit.held_rows && range.same(before, after) &&
+                range.same(0.0, goes_on_by(values, run, row, end));
       else
         known = (inside &&
                  (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
                 (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
       known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s);
+      if (!untold.empty() && end - row > limit.bridged_rows)
+        known = known && std::find(untold.begin() + row, untold.begin() + end, 1) == untold.begin() + end;
       for (Eigen::Index i = row; i < end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         if (!known) unknown[at] = 1;
