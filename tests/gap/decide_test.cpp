@@ -100,6 +100,22 @@ TEST_CASE("a cause that makes a signal worse is not proven by the other one") {
   CHECK_FALSE(is_proven(one, before, Weight()));
 }
 
+TEST_CASE("near the noise a cause is named for what it takes beyond constants, and not for a little of it") {
+  std::vector<Candidate> candidates = nothing_friction_and(axis_model(), "cable_spring");
+  const SignalSums configured = sums_of(blocks(60.0, 60.0));
+  const auto verdict_of = [&](double without, double with) {
+    candidates[0].train = candidates[0].held_out = sums_of(blocks(without, without));
+    candidates[1].train = candidates[1].held_out = sums_of(blocks(with, with));
+    candidates[1].probability = 0.99;
+    return conclude(candidates, {configured, candidates[0].held_out}, Weight(), Options(), axis_model())
+        .verdict;
+  };
+  CHECK(verdict_of(1.86, 1.56) == Verdict::no_gap);    // 1.36 of the noise to 1.25: 8 %
+  CHECK(verdict_of(1.81, 1.0) == Verdict::explained);  // a cause of 0.9 noise units
+  CHECK(verdict_of(16.0, 2.0) == Verdict::explained);  // constants alone are far from it
+  CHECK(verdict_of(2.6, 2.1) == Verdict::explained);   // nor near it
+}
+
 TEST_CASE("what only some blocks prefer is weighed by how much the blocks differ") {
   const Model model = axis_model();
   const auto candidate = [&](const char* id, double even, double odd) {

@@ -374,6 +374,14 @@ inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, c
   return blamed == most_blamed(rows.where) && !has_an_instrument(candidate);
 }
 
+/// Whether constants within what is known of them bring held-out data as near the noise as an explanation has to, and a cause
+/// takes less of that away than one at the limit of no gap would: noise that remembers, or a first reading that is off, is lowered
+/// as much by whatever is free to follow it.
+inline bool is_worth_no_cause(const Candidate& constants, const Candidate& cause, const Weight& weight) {
+  return constants.held_out.any() && largest_noise_multiple(constants.held_out) <= decision.near_floor &&
+         1.0 - std::exp(-shrinkage(constants.held_out, cause.held_out, weight).value) < decision.material;
+}
+
 /// Draws the conclusion. `candidates` are weighed; the first one is the empty explanation.
 /// @param rows  what the measured rows say; where not given, they blame whatever is asked
 inline Conclusion conclude(const std::vector<Candidate>& candidates, const Reference& reference,
@@ -401,6 +409,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   const double multiple_left = largest_noise_multiple(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = multiple_left <= decision.near_floor;
+  if (near && !only_constants && is_worth_no_cause(empty, best, weight)) return nothing_worth_a_cause();
   const bool proven = is_proven(best, reference.as_configured, weight) &&
                       (only_constants || is_proven(best, reference.recalibrated, weight));
   if (near) {
