@@ -524,6 +524,40 @@ TEST_CASE("frames that repeat the one before them are masked, one or many in a r
   CHECK(taken(r, prepared, "rate_dps") == bad);
 }
 
+TEST_CASE(
+    "frames repeated while an axis comes to rest, where its coarse angle stands from then on, are masked") {
+  Recording r = test::axis_recording({}, 3000, 4);
+  test::Noise noise(11);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  double at_deg = 0.0, dps = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    // A second each: up to 200 deg/s, down by 11 a row, and from 35 on to rest.
+    const Eigen::Index row = i % 100;
+    dps = row < 20 ? 10.0 * static_cast<double>(row) : dps > 35.0 ? dps - 11.0 : 0.77 * dps;
+    const double moves_dps = i / 100 % 2 == 0 ? dps : -dps;
+    at_deg += 0.01 * moves_dps;
+    rate[i] = std::round((moves_dps + 0.2 * noise()) * 1e3) / 1e3;
+    angle[i] = std::round((at_deg + 0.03 * noise()) / 0.0879) * 0.0879;
+    if (i % 500 >= 339 && i % 500 < 342) {
+      rate[i] = rate[i - 1];
+      angle[i] = angle[i - 1];
+      bad.insert(i);
+    }
+  }
+  Eigen::VectorXd t_s(r.rows());
+  for (Eigen::Index i = 0; i < r.rows(); ++i) t_s[i] = 0.01 * static_cast<double>(i);
+  r.t_s = t_s;
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "rate_dps");
+  for (const Eigen::Index row : bad) {
+    CAPTURE(row);
+    CHECK(out.count(row) == 1);
+  }
+  CHECK(out.size() <= bad.size() + 3);
+}
+
 TEST_CASE("a spike of the current in a ramp of the power is masked from the ramp's first rows on") {
   Recording r = bench();
   test::Noise noise(5);

@@ -151,19 +151,28 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     }
     return to - from - (end - begin) >= 2 * around;
   };
-  // What stood catches up: a step as large as all that were missed.
+  // What stood catches up: a step as large as all that were missed, which were as large as those before and after, half and
+  // half. A motion that comes to rest meanwhile has larger ones before.
   const auto catches_up = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     if (end >= run.end) return false;
+    constexpr Eigen::Index beside = around / 2;
     const auto [from, to] = around_of(run, begin, end);
     for (std::size_t c = 0; c < outputs.size(); ++c) {
       const Eigen::VectorXd& one = *outputs[c];
-      std::vector<double> steps;
-      for (Eigen::Index k = from; k < to; ++k)
-        if ((k < begin || k > end) && std::isfinite(one[k] - one[k - 1]))
-          steps.push_back(std::abs(one[k] - one[k - 1]));
-      const double missed = static_cast<double>(end - begin + 1) * median_of(steps);
+      const auto usual_step = [&](Eigen::Index first, Eigen::Index last) {
+        std::vector<double> steps;
+        for (Eigen::Index k = first; k < last; ++k)
+          if (std::isfinite(one[k] - one[k - 1])) steps.push_back(std::abs(one[k] - one[k - 1]));
+        return steps.empty() ? missing : median_of(steps);
+      };
+      const double before = usual_step(std::max(from, begin - beside), begin),
+                   after = usual_step(end + 1, std::min(to, end + 1 + beside));
+      const double usual = !std::isfinite(before)  ? after
+                           : !std::isfinite(after) ? before
+                                                   : 0.5 * (before + after);
+      const double missed = static_cast<double>(end - begin + 1) * usual;
       const double step = std::abs(one[end] - one[end - 1]);
-      if (!steps.empty() && step > frames.caught_up * missed && step > limit.quanta * quanta[c]) return true;
+      if (step > frames.caught_up * missed && step > limit.quanta * quanta[c]) return true;
     }
     return false;
   };

@@ -282,12 +282,20 @@ inline Conclusion nothing_missing() {
   return result;
 }
 
+/// What is said where the simulation as configured is near the noise, and no cause proves to bring it nearer.
+inline constexpr const char* is_as_near =
+    "the simulation is as near the noise as an explanation would have to bring it, and no cause makes that better on all "
+    "held-out rows";
+
+/// What is said where constants bring it there, and a cause takes little of what they leave.
+inline constexpr const char* constants_come_as_near =
+    "with its constants within what is known of them the simulation is as near the noise as an explanation would have to "
+    "bring it, and no cause takes more than a little of the rest";
+
 /// The conclusion that the simulation is near the noise, and what it is above it by too little for a cause.
-inline Conclusion nothing_worth_a_cause() {
+inline Conclusion nothing_worth_a_cause(const char* reason) {
   Conclusion result = nothing_missing();
-  result.reason =
-      "the simulation is as near the noise as an explanation would have to bring it, and no cause makes that better on "
-      "all held-out rows";
+  result.reason = reason;
   return result;
 }
 
@@ -409,7 +417,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   const double multiple_left = largest_noise_multiple(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = multiple_left <= decision.near_floor;
-  if (near && !only_constants && is_worth_no_cause(empty, best, weight)) return nothing_worth_a_cause();
+  if (near && !only_constants && is_worth_no_cause(empty, best, weight))
+    return nothing_worth_a_cause(constants_come_as_near);
   const bool proven = is_proven(best, reference.as_configured, weight) &&
                       (only_constants || is_proven(best, reference.recalibrated, weight));
   if (near) {

@@ -255,7 +255,7 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const Conclu
 /// @return whether it did
 inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
   if (!chosen.effects.empty() && is_near_as_configured(result) && !is_shrunk_by_the_table(result)) {
-    take_causes_back(result, model, nothing_worth_a_cause());
+    take_causes_back(result, model, nothing_worth_a_cause(is_as_near));
     return true;
   }
   const bool in_part =
