@@ -17,11 +17,11 @@
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/fit/segment_choice.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
+#include <thermopower/gap/fit/single_causes.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/gap/fit/thinning.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
-#include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -250,22 +250,6 @@ private:
   /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
   double fit_horizon_s() const { return std::max(search_extent.fitted_window_s, options_.horizon_s); }
 
-  std::vector<Explanation> singles() const {
-    std::vector<Explanation> list;
-    const auto removed = [&](const std::string& id) {
-      return std::find(options_.without.begin(), options_.without.end(), id) != options_.without.end();
-    };
-    for (const CatalogueEntry& entry : catalogue_.entries())
-      if (!removed(entry.info.id) && can_be_judged(entry, model_, train_inputs_))
-        list.push_back({{&entry}, {}});
-    const std::vector<CalibratedConstant> constants = model_.calibrated();
-    for (std::size_t i = 0; i < constants.size(); ++i)
-      if (constants[i].may_be_cause && !removed(plant::calibration_id(constants[i].id)) &&
-          can_be_judged(constants[i], model_, train_inputs_))
-        list.push_back({{}, {static_cast<int>(i)}});
-    return list;
-  }
-
   /// A search, and another one with what the first overlooked.
   Attempt thorough_search(double horizon_s) {
     std::vector<std::size_t> worst;
@@ -320,7 +304,7 @@ private:
     const Search searching(in_short_windows ? glimpse : coarse, coarse, in_short_windows ? longer : coarse,
                            fine, options_.threads, suspects_among(result_.where));
     std::vector<Explanation> causes, costly;
-    for (Explanation& one : singles()) {
+    for (Explanation& one : single_causes(model_, catalogue_, options_.without, train_inputs_)) {
       const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
       (is_costly ? costly : causes).push_back(std::move(one));
     }
