@@ -823,6 +823,13 @@ TEST_CASE("an input that is missing between values that differ is not made up") 
   const PreparedRecording bridged(test::bench_model(), motor);
   CHECK(bridged.recording().runs.size() == 1);
   CHECK(bridged.recording().column("power_param")[steady + 1] == level);
+  // One that was off before and a little on after was switched on nobody knows when: a little is little of the range, but the
+  // current goes with its root.
+  change(motor, "power_param", [&](double x, Eigen::Index i) {
+    return i < steady ? 0.0 : i == steady + 3 ? 2.0 : x;
+  });
+  CHECK(found(PreparedRecording(test::bench_model(), motor), FindingKind::unknown_input, "power_param",
+              FindingAction::segmented));
 }
 
 TEST_CASE("as recorded, the check says what it saw and does nothing") {

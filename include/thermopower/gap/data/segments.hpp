@@ -253,8 +253,9 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
                    after = end < run.end ? values[end] : missing;
       bool known = false;
       if (input.pace == InputPace::command)
+        // What is off at one end only was switched in between.
         known = inside && end - row <= limit.held_rows && range.same(before, after) &&
-                range.same(0.0, goes_on_by(values, run, row, end));
+                (before == 0.0) == (after == 0.0) && range.same(0.0, goes_on_by(values, run, row, end));
       else
         known = (inside &&
                  (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
