@@ -116,6 +116,33 @@ TEST_CASE("near the noise a cause is named for what it takes beyond constants, a
   CHECK(verdict_of(2.6, 2.1) == Verdict::explained);   // nor near it
 }
 
+TEST_CASE(
+    "that constants come as near the noise speaks for a cause where they need to be off by more than chance") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates = nothing_friction_and(model, "cable_spring");
+  candidates[0].train = candidates[0].held_out = sums_of(blocks(1.4, 1.4));
+  candidates[1].train = candidates[1].held_out = sums_of(blocks(1.2, 1.2));  // takes 7 % of the score
+  candidates[1].probability = 0.99;
+  const Reference reference{sums_of(blocks(60.0, 60.0)), candidates[0].held_out};
+  const double known = model.uncertainty_of(model.calibrated().front());
+  for (const double off : {0.5, 1.0, 3.0}) {
+    CAPTURE(off);
+    candidates[0].fit.point[0] = off * known;
+    const Verdict verdict = conclude(candidates, reference, Weight(), Options(), model).verdict;
+    CHECK((verdict == Verdict::explained) == (off > 2.0));
+  }
+  candidates[1].fit.point[0] = 3.0 * known;  // the cause needs it off as well
+  CHECK(conclude(candidates, reference, Weight(), Options(), model).verdict == Verdict::no_gap);
+}
+
+TEST_CASE("a signal that hardly had a gap leaves no rest of it") {
+  SignalSums before = sums_of(blocks(2500.0, 2500.0)), after = sums_of(blocks(8.0, 8.0));
+  before.set(2, std::vector<double>(2400, 1.08), 1.0);
+  after.set(2, std::vector<double>(2400, 1.01), 1.0);
+  CHECK(left_over(after, before) > 0.3);
+  CHECK(rest_above_noise(after, {before, before}) == Approx(std::sqrt(7.0 / 2499.0)));
+}
+
 TEST_CASE("what only some blocks prefer is weighed by how much the blocks differ") {
   const Model model = axis_model();
   const auto candidate = [&](const char* id, double even, double odd) {

@@ -40,6 +40,8 @@ struct DecisionThresholds {
   // Verdict
   /// Multiple of the noise floor up to which a held-out signal counts as near it, as printed in the table.
   double near_floor = 1.5;
+  /// Twice a log odds by which constants alone may cost more than constants beside a cause: chi-square of one, 95 %.
+  double dear_constants = 3.84;
   /// Readings of the training data for every parameter of a cause and every constant that moved beside it. The rule of
   /// thumb of regression is 10 to 20; with fewer an explanation can be bent to anything, and the next recording differs.
   double readings_per_parameter = 15.0;

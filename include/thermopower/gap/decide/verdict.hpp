@@ -93,6 +93,14 @@ inline double left_over(const SignalSums& after, const SignalSums& before) {
   return std::min(worst, 1.0);
 }
 
+/// The same of the signals that are above the noise at all, against the larger of both shares: of a signal that hardly had a gap,
+/// the last bit of noise is a large share.
+inline double rest_above_noise(SignalSums after, const Reference& reference) {
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (noise_multiple(after, i) <= decision.no_gap) after.samples[i] = 0.0;
+  return std::max(left_over(after, reference.as_configured), left_over(after, reference.recalibrated));
+}
+
 /// Sum over the signals of what is above the noise on held-out data, in units of its variance.
 inline double excess(const Candidate& candidate) {
   double sum = 0.0;
@@ -382,6 +390,12 @@ inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, c
   return blamed == most_blamed(rows.where) && !has_an_instrument(candidate);
 }
 
+/// Whether an explanation by constants alone needs them further off than a cause does, by more than chance: then that they
+/// come as near the noise speaks for the cause, which they can imitate, and not for them.
+inline bool are_dearer(const Candidate& constants, const Candidate& cause, const Model& model) {
+  return price_of_constants(constants, model) - price_of_constants(cause, model) > decision.dear_constants;
+}
+
 /// Whether constants within what is known of them bring held-out data as near the noise as an explanation has to, and a cause
 /// takes less of that away than one at the limit of no gap would: noise that remembers, or a first reading that is off, is lowered
 /// as much by whatever is free to follow it.
@@ -417,7 +431,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   const double multiple_left = largest_noise_multiple(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = multiple_left <= decision.near_floor;
-  if (near && !only_constants && is_worth_no_cause(empty, best, weight))
+  if (near && !only_constants && !are_dearer(empty, best, model) && is_worth_no_cause(empty, best, weight))
     return nothing_worth_a_cause(constants_come_as_near);
   const bool proven = is_proven(best, reference.as_configured, weight) &&
                       (only_constants || is_proven(best, reference.recalibrated, weight));
@@ -435,7 +449,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     if (rest > decision.may_leave && !is_agreed_upon(best, model, weight))
       return nothing_known(stands_in_for_another);
     if (needs_a_bent_constant(best, reference, model)) return nothing_known(bends_a_constant);
-    if (leaves_its_place_at_fault(best, rest, rows)) return nothing_known(does_not_mend_its_place);
+    if (leaves_its_place_at_fault(best, rest_above_noise(best.held_out, reference), rows))
+      return nothing_known(does_not_mend_its_place);
     if (best.explanation.effects.size() > 1 && rows.cancels && rows.cancels(best))
       return nothing_known(cancel_each_other);
     result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);

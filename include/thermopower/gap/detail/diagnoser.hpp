@@ -125,6 +125,9 @@ private:
       return true;
     if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
       return fit_both_parts(model_);
+    const bool is_cause = conclusion.verdict == Verdict::explained &&
+                          are_dearer(empty, attempt.candidates[conclusion.chosen], model_);
+    if (is_cause) return fit_both_parts(model_);
     if (is_enough(augmented(model_, empty.explanation, empty.list, empty.fit.point), held_out_inputs_))
       return true;
     std::vector<Inputs> all = train_inputs_;
