@@ -376,7 +376,7 @@ inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<
 /// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the
 /// model the rows blame a submodel most that one of them acts in, or the one that they blamed most before, where none of
 /// them acts. A balance does not know a state that nobody measures and blames the place that has it: a cause with one is
-/// asked about the other place only. Instruments bend the readings that balances are drawn from: they are asked about their
+/// asked about the other place only. What acts in a place that was blamed, too, has mended that one: another fault is left. Instruments bend the readings that balances are drawn from: they are asked about their
 /// own place only.
 /// @param rest  share of the gap that the causes leave
 inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, const Witness& rows) {
@@ -387,7 +387,10 @@ inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, c
   if (left.empty()) return false;
   const plant::SubmodelName& blamed = left.front().submodel;
   if (acts_in(candidate, blamed)) return takes_gap_away(left.front()) && !has_hidden_states(candidate);
-  return blamed == most_blamed(rows.where) && !has_an_instrument(candidate);
+  const bool mends_another = std::any_of(rows.where.begin(), rows.where.end(), [&](const Location& one) {
+    return takes_gap_away(one) && acts_in(candidate, one.submodel);
+  });
+  return blamed == most_blamed(rows.where) && !mends_another && !has_an_instrument(candidate);
 }
 
 /// Whether an explanation by constants alone needs them further off than a cause does, by more than chance: then that they
