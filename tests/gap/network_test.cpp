@@ -194,7 +194,7 @@ TEST_CASE(
       if (answer.right) continue;
       others += draw.label + ": " + to_string(diagnosis.verdict);
       for (const std::string& one : named(diagnosis)) others += " " + one;
-      others += "\n";
+      others += ", " + diagnosis.reason + "\n";
     }
   }
   WARN(right << " right, " << in_class << " in a class, " << wrong << " wrong, of " << all << "\n" << others);

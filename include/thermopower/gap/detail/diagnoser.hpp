@@ -110,11 +110,14 @@ private:
     // What an explanation leaves may be less than rows tell of their noise. Where nothing explains, what the best of the
     // explanations leaves is no noise.
     const FitProblem* witness = conclusion.verdict == Verdict::unexplained ? nullptr : &attempt.problem;
-    const auto is_enough = [&](const Model& model, const std::vector<Inputs>& inputs) {
-      return is_within_noise(model, inputs, witness, options_.horizon_s, catalogue_);
+    const auto is_enough = [&](const Model& model, const std::vector<Inputs>& inputs, bool chance) {
+      return is_within_noise(model, inputs, witness, options_.horizon_s, catalogue_, false, chance);
     };
+    // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it, where
+    // both parts say so: a few readings alone may be anything by chance.
+    const bool chance = witness == nullptr;
     const auto fit_both_parts = [&](const Model& model) {
-      return is_enough(model, held_out_inputs_) && is_enough(model, train_inputs_);
+      return is_enough(model, held_out_inputs_, chance) && is_enough(model, train_inputs_, chance);
     };
     // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
     if (largest_noise_multiple(empty) > decision.far_from_noise)
@@ -128,8 +131,8 @@ private:
     const bool is_cause = conclusion.verdict == Verdict::explained &&
                           are_dearer(empty, attempt.candidates[conclusion.chosen], model_);
     if (is_cause) return fit_both_parts(model_);
-    if (is_enough(augmented(model_, empty.explanation, empty.list, empty.fit.point), held_out_inputs_))
-      return true;
+    const Model constants = augmented(model_, empty.explanation, empty.list, empty.fit.point);
+    if (is_enough(constants, held_out_inputs_, false) || (chance && fit_both_parts(constants))) return true;
     std::vector<Inputs> all = train_inputs_;
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
     FitProblem together =
@@ -462,7 +465,8 @@ private:
     if (short_of_noise) take_causes_back(result_, model_, nothing_known(constants_leave_a_rest));
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
-    const bool unproven = named && take_back_the_unproven(result_, model_, chosen.explanation);
+    const bool unproven =
+        named && take_back_the_unproven(result_, model_, chosen.explanation, conclusion.leaves_a_rest);
     const bool on_its_own = named && !unproven && leaves_a_rest &&
                             has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
     if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));

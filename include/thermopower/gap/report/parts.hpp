@@ -252,15 +252,17 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const Conclu
 
 /// Takes causes back where the printed table does not prove their part. Near the noise that is asked where the simulation was
 /// near it from the start: an effect that brought it there may have acted in a few seconds only, of which few blocks tell.
+/// @param in_part_only  whether the decision saw them leave a rest: else several that come near the noise are asked nothing more
 /// @return whether it did
-inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
+inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen,
+                                   bool in_part_only) {
   if (!chosen.effects.empty() && is_near_as_configured(result) && !is_shrunk_by_the_table(result)) {
     take_causes_back(result, model, nothing_worth_a_cause(is_as_near));
     return true;
   }
   const bool in_part =
       result.verdict == Verdict::partial ||
-      (result.verdict == Verdict::ambiguous &&
+      (result.verdict == Verdict::ambiguous && in_part_only &&
        std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) && !chosen.effects.empty());
   if (!in_part || is_proven_by_the_table(result)) return false;
   take_causes_back(result, model, nothing_known(nothing_is_proven));
@@ -399,8 +401,10 @@ inline bool is_proven_above(const std::vector<double>& errors, double level) {
 /// Whether a model scores what the noise allows on some data.
 /// @param witness  a search whose noise counts where it is less; null: there is none
 /// @param proven   whether a signal near its floor counts as above it only where its errors prove that
+/// @param chance   whether a signal counts as above it only where that is more than noise that remembers comes to by chance
 inline bool is_within_noise(const Model& model, const std::vector<Inputs>& inputs, const FitProblem* witness,
-                            double horizon_s, const Catalogue& catalogue, bool proven = false) {
+                            double horizon_s, const Catalogue& catalogue, bool proven = false,
+                            bool chance = false) {
   const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
   const Errors errors = errors_of(model, full, catalogue);
   const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, full, inputs);
@@ -411,8 +415,8 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
   const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
-    // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it.
-    const double by_chance = witness == nullptr && noise[i].sd > 0.0 ? noise[i].by_chance / noise[i].sd : 1.0;
+    const double by_chance =
+        chance && noise[i].sd > 0.0 ? std::min(noise[i].by_chance / noise[i].sd, decision.near_floor) : 1.0;
     const double rms = errors.rms(static_cast<Signal>(i)),
                  within = std::max(decision.no_gap_in_full, by_chance) * floor[i];
     const bool may_be_chance =
