@@ -588,12 +588,12 @@ TEST_CASE(
   const Explanation wound{{standard_catalogue().find("second_thermal_mass")}, {}};
   result.verdict = Verdict::explained;
   result.cause.push_back({});
-  CHECK_FALSE(take_back_the_unproven(result, Model(), wound, true));  // the temperature shrinks
+  CHECK_FALSE(take_back_the_unproven(result, Model(), wound));  // the temperature shrinks
   result.gap.front().ci95 = {-0.1, 0.25};
   // What was well above the noise and is no longer was explained, if only in a few seconds of many.
-  CHECK_FALSE(take_back_the_unproven(result, Model(), wound, true));
+  CHECK_FALSE(take_back_the_unproven(result, Model(), wound));
   result.gap.back().before = 1.4;
-  CHECK(take_back_the_unproven(result, Model(), wound, true));
+  CHECK(take_back_the_unproven(result, Model(), wound));
   CHECK(result.verdict == Verdict::no_gap);
   CHECK(result.cause.empty());
 }

@@ -148,20 +148,3 @@ TEST_CASE("friction that varies over the turn is no friction of one size, and is
   CHECK(even.cause.front().effect == "coulomb_friction");
   CHECK_FALSE(even.where.front().has_own_course);
 }
-
-TEST_CASE("several explanations beside a rest are named only where the printed table proves one's part") {
-  const Explanation bent{{standard_catalogue().find("presliding_friction")}, {}};
-  Diagnosis result;
-  result.verdict = Verdict::ambiguous;
-  result.cause.push_back({});
-  result.gap.push_back({Signal::rate_dps, "deg/s", {}, 14.0, 14.0, 9.0, 1.0, 0.36, {0.1, 0.5}});
-  CHECK_FALSE(take_back_the_unproven(result, Model(), bent, true));
-  result.gap.back().ci95 = {-0.2, 0.5};
-  CHECK(take_back_the_unproven(result, Model(), bent, true));
-  CHECK(result.verdict == Verdict::unexplained);
-  CHECK(result.cause.empty());
-  // Near the noise the data themselves bear witness.
-  result.verdict = Verdict::ambiguous;
-  result.gap.back().after = 1.2;
-  CHECK_FALSE(take_back_the_unproven(result, Model(), bent, true));
-}

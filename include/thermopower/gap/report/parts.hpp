@@ -252,19 +252,13 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const Conclu
 
 /// Takes causes back where the printed table does not prove their part. Near the noise that is asked where the simulation was
 /// near it from the start: an effect that brought it there may have acted in a few seconds only, of which few blocks tell.
-/// @param in_part_only  whether the decision saw them leave a rest: else several that come near the noise are asked nothing more
 /// @return whether it did
-inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen,
-                                   bool in_part_only) {
+inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
   if (!chosen.effects.empty() && is_near_as_configured(result) && !is_shrunk_by_the_table(result)) {
     take_causes_back(result, model, nothing_worth_a_cause(is_as_near));
     return true;
   }
-  const bool in_part =
-      result.verdict == Verdict::partial ||
-      (result.verdict == Verdict::ambiguous && in_part_only &&
-       std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) && !chosen.effects.empty());
-  if (!in_part || is_proven_by_the_table(result)) return false;
+  if (result.verdict != Verdict::partial || is_proven_by_the_table(result)) return false;
   take_causes_back(result, model, nothing_known(nothing_is_proven));
   return true;
 }
