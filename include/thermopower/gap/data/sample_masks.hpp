@@ -447,7 +447,11 @@ private:
         6;  // samples before and after, over which one that rests moves by a quantum at most
     double still = 0.0, equal = 0.0, as_far = 0.0, steps = 0.0;
     const double step = end < rows.size() ? std::abs(values_[rows[end]] - values_[rows[begin]]) : 0.0;
-    for (std::size_t k = 1; k < rows.size(); ++k) {
+    constexpr std::size_t looked_at =
+        5000;  // samples before and after: of a million there are stretches in thousands
+    const std::size_t first = std::max<std::size_t>(1, begin - std::min(begin, looked_at)),
+                      last = std::min(rows.size(), end + looked_at);
+    for (std::size_t k = first; k < last; ++k) {
       if (k >= begin && k <= end) continue;
       const double own = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
       steps += 1.0;
