@@ -77,6 +77,16 @@ void spoilt_at_ten_places(const char* what, const Model& model, Recording r, con
   CHECK(static_cast<double>(good) <= 0.002 * static_cast<double>(r.rows()));
 }
 
+/// Ends the range of a column's sensor at a limit. @return how many samples were beyond
+std::size_t cut_off_above(Recording& r, const char* column, double limit) {
+  std::size_t beyond = 0;
+  change(r, column, [&](double x, Eigen::Index) {
+    beyond += x > limit ? 1 : 0;
+    return std::min(x, limit);
+  });
+  return beyond;
+}
+
 }  // namespace
 
 TEST_CASE("a current that somebody sets, and that stays where it was set, is not frozen") {
@@ -291,11 +301,7 @@ TEST_CASE("a current in coarse steps that stands at its end while the power move
   change(r, "current_A", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
   const Eigen::VectorXd whole = r.column("current_A");
   const double limit = quantum * std::round(0.6 * whole.maxCoeff() / quantum);
-  std::size_t cut = 0;
-  change(r, "current_A", [&](double x, Eigen::Index) {
-    cut += x > limit ? 1 : 0;
-    return std::min(x, limit);
-  });
+  const std::size_t cut = cut_off_above(r, "current_A", limit);
   REQUIRE(cut > 100);
   const PreparedRecording prepared(test::bench_model(), r);
   CHECK(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));
@@ -439,11 +445,7 @@ TEST_CASE("a current that heats is unknown where its sensor's range ended") {
   r.remove("power_param");
   const Eigen::VectorXd whole = r.column("current_A");
   const double limit = 0.7 * whole.maxCoeff() + 1e-5;
-  std::size_t cut = 0;
-  change(r, "current_A", [&](double x, Eigen::Index) {
-    cut += x > limit ? 1 : 0;
-    return std::min(x, limit);
-  });
+  const std::size_t cut = cut_off_above(r, "current_A", limit);
   REQUIRE(cut > 100);
   const PreparedRecording prepared(test::bench_model(), r);
   REQUIRE(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));

@@ -308,10 +308,11 @@ private:
     // A slow signal in coarse steps stands still by itself; but not where what drives it moves, nor where another column
     // sees it move.
     const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
-    if (!is_witnessed && stands_still_besides(one.value) && !is_driven_at(one.value)) return false;
+    const bool stands_still = stands_still_besides(one.value);
+    if (!is_witnessed && stands_still && !is_driven_at(one.value)) return false;
     // One sample tells little: just at the end of its range a sensor is still right. Where noise of
     // many steps shows everywhere else, it would show there, though the axis rests out of range.
-    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still_besides(one.value);
+    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still;
     return 2 * denied(one.value) >= one.count || noise_would_show;
   }
 

@@ -368,13 +368,17 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
   return noise;
 }
 
-/// Its standard deviation.
-inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
-                                                 const std::vector<Inputs>& inputs) {
+/// Standard deviations of the noise of every signal.
+inline std::array<double, signal_count> sd_of(const std::array<NoiseEstimate, signal_count>& noise) {
   std::array<double, signal_count> sigma{};
-  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, segments, inputs);
   for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
   return sigma;
+}
+
+/// Standard deviation of the noise of every signal in a simulation's errors.
+inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
+                                                 const std::vector<Inputs>& inputs) {
+  return sd_of(noise_estimates_of(errors, segments, inputs));
 }
 
 /// Whether sixths of a sequence of errors, in order, prove that their root mean square is above a level: the lower end of its
@@ -402,8 +406,7 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
   const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
   const Errors errors = errors_of(model, full, catalogue);
   const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, full, inputs);
-  std::array<double, signal_count> sigma{};
-  for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
+  std::array<double, signal_count> sigma = sd_of(noise);
   if (witness != nullptr &&
       witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
