@@ -645,6 +645,33 @@ TEST_CASE("a cause about whose size the parts of the data disagree is not agreed
   CHECK(is_agreed_upon(one, model, Weight()));
 }
 
+TEST_CASE(
+    "parts of the data that disagree about a gain by half of how far it is from 1 do not agree that it is one") {
+  const Model model = axis_model();
+  Candidate one;
+  one.explanation.effects.push_back(standard_catalogue().find("angle_scale"));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  const auto n = static_cast<Eigen::Index>(one.list.size()), gain = n - 1;
+  one.fit.at_bound.assign(one.list.size(), false);
+  const auto gain_is = [&](double value, double sd) {
+    const double sharp = 1e8;
+    one.fit.point = Eigen::VectorXd::Zero(n);
+    one.fit.point[gain] = value;
+    one.fit.information = Eigen::MatrixXd::Identity(n, n);
+    one.fit.information(gain, gain) = sharp;
+    one.fit.pulls = Eigen::MatrixXd::Zero(n, 20000);
+    one.fit.pulls(gain, 1000) = sd * sharp;
+  };
+  gain_is(0.9, 0.045);
+  CHECK(is_agreed_upon(one, model, Weight()));
+  gain_is(0.9, 0.055);
+  CHECK_FALSE(is_agreed_upon(one, model, Weight()));
+  gain_is(1.1, 0.055);
+  CHECK_FALSE(is_agreed_upon(one, model, Weight()));
+  gain_is(-0.1, 0.5);  // the wrong way round
+  CHECK(is_agreed_upon(one, model, Weight()));
+}
+
 namespace {
 
 /// A fit of one parameter, a mean of residuals of variance 1, of which as many as make a block pull together.

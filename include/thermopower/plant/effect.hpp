@@ -91,6 +91,7 @@ struct Parameter {
   bool logarithmic = false;  ///< positive and known by order of magnitude only: fitted as its logarithm
   Input starts_relative_to = Input::none;  ///< the starts are fractions of its largest magnitude
   std::optional<double> standard = {};     ///< its value where a model leaves it out; none: it must be given
+  double absent_at = 0.0;                  ///< where it is this, the effect is not there: 1 of a gain
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   bool degenerate_at_bounds = false;
   /// The same at its upper bound alone.
@@ -140,6 +141,8 @@ public:
   }
   /// Its value where a model leaves it out.
   ParameterBuilder& standard(double value) { return parameter_.standard = value, *this; }
+  /// Where it is this, the effect is not there; 0 unless said otherwise.
+  ParameterBuilder& absent_at(double value) { return parameter_.absent_at = value, *this; }
   /// It must exceed another parameter of the effect, by name: below, the effect does not show.
   ParameterBuilder& exceeds(std::string_view other) { return parameter_.exceeds = other, *this; }
   /// A rate that the motion must reach.

@@ -63,3 +63,21 @@ TEST_CASE("short recordings are kept whole") {
   CHECK(thinned_axis(windows(60, 10), 1500).size() == 60);
   CHECK(thinned_axis(windows(3, 1000), 1500).size() == 3);
 }
+
+TEST_CASE(
+    "of windows that were chosen half can be chosen again, and each still carries on from the one before it") {
+  const std::vector<Segment> kept = thinned_axis(windows(400, 10), 1000);
+  const std::vector<Segment> half = thinned_axis(kept, 500);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < half.size(); ++i) {
+    if (half[i].warm_up) continue;
+    rows += half[i].end - half[i].begin;
+    INFO("window at row " << half[i].begin);
+    CHECK((half[i].begin == 0 || (i > 0 && half[i - 1].end == half[i].begin && half[i].carries_on)));
+    // What only brought states about before does not count now.
+    for (const Segment& one : kept)
+      if (one.begin == half[i].begin) CHECK_FALSE(one.warm_up);
+  }
+  CHECK(rows >= 450);
+  CHECK(rows <= 550);
+}

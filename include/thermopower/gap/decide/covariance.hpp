@@ -89,8 +89,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
 }
 
 /// Whether the blocks of the training data agree about what the effects of a candidate are like: the standard deviation of
-/// each parameter that was looked for, by how much the blocks differ, is a small share of it (of the factor that it may be
-/// off by, where it is known by its order of magnitude). A parameter on a bound is not asked about, nor is a detail of a
+/// each parameter that was looked for, by how much the blocks differ, is a small share of how far it is from where the effect
+/// would not be there (of the factor that it may be off by, where it is known by its order of magnitude). A parameter on a bound is not asked about, nor is a detail of a
 /// shape.
 inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const Weight& weight) {
   const Covariance covariance = covariance_of(candidate, weight);
@@ -102,7 +102,8 @@ inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const
       if (parameter.standard || candidate.list[place].still || candidate.fit.at_bound[place]) continue;
       const auto i = static_cast<Eigen::Index>(place);
       const double sd = std::sqrt(std::max(covariance.of(i, i), 0.0));
-      const double value = candidate.list[place].logarithmic ? 1.0 : std::abs(candidate.fit.point[i]);
+      const double value =
+          candidate.list[place].logarithmic ? 1.0 : std::abs(candidate.fit.point[i] - parameter.absent_at);
       if (sd > decision.size_known * value) return false;
     }
   return true;

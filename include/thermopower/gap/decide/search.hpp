@@ -7,6 +7,7 @@
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
 
 #include <algorithm>
@@ -49,9 +50,8 @@ public:
 
   /// The empty explanation and every single one, fitted.
   std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
-    std::vector<Explanation> all{Explanation{}};
-    all.insert(all.end(), singles.begin(), singles.end());
-    std::vector<Candidate> candidates = fit_all(all, quick());
+    std::vector<Candidate> candidates{fit(coarse_, {}, quick())};
+    for (Candidate& one : fit_all(singles, candidates.front())) candidates.push_back(std::move(one));
     refine(candidates, 0, 7);
     return candidates;
   }
@@ -59,7 +59,7 @@ public:
   /// Adds further single explanations, fitted.
   void add_singles(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const std::size_t first = candidates.size();
-    for (Candidate& one : fit_all(singles, quick())) candidates.push_back(std::move(one));
+    for (Candidate& one : fit_all(singles, best(candidates))) candidates.push_back(std::move(one));
     refine(candidates, first, 7);
   }
 
@@ -87,9 +87,9 @@ public:
     }
   }
 
-  /// Fits candidates of as many causes as the best ones or fewer once more from where those ended. A smaller
-  /// explanation loses to a larger one that contains it only after it has been there: often the larger one has
-  /// only found better constants.
+  /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the
+  /// very best. A smaller explanation loses to a larger one that contains it only after it has been there: often the
+  /// larger one has only found better constants.
   void refit_rivals(std::vector<Candidate>& candidates) const {
     FitOptions finish;
     finish.iterations = 12;
@@ -98,6 +98,7 @@ public:
     constexpr std::size_t looked_at = 6, related_to = 2;
     for (std::size_t place = 0; place < std::min(looked_at, order.size()); ++place) {
       const Candidate leader = candidates[order[place]];
+      if (leader.train.total() > Attribution::out_of_sight * best(candidates).train.total()) continue;
       std::vector<std::size_t> rivals;
       std::size_t related = 0;
       for (std::size_t index : order) {
@@ -176,20 +177,24 @@ private:
   }
 
   /// A first fit, away from the fine data.
-  Candidate fit(const Explanation& explanation, const FitOptions& options,
-                const Candidate* near = nullptr) const {
-    Candidate found = coarse_.fit(explanation, options, near);
+  Candidate fit(const Attribution& coarse, const Explanation& explanation, const FitOptions& options,
+                const Candidate* near = nullptr, const std::vector<Eigen::VectorXd>& starts = {}) const {
+    Candidate found = starts.empty() ? coarse.fit(explanation, options, near)
+                                     : coarse.fit_from(explanation, starts, options);
     for (const CatalogueEntry* entry : explanation.effects)
       if (&longer_ != &coarse_ && remembers(*entry))
         return longer_.fit(explanation, options, near, &found.fit.point);
     return found;
   }
 
+  /// @param so_far  the best candidate
   std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
-                                 const FitOptions& options) const {
+                                 const Candidate& so_far) const {
+    const FirstLook look(so_far, glimpse_, coarse_);
+    const Attribution coarse(look.some, look.few);
     std::vector<Candidate> candidates(explanations.size());
     in_parallel(explanations.size(), threads_,
-                [&](std::size_t i) { candidates[i] = fit(explanations[i], options); });
+                [&](std::size_t i) { candidates[i] = fit(coarse, explanations[i], quick()); });
     return candidates;
   }
 
@@ -212,9 +217,29 @@ private:
            is_related(rich, simple);
   }
 
+  /// What explanations are first looked at in. Where all that there is so far leaves far more than noise, half of an axis'
+  /// windows tells as well as all of them which are worth more.
+  struct FirstLook {
+    FitProblem few, some;
+
+    /// @param so_far  the best candidate
+    FirstLook(const Candidate& so_far, const Attribution& glimpse, const Attribution& coarse)
+        : few(glimpse.problem()), some(coarse.problem()) {
+      if (so_far.train.within(search_extent.plain_above)) return;
+      for (FitProblem* one : {&few, &some}) one->segments = thinned_axis(one->segments, rows(*one) / 2);
+    }
+
+    static Eigen::Index rows(const FitProblem& problem) {
+      Eigen::Index count = 0;
+      for (const Segment& one : problem.segments)
+        if (one.axis && !one.warm_up) count += one.end - one.begin;
+      return count;
+    }
+  };
+
   /// A set worth fitting.
   struct Promise {
-    double cost;            ///< after one linear step
+    LinearGuess guess;      ///< after one linear step; of a set that nobody looked at it is empty
     const Candidate* near;  ///< the fit of a part of it
     Explanation together;
   };
@@ -233,7 +258,10 @@ private:
     some.iterations = 10;
     rest.iterations = 15;
     some.relative_decrease = rest.relative_decrease = 1e-6;
-    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.polish(candidates[order[i]], some); });
+    FitOptions in_sight = some;
+    in_sight.hopeless = Attribution::out_of_sight * best(candidates).train.total();
+    in_parallel(order.size(), threads_,
+                [&](std::size_t i) { fine_.polish(candidates[order[i]], order[i] == 0 ? some : in_sight); });
     constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
     const Candidate& leader = best(candidates);
     double samples = 0.0;
@@ -258,19 +286,23 @@ private:
     for (const Candidate* near : seeds)
       for (const Explanation& single : singles)
         if (!near->explanation.includes(single))
-          promises.push_back({0.0, near, near->explanation.with(single)});
+          promises.push_back({{}, near, near->explanation.with(single)});
     constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
+    const FirstLook look(best(candidates), glimpse_, coarse_);
+    const Attribution glimpse(look.few), coarse(look.some, look.few);
     const auto rank = [&](const Attribution& on) {
       in_parallel(promises.size(), threads_, [&](std::size_t i) {
-        promises[i].cost = on.promise(*promises[i].near, promises[i].together);
+        Promise& one = promises[i];
+        one.guess = one.guess.starts.empty() ? on.promise(one.together, *one.near)
+                                             : on.promise(one.together, one.guess.starts);
       });
-      sort_by(promises, [](const Promise& one) { return one.cost; });
+      sort_by(promises, [](const Promise& one) { return one.guess.cost; });
     };
     if (&glimpse_ != &coarse_ && promises.size() > looked_at) {
-      rank(glimpse_);
+      rank(glimpse);
       promises.resize(looked_at);
     }
-    rank(coarse_);
+    rank(coarse);
     std::set<std::vector<std::string>> seen;
     std::vector<Promise> kept;
     for (Promise& one : promises) {
@@ -278,7 +310,7 @@ private:
       std::sort(ids.begin(), ids.end());
       if (kept.size() < fitted && seen.insert(ids).second) kept.push_back(std::move(one));
     }
-    add_fitted(candidates, kept);
+    add_fitted(candidates, kept, coarse);
   }
 
   /// The best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
@@ -302,14 +334,17 @@ private:
   }
 
   /// Fits sets from the fits of their parts and takes them among the candidates.
-  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
+  /// @param coarse  what they are first fitted to
+  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
+                  const Attribution& coarse) const {
     if (sets.empty()) return;
     std::vector<Candidate> found(sets.size());
     FitOptions options;
     options.iterations = 12;
     options.relative_decrease = 1e-3;
-    in_parallel(sets.size(), threads_,
-                [&](std::size_t i) { found[i] = fit(sets[i].together, options, sets[i].near); });
+    in_parallel(sets.size(), threads_, [&](std::size_t i) {
+      found[i] = fit(coarse, sets[i].together, options, sets[i].near, sets[i].guess.starts);
+    });
     const std::size_t first = candidates.size();
     for (Candidate& one : found) candidates.push_back(std::move(one));
     refine(candidates, first, 5);
@@ -332,9 +367,9 @@ private:
         bool known = false;
         for (const Candidate& one : candidates)
           known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
-        if (!known) tries.push_back({0.0, &near, std::move(other)});
+        if (!known) tries.push_back({{}, &near, std::move(other)});
       }
-    add_fitted(candidates, tries);
+    add_fitted(candidates, tries, coarse_);
   }
 
   const Attribution& glimpse_;

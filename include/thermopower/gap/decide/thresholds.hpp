@@ -136,8 +136,11 @@ struct SearchThresholds {
   Eigen::Index tried_axis_rows = 1600;     ///< the same of an axis
   Eigen::Index shortest_axis_rows = 2000;  ///< of the first look in windows that are shorter still
   Eigen::Index glimpsed_axis_rows = 500;   ///< of those, in which sets are looked for that are worth a look
-  Eigen::Index judged_rows = 20000;        ///< held out, on which explanations are weighed
-  Eigen::Index windows_together = 4;       ///< neighbours that are kept: what remembers needs some time
+  /// Mean square of what is left so far, in units of the noise, above which every second of these windows tells what is
+  /// worth a fit: four times the noise is seen in a few samples.
+  double plain_above = 16.0;
+  Eigen::Index judged_rows = 20000;   ///< held out, on which explanations are weighed
+  Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
   double tried_window_s = 0.5;   ///< of the first look, at most
 };

@@ -21,6 +21,7 @@
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/gap/fit/thinning.hpp>
+#include <thermopower/gap/decide/places_left.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
 
 #include <algorithm>
@@ -64,8 +65,8 @@ public:
     const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
                          return is_blamed(known, submodel);
                        },
-                       [this](const Candidate& known) { return own_course_in(left_beside(known)); },
-                       result_.where, [this](const Candidate& known) { return left_beside(known); },
+                       [this](const Candidate& known) { return own_course_in(left_.beside(known)); },
+                       result_.where, [this](const Candidate& known) { return left_.beside(known); },
                        [this](const Candidate& set) {
                          return are_opposites(augmented(model_, set.explanation, set.list, set.fit.point),
                                               set.explanation.ids(model_), judged_segments(held_out_inputs_),
@@ -350,25 +351,18 @@ private:
 
   /// Whether the measured rows say that something is missing in a submodel, as they are or beside known causes. A plant
   /// of one's own need not say where.
-  bool is_blamed(const Candidate& known, const plant::SubmodelName& submodel) const {
+  bool is_blamed(const Candidate& known, const plant::SubmodelName& submodel) {
     const auto among = [&](const std::vector<Location>& where) {
       return std::any_of(where.begin(), where.end(),
                          [&](const Location& one) { return one.submodel == submodel; });
     };
-    return model_.own || among(result_.where) || among(left_beside(known));
-  }
-
-  /// Where a model with the causes of a candidate and the training rows part. A plant of one's own need not say.
-  std::vector<Location> left_beside(const Candidate& known) const {
-    if (model_.own) return {};
-    const Model with_known = augmented(model_, known.explanation, known.list, known.fit.point);
-    return localise(with_known, train_recordings_, {}, catalogue_).where;
+    return model_.own || among(result_.where) || among(left_.beside(known));
   }
 
   /// Whether nothing that has a course of its own in time is missing once the causes of a candidate are in the model. A node
   /// that nobody measures can hold whatever heat is missing: a balance with one says nothing.
-  bool ends_its_course(const Candidate& chosen) const {
-    return !model_.own && chosen.hidden_starts == 0 && own_course_in(left_beside(chosen)) == 0.0;
+  bool ends_its_course(const Candidate& chosen) {
+    return !model_.own && chosen.hidden_starts == 0 && own_course_in(left_.beside(chosen)) == 0.0;
   }
 
   /// The model with its constants refitted: the best explanation by constants alone, or as configured where that
@@ -506,6 +500,7 @@ private:
   std::vector<Recording> train_recordings_, held_out_recordings_;
   std::vector<Inputs> train_inputs_, held_out_inputs_;
   std::vector<RowsAsGiven> held_out_rows_;
+  PlacesLeft left_{model_, train_recordings_, catalogue_};
   std::vector<std::shared_ptr<std::vector<Inputs>>> kept_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };

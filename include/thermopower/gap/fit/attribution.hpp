@@ -59,9 +59,17 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   return price;
 }
 
+/// What one linear step from some starts promises.
+struct LinearGuess {
+  double cost = 1e300;                  ///< after the step from the best of them
+  std::vector<Eigen::VectorXd> starts;  ///< those that promise most, the best first
+};
+
 /// Fits explanations to training data.
 class Attribution {
 public:
+  static constexpr double out_of_sight = 4.0;  ///< times the least cost: residuals twice as large
+
   /// @param problem  the training data and the model; must outlive this object
   explicit Attribution(const FitProblem& problem) : problem_(problem), glimpse_(problem) {}
   /// @param glimpse  the same question to few of the data, on which starts are compared; must outlive this object
@@ -71,32 +79,38 @@ public:
   /// @param further  where given, one more start: coordinates in the order of coordinates()
   Candidate fit(const Explanation& explanation, const FitOptions& options, const Candidate* near = nullptr,
                 const Eigen::VectorXd* further = nullptr) const {
-    Candidate candidate;
-    candidate.explanation = explanation;
-    candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
-    Fitter fitter(problem_, candidate.explanation, candidate.list);
-    std::vector<Eigen::VectorXd> starts = start_points(candidate, near);
-    constexpr std::size_t tried = 5;
-    if (starts.size() > tried) {
-      // The linear guess of every start, then a few steps from the best five, then the best of them.
-      std::vector<std::pair<double, std::size_t>> order;
-      Fitter scanner(glimpse_, candidate.explanation, candidate.list);
-      for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({scanner.scan(starts[i]), i});
-      std::sort(order.begin(), order.end());
-      std::vector<Eigen::VectorXd> best;
-      for (std::size_t i = 0; i < std::min(tried, order.size()); ++i) best.push_back(starts[order[i].second]);
-      starts = std::move(best);
-    }
+    std::vector<Eigen::VectorXd> starts = start_points(explanation, near);
+    if (starts.size() > tried_) starts = guess(glimpse_, explanation, starts).starts;
     if (further != nullptr) starts.push_back(*further);
+    return fit_from(explanation, starts, options);
+  }
+
+  /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
+  /// the best one then, and to the end from the best of them.
+  /// @param starts  at least one; coordinates in the order of coordinates()
+  Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
+                     const FitOptions& options) const {
+    Candidate candidate = unfitted(explanation);
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
     if (starts.size() > 1) {
       FitOptions few = options;
-      few.iterations = std::min(4, options.iterations);
-      FitResult best;
+      few.iterations = std::min(3, options.iterations);
+      FitOptions one_more = options;
+      one_more.iterations = 1;
+      std::vector<FitResult> trials;
+      double least = 1e300;
       for (const Eigen::VectorXd& start : starts) {
-        FitResult trial = fitter.minimise(start, few);
-        if (trial.cost < best.cost) best = std::move(trial);
+        trials.push_back(fitter.minimise(start, few));
+        least = std::min(least, trials.back().cost);
       }
-      candidate.fit = fitter.minimise(best.point, options, &best.starts);
+      std::size_t best = 0;
+      for (std::size_t i = 0; i < trials.size(); ++i) {
+        FitResult& trial = trials[i];
+        if (trial.cost <= out_of_sight * least && trial.iterations == few.iterations)
+          trial = fitter.minimise(trial.point, one_more, &trial.starts);
+        if (trial.cost < trials[best].cost) best = i;
+      }
+      candidate.fit = fitter.minimise(trials[best].point, options, &trials[best].starts);
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
@@ -137,16 +151,14 @@ public:
   /// What is fitted to.
   const FitProblem& problem() const { return problem_; }
 
-  /// How far one linear step from `near` lowers the cost when `added` joins it: the promise of a pair.
-  double promise(const Candidate& near, const Explanation& together) const {
-    Candidate candidate;
-    candidate.explanation = together;
-    candidate.list = coordinates(*problem_.model, together, *problem_.catalogue);
-    Fitter fitter(problem_, candidate.explanation, candidate.list);
-    double best = 1e300;
-    for (const Eigen::VectorXd& start : start_points(candidate, &near))
-      best = std::min(best, fitter.scan(start));
-    return best;
+  /// How far one linear step from the fit of a part of it lowers the cost of an explanation: the promise of a set.
+  LinearGuess promise(const Explanation& together, const Candidate& near) const {
+    return guess(problem_, together, start_points(together, &near));
+  }
+
+  /// The same from given starts. @param starts  at least one; coordinates in the order of coordinates()
+  LinearGuess promise(const Explanation& together, const std::vector<Eigen::VectorXd>& starts) const {
+    return guess(problem_, together, starts);
   }
 
   /// Squared residuals of a candidate on a problem, segments starting as given.
@@ -194,9 +206,13 @@ public:
         if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k))
           from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.point[static_cast<Eigen::Index>(k)],
                                                           candidate.list[i].lower, candidate.list[i].upper);
-    FitResult again =
-        Fitter(problem_, candidate.explanation, candidate.list).minimise(from, options, starts_of(other));
-    if (!(again.cost < candidate.fit.cost)) return;
+    // The noise may have been measured anew since the candidate was fitted: both costs are in units of the present one.
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
+    FitOptions in_sight = options;
+    in_sight.hopeless = out_of_sight * other.train.total();
+    FitResult again = fitter.minimise(from, in_sight, starts_of(other));
+    const std::vector<Start>* const starts = starts_of(candidate);
+    if (starts != nullptr && fitter.cost(candidate.fit) <= again.cost) return;
     candidate.fit = std::move(again);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
@@ -271,7 +287,30 @@ private:
     if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
   }
 
-  std::vector<Eigen::VectorXd> start_points(const Candidate& candidate, const Candidate* near) const {
+  /// An explanation of which nothing is known yet.
+  Candidate unfitted(const Explanation& explanation) const {
+    Candidate candidate;
+    candidate.explanation = explanation;
+    candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
+    return candidate;
+  }
+
+  /// One linear step from each of some starts.
+  LinearGuess guess(const FitProblem& problem, const Explanation& explanation,
+                    const std::vector<Eigen::VectorXd>& starts) const {
+    const Candidate candidate = unfitted(explanation);
+    std::vector<std::pair<double, std::size_t>> order;
+    Fitter scanner(problem, candidate.explanation, candidate.list);
+    for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({scanner.scan(starts[i]), i});
+    std::sort(order.begin(), order.end());
+    LinearGuess found{order.front().first, {}};
+    order.resize(std::min(tried_, order.size()));
+    for (const auto& one : order) found.starts.push_back(starts[one.second]);
+    return found;
+  }
+
+  std::vector<Eigen::VectorXd> start_points(const Explanation& explanation, const Candidate* near) const {
+    const Candidate candidate = unfitted(explanation);
     Eigen::VectorXd base(static_cast<Eigen::Index>(candidate.list.size()));
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {
       const Coordinate& one = candidate.list[i];
@@ -332,7 +371,8 @@ private:
     return largest > 0.0 ? largest : 1.0;
   }
 
-  static constexpr double noise_ = 1.2;  ///< mean square up to which there is nothing left but noise
+  static constexpr std::size_t tried_ = 5;  ///< of the starts of an explanation
+  static constexpr double noise_ = 1.2;     ///< mean square up to which there is nothing left but noise
 
   const FitProblem& problem_;
   const FitProblem& glimpse_;

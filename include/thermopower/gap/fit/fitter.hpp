@@ -18,6 +18,8 @@ struct FitOptions {
   int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
   bool curvature = false;           ///< whether the result holds `information` and `scatter`: one more pass
+  double hopeless = 1e300;          ///< cost: a fit that is still above it after `hopeful` steps ends there
+  int hopeful = 4;                  ///< steps that every fit may take
 };
 
 /// Where a fit ended.
@@ -71,6 +73,9 @@ public:
       bool accepted = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
+        // Where even the linear view promises nothing that would count, there is nothing to try.
+        if (best.cost - promised(trial.point - best.point) < 0.01 * options.relative_decrease * best.cost)
+          break;
         trial.cost = cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
           const double decrease = (best.cost - trial.cost) / (best.cost + 1e-300);
@@ -86,6 +91,7 @@ public:
         damping = std::min(damping * 8.0, 1e12);
       }
       if (!accepted || small_steps >= 1) break;
+      if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
     }
     if (options.curvature) {
       const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
@@ -110,14 +116,19 @@ public:
     return best;
   }
 
+  /// What a fit that ended elsewhere costs by what the last one found priors to count for.
+  double cost(const FitResult& other) const {
+    double chi2 = 0.0;
+    return cost(other.point, other.starts, 1e300, chi2);
+  }
+
   /// Cost after one linear step of everything from a point: for choosing where to begin.
   double scan(const Eigen::VectorXd& at) {
     FitResult here;
     here.point = at;
     here.starts = problem_.measured_starts();
     linearise(here);
-    const Eigen::VectorXd change = stepped(here, 1e-3).point - at;
-    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
+    return promised(stepped(here, 1e-3).point - at);
   }
 
 private:
@@ -197,6 +208,11 @@ private:
       const Eigen::VectorXd by_start = transposed_times(part.inverse, all.tail(all.size() - n));
       pulls_.push_back(all.head(n) - transposed_times(part.coupling, by_start));
     }
+  }
+
+  /// What a step of the coordinates promises: the cost after it and the best step of the starts, as far as all is linear.
+  double promised(const Eigen::VectorXd& change) const {
+    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
   }
 
   FitResult stepped(const FitResult& from, double damping) const {

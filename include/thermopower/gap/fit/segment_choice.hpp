@@ -51,12 +51,14 @@ inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, E
 /// with the one before it where it carries that one's states on. Segments on the bench are all kept.
 /// @param also      places of further segments to keep, in order
 /// @param together  so many windows in a row are kept or left out, > 0: states that nobody measures need some time
+/// Windows that only bring such states about are none of those.
 inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, Eigen::Index rows,
                                          const std::vector<std::size_t>& also = {},
                                          Eigen::Index together = 1) {
+  const auto counts = [](const Segment& one) { return one.axis && !one.warm_up; };
   Eigen::Index total = 0, windows = 0;
   for (const Segment& segment : segments)
-    if (segment.axis) total += segment.end - segment.begin, ++windows;
+    if (counts(segment)) total += segment.end - segment.begin, ++windows;
   if (total <= rows || windows < 4) return segments;
   constexpr Eigen::Index fewest = 12;  // windows: of fast recordings, too
   const Eigen::Index wanted = std::max(std::min(fewest, windows), windows * rows / total);
@@ -66,8 +68,9 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
   bool in_group = false;
   Eigen::Index window = 0;
   for (std::size_t place = 0; place < segments.size(); ++place) {
-    if (segments[place].axis && window++ % together == 0) in_group = spread.next();
-    chosen.push_back(!segments[place].axis || in_group ||
+    const bool is_window = counts(segments[place]);
+    if (is_window && window++ % together == 0) in_group = spread.next();
+    chosen.push_back(!segments[place].axis || (is_window && in_group) ||
                      std::binary_search(also.begin(), also.end(), place));
   }
   std::vector<Segment> kept;

@@ -35,6 +35,13 @@ struct SignalSums {
     return false;
   }
 
+  /// Sum of the squares of all signals.
+  double total() const {
+    double sum = 0.0;
+    for (double of_signal : squares) sum += of_signal;
+    return sum;
+  }
+
   /// Whether no signal's mean square is above this.
   bool within(double mean_square) const {
     for (std::size_t i = 0; i < signal_count; ++i)

@@ -24,7 +24,7 @@ struct AngleScale {
             Submodel::sensing_angle,
             "reading = gain angle",
             "The angle is in another unit, or its sensor is off by a factor or a sign.",
-            {parameter(gain, "gain").unit("1").within(-400.0, 400.0).starts({1.0})},
+            {parameter(gain, "gain").unit("1").within(-400.0, 400.0).starts({1.0}).absent_at(1.0)},
             {Need::axis_model, Need::angle_deg},
             "any motion, angle and rate recorded together"};
   }

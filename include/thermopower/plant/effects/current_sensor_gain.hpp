@@ -24,7 +24,7 @@ struct CurrentSensorGain {
             Submodel::sensing_current,
             "reading = gain I",
             "The current sensor is off by a factor; the heat is not.",
-            {parameter(gain, "gain").unit("1").within(0.2, 5.0).starts({1.0})},
+            {parameter(gain, "gain").unit("1").within(0.2, 5.0).starts({1.0}).absent_at(1.0)},
             {Need::current_model, Need::current_A, Need::power_param},
             "current and temperature recorded together over a long run"};
   }

@@ -39,8 +39,12 @@ struct DriveEfficiency {
             "torque -= |drive| (1 - efficiency) film(w) where drive w > 0, "
             "|drive| (1 / back_efficiency - 1) film(w) where drive w < 0",
             "A gear loses another part of the torque when the motor drives than when the load does.",
-            {parameter(efficiency, "efficiency").unit("1").within(0.05, 1.0).starts({0.85}),
-             parameter(back_efficiency, "back_efficiency").unit("1").within(0.05, 1.0).starts({0.7}),
+            {parameter(efficiency, "efficiency").unit("1").within(0.05, 1.0).starts({0.85}).absent_at(1.0),
+             parameter(back_efficiency, "back_efficiency")
+                 .unit("1")
+                 .within(0.05, 1.0)
+                 .starts({0.7})
+                 .absent_at(1.0),
              begun_once(friction_transition(transition)), begun_once(friction_tail(tail))},
             {Need::axis_model},
             "driving and braking in turn, under a load that is known"};

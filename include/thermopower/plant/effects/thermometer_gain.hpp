@@ -24,7 +24,7 @@ struct ThermometerGain {
             Submodel::sensing_temperature,
             "reading = Ta + gain (T - Ta)",
             "The thermometer shows only part of the temperature rise (a wrong emissivity, a poor contact).",
-            {parameter(gain, "gain").unit("1").within(0.2, 2.0).starts({1.0})},
+            {parameter(gain, "gain").unit("1").within(0.2, 2.0).starts({1.0}).absent_at(1.0)},
             {Need::thermal_model, Need::motor_C},
             "runs with the current recorded: the winding's resistance knows the true temperature"};
   }
