@@ -376,8 +376,8 @@ inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<
 /// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the
 /// model the rows blame a submodel most that one of them acts in, or the one that they blamed most before, where none of
 /// them acts. A balance does not know a state that nobody measures and blames the place that has it: a cause with one is
-/// asked about the other place only. What acts in a place that was blamed, too, has mended that one: another fault is left. Instruments bend the readings that balances are drawn from: they are asked about their
-/// own place only.
+/// asked about the other place only. What acts in a place that was blamed, too, has mended that one: another fault is left.
+/// Instruments bend the readings that balances are drawn from: they are asked about their own place only.
 /// @param rest  share of the gap that the causes leave
 inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, const Witness& rows) {
   if (!rows.blamed_beside || rest <= decision.may_leave_in_place ||
