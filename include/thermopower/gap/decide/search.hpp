@@ -260,8 +260,11 @@ private:
     some.relative_decrease = rest.relative_decrease = 1e-6;
     FitOptions in_sight = some;
     in_sight.hopeless = Attribution::out_of_sight * best(candidates).train.total();
-    in_parallel(order.size(), threads_,
-                [&](std::size_t i) { fine_.polish(candidates[order[i]], order[i] == 0 ? some : in_sight); });
+    in_parallel(order.size(), threads_, [&](std::size_t i) {
+      Candidate& one = candidates[order[i]];
+      // What constants alone can do is said whoever wins.
+      fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
+    });
     constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
     const Candidate& leader = best(candidates);
     double samples = 0.0;
@@ -339,9 +342,8 @@ private:
                   const Attribution& coarse) const {
     if (sets.empty()) return;
     std::vector<Candidate> found(sets.size());
-    FitOptions options;
+    FitOptions options = quick();
     options.iterations = 12;
-    options.relative_decrease = 1e-3;
     in_parallel(sets.size(), threads_, [&](std::size_t i) {
       found[i] = fit(coarse, sets[i].together, options, sets[i].near, sets[i].guess.starts);
     });

@@ -73,9 +73,6 @@ public:
       bool accepted = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
-        // Where even the linear view promises nothing that would count, there is nothing to try.
-        if (best.cost - promised(trial.point - best.point) < 0.01 * options.relative_decrease * best.cost)
-          break;
         trial.cost = cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
           const double decrease = (best.cost - trial.cost) / (best.cost + 1e-300);
