@@ -4,7 +4,7 @@
 // Joints creep by films whose shape the catalogue does not have: the friction is found all the same, at its size. The
 // joints here share no equation and no integrator with the library.
 #include "../../catch.hpp"
-#include "../fixture.hpp"
+#include "joint_in_fine_steps.hpp"
 
 #include <thermopower/gap/fit/attribution.hpp>
 
@@ -16,31 +16,9 @@ namespace {
 
 using Film = double (*)(double rate_rad_per_s);
 
-/// A joint of the fixture's constants under slow and fast commands, with friction of this size turning over by `film`:
-/// semi-implicit steps of 10 us.
+/// A joint with friction of this size that turns over by `film`.
 Recording creeping(Film film, double friction_Nm, std::uint64_t seed) {
-  constexpr Eigen::Index rows = 3000;
-  constexpr double dt_s = 0.01, step_s = 1e-5, angle_noise_deg = 0.02, rate_noise_dps = 0.15;
-  Recording recording;
-  recording.name = "creeping";
-  recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, dt_s * static_cast<double>(rows - 1));
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  Noise noise(seed);
-  double position = 0.0, speed = 0.0;
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double t_s = recording.t_s[i];
-    drive[i] = 0.16 * std::sin(1.7 * t_s) * std::sin(0.31 * t_s) + 0.05 * std::sin(5.3 * t_s);
-    angle[i] = position * 57.29577951308232 + angle_noise_deg * noise.normal();
-    rate[i] = speed * 57.29577951308232 + rate_noise_dps * noise.normal();
-    for (int k = 0; k < static_cast<int>(dt_s / step_s + 0.5); ++k) {
-      speed += step_s / 1e-3 * (0.1 * drive[i] - 1e-3 * speed - friction_Nm * film(speed));
-      position += step_s * speed;
-    }
-  }
-  recording.set("drive_A", drive);
-  recording.set("angle_deg", angle);
-  recording.set("rate_dps", rate);
-  return recording;
+  return joint_in_fine_steps([&](double rate) { return 1e-3 * rate + friction_Nm * film(rate); }, seed);
 }
 
 double by_root(double w) { return w / std::sqrt(w * w + 0.03 * 0.03); }

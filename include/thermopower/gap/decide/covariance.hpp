@@ -90,8 +90,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
 
 /// Whether the blocks of the training data agree about what the effects of a candidate are like: the standard deviation of
 /// each parameter that was looked for, by how much the blocks differ, is a small share of how far it is from where the effect
-/// would not be there (of the factor that it may be off by, where it is known by its order of magnitude). A parameter on a bound is not asked about, nor is a detail of a
-/// shape.
+/// would not be there (of the factor that it may be off by, where it is known by its order of magnitude). A parameter on a
+/// bound is not asked about, nor is a detail of a shape.
 inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const Weight& weight) {
   const Covariance covariance = covariance_of(candidate, weight);
   if (covariance.of.size() == 0) return true;

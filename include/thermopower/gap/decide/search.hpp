@@ -97,8 +97,9 @@ public:
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
     constexpr std::size_t looked_at = 6, related_to = 2;
     for (std::size_t place = 0; place < std::min(looked_at, order.size()); ++place) {
+      const double farthest = Attribution::out_of_sight * best(candidates).train.total();
+      if (candidates[order[place]].train.total() > farthest) continue;
       const Candidate leader = candidates[order[place]];
-      if (leader.train.total() > Attribution::out_of_sight * best(candidates).train.total()) continue;
       std::vector<std::size_t> rivals;
       std::size_t related = 0;
       for (std::size_t index : order) {

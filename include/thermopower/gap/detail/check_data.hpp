@@ -6,7 +6,7 @@
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/data/noise.hpp>
-#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 

@@ -125,7 +125,8 @@ public:
     here.point = at;
     here.starts = problem_.measured_starts();
     linearise(here);
-    return promised(stepped(here, 1e-3).point - at);
+    const Eigen::VectorXd change = stepped(here, 1e-3).point - at;
+    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
   }
 
 private:
@@ -205,11 +206,6 @@ private:
       const Eigen::VectorXd by_start = transposed_times(part.inverse, all.tail(all.size() - n));
       pulls_.push_back(all.head(n) - transposed_times(part.coupling, by_start));
     }
-  }
-
-  /// What a step of the coordinates promises: the cost after it and the best step of the starts, as far as all is linear.
-  double promised(const Eigen::VectorXd& change) const {
-    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
   }
 
   FitResult stepped(const FitResult& from, double damping) const {

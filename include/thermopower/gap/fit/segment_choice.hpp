@@ -48,10 +48,10 @@ inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, E
 }
 
 /// Keeps some of the windows of a moving axis, spread over all of the recording, with about `rows` rows in total; each
-/// with the one before it where it carries that one's states on. Segments on the bench are all kept.
+/// with the one before it where it carries that one's states on. Windows that only
+/// bring such states about are not counted, nor chosen. Segments on the bench are all kept.
 /// @param also      places of further segments to keep, in order
 /// @param together  so many windows in a row are kept or left out, > 0: states that nobody measures need some time
-/// Windows that only bring such states about are none of those.
 inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, Eigen::Index rows,
                                          const std::vector<std::size_t>& also = {},
                                          Eigen::Index together = 1) {

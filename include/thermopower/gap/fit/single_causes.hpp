@@ -2,7 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/explanation.hpp>
+#include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
