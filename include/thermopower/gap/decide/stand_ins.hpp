@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/decide/gap_taken.hpp>
+#include <thermopower/gap/decide/witness.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// Whether some constant moved beside causes by more than a constant can be off by (DecisionThresholds::bent_by) and by more
+/// than is known of it. A constant that is that far off in fact takes most of the gap away by itself; one that moves that far
+/// only beside a cause bends the equation towards another one.
+inline bool needs_a_bent_constant(const Candidate& candidate, const Reference& reference,
+                                  const Model& model) {
+  if (left_over(reference.recalibrated, reference.as_configured) < decision.may_leave) return false;
+  Eigen::Index at = 0;
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    const double moved = std::abs(candidate.fit.point[at++]);
+    if (!constant.is_place && moved > std::log(decision.bent_by) &&
+        moved > known_constants.within * model.uncertainty_of(constant))
+      return true;
+  }
+  return false;
+}
+
+/// Whether the rows blame a place in another signal than the one that they blame most, and none of the causes of a candidate
+/// acts there: what the causes leave may be that fault's.
+inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<Location>& where) {
+  return std::any_of(where.begin(), where.end(), [&](const Location& one) {
+    return one.signal != where.front().signal && takes_gap_away(one) && !acts_in(candidate, one.submodel);
+  });
+}
+
+/// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the
+/// model the rows blame a submodel most that one of them acts in, or the one that they blamed most before, where none of
+/// them acts. A balance does not know a state that nobody measures and blames the place that has it: a cause with one is
+/// asked about the other place only. What acts in a place that was blamed, too, has mended that one: another fault is left.
+/// Instruments bend the readings that balances are drawn from: they are asked about their own place only.
+/// @param rest  share of the gap that the causes leave
+inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, const Witness& rows) {
+  if (!rows.blamed_beside || rest <= decision.may_leave_in_place ||
+      misses_a_second_fault(candidate, rows.where))
+    return false;
+  const std::vector<Location> left = rows.blamed_beside(candidate);
+  if (left.empty()) return false;
+  const plant::SubmodelName& blamed = left.front().submodel;
+  if (acts_in(candidate, blamed)) return takes_gap_away(left.front()) && !has_hidden_states(candidate);
+  const bool mends_another = std::any_of(rows.where.begin(), rows.where.end(), [&](const Location& one) {
+    return takes_gap_away(one) && acts_in(candidate, one.submodel);
+  });
+  return blamed == most_blamed(rows.where) && !mends_another && !has_an_instrument(candidate);
+}
+
+}  // namespace thermopower::gap::engine
