@@ -65,12 +65,15 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
   return out;
 }
 
-/// Sines and cosines of an angle in rad so many times over.
-inline Eigen::VectorXd sine(const Eigen::VectorXd& angle, double count) {
-  return (count * angle.array()).sin();
-}
-inline Eigen::VectorXd cosine(const Eigen::VectorXd& angle, double count) {
-  return (count * angle.array()).cos();
+/// Sines and cosines of an angle in rad so many times over, one column each.
+inline Eigen::MatrixXd waves(const Eigen::VectorXd& angle, double count) {
+  Eigen::MatrixXd both(angle.size(), 2);
+  for (Eigen::Index i = 0; i < angle.size(); ++i) {
+    const double phase = count * angle[i];  // one reduction of the phase serves both
+    both(i, 0) = std::sin(phase);
+    both(i, 1) = std::cos(phase);
+  }
+  return both;
 }
 
 /// Temperatures above their mean.
@@ -178,8 +181,7 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
     });
   if (!a->has_angle) return;
   Freedom periodic{Submodel::mechanical_drive, "angle_deg", "", [a, drive_Nm, held](double count) {
-                     return held(columns_of({drive_Nm->cwiseProduct(sine(a->angle, count)),
-                                             drive_Nm->cwiseProduct(cosine(a->angle, count))}));
+                     return held(scaled(waves(a->angle, count), *drive_Nm));
                    }};
   periodic.scan = repeats_per_turn(*a);
   periodic.penalty = 2;
@@ -199,17 +201,15 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
         {Submodel::mechanical_load, variable, words, [directions](double) { return directions(); }});
   };
   if (a->has_angle) {
-    add("angle_deg", "a torque with the sine of the angle", [a, sampled] {
-      return sampled(columns_of({sine(a->angle, 1.0), cosine(a->angle, 1.0)}));
-    });
+    add("angle_deg", "a torque with the sine of the angle",
+        [a, sampled] { return sampled(waves(a->angle, 1.0)); });
     add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
       return sampled(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
     });
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
-    Freedom periodic{Submodel::mechanical_load, "angle_deg", "", [a, sampled](double count) {
-                       return sampled(columns_of({sine(a->angle, count), cosine(a->angle, count)}));
-                     }};
+    Freedom periodic{Submodel::mechanical_load, "angle_deg", "",
+                     [a, sampled](double count) { return sampled(waves(a->angle, count)); }};
     periodic.scan = repeats_per_turn(*a);
     periodic.penalty = 2;
     periodic.words_at = [](double count) { return repeating("a torque", count); };
@@ -381,9 +381,8 @@ inline Balance instrument_balance(const AxisAtRows& a) {
                         "the angle moves by another factor than the rate says",
                         [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
   Freedom off_centre{Submodel::sensing_angle, "angle_deg", "", [rate_dps, angle](double count) {
-                       return std::vector<Direction>{
-                           flow_sampled(rate_dps->cwiseProduct(detail::sine(*angle, count))),
-                           flow_sampled(rate_dps->cwiseProduct(detail::cosine(*angle, count)))};
+                       return directions_of(scaled(detail::waves(*angle, count), *rate_dps),
+                                            [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
                      }};
   // A disc off its centre errs once a turn, an oval one twice, a magnet as often as it has pairs of poles.
   off_centre.scan = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};

@@ -337,25 +337,43 @@ private:
     return 0;
   }
 
+  /// How the state moves where a step begins.
+  struct Beginning {
+    int direction;
+    Slope slope;
+    Scalar stiffness;
+  };
+
   template <bool compliant>
-  void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive,
-              int depth) const {
+  void look_at(const AxisState<Scalar>& state, double t_s, const AxisDrive<Scalar>& drive,
+               Beginning& begins) const {
+    begins.direction = dry_ ? direction_of<compliant>(state, t_s, drive) : 1;
+    begins.stiffness = constant<Scalar>(0.0);
+    slope<compliant>(state, t_s, drive, begins.direction, begins.slope, &begins.stiffness);
+  }
+
+  /// @param known  of the state, where somebody looked; else null
+  template <bool compliant>
+  void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive, int depth,
+              const Beginning* known = nullptr) const {
     const double bend_limit_rad_per_s =
         (soft_ || state.own.count > 0 ? 1e-4 : 5e-4) *
         std::fmax(1.0, std::abs(value_of(state.rate_rad_per_s)) / fast_rad_per_s);
     for (int event = 0; event < 12; ++event) {
-      const int direction = dry_ ? direction_of<compliant>(state, t_s, drive) : 1;
-      Slope start;
-      Scalar stiffness = constant<Scalar>(0.0);
-      slope<compliant>(state, t_s, drive, direction, start, &stiffness);
-      if (soft_ && creep<compliant>(state, t_s, left_s, drive, depth, start, stiffness)) return;
+      Beginning found;
+      if (known == nullptr) look_at<compliant>(state, t_s, drive, found);
+      const Beginning& begins = known != nullptr ? *known : found;
+      known = nullptr;  // it moves on
+      if (soft_ && creep<compliant>(state, t_s, left_s, drive, depth, begins)) return;
+      const int direction = begins.direction;
+      const Slope& start = begins.slope;
       constexpr int last_event = 11;
       double bend = 0.0;
       const AxisState<Scalar> reached =
           runge_kutta<compliant>(state, t_s, left_s, drive, direction, start, bend);
       if (bend > bend_limit_rad_per_s && depth > 0) {
         const Scalar half_s = left_s * 0.5;
-        smooth<compliant>(state, t_s, half_s, drive, depth - 1);
+        smooth<compliant>(state, t_s, half_s, drive, depth - 1, &begins);
         smooth<compliant>(state, t_s + value_of(half_s), half_s, drive, depth - 1);
         return;
       }
@@ -381,8 +399,9 @@ private:
       const double before = value_of(state.rate_rad_per_s), after = value_of(reached.rate_rad_per_s);
       if (before == 0.0) {  // would start and turn back at once: it stays
         state.rate_rad_per_s = constant<Scalar>(0.0);
-        slope<compliant>(state, t_s, drive, 0, start);
-        state = runge_kutta<compliant>(state, t_s, left_s, drive, 0, start, bend);
+        Slope at_rest;
+        slope<compliant>(state, t_s, drive, 0, at_rest);
+        state = runge_kutta<compliant>(state, t_s, left_s, drive, 0, at_rest, bend);
         return;
       }
       Scalar cut_s = left_s * (before / (before - after));
@@ -469,14 +488,15 @@ private:
 
   /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
   /// exactly; what the linearisation missed is the error.
-  /// @param now, stiffness  what `slope` says of the start
+  /// @param begins  how the state moves at the start
   /// @return false: not stiff here, nothing was done
   template <bool compliant>
   bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const AxisDrive<Scalar>& drive,
-             int depth, const Slope& now, const Scalar& stiffness) const {
+             int depth, const Beginning& begins) const {
     constexpr double error_limit_rad_per_s = 1e-4;
     using std::exp;
-    const Scalar decay = stiffness * (h_s * per_near_inertia_);
+    const Slope& now = begins.slope;
+    const Scalar decay = begins.stiffness * (h_s * per_near_inertia_);
     if (!(value_of(decay) > 0.3)) return false;
     const double h = value_of(h_s);
     const Scalar phi_1 = (1.0 - exp(Scalar(-decay))) / decay, phi_2 = (1.0 - phi_1) / decay;
@@ -496,7 +516,7 @@ private:
         value_of(there.rate) - value_of(now.rate) + value_of(decay) / h * value_of(gain_rad_per_s);
     if (std::abs(missed) * h * value_of(phi_2) > error_limit_rad_per_s && depth > 0) {
       const Scalar half_s = h_s * 0.5;
-      smooth<compliant>(state, t_s, half_s, drive, depth - 1);
+      smooth<compliant>(state, t_s, half_s, drive, depth - 1, &begins);
       smooth<compliant>(state, t_s + 0.5 * h, half_s, drive, depth - 1);
     } else {
       state = reached;

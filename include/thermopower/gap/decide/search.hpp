@@ -174,6 +174,7 @@ private:
     FitOptions options;
     options.iterations = 10;
     options.relative_decrease = 1e-3;
+    options.to_the_end = false;
     return options;
   }
 
@@ -182,10 +183,17 @@ private:
                 const Candidate* near = nullptr, const std::vector<Eigen::VectorXd>& starts = {}) const {
     Candidate found = starts.empty() ? coarse.fit(explanation, options, near)
                                      : coarse.fit_from(explanation, starts, options);
-    for (const CatalogueEntry* entry : explanation.effects)
-      if (&longer_ != &coarse_ && remembers(*entry))
-        return longer_.fit(explanation, options, near, &found.fit.point);
-    return found;
+    if (!wants_longer(explanation)) return found;
+    FitOptions on_longer = options;
+    on_longer.hopeless = FitOptions{}.hopeless;  // that was a cost on other data
+    return longer_.fit(explanation, on_longer, near, &found.fit.point);
+  }
+
+  /// Whether an explanation is fitted to longer segments.
+  bool wants_longer(const Explanation& explanation) const {
+    if (&longer_ == &coarse_) return false;
+    return std::any_of(explanation.effects.begin(), explanation.effects.end(),
+                       [](const CatalogueEntry* entry) { return remembers(*entry); });
   }
 
   /// @param so_far  the best candidate
@@ -247,18 +255,22 @@ private:
 
   /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
   /// after some steps are in sight of the best one.
-  void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count) const {
+  /// @param hopeless  cost of a first fit from which on a candidate is taken there as it stands
+  void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count,
+              double hopeless = FitOptions{}.hopeless) const {
     FitOptions look;
     look.iterations = 1;
-    in_parallel(candidates.size() - first, threads_,
-                [&](std::size_t i) { fine_.polish(candidates[first + i], look); });
+    in_parallel(candidates.size() - first, threads_, [&](std::size_t i) {
+      Candidate& one = candidates[first + i];
+      if (one.fit.cost > hopeless && !wants_longer(one.explanation)) fine_.adopt(one);
+      else fine_.polish(one, look);
+    });
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(count, order.size()));
     if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
     FitOptions some, rest;
     some.iterations = 10;
     rest.iterations = 15;
-    some.relative_decrease = rest.relative_decrease = 1e-6;
     FitOptions in_sight = some;
     in_sight.hopeless = Attribution::out_of_sight * best(candidates).train.total();
     in_parallel(order.size(), threads_, [&](std::size_t i) {
@@ -337,7 +349,9 @@ private:
     return seeds;
   }
 
-  /// Fits sets from the fits of their parts and takes them among the candidates.
+  /// Fits sets from the fits of their parts, the first one to the end, the others as long as they are in its sight, and
+  /// takes them among the candidates.
+  /// @param sets    the most promising one first, where that is known
   /// @param coarse  what they are first fitted to
   void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
                   const Attribution& coarse) const {
@@ -345,12 +359,16 @@ private:
     std::vector<Candidate> found(sets.size());
     FitOptions options = quick();
     options.iterations = 12;
-    in_parallel(sets.size(), threads_, [&](std::size_t i) {
+    const auto fit_one = [&](std::size_t i) {
       found[i] = fit(coarse, sets[i].together, options, sets[i].near, sets[i].guess.starts);
-    });
+    };
+    fit_one(0);
+    if (!wants_longer(sets.front().together))
+      options.hopeless = Attribution::out_of_sight * found.front().fit.cost;
+    in_parallel(sets.size() - 1, threads_, [&](std::size_t i) { fit_one(i + 1); });
     const std::size_t first = candidates.size();
     for (Candidate& one : found) candidates.push_back(std::move(one));
-    refine(candidates, first, 5);
+    refine(candidates, first, 5, options.hopeless);
   }
 
   /// Adds the best set again with one member after another exchanged for its relatives, the causes of the

@@ -86,7 +86,7 @@ public:
   }
 
   /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
-  /// the best one then, and to the end from the best of them.
+  /// the best one then, and to the end from the best of them unless that is hopeless.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -110,20 +110,29 @@ public:
           trial = fitter.minimise(trial.point, one_more, &trial.starts);
         if (trial.cost < trials[best].cost) best = i;
       }
-      candidate.fit = fitter.minimise(trials[best].point, options, &trials[best].starts);
+      candidate.fit = std::move(trials[best]);
+      if (!(candidate.fit.cost > options.hopeless))
+        candidate.fit = fitter.minimise(candidate.fit.point, options, &candidate.fit.starts);
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
-    free_from_trap(fitter, candidate, options);
+    if (!(candidate.fit.cost > options.hopeless)) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
     return candidate;
+  }
+
+  /// Takes a candidate that was fitted to other data as it stands, segments starting as measured.
+  void adopt(Candidate& candidate) const {
+    candidate.fit.starts = problem_.measured_starts();
+    candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
   /// Goes on from where a fit stopped, possibly on other data.
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2) free_from_trap(fitter, candidate, options);
+    if (options.iterations > 2 && !(candidate.fit.cost > options.hopeless))
+      free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
@@ -210,6 +219,9 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     FitOptions in_sight = options;
     in_sight.hopeless = out_of_sight * other.train.total();
+    // What is much farther away than that, where it ended and by the first look there, has lost whatever its constants are.
+    const double far_away = out_of_sight * in_sight.hopeless;
+    if (candidate.train.total() > far_away && fitter.scan(from, starts_of(other)) > far_away) return;
     FitResult again = fitter.minimise(from, in_sight, starts_of(other));
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
     candidate.fit = std::move(again);

@@ -54,30 +54,47 @@ struct FitProblem {
   void evaluate(const Explanation& explanation, const std::vector<Coordinate>& list,
                 const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
                 const std::function<void(std::size_t index, const Residuals& residuals)>& use) const {
+    evaluate_while(explanation, list, at, starts, with_jacobian,
+                   [&use](std::size_t index, const Residuals& residuals) {
+                     use(index, residuals);
+                     return true;
+                   });
+  }
+
+  /// The same as long as `use` returns true: what comes after is not looked at.
+  void evaluate_while(const Explanation& explanation, const std::vector<Coordinate>& list,
+                      const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
+                      const std::function<bool(std::size_t index, const Residuals& residuals)>& use) const {
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
     const Plant& plant = this->plant();
     const int parameters = static_cast<int>(list.size());
     int largest = 0;
-    std::vector<Residuals> all(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      const int own = plant.start_size(segments[i]);
-      largest = std::max(largest, own);
-      reserve(plant, segments[i], with_jacobian ? parameters + own : 0, all[i]);
-    }
-    const ParameterPoint point = point_of(*model, explanation, list, at);
-    if (!with_jacobian) {
-      pass(plant, point, {0, 0}, {}, starts, all);
-    } else {
-      std::vector<int> columns;  // of the directions: what stays where it is, is none
+    for (const Segment& segment : segments) largest = std::max(largest, plant.start_size(segment));
+    std::vector<int> columns;  // of the directions: what stays where it is, is none
+    if (with_jacobian) {
       for (int i = 0; i < parameters; ++i)
         if (!list[static_cast<std::size_t>(i)].still) columns.push_back(i);
       for (int i = 0; i < largest; ++i) columns.push_back(parameters + i);
-      // As many directions at once as the plant carries; the last pass carries the starts, too.
-      const int directions = static_cast<int>(columns.size()), at_once = plant.directions_at_once();
-      for (int first = 0; first < directions; first += at_once)
-        pass(plant, point, {first, std::min(at_once, directions - first)}, columns, starts, all);
     }
-    for (std::size_t i = 0; i < all.size(); ++i) use(i, all[i]);
+    const ParameterPoint point = point_of(*model, explanation, list, at);
+    std::vector<Residuals> all(segments.size());
+    // As many directions at once as the plant carries; the last pass carries the starts, too.
+    const int directions = static_cast<int>(columns.size()), at_once = plant.directions_at_once();
+    for (int first = 0; first == 0 || first < directions; first += at_once) {
+      const Directions now{first, std::min(at_once, directions - first)};
+      const auto rollout = plant.rollout(*model, *catalogue, point, now, SimulationMode::free_running);
+      Readings readings;
+      for (std::size_t i = 0; i < segments.size(); ++i) {
+        const Segment& segment = segments[i];
+        if (first == 0)
+          reserve(plant, segment, with_jacobian ? parameters + plant.start_size(segment) : 0, all[i]);
+        rollout->roll(segment, starts[i], readings);
+        if (!segment.warm_up) take(plant.signals(segment), segment, readings, now, columns, all[i]);
+        if (first + at_once < directions) continue;
+        if (!use(i, all[i])) return;
+        all[i] = {};
+      }
+    }
   }
 
   /// Sum of the squares of all residuals. Ends early, with a sum above the limit, as soon as it is: whoever compares needs no
@@ -130,18 +147,6 @@ private:
     const Eigen::Index count = static_cast<Eigen::Index>(residuals.row.size());
     residuals.value.setZero(count);
     if (columns > 0) residuals.jacobian.setZero(count, columns);
-  }
-
-  void pass(const Plant& plant, const ParameterPoint& point, const Directions& directions,
-            const std::vector<int>& columns, const std::vector<Start>& starts,
-            std::vector<Residuals>& all) const {
-    const auto rollout = plant.rollout(*model, *catalogue, point, directions, SimulationMode::free_running);
-    Readings readings;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      const Segment& segment = segments[i];
-      rollout->roll(segment, starts[i], readings);
-      if (!segment.warm_up) take(plant.signals(segment), segment, readings, directions, columns, all[i]);
-    }
   }
 
   /// Compares the readings of a segment with what was measured.

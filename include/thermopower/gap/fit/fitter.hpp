@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,9 +18,12 @@ namespace thermopower::gap::engine {
 struct FitOptions {
   int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
-  bool curvature = false;           ///< whether the result holds `information` and `scatter`: one more pass
-  double hopeless = 1e300;          ///< cost: a fit that is still above it after `hopeful` steps ends there
-  int hopeful = 4;                  ///< steps that every fit may take
+  /// Whether a step that promised no more than that and failed is tried once more, much shorter: at a kink, as dry friction
+  /// has them, the first derivatives promise too little.
+  bool to_the_end = true;
+  bool curvature = false;   ///< whether the result holds `information` and `scatter`: one more pass
+  double hopeless = 1e300;  ///< cost: a fit that is still above it after `hopeful` steps ends there
+  int hopeful = 4;          ///< steps that every fit may take
 };
 
 /// Where a fit ended.
@@ -68,24 +72,38 @@ public:
     best.starts = starts != nullptr ? *starts : problem_.measured_starts();
     double damping = 1e-4;
     int small_steps = 0;
+    bool seen = false;  // the view is of `best`
     for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
-      linearise(best);
+      if (!seen) linearise(best.point, best.starts, view_);
+      seen = false;
+      best.cost = view_.cost;
+      best.chi2 = view_.chi2;
       bool accepted = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
-        trial.cost = cost(trial.point, trial.starts, best.cost, trial.chi2);
+        const double worth_it = options.relative_decrease * best.cost;
+        const bool promising = best.cost - promised_cost(trial.point - best.point) > worth_it;
+        // A step that promises something is taken more often than not, and the next one needs derivatives there.
+        const bool look_ahead = attempt == 0 && promising && best.iterations + 1 < options.iterations;
+        trial.cost = look_ahead ? cost_ahead(trial.point, trial.starts, best.cost, trial.chi2)
+                                : cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
           const double decrease = (best.cost - trial.cost) / (best.cost + 1e-300);
           best.point = trial.point;
           best.starts = trial.starts;
           best.cost = trial.cost;
           best.chi2 = trial.chi2;
+          if (look_ahead) {
+            std::swap(view_, ahead_);
+            seen = true;
+          }
           damping = std::max(damping * 0.2, 1e-9);
           accepted = true;
           small_steps = decrease < options.relative_decrease ? small_steps + 1 : 0;
           break;
         }
-        damping = std::min(damping * 8.0, 1e12);
+        if (!promising && attempt >= (options.to_the_end ? 1 : 0)) break;
+        damping = std::min(damping * (promising ? 8.0 : 1e3), 1e12);
       }
       if (!accepted || small_steps >= 1) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
@@ -94,14 +112,16 @@ public:
       const Eigen::Index count = static_cast<Eigen::Index>(list_.size());
       pulls_.clear();
       wants_pulls_ = true;
-      linearise(best);
+      linearise(best.point, best.starts, view_);
+      best.cost = view_.cost;
+      best.chi2 = view_.chi2;
       wants_pulls_ = false;
-      best.information = information_;
+      best.information = view_.information;
       best.pulls.resize(count, static_cast<Eigen::Index>(pulls_.size()));
       for (std::size_t k = 0; k < pulls_.size(); ++k)
         best.pulls.col(static_cast<Eigen::Index>(k)) = pulls_[k];
-      best.per_prior = per_prior_;
-      best.priors = priors_;
+      best.per_prior = view_.per_prior;
+      best.priors = view_.priors;
     }
     for (Eigen::Index i = 0; i < best.point.size(); ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
@@ -109,7 +129,7 @@ public:
       best.at_bound.push_back(best.point[i] <= one.lower + std::min(margin, 1e-9) ||
                               best.point[i] >= one.upper - std::min(margin, 1e-9));
     }
-    best.samples = samples_;
+    best.samples = view_.samples;
     return best;
   }
 
@@ -120,13 +140,12 @@ public:
   }
 
   /// Cost after one linear step of everything from a point: for choosing where to begin.
-  double scan(const Eigen::VectorXd& at) {
+  double scan(const Eigen::VectorXd& at, const std::vector<Start>* starts = nullptr) {
     FitResult here;
     here.point = at;
-    here.starts = problem_.measured_starts();
-    linearise(here);
-    const Eigen::VectorXd change = stepped(here, 1e-3).point - at;
-    return projected_cost_ + 2.0 * gradient_.dot(change) + quadratic_form(information_, change);
+    here.starts = starts != nullptr ? *starts : problem_.measured_starts();
+    linearise(at, here.starts, view_);
+    return promised_cost(stepped(here, 1e-3).point - at);
   }
 
 private:
@@ -136,42 +155,61 @@ private:
     Eigen::VectorXd gradient;
   };
 
-  void linearise(FitResult& result) {
-    const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
-    information_.setZero(n, n);
-    gradient_.setZero(n);
-    priors_.setZero(n);
-    eliminated_.resize(problem_.segments.size());
-    result.chi2 = 0.0;
-    result.cost = 0.0;
-    samples_ = 0;
-    projected_cost_ = 0.0;
-    problem_.evaluate(explanation_, list_, result.point, result.starts, true,
-                      [&](std::size_t i, const FitProblem::Residuals& residuals) {
-                        samples_ += residuals.value.size();
-                        add_segment(i, residuals, result.starts[i], result.chi2, result.cost);
-                      });
-    const double mean = samples_ > 0 ? result.chi2 / static_cast<double>(samples_) : 1.0;
-    per_prior_ = std::max(mean, 1.0) * problem_.correlation;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Prior& prior = list_[static_cast<std::size_t>(i)].prior;
-      const double weight = per_prior_ * prior.weight(result.point[i]);
-      information_(i, i) += weight;
-      priors_[i] = weight;
-      gradient_[i] += weight * result.point[i];
-      result.cost += per_prior_ * prior.cost(result.point[i]);
-    }
-    result.cost += result.chi2;
-    projected_cost_ += result.cost;
+  /// The cost about a point as its first derivatives have it, starts eliminated.
+  struct View {
+    Eigen::MatrixXd information;
+    Eigen::VectorXd gradient;
+    Eigen::VectorXd priors;  ///< their part of the information's diagonal
+    std::vector<Eliminated> eliminated;
+    Eigen::Index samples = 0;
+    double chi2 = 0.0;       ///< data only
+    double of_starts = 0.0;  ///< what the starts cost
+    double cost = 0.0;       ///< at the point, priors by what they count for there
+    double projected = 0.0;  ///< the same with the best starts
+    double per_prior = 1.0;  ///< samples that a prior counts for
+  };
+
+  /// What the linear view of the present point promises of a step of the coordinates.
+  double promised_cost(const Eigen::VectorXd& change) const {
+    return view_.projected + 2.0 * view_.gradient.dot(change) + quadratic_form(view_.information, change);
   }
 
-  void add_segment(std::size_t i, const FitProblem::Residuals& residuals, const Start& start, double& chi2,
-                   double& prior) {
+  /// Looks at a point. Ends early as soon as data and starts cost more than the limit: then the view is of no use.
+  void linearise(const Eigen::VectorXd& at, const std::vector<Start>& starts, View& view,
+                 double limit = std::numeric_limits<double>::infinity()) {
+    const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
+    view.information.setZero(n, n);
+    view.gradient.setZero(n);
+    view.priors.setZero(n);
+    view.eliminated.resize(problem_.segments.size());
+    view.samples = 0;
+    view.chi2 = 0.0;
+    view.of_starts = 0.0;
+    view.projected = 0.0;
+    problem_.evaluate_while(explanation_, list_, at, starts, true,
+                            [&](std::size_t i, const FitProblem::Residuals& residuals) {
+                              view.samples += residuals.value.size();
+                              add_segment(i, residuals, starts[i], view);
+                              return view.chi2 + view.of_starts <= limit;
+                            });
+    const double mean = view.samples > 0 ? view.chi2 / static_cast<double>(view.samples) : 1.0;
+    view.per_prior = std::max(mean, 1.0) * problem_.correlation;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double weight = view.per_prior * list_[static_cast<std::size_t>(i)].prior.weight(at[i]);
+      view.information(i, i) += weight;
+      view.priors[i] = weight;
+      view.gradient[i] += weight * at[i];
+    }
+    view.cost = view.chi2 + view.of_starts + view.per_prior * cost_of_priors(at);
+    view.projected += view.cost;
+  }
+
+  void add_segment(std::size_t i, const FitProblem::Residuals& residuals, const Start& start, View& view) {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     const MatrixView own = residuals.jacobian.leftCols(n);
     const MatrixView starts = residuals.jacobian.rightCols(start.size());
     const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
-    Eliminated& part = eliminated_[i];
+    Eliminated& part = view.eliminated[i];
     part.inverse = gram(starts);
     part.gradient = transposed_times(starts, residuals.value);
     for (Eigen::Index k = 0; k < start.size(); ++k) {
@@ -180,16 +218,16 @@ private:
       diagonal += weight;
       if (!(diagonal > 0.0)) diagonal = 1.0;
       part.gradient[k] += weight * start[k];
-      prior += weight * start[k] * start[k];
+      view.of_starts += weight * start[k] * start[k];
     }
     invert_symmetric(part.inverse);
     part.coupling = transposed_product(starts, own);
-    information_ += gram(own);
-    information_ -= transposed_product(part.coupling, transposed_product(part.inverse, part.coupling));
-    gradient_ += transposed_times(own, residuals.value);
-    gradient_ -= transposed_times(part.coupling, transposed_times(part.inverse, part.gradient));
-    chi2 += residuals.value.squaredNorm();
-    projected_cost_ -= quadratic_form(part.inverse, part.gradient);
+    view.information += gram(own);
+    view.information -= transposed_product(part.coupling, transposed_product(part.inverse, part.coupling));
+    view.gradient += transposed_times(own, residuals.value);
+    view.gradient -= transposed_times(part.coupling, transposed_times(part.inverse, part.gradient));
+    view.chi2 += residuals.value.squaredNorm();
+    view.projected -= quadratic_form(part.inverse, part.gradient);
     if (wants_pulls_) add_pulls(residuals, part);
   }
 
@@ -213,9 +251,9 @@ private:
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Coordinate& one = list_[static_cast<std::size_t>(i)];
-      const bool pushed_down = from.point[i] <= one.lower && gradient_[i] > 0.0;
-      const bool pushed_up = from.point[i] >= one.upper && gradient_[i] < 0.0;
-      if (!pushed_down && !pushed_up && information_(i, i) > 0.0) free.push_back(i);
+      const bool pushed_down = from.point[i] <= one.lower && view_.gradient[i] > 0.0;
+      const bool pushed_up = from.point[i] >= one.upper && view_.gradient[i] < 0.0;
+      if (!pushed_down && !pushed_up && view_.information(i, i) > 0.0) free.push_back(i);
     }
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
     // Coordinates that the step would carry over a bound stop there; the others are solved again without
@@ -224,12 +262,12 @@ private:
       const Eigen::Index m = static_cast<Eigen::Index>(free.size());
       Eigen::MatrixXd matrix(m, m);
       Eigen::VectorXd right(m), scale(m);
-      const Eigen::VectorXd shifted = gradient_ + information_ * change;
-      for (Eigen::Index a = 0; a < m; ++a) scale[a] = std::sqrt(information_(free[a], free[a]));
+      const Eigen::VectorXd shifted = view_.gradient + view_.information * change;
+      for (Eigen::Index a = 0; a < m; ++a) scale[a] = std::sqrt(view_.information(free[a], free[a]));
       for (Eigen::Index a = 0; a < m; ++a) {
         right[a] = -shifted[free[a]] / scale[a];
         for (Eigen::Index b = 0; b < m; ++b)
-          matrix(a, b) = information_(free[a], free[b]) / (scale[a] * scale[b]);
+          matrix(a, b) = view_.information(free[a], free[b]) / (scale[a] * scale[b]);
         matrix(a, a) += damping;
       }
       const Eigen::VectorXd solved = SymmetricSystem(std::move(matrix)).solve(std::move(right));
@@ -265,8 +303,8 @@ private:
     to.point = from.point + change;
     to.starts = from.starts;
     for (std::size_t i = 0; i < to.starts.size(); ++i) {
-      const Eigen::VectorXd slope = eliminated_[i].gradient + eliminated_[i].coupling * change;
-      to.starts[i] -= transposed_times(eliminated_[i].inverse, slope);
+      const Eigen::VectorXd slope = view_.eliminated[i].gradient + view_.eliminated[i].coupling * change;
+      to.starts[i] -= transposed_times(view_.eliminated[i].inverse, slope);
     }
     // A start that nobody measures stays among those that a body can have.
     for (std::size_t i = 0; i < to.starts.size(); ++i)
@@ -275,9 +313,17 @@ private:
     return to;
   }
 
-  /// Data and priors; where that is above the limit, something above it.
+  /// What the priors of the coordinates cost at a point, each counting for one sample.
+  double cost_of_priors(const Eigen::VectorXd& at) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < list_.size(); ++i)
+      sum += list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
+    return sum;
+  }
+
+  /// Data and priors, those by what they count for at the present point; where that is above the limit, something above it.
   double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit, double& chi2) const {
-    double priors = 0.0;
+    double priors = view_.per_prior * cost_of_priors(at);
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
       for (Eigen::Index k = 0; k < inverse_sd.size(); ++k) {
@@ -285,23 +331,24 @@ private:
         priors += off * off;
       }
     }
-    for (std::size_t i = 0; i < list_.size(); ++i)
-      priors += per_prior_ * list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
     chi2 = problem_.squares(explanation_, list_, at, starts, limit - priors);
     return priors + chi2;
+  }
+
+  /// The same, with a view of that point in `ahead_`; where the cost is above the limit, it is of no use.
+  double cost_ahead(const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit, double& chi2) {
+    const double priors = view_.per_prior * cost_of_priors(at);
+    linearise(at, starts, ahead_, limit - priors);
+    chi2 = ahead_.chi2;
+    return priors + ahead_.of_starts + chi2;
   }
 
   const FitProblem& problem_;
   const Explanation& explanation_;
   const std::vector<Coordinate>& list_;
-  Eigen::MatrixXd information_;
-  Eigen::VectorXd gradient_;
-  std::vector<Eliminated> eliminated_;
-  Eigen::Index samples_ = 0;
-  double projected_cost_ = 0.0;
-  double per_prior_ = 1.0;                        ///< samples that a prior counts for
+  View view_;                                     ///< of the present point
+  View ahead_;                                    ///< of a step that was tried
   std::vector<std::vector<HiddenStart>> hidden_;  ///< of every segment
-  Eigen::VectorXd priors_;                        ///< their part of the information's diagonal
   bool wants_pulls_ = false;                      ///< whether the next pass adds to `pulls_`
   std::vector<Eigen::VectorXd> pulls_;            ///< gradients of blocks, in order
 };

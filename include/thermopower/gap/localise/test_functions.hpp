@@ -80,11 +80,14 @@ public:
     for (Eigen::Index r = 0; r < size(); ++r) {
       const One& one = list_[static_cast<std::size_t>(r)];
       const plant::RunSpan& run = run_of(one.begin);
-      for (Eigen::Index k = one.end - 1; k >= run.begin; --k) {
-        const double from = a_.t_s[k] + delay_s,
-                     to = (k + 1 < run.end ? a_.t_s[k + 1] : a_.t_s[k] + a_.interval_s) + delay_s;
-        if (to <= one.middle - one.half) break;
-        out[r] += values[k] * (area(one, to) - area(one, from));
+      const Eigen::Index last = one.end - 1;
+      double to = (last + 1 < run.end ? a_.t_s[last + 1] : a_.t_s[last] + a_.interval_s) + delay_s;
+      double up_to = area(one, to);
+      for (Eigen::Index k = last; k >= run.begin && to > one.middle - one.half; --k) {
+        const double from = a_.t_s[k] + delay_s, up_to_from = area(one, from);
+        out[r] += values[k] * (up_to - up_to_from);
+        to = from;  // the interval before ends where this one begins
+        up_to = up_to_from;
       }
     }
     return out;
