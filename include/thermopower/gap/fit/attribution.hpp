@@ -69,6 +69,7 @@ struct LinearGuess {
 class Attribution {
 public:
   static constexpr double out_of_sight = 4.0;  ///< times the least cost: residuals twice as large
+  static constexpr double lost_from = 400.0;   ///< times the least cost: residuals twenty times as large
 
   /// @param problem  the training data and the model; must outlive this object
   explicit Attribution(const FitProblem& problem) : problem_(problem), glimpse_(problem) {}
@@ -219,9 +220,9 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     FitOptions in_sight = options;
     in_sight.hopeless = out_of_sight * other.train.total();
-    // What is much farther away than that, where it ended and by the first look there, has lost whatever its constants are.
-    const double far_away = out_of_sight * in_sight.hopeless;
-    if (candidate.train.total() > far_away && fitter.scan(from, starts_of(other)) > far_away) return;
+    // What is lost, where it ended and by the first derivatives there, has lost whatever its constants are.
+    const double lost = lost_from * other.train.total();
+    if (candidate.train.total() > lost && fitter.scan(from, starts_of(other)) > lost) return;
     FitResult again = fitter.minimise(from, in_sight, starts_of(other));
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
     candidate.fit = std::move(again);
