@@ -18,9 +18,8 @@ namespace thermopower::gap::engine {
 struct FitOptions {
   int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
-  /// Whether a step that promised no more than that and failed is tried once more, much shorter: at a kink, as dry friction
-  /// has them, the first derivatives promise too little.
-  bool to_the_end = true;
+  bool to_the_end =
+      true;  ///< whether a step that promised no more than that and failed is tried again, shorter
   bool curvature = false;   ///< whether the result holds `information` and `scatter`: one more pass
   double hopeless = 1e300;  ///< cost: a fit that is still above it after `hopeful` steps ends there
   int hopeful = 4;          ///< steps that every fit may take
@@ -102,8 +101,8 @@ public:
           small_steps = decrease < options.relative_decrease ? small_steps + 1 : 0;
           break;
         }
-        if (!promising && attempt >= (options.to_the_end ? 1 : 0)) break;
-        damping = std::min(damping * (promising ? 8.0 : 1e3), 1e12);
+        if (!promising && !options.to_the_end) break;
+        damping = std::min(damping * 8.0, 1e12);
       }
       if (!accepted || small_steps >= 1) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
