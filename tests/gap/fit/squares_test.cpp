@@ -62,3 +62,37 @@ TEST_CASE("a sum of squares is that of the residuals, and ends early only above 
   }
   if (parts.size() > 10) CHECK(problem.squares(explanation, list, at, starts, 0.3 * whole) < 0.7 * whole);
 }
+
+TEST_CASE(
+    "residuals with their derivatives are those without, and what comes after a refusal is not looked at") {
+  const Model model = axis_model();
+  std::vector<Inputs> inputs{prepare(model, test::axis_recording({0.02, 0.0, 1.0, 0}, 1500, 7))};
+  FitProblem problem;
+  problem.model = &model;
+  problem.catalogue = &standard_catalogue();
+  problem.sigma = thermopower::plant::for_each_signal(0.1);
+  problem.segments = cut(inputs, 0.5, plant_of(model));
+  REQUIRE(problem.segments.size() > 4);
+  // More coordinates than one pass of derivatives carries.
+  Explanation explanation;
+  for (const char* const id : {"compliance", "stribeck_friction", "cogging"})
+    explanation.effects.push_back(standard_catalogue().find(id));
+  const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
+  Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) at[static_cast<Eigen::Index>(i)] = list[i].start;
+  const std::vector<Start> starts = problem.measured_starts();
+  const std::vector<double> parts = squares_by_segment(problem, explanation, list, at, starts);
+  for (const std::size_t most : {std::size_t{1}, std::size_t{3}, parts.size()}) {
+    std::vector<double> seen;
+    problem.evaluate_while(explanation, list, at, starts, true,
+                           [&](std::size_t index, const FitProblem::Residuals& one) {
+                             CHECK(index == seen.size());
+                             CHECK(one.jacobian.rows() == one.value.size());
+                             CHECK(one.jacobian.cols() > static_cast<Eigen::Index>(list.size()));
+                             seen.push_back(one.value.squaredNorm());
+                             return seen.size() < most;
+                           });
+    REQUIRE(seen.size() == most);
+    for (std::size_t i = 0; i < most; ++i) CHECK(seen[i] == Approx(parts[i]).epsilon(1e-6));
+  }
+}

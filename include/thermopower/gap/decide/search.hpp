@@ -170,14 +170,10 @@ public:
   }
 
 private:
-  /// A first look. In windows as short as an axis is first looked at in, a simulation is nearly linear in its parameters:
-  /// there a step is worth what it promises. Heat paths have curved valleys, which are walked to their end.
-  FitOptions quick() const {
+  static FitOptions quick() {
     FitOptions options;
     options.iterations = 10;
     options.relative_decrease = 1e-3;
-    const std::vector<Segment>& segments = coarse_.problem().segments;
-    options.to_the_end = segments.empty() || !segments.front().axis;
     return options;
   }
 

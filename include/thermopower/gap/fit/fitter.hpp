@@ -18,11 +18,9 @@ namespace thermopower::gap::engine {
 struct FitOptions {
   int iterations = 25;              ///< at most so many Gauss-Newton steps
   double relative_decrease = 1e-5;  ///< of chi^2, below which it has converged
-  bool to_the_end =
-      true;  ///< whether a step that promised no more than that and failed is tried again, shorter
-  bool curvature = false;   ///< whether the result holds `information` and `scatter`: one more pass
-  double hopeless = 1e300;  ///< cost: a fit that is still above it after `hopeful` steps ends there
-  int hopeful = 4;          ///< steps that every fit may take
+  bool curvature = false;           ///< whether the result holds `information` and `scatter`: one more pass
+  double hopeless = 1e300;          ///< cost: a fit that is still above it after `hopeful` steps ends there
+  int hopeful = 4;                  ///< steps that every fit may take
 };
 
 /// Where a fit ended.
@@ -101,7 +99,6 @@ public:
           small_steps = decrease < options.relative_decrease ? small_steps + 1 : 0;
           break;
         }
-        if (!promising && !options.to_the_end) break;
         damping = std::min(damping * 8.0, 1e12);
       }
       if (!accepted || small_steps >= 1) break;
