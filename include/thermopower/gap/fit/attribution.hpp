@@ -117,7 +117,7 @@ public:
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
-    if (!(candidate.fit.cost > options.hopeless)) free_from_trap(fitter, candidate, options);
+    free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
     return candidate;
   }
@@ -132,8 +132,7 @@ public:
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2 && !(candidate.fit.cost > options.hopeless))
-      free_from_trap(fitter, candidate, options);
+    if (options.iterations > 2) free_from_trap(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
@@ -275,7 +274,9 @@ private:
   /// that ended shortly before it begins once more there. A shape that ended at its far bound may have run there from
   /// a start on the wrong side: then all that have a standard begin once more from it. Two families of shapes meet at
   /// the standard one, and a fit that stopped shortly below it looks at the other side.
+  /// What is hopeless stays where it is.
   static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+    if (candidate.fit.cost > options.hopeless) return;
     Eigen::VectorXd again = candidate.fit.point;
     bool trapped = false, far = false;
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {

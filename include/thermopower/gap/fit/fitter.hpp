@@ -68,20 +68,19 @@ public:
     best.point = from;
     best.starts = starts != nullptr ? *starts : problem_.measured_starts();
     double damping = 1e-4;
-    int small_steps = 0;
     bool seen = false;  // the view is of `best`
     for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
       if (!seen) linearise(best.point, best.starts, view_);
       seen = false;
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
-      bool accepted = false;
+      bool goes_on = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
-        const double worth_it = options.relative_decrease * best.cost;
-        const bool promising = best.cost - promised_cost(trial.point - best.point) > worth_it;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
-        const bool look_ahead = attempt == 0 && promising && best.iterations + 1 < options.iterations;
+        const bool look_ahead =
+            attempt == 0 && best.iterations + 1 < options.iterations &&
+            best.cost - promised_cost(trial.point - best.point) > options.relative_decrease * best.cost;
         trial.cost = look_ahead ? cost_ahead(trial.point, trial.starts, best.cost, trial.chi2)
                                 : cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
@@ -95,13 +94,12 @@ public:
             seen = true;
           }
           damping = std::max(damping * 0.2, 1e-9);
-          accepted = true;
-          small_steps = decrease < options.relative_decrease ? small_steps + 1 : 0;
+          goes_on = !(decrease < options.relative_decrease);
           break;
         }
         damping = std::min(damping * 8.0, 1e12);
       }
-      if (!accepted || small_steps >= 1) break;
+      if (!goes_on) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
     }
     if (options.curvature) {
