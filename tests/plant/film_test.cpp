@@ -3,6 +3,7 @@
 
 #include "../catch.hpp"
 
+#include <thermopower/plant/film.hpp>
 #include <thermopower/plant/dual.hpp>
 #include <thermopower/plant/terms.hpp>
 
@@ -46,5 +47,11 @@ TEST_CASE("a film's slope, and what differentiation makes of the film, are its d
       CHECK(share.value() == Approx(film_share(x, tail)).epsilon(1e-14));
       CHECK(share.slope(0) == Approx(by_x).margin(1e-5));  // single precision
       CHECK(share.slope(1) == Approx(by_tail).margin(1e-5));
+      const Dual slope = film_slope(rate, shape);
+      CHECK(slope.value() == Approx(film_slope(x, tail)).epsilon(1e-14));
+      CHECK(slope.slope(0) ==
+            Approx((film_slope(x + h, tail) - film_slope(x - h, tail)) / (2.0 * h)).margin(1e-5));
+      CHECK(slope.slope(1) ==
+            Approx((film_slope(x, tail + h) - film_slope(x, tail - h)) / (2.0 * h)).margin(1e-5));
     }
 }

@@ -10,6 +10,7 @@
 
 #include <thermopower/plant/derivative.hpp>
 #include <thermopower/plant/expression.hpp>
+#include <thermopower/plant/film.hpp>
 #include <thermopower/plant/own_plant.hpp>
 #include <thermopower/plant/radians.hpp>
 #include <thermopower/plant/terms.hpp>

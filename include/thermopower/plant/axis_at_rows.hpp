@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/balance.hpp>
+#include <thermopower/plant/film.hpp>
 #include <thermopower/plant/free_play.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/film.hpp>
 #include <thermopower/plant/free_play.hpp>
 #include <thermopower/plant/instance.hpp>
 #include <thermopower/plant/rows.hpp>

@@ -117,6 +117,15 @@ public:
   friend Dual abs(const Dual& x) { return x.value_ < 0.0 ? -x : x; }
   /// @}
 
+  /// A function of two from its value and its derivatives by them, where these are known in plain numbers.
+  static Dual composed(double value, const Dual& x, double by_x, const Dual& y, double by_y) {
+    Dual result;
+    result.value_ = value;
+    const float of_x = static_cast<float>(by_x), of_y = static_cast<float>(by_y);
+    for (int i = 0; i < dual_width; ++i) result.slope_[i] = x.slope_[i] * of_x + y.slope_[i] * of_y;
+    return result;
+  }
+
 private:
   /// f(x) with f' = f: the exponential.
   static Dual scaled(const Dual& x, double value) { return chain(x, value, value); }

@@ -93,6 +93,10 @@ public:
     return slope_[place(row, signal) * static_cast<std::size_t>(directions_) +
                   static_cast<std::size_t>(direction)];
   }
+  /// Its derivatives in all directions, one after the other; null where there are none.
+  const double* slopes(Eigen::Index row, int signal) const {
+    return slope_.data() + place(row, signal) * static_cast<std::size_t>(directions_);
+  }
   /// How many directions there are.
   int directions() const { return directions_; }
 

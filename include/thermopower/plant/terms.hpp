@@ -139,31 +139,6 @@ struct AxisTerms {
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
 };
 
-/// The share of dry friction that acts at a rate, with its sign: tanh(x) where `tail` is 0, x / (1 + |x|) where it is
-/// 1, x cut off at -1 and 1 where it is -1, and what lies between in proportion. A film that is sheared carries a torque
-/// that turns over with the rate; how soon it becomes the full one differs from joint to joint, and a creeping motion
-/// shows it. What simulators do in dry friction's place, a damper with a limit, is the last of the three.
-/// @param x     rate over the transition
-/// @param tail  -1..1
-template <class Scalar>
-Scalar film_share(const Scalar& x, const Scalar& tail) {
-  using std::tanh;
-  const Scalar steep = tanh(x), gentle = x / (magnitude(x) + 1.0);
-  const Scalar abrupt = (magnitude(Scalar(x + 1.0)) - magnitude(Scalar(x - 1.0))) * 0.5;
-  const Scalar size = magnitude(tail);
-  return steep + (size + tail) * 0.5 * (gentle - steep) + (size - tail) * 0.5 * (abrupt - steep);
-}
-
-/// Derivative of `film_share` by x, for scalars that are numbers.
-template <class Scalar>
-Scalar film_slope(const Scalar& x, const Scalar& tail) {
-  using std::tanh;
-  const Scalar steep = tanh(x), bend = 1.0 - steep * steep, within = 1.0 / (magnitude(x) + 1.0);
-  const double abrupt = value_of(magnitude(x)) < 1.0 ? 1.0 : 0.0;
-  const Scalar size = magnitude(tail);
-  return bend + (size + tail) * 0.5 * (within * within - bend) + (size - tail) * 0.5 * (abrupt - bend);
-}
-
 /// Dry friction of the driven inertia. Hooks on these terms act after all hooks on AxisTerms, so that
 /// friction sees every load whatever the order of the effects.
 ///

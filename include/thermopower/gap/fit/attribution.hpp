@@ -87,7 +87,7 @@ public:
   }
 
   /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
-  /// the best one then, and to the end from the best of them unless that is hopeless.
+  /// the best one so far, and to the end from the best of them unless that is hopeless.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -95,23 +95,14 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     if (starts.size() > 1) {
       FitOptions few = options;
-      few.iterations = std::min(3, options.iterations);
-      FitOptions one_more = options;
-      one_more.iterations = 1;
-      std::vector<FitResult> trials;
-      double least = 1e300;
+      few.iterations = std::min(4, options.iterations);
+      few.hopeful = few.iterations - 1;
       for (const Eigen::VectorXd& start : starts) {
-        trials.push_back(fitter.minimise(start, few));
-        least = std::min(least, trials.back().cost);
+        FitResult trial = fitter.minimise(start, few);
+        if (candidate.fit.point.size() > 0 && !(trial.cost < candidate.fit.cost)) continue;
+        candidate.fit = std::move(trial);
+        few.hopeless = std::min(options.hopeless, out_of_sight * candidate.fit.cost);
       }
-      std::size_t best = 0;
-      for (std::size_t i = 0; i < trials.size(); ++i) {
-        FitResult& trial = trials[i];
-        if (trial.cost <= out_of_sight * least && trial.iterations == few.iterations)
-          trial = fitter.minimise(trial.point, one_more, &trial.starts);
-        if (trial.cost < trials[best].cost) best = i;
-      }
-      candidate.fit = std::move(trials[best]);
       if (!(candidate.fit.cost > options.hopeless))
         candidate.fit = fitter.minimise(candidate.fit.point, options, &candidate.fit.starts);
     } else {
@@ -296,7 +287,10 @@ private:
     if (!trapped) return;
     for (std::size_t i = 0; far && i < candidate.list.size(); ++i)
       if (candidate.list[i].standard) again[static_cast<Eigen::Index>(i)] = *candidate.list[i].standard;
-    FitResult freed = fitter.minimise(again, options, &candidate.fit.starts);
+    FitOptions better = options;  // by as much as would say that it was one
+    better.hopeful = 3;
+    better.hopeless = 0.99 * candidate.fit.cost;
+    FitResult freed = fitter.minimise(again, better, &candidate.fit.starts);
     if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
   }
 

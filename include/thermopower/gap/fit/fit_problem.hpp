@@ -166,8 +166,8 @@ private:
         const double weight = weight_of(inputs, signal, row);
         const int place = static_cast<int>(k);
         residuals.value[filled] = bounded((readings.value(row, place) - measured) * weight);
-        for (int d = 0; d < count; ++d)
-          residuals.jacobian(filled, column(d)) = bounded(readings.slope(row, place, d) * weight);
+        const double* const slopes = readings.slopes(row, place);
+        for (int d = 0; d < count; ++d) residuals.jacobian(filled, column(d)) = bounded(slopes[d] * weight);
         ++filled;
       }
   }
@@ -175,7 +175,8 @@ private:
   /// A simulation that left the number range counts as very bad, not as undefined.
   static double bounded(double x) {
     constexpr double limit = 1e9;
-    return std::isfinite(x) ? std::clamp(x, -limit, limit) : limit;
+    if (std::abs(x) <= limit) return x;
+    return std::isfinite(x) && x < 0.0 ? -limit : limit;
   }
 };
 

@@ -75,8 +75,16 @@ public:
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
       bool goes_on = false;
+      double failed = std::numeric_limits<double>::infinity();  // squared length of the last step that did
       for (int attempt = 0; attempt < 8; ++attempt) {
         FitResult trial = stepped(best, damping);
+        const double length = view_.information.diagonal().dot((trial.point - best.point).cwiseAbs2());
+        // A step about as long as one that failed fails, too.
+        if (length > shorter * shorter * failed) {
+          damping = std::min(damping * 8.0, 1e12);
+          continue;
+        }
+        failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
         const bool look_ahead =
             attempt == 0 && best.iterations + 1 < options.iterations &&
@@ -93,7 +101,8 @@ public:
             std::swap(view_, ahead_);
             seen = true;
           }
-          damping = std::max(damping * 0.2, 1e-9);
+          // As long a step as has just failed would most likely fail again.
+          if (attempt == 0) damping = std::max(damping * 0.2, 1e-9);
           goes_on = !(decrease < options.relative_decrease);
           break;
         }
@@ -336,6 +345,8 @@ private:
     chi2 = ahead_.chi2;
     return priors + ahead_.of_starts + chi2;
   }
+
+  static constexpr double shorter = 0.9;  ///< than a step that failed is one worth trying, by its length
 
   const FitProblem& problem_;
   const Explanation& explanation_;

@@ -29,7 +29,13 @@ struct PreslidingFriction {
         "torque -= Nm / bend (z + damping dz/dt), dz/dt = w - |w| z / bend",
         "Dry friction that gives like a spring before it slides: the axis creeps back after each stop.",
         {parameter(size_Nm, "Nm").unit("N m").within(0.0, 1e3).starts({0.0, 0.005}),
-         parameter(bend_rad, "bend_rad").unit("rad").within(2e-3, 1.0).logarithmic().starts({0.01, 0.06}),
+         // Bristles that hardly bend are Coulomb's friction, and such that bend very far are a spring.
+         parameter(bend_rad, "bend_rad")
+             .unit("rad")
+             .within(2e-3, 1.0)
+             .logarithmic()
+             .starts({0.01, 0.06})
+             .degenerate_at_bounds(),
          parameter(damping, "damping_s").unit("s").within(0.0, 0.02).standard(0.0).starts({0.0})},
         {Need::axis_model},
         "small reversals that do not slide, and large ones that do"};
