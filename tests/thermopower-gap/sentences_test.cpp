@@ -283,7 +283,9 @@ TEST_CASE("no sentence on the screen or on the page contradicts the report's tab
 TEST_CASE("a number that is changed on the screen or on the page is found out") {
   std::size_t changed = 0;
   for (const Report& one : reports()) {
-    if (one.name != "friction and a spring that nobody knows" && one.name != "several recordings") continue;
+    if (one.name != "a loss that nobody knows" && one.name != "friction and a spring" &&
+        one.name != "several recordings")
+      continue;
     CAPTURE(one.name);
     for (const Place& place : numbers_in(one.written.screen)) {
       Written wrong = one.written;

@@ -186,3 +186,34 @@ TEST_CASE("a few odd samples do not hide a quantum") {
   values[500] = 22.2345;
   CHECK(quantum_of(values) == Approx(0.1).epsilon(1e-6));
 }
+
+TEST_CASE(
+    "an error that ramps and jumps back at blows is no noise where the measured motion is smooth between them") {
+  // A load with free play: the simulated rate knows nothing of the blows, each of which reverses what was gained since the last.
+  constexpr double noise = 0.05, ramp = 5.0;
+  // Third differences of white noise are sqrt(20) times as large; twice that of noise that remembers 0.97 is 15 times.
+  constexpr double most = 15.0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Random random(seed);
+    std::vector<double> errors, measured;
+    double rate = 0.0, step = ramp;
+    int left = 0;
+    for (int i = 0; i < 3000; ++i) {
+      if (left-- == 0) {
+        rate = -rate + ramp * normal(random);
+        step = rate > 0.0 ? -ramp : ramp;
+        left = 5 + static_cast<int>(random() % 10);
+      }
+      rate += step;
+      const double simulated = 100.0 * std::sin(0.01 * i);
+      measured.push_back(rate + simulated + noise * normal(random));
+      errors.push_back(simulated - measured.back());
+    }
+    const std::vector<bool> gaps(errors.size(), false);
+    CAPTURE(seed);
+    REQUIRE(rms_of(errors) > 100.0 * noise);
+    const double found = noise_sd(errors, gaps, 0.0, {}, measured);
+    CHECK(found > 0.5 * noise);
+    CHECK(found < most * noise);
+  }
+}

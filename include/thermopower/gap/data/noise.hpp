@@ -18,7 +18,8 @@ namespace thermopower::gap::engine {
 /// How the noise of a residual is told from the error of a model, by the variogram: half the mean square of the
 /// differences over a lag. Noise loses its memory fast (white noise at once, an AR(1) of 0.95 within some 20 samples)
 /// and is rough: its variogram is as steep at the first lag as it ever gets. The error of a model is smooth, its
-/// variogram starts with the square of the lag; or it jumps where an input does, which is rare or slow.
+/// variogram starts with the square of the lag; or it jumps where an input does, or something hits something, which is rare
+/// or slow. Between such jumps it is smooth, and noise is not: the third differences of most samples bound it.
 /// Held by tests/gap/data/noise_test.cpp.
 struct NoiseThresholds {
   double farthest =
@@ -32,6 +33,8 @@ struct NoiseThresholds {
   double quanta = 2.5;            ///< quanta up to which a difference is no jump
   double same_level = 0.01;       ///< by which levels may differ that are the same, where the largest is 1
   double as_likely = 4.0;  ///< penalised squares by which a sum may be behind the best: two standard errors
+  double rough = 2.0;      ///< times the usual scale of third differences up to which those of noise may be
+  double smooth = 0.7;     ///< times the scale of the least of them that those of noise have at least
   double standard_errors = 1.64;          ///< of a mean square: one-sided 95 %
   double uncorrelated = 0.05;             ///< autocorrelation below which samples are taken for independent
   std::size_t least_for_correlation = 8;  ///< samples; fewer count one by one
@@ -48,9 +51,11 @@ struct NoiseThresholds {
 /// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
 /// @param levels    as long, or empty: of what the error of a model jumps with; samples at levels farther apart than
 ///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
+/// @param measured   as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
+///                   is in it, too, and where it is smooth there is little
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
 double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0,
-                const std::vector<double>& levels = {});
+                const std::vector<double>& levels = {}, const std::vector<double>& measured = {});
 
 /// The noise in a residual.
 struct NoiseEstimate {
@@ -64,7 +69,8 @@ struct NoiseEstimate {
 /// chance the longer it remembers (one-sided 95 %). White noise knows itself; a few hundred samples of noise that remembers
 /// twenty know it to a third.
 NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
-                                double quantum = 0.0, const std::vector<double>& levels = {});
+                                double quantum = 0.0, const std::vector<double>& levels = {},
+                                const std::vector<double>& measured = {});
 
 /// Memory of noise from one sample to the next, at most: what remembers longer is the error of a model.
 inline constexpr double longest_memory = 0.97;
@@ -91,14 +97,36 @@ struct VariogramNoise {
   double squares_alike = 1.0;  ///< samples of that one whose squares count as one
 };
 
+/// Mean square of the third differences of noise of variance 1. @param memory  from one sample to the next
+inline double third_differences(double memory) {
+  return 20.0 - memory * (30.0 - memory * (12.0 - 2.0 * memory));
+}
+
+/// Magnitude of the third differences of a sequence that a share of them is below, over that of normal noise of scale 1.
+/// Samples that are held have none and do not count.
+/// @param since_gap  of each sample, how many before it follow on each other
+/// @param share      0..1
+/// @param normal     magnitude that this share of a standard normal distribution is below
+/// @return 0 where there are too few
+inline double third_difference_scale(const std::vector<double>& sequence, const std::vector<int>& since_gap,
+                                     double share, double normal) {
+  std::vector<double> sizes;
+  for (std::size_t i = 3; i < sequence.size(); ++i) {
+    const double size = std::abs(sequence[i] - 3.0 * (sequence[i - 1] - sequence[i - 2]) - sequence[i - 3]);
+    if (since_gap[i] >= 3 && size > 0.0) sizes.push_back(size);
+  }
+  return sizes.size() < NoiseThresholds().least_pairs ? 0.0 : quantile_of(sizes, share) / normal;
+}
+
 /// Variance of the noise in a variogram: the mean over all sums of white noise, one AR(1) and one error of a model
 /// (smooth of one width, or slow), weighted by how well each fits for its number of parts (Akaike weights).
 /// @param lags       in samples, ascending
 /// @param variogram  there, > 0
 /// @param weights    of the relative errors there
+/// @param roughness  mean square that third differences of the noise have at most
 inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
                                          const std::vector<double>& variogram,
-                                         const std::vector<double>& weights) {
+                                         const std::vector<double>& weights, double roughness) {
   constexpr NoiseThresholds limit;
   const auto rows = static_cast<Eigen::Index>(lags.size());
   const auto shape = [&](auto&& function) {
@@ -129,7 +157,8 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
       const double cost = (columns * parts - wanted).squaredNorm() +
                           limit.part_penalty * static_cast<double>((parts.array() > 0.0).count());
       costs.push_back(cost);
-      variances.push_back(parts[0] + parts[1]);
+      const double of_rough = third_differences(0.0) * parts[0] + third_differences(memories[k]) * parts[1];
+      variances.push_back((parts[0] + parts[1]) * (of_rough > roughness ? roughness / of_rough : 1.0));
       // Squares of Gaussian samples correlate as the squares of the samples' correlation (Isserlis).
       const double remembered = variances.back() > 0.0 ? parts[1] / variances.back() : 0.0,
                    square = memories[k] * memories[k];
@@ -195,12 +224,13 @@ inline bool jumps_with(const std::vector<double>& levels, const std::vector<doub
 }
 
 inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum,
-                       const std::vector<double>& levels) {
-  return noise_of_sequence(sequence, gaps, quantum, levels).sd;
+                       const std::vector<double>& levels, const std::vector<double>& measured) {
+  return noise_of_sequence(sequence, gaps, quantum, levels, measured).sd;
 }
 
 inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
-                                       double quantum, const std::vector<double>& levels) {
+                                       double quantum, const std::vector<double>& levels,
+                                       const std::vector<double>& measured) {
   constexpr NoiseThresholds limit;
   const std::size_t count = sequence.size();
   if (count < limit.least_pairs) return {};
@@ -214,7 +244,7 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
   const auto alike = [&](std::size_t i, std::size_t k) { return !jumps || are_alike(levels, i, k); };
   // Each block in units of its own scale; the mean square of the scales brings the units back.
   const std::size_t blocks = std::max<std::size_t>(1, count / limit.block);
-  std::vector<double> scaled = sequence, steps;
+  std::vector<double> scaled = sequence, measured_scaled = measured, steps;
   double squares = 0.0;
   std::vector<double> scales(blocks, 0.0);
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -231,7 +261,8 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
     const double scale = std::max(scales[b] > 0.0 ? scales[b] : usual, quantum);
     if (!(scale > 0.0)) continue;
     const std::size_t from = b * count / blocks, to = (b + 1) * count / blocks;
-    for (std::size_t i = from; i < to; ++i) scaled[i] = sequence[i] / scale;
+    for (std::size_t i = from; i < to; ++i) scaled[i] /= scale;
+    for (std::size_t i = from; i < to && !measured.empty(); ++i) measured_scaled[i] /= scale;
     squares += scale * scale * static_cast<double>(to - from) / static_cast<double>(count);
     if (from > 0) since_gap[from] = -1;  // in other units than what comes before
   }
@@ -260,8 +291,21 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
     weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 / independent));
   }
   if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
-  const VariogramNoise noise = noise_of_variogram(lags, variogram, weights);
-  const double variance = std::min(noise.variance * squares, mean_square);
+  // What most third differences are below bounds the noise, and what one of five is below is noise wherever the error of a
+  // model is smooth. A simulation may move where samples are held: then more of them count.
+  double usual_rough = third_difference_scale(scaled, since_gap, 0.8, 1.2816);
+  if (!measured.empty()) {
+    const double of_measured = third_difference_scale(measured_scaled, since_gap, 0.5, 0.6745);
+    if (of_measured > 0.0) usual_rough = std::min(usual_rough, of_measured);
+  }
+  // Of a channel in coarse steps most may be 0: rounding is noise, too.
+  const double rough = usual_rough > 0.0 ? std::pow(limit.rough * usual_rough, 2.0) +
+                                               third_differences(0.0) * std::pow(0.6 * quantum, 2.0) / squares
+                                         : std::numeric_limits<double>::infinity();
+  const double smooth = std::pow(limit.smooth * third_difference_scale(scaled, since_gap, 0.2, 0.2533), 2.0) /
+                        third_differences(0.0);
+  const VariogramNoise noise = noise_of_variogram(lags, variogram, weights, rough);
+  const double variance = std::min(std::max(noise.variance, smooth) * squares, mean_square);
   const double by_chance =
       limit.standard_errors * std::sqrt((noise.squares_alike - 1.0) / (2.0 * static_cast<double>(count)));
   return {std::max(std::sqrt(variance), rounding),

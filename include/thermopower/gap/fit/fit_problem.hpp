@@ -97,6 +97,19 @@ struct FitProblem {
     }
   }
 
+  /// What was measured of a signal of an axis at the rows that have residuals, in units of the noise; empty of others.
+  std::vector<double> measured_of_axis(Signal signal) const {
+    std::vector<double> measured;
+    for (const Segment& segment : segments) {
+      if (segment.warm_up || !segment.axis || !segment.inputs->judged(signal)) continue;
+      const Eigen::VectorXd& values = segment.inputs->of(signal);
+      for (Eigen::Index row = segment.begin; row < segment.end; ++row)
+        if (std::isfinite(values[row]))
+          measured.push_back(values[row] * weight_of(*segment.inputs, signal, row));
+    }
+    return measured;
+  }
+
   /// Sum of the squares of all residuals. Ends early, with a sum above the limit, as soon as it is: whoever compares needs no
   /// more.
   double squares(const Explanation& explanation, const std::vector<Coordinate>& list,

@@ -4,7 +4,7 @@
 
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
-#include <thermopower/gap/report/parts.hpp>
+#include <thermopower/gap/report/noise_of_errors.hpp>
 #include <thermopower/gap/report/score.hpp>
 
 #include <algorithm>
@@ -44,8 +44,10 @@ inline void measure_noise(FitProblem& problem, const Candidate& candidate,
     const auto signal = static_cast<Signal>(i);
     const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
     const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal) / problem.sigma[i];
-    const double sd = std::min(noise_sd(residuals[i], gaps[i], quantum) * problem.sigma[i],
-                               most_noise(problem, signal)),
+    const double sd =
+                     std::min(noise_sd(residuals[i], gaps[i], quantum, {}, problem.measured_of_axis(signal)) *
+                                  problem.sigma[i],
+                              most_noise(problem, signal)),
                  rms = rms_of(residuals[i]) * problem.sigma[i];
     problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
   }

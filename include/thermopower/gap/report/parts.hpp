@@ -3,11 +3,11 @@
 #pragma once
 
 #include <thermopower/gap/data/sort_by.hpp>
-#include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/report/estimates.hpp>
+#include <thermopower/gap/report/noise_of_errors.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -332,53 +332,6 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
     break;
   }
   return rest;
-}
-
-/// The coarsest quantum of a signal among recordings; 0 where none has it.
-inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal) {
-  double quantum = 0.0;
-  for (const Inputs& one : inputs)
-    if (one.judged(signal)) quantum = std::max(quantum, quantum_of(one.of(signal)));
-  return quantum;
-}
-
-/// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: a current's errors
-/// are compared where it has the same voltage, whatever was between. A sweep has another one in every row, and neighbours
-/// alone would not tell how long the noise remembers.
-inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& errors,
-                                                                  const std::vector<Segment>& segments,
-                                                                  const std::vector<Inputs>& inputs) {
-  std::array<NoiseEstimate, signal_count> noise{};
-  for (std::size_t i = 0; i < signal_count; ++i) {
-    const std::size_t count = errors.of[i].size();
-    std::vector<bool> gaps(count, false);
-    std::vector<double> levels;
-    for (std::size_t k = 0; k < count; ++k) {
-      const int segment = errors.segment[i][k];
-      gaps[k] = k > 0 && segment != errors.segment[i][k - 1];
-      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
-      if (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A)
-        levels.push_back(
-            v_rms_from_duty<double>(1.0, duty_from_power(std::clamp(power[errors.row[i][k]], 0.0, 255.0))));
-    }
-    if (levels.size() < count) levels.clear();
-    noise[i] =
-        noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels);
-  }
-  return noise;
-}
-
-/// Standard deviations of the noise of every signal.
-inline std::array<double, signal_count> sd_of(const std::array<NoiseEstimate, signal_count>& noise) {
-  std::array<double, signal_count> sigma{};
-  for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
-  return sigma;
-}
-
-/// Standard deviation of the noise of every signal in a simulation's errors.
-inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
-                                                 const std::vector<Inputs>& inputs) {
-  return sd_of(noise_estimates_of(errors, segments, inputs));
 }
 
 /// Whether sixths of a sequence of errors, in order, prove that their root mean square is above a level: the lower end of its

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/actuator/duty.hpp>
+#include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/report/score.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+/// @file noise_of_errors.hpp
+/// The noise in what a simulation misses recordings by.
+
+namespace thermopower::gap::engine {
+
+/// The coarsest quantum of a signal among recordings; 0 where none has it.
+inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal) {
+  double quantum = 0.0;
+  for (const Inputs& one : inputs)
+    if (one.judged(signal)) quantum = std::max(quantum, quantum_of(one.of(signal)));
+  return quantum;
+}
+
+/// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: a current's errors
+/// are compared where it has the same voltage, whatever was between. A sweep has another one in every row, and neighbours
+/// alone would not tell how long the noise remembers.
+inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& errors,
+                                                                  const std::vector<Segment>& segments,
+                                                                  const std::vector<Inputs>& inputs) {
+  std::array<NoiseEstimate, signal_count> noise{};
+  for (std::size_t i = 0; i < signal_count; ++i) {
+    const std::size_t count = errors.of[i].size();
+    std::vector<bool> gaps(count, false);
+    std::vector<double> levels;
+    for (std::size_t k = 0; k < count; ++k) {
+      const int segment = errors.segment[i][k];
+      gaps[k] = k > 0 && segment != errors.segment[i][k - 1];
+      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
+      if (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A)
+        levels.push_back(
+            v_rms_from_duty<double>(1.0, duty_from_power(std::clamp(power[errors.row[i][k]], 0.0, 255.0))));
+    }
+    if (levels.size() < count) levels.clear();
+    std::vector<double> measured;  // of an axis: what drives it is integrated twice
+    for (std::size_t k = 0; k < count; ++k)
+      if (segments[static_cast<std::size_t>(errors.segment[i][k])].axis)
+        measured.push_back(errors.simulated[i][k] - errors.of[i][k]);
+    if (measured.size() < count) measured.clear();
+    noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels,
+                                 measured);
+  }
+  return noise;
+}
+
+/// Standard deviations of the noise of every signal.
+inline std::array<double, signal_count> sd_of(const std::array<NoiseEstimate, signal_count>& noise) {
+  std::array<double, signal_count> sigma{};
+  for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = noise[i].sd;
+  return sigma;
+}
+
+/// Standard deviation of the noise of every signal in a simulation's errors.
+inline std::array<double, signal_count> noise_of(const Errors& errors, const std::vector<Segment>& segments,
+                                                 const std::vector<Inputs>& inputs) {
+  return sd_of(noise_estimates_of(errors, segments, inputs));
+}
+
+}  // namespace thermopower::gap::engine
