@@ -51,8 +51,8 @@ struct NoiseThresholds {
 /// @param quantum   of the measured channel, 0 where it has none; a rounded channel has at least the noise of rounding
 /// @param levels    as long, or empty: of what the error of a model jumps with; samples at levels farther apart than
 ///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
-/// @param measured   as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
-///                   is in it, too, and where it is smooth there is little
+/// @param measured  as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
+///                  is in it, too, and where it is smooth there is little
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
 double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0,
                 const std::vector<double>& levels = {}, const std::vector<double>& measured = {});
@@ -104,16 +104,16 @@ inline double third_differences(double memory) {
 
 /// Magnitude of the third differences of a sequence that a share of them is below, over that of normal noise of scale 1.
 /// Samples that are held have none and do not count.
-/// @param since_gap  of each sample, how many before it follow on each other
-/// @param share      0..1
-/// @param normal     magnitude that this share of a standard normal distribution is below
+/// @param since  of each sample, how many before it follow on each other
+/// @param share  0..1
+/// @param normal  magnitude that this share of a standard normal distribution is below
 /// @return 0 where there are too few
-inline double third_difference_scale(const std::vector<double>& sequence, const std::vector<int>& since_gap,
+inline double third_difference_scale(const std::vector<double>& sequence, const std::vector<int>& since,
                                      double share, double normal) {
   std::vector<double> sizes;
   for (std::size_t i = 3; i < sequence.size(); ++i) {
     const double size = std::abs(sequence[i] - 3.0 * (sequence[i - 1] - sequence[i - 2]) - sequence[i - 3]);
-    if (since_gap[i] >= 3 && size > 0.0) sizes.push_back(size);
+    if (since[i] >= 3 && size > 0.0) sizes.push_back(size);
   }
   return sizes.size() < NoiseThresholds().least_pairs ? 0.0 : quantile_of(sizes, share) / normal;
 }
@@ -292,18 +292,22 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
   }
   if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
   // What most third differences are below bounds the noise, and what one of five is below is noise wherever the error of a
-  // model is smooth. A simulation may move where samples are held: then more of them count.
-  double usual_rough = third_difference_scale(scaled, since_gap, 0.8, 1.2816);
+  // model is smooth. Where samples are held a simulation may move, so that most of its are small: four of five count.
+  std::vector<int> since_jump = since_gap;
+  for (std::size_t i = 1; i < count && jumps; ++i)
+    since_jump[i] = are_alike(levels, i, i - 1) ? std::min(since_gap[i], since_jump[i - 1] + 1) : 0;
+  double usual_rough = third_difference_scale(scaled, since_jump, 0.8, 1.2816);
   if (!measured.empty()) {
-    const double of_measured = third_difference_scale(measured_scaled, since_gap, 0.5, 0.6745);
+    const double of_measured = third_difference_scale(measured_scaled, since_jump, 0.5, 0.6745);
     if (of_measured > 0.0) usual_rough = std::min(usual_rough, of_measured);
   }
   // Of a channel in coarse steps most may be 0: rounding is noise, too.
   const double rough = usual_rough > 0.0 ? std::pow(limit.rough * usual_rough, 2.0) +
                                                third_differences(0.0) * std::pow(0.6 * quantum, 2.0) / squares
                                          : std::numeric_limits<double>::infinity();
-  const double smooth = std::pow(limit.smooth * third_difference_scale(scaled, since_gap, 0.2, 0.2533), 2.0) /
-                        third_differences(0.0);
+  const double smooth =
+      std::pow(limit.smooth * third_difference_scale(scaled, since_jump, 0.2, 0.2533), 2.0) /
+      third_differences(0.0);
   const VariogramNoise noise = noise_of_variogram(lags, variogram, weights, rough);
   const double variance = std::min(std::max(noise.variance, smooth) * squares, mean_square);
   const double by_chance =

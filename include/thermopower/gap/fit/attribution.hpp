@@ -287,7 +287,7 @@ private:
     if (!trapped) return;
     for (std::size_t i = 0; far && i < candidate.list.size(); ++i)
       if (candidate.list[i].standard) again[static_cast<Eigen::Index>(i)] = *candidate.list[i].standard;
-    FitOptions better = options;  // by as much as would say that it was one
+    FitOptions better = options;  // soon, by as much as tells that it was a trap
     better.hopeful = 3;
     better.hopeless = 0.99 * candidate.fit.cost;
     FitResult freed = fitter.minimise(again, better, &candidate.fit.starts);

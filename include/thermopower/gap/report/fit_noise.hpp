@@ -44,10 +44,8 @@ inline void measure_noise(FitProblem& problem, const Candidate& candidate,
     const auto signal = static_cast<Signal>(i);
     const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
     const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal) / problem.sigma[i];
-    const double sd =
-                     std::min(noise_sd(residuals[i], gaps[i], quantum, {}, problem.measured_of_axis(signal)) *
-                                  problem.sigma[i],
-                              most_noise(problem, signal)),
+    const double in_units = noise_sd(residuals[i], gaps[i], quantum, {}, problem.measured_of_axis(signal)),
+                 sd = std::min(in_units * problem.sigma[i], most_noise(problem, signal)),
                  rms = rms_of(residuals[i]) * problem.sigma[i];
     problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
   }
