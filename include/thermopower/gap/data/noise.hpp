@@ -291,16 +291,12 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
     weights.push_back(1.0 / (limit.known_shape * limit.known_shape + 2.0 / independent));
   }
   if (lags.empty()) return {std::sqrt(mean_square), std::sqrt(mean_square)};
-  // What most third differences are below bounds the noise, and what one of five is below is noise wherever the error of a
-  // model is smooth. Where samples are held a simulation may move, so that most of its are small: four of five count.
+  // What most third differences of what was measured are below bounds the noise, and what one of five of the error is below is
+  // noise wherever the error of a model is smooth.
   std::vector<int> since_jump = since_gap;
   for (std::size_t i = 1; i < count && jumps; ++i)
     since_jump[i] = are_alike(levels, i, i - 1) ? std::min(since_gap[i], since_jump[i - 1] + 1) : 0;
-  double usual_rough = third_difference_scale(scaled, since_jump, 0.8, 1.2816);
-  if (!measured.empty()) {
-    const double of_measured = third_difference_scale(measured_scaled, since_jump, 0.5, 0.6745);
-    if (of_measured > 0.0) usual_rough = std::min(usual_rough, of_measured);
-  }
+  const double usual_rough = third_difference_scale(measured_scaled, since_jump, 0.5, 0.6745);
   // Of a channel in coarse steps most may be 0: rounding is noise, too.
   const double rough = usual_rough > 0.0 ? std::pow(limit.rough * usual_rough, 2.0) +
                                                third_differences(0.0) * std::pow(0.6 * quantum, 2.0) / squares
