@@ -35,9 +35,11 @@ Scalar film_slope(const Scalar& x, const Scalar& tail) {
 
 /// The same two with what they change by, worked out in plain numbers: an axis with dry friction asks for them at every step.
 struct FilmAt {
-  double share, slope;               ///< as `film_share` and `film_slope`
-  double by_tail;                    ///< derivative of the share by the tail
-  double slope_by_x, slope_by_tail;  ///< derivatives of the slope
+  double share;          ///< as `film_share`
+  double slope;          ///< as `film_slope`: derivative of the share by x
+  double by_tail;        ///< derivative of the share by the tail
+  double slope_by_x;     ///< derivative of the slope by x
+  double slope_by_tail;  ///< derivative of the slope by the tail
 
   /// @param x     rate over the transition
   /// @param tail  -1..1
