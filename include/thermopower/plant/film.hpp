@@ -23,20 +23,10 @@ Scalar film_share(const Scalar& x, const Scalar& tail) {
   return steep + (size + tail) * 0.5 * (gentle - steep) + (size - tail) * 0.5 * (abrupt - steep);
 }
 
-/// Derivative of `film_share` by x, for scalars that are numbers.
-template <class Scalar>
-Scalar film_slope(const Scalar& x, const Scalar& tail) {
-  using std::tanh;
-  const Scalar steep = tanh(x), bend = 1.0 - steep * steep, within = 1.0 / (magnitude(x) + 1.0);
-  const double abrupt = value_of(magnitude(x)) < 1.0 ? 1.0 : 0.0;
-  const Scalar size = magnitude(tail);
-  return bend + (size + tail) * 0.5 * (within * within - bend) + (size - tail) * 0.5 * (abrupt - bend);
-}
-
-/// The same two with what they change by, worked out in plain numbers: an axis with dry friction asks for them at every step.
+/// The share with what it changes by, worked out in plain numbers: an axis with dry friction asks for them at every step.
 struct FilmAt {
   double share;          ///< as `film_share`
-  double slope;          ///< as `film_slope`: derivative of the share by x
+  double slope;          ///< derivative of the share by x
   double by_tail;        ///< derivative of the share by the tail
   double slope_by_x;     ///< derivative of the slope by x
   double slope_by_tail;  ///< derivative of the slope by the tail
@@ -64,7 +54,10 @@ inline Dual film_share(const Dual& x, const Dual& tail) {
   return Dual::composed(at.share, x, at.slope, tail, at.by_tail);
 }
 
-/// Its derivative by x, see above.
+/// Its derivative by x.
+inline double film_slope(double x, double tail) { return FilmAt(x, tail).slope; }
+
+/// The same.
 inline Dual film_slope(const Dual& x, const Dual& tail) {
   const FilmAt at(x.value(), tail.value());
   return Dual::composed(at.slope, x, at.slope_by_x, tail, at.slope_by_tail);

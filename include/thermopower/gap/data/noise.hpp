@@ -104,8 +104,8 @@ inline double third_differences(double memory) {
 
 /// Magnitude of the third differences of a sequence that a share of them is below, over that of normal noise of scale 1.
 /// Samples that are held have none and do not count.
-/// @param since  of each sample, how many before it follow on each other
-/// @param share  0..1
+/// @param since   of each sample, how many before it follow on each other
+/// @param share   0..1
 /// @param normal  magnitude that this share of a standard normal distribution is below
 /// @return 0 where there are too few
 inline double third_difference_scale(const std::vector<double>& sequence, const std::vector<int>& since,

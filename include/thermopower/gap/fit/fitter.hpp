@@ -76,14 +76,11 @@ public:
       best.chi2 = view_.chi2;
       bool goes_on = false;
       double failed = std::numeric_limits<double>::infinity();  // squared length of the last step that did
-      for (int attempt = 0; attempt < 8; ++attempt) {
+      for (int attempt = 0; attempt < 8; ++attempt, damping = std::min(damping * 8.0, 1e12)) {
         FitResult trial = stepped(best, damping);
         const double length = view_.information.diagonal().dot((trial.point - best.point).cwiseAbs2());
         // A step about as long as one that failed fails, too.
-        if (length > shorter * shorter * failed) {
-          damping = std::min(damping * 8.0, 1e12);
-          continue;
-        }
+        if (length > shorter * shorter * failed) continue;
         failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
         const bool look_ahead =
@@ -106,7 +103,6 @@ public:
           goes_on = !(decrease < options.relative_decrease);
           break;
         }
-        damping = std::min(damping * 8.0, 1e12);
       }
       if (!goes_on) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;

@@ -34,20 +34,18 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
   for (std::size_t i = 0; i < signal_count; ++i) {
     const std::size_t count = errors.of[i].size();
     std::vector<bool> gaps(count, false);
-    std::vector<double> levels;
+    std::vector<double> levels, measured;  // the latter of an axis: what drives it is integrated twice
     for (std::size_t k = 0; k < count; ++k) {
       const int segment = errors.segment[i][k];
       gaps[k] = k > 0 && segment != errors.segment[i][k - 1];
-      const Eigen::VectorXd& power = segments[static_cast<std::size_t>(segment)].inputs->power_param;
+      const Segment& of = segments[static_cast<std::size_t>(segment)];
+      const Eigen::VectorXd& power = of.inputs->power_param;
+      if (of.axis) measured.push_back(errors.simulated[i][k] - errors.of[i][k]);
       if (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A)
         levels.push_back(
             v_rms_from_duty<double>(1.0, duty_from_power(std::clamp(power[errors.row[i][k]], 0.0, 255.0))));
     }
     if (levels.size() < count) levels.clear();
-    std::vector<double> measured;  // of an axis: what drives it is integrated twice
-    for (std::size_t k = 0; k < count; ++k)
-      if (segments[static_cast<std::size_t>(errors.segment[i][k])].axis)
-        measured.push_back(errors.simulated[i][k] - errors.of[i][k]);
     if (measured.size() < count) measured.clear();
     noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels,
                                  measured);
