@@ -183,10 +183,11 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   CHECK(by_block.value() == Approx(100.0 * (23.0 * std::log(30.0) + std::log(1e7))));
   CHECK(by_block.value() > 5.0 * by_block.standard_error());
   CHECK(by_block.decides());
-  const auto decides = [&](const std::vector<double>& worse, const SignalSums& better) {
+  const auto decides = [&](const std::vector<double>& worse, const SignalSums& better,
+                           bool leaves_noise = false) {
     BlockByBlock one;
     one.add(sums_of(worse), better, 1, correlation);
-    return one.decides();
+    return one.decides(leaves_noise);
   };
   // What is better here and worse there is not proven so, nor what is a little better everywhere.
   CHECK_FALSE(decides(blocks(100.0, 100.0), sums_of(blocks(30.0, 140.0))));
@@ -200,6 +201,14 @@ TEST_CASE("what is better in every block is better beyond doubt, though a rival 
   mostly_at_rest[5] = 1e7;
   mostly_at_rest[9] = 50.0;
   CHECK(decides(mostly_at_rest, after));
+  // A little worse in most blocks and far worse where it runs away: that is its own error where the better one leaves the
+  // noise alone, and may be one of both where it does not.
+  std::vector<double> seldom_runs_away(SignalSums::block_count, 2.0);
+  seldom_runs_away[5] = 1e7;
+  CHECK_FALSE(decides(seldom_runs_away, after));
+  CHECK(decides(seldom_runs_away, after, true));
+  CHECK_FALSE(decides(blocks(100.0, 100.0), sums_of(blocks(30.0, 140.0)), true));
+  CHECK_FALSE(decides(blocks(1.2, 1.3), after, true));
 
   const Model model = axis_model();
   std::vector<Candidate> candidates(2);

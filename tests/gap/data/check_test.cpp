@@ -609,6 +609,43 @@ TEST_CASE("a run that begins with a push keeps its first row: it says where it s
 }
 
 TEST_CASE(
+    "a run that begins at rest keeps its first row where the rate jumps at once and the angle is too coarse to tell") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Recording r = test::axis_recording({}, 2000, seed);
+    for (Eigen::Index i = 0; i < r.rows(); ++i) r.t_s[i] = 0.01 * static_cast<double>(i);
+    test::Noise noise(seed);
+    Eigen::VectorXd angle(r.rows()), rate(r.rows());
+    // A light part on a spring of 17 Hz carries a heavier one; each 200 rows a loop drives them out of rest.
+    double rad[2] = {0.0, 0.0}, rad_per_s[2] = {0.0, 0.0};
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      if (i % 200 == 0) rad[1] = rad[0], rad_per_s[0] = rad_per_s[1] = 0.0;
+      angle[i] = rad[0] * 57.29577951308232 + 0.02 * noise();
+      rate[i] = rad_per_s[0] * 57.29577951308232 + 0.06 * noise();
+      for (int k = 0; k < 100; ++k) {
+        const double h = 1e-4, pushed = 45.0 * (1.0 - rad_per_s[0] / 0.75);
+        const double spring = 6600.0 * (rad[1] - rad[0]) + 12.0 * (rad_per_s[1] - rad_per_s[0]);
+        rad_per_s[0] += h * (pushed + spring);
+        rad_per_s[1] -= h * 0.7 * spring;
+        for (int j = 0; j < 2; ++j) rad[j] += h * rad_per_s[j];
+      }
+    }
+    r.set("angle_deg", angle);
+    r.set("rate_dps", rate);
+    const PreparedRecording prepared(test::axis_model(), r);
+    for (const char* column : {"angle_deg", "rate_dps"}) CHECK(taken(r, prepared, column).count(0) == 0);
+  }
+}
+
+TEST_CASE("a rate that reads rest in the first row of a run that is in motion is masked") {
+  Recording r = axis();
+  Eigen::Index moving = 0;
+  while (std::abs(r.column("rate_dps")[moving]) < 30.0) ++moving;
+  r = r.slice(moving, r.rows());
+  change(r, "rate_dps", [](double x, Eigen::Index i) { return i == 0 ? 0.0 : x; });
+  CHECK(taken(r, PreparedRecording(test::axis_model(), r), "rate_dps").count(0) == 1);
+}
+
+TEST_CASE(
     "a push into a spring keeps the rows of its first swing, which bends more sharply than all after it") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Recording r = test::axis_recording({}, 2000, seed);

@@ -27,6 +27,7 @@ struct MaskThresholds {
   std::size_t drawn_along = 3;       ///< rows before and after a spike that seem to lie far because of it
   double as_far = 0.6;               ///< of the farthest among them: what is a spike of its own
   double confirmed = 0.35;           ///< of how far a sample lies: what a rate and its angle may differ by
+  double confirmed_at_end = 0.5;     ///< the same at an end of a run, where a rate may begin with a jump
   double jump_scales = 12.0;         ///< noise scales of a step that may begin a stretch elsewhere
   double jump_steps = 6.0;           ///< of the 75th percentile of the steps
   double quanta = 4.0;               ///< quanta that any of them must be, too
@@ -258,12 +259,14 @@ private:
       // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
       const bool is_inside = to - from == 2;
       const double share = is_inside ? 2.0 / 3.0 : 0.5;
-      // An angle whose own noise is a rate of that size confirms nothing.
+      const double within = share * (is_inside ? limit_.confirmed : limit_.confirmed_at_end) * off;
+      // An angle whose own noise is a rate of that size confirms nothing; where it does not deny it, a run begins at rest.
       const double noise = std::sqrt(2.0) * position_step() / (t_s[to] - t_s[from]);
-      if (noise > share * limit_.confirmed * off / 3.0) return false;
+      const bool may_rest = !is_inside && std::abs(values_[row]) < limit_.spike_scales * scale_;
+      if (noise > within / 3.0 && !may_rest) return false;
       const double mean = share * values_[row] + (is_inside ? (values_[from] + values_[to]) / 6.0
                                                             : 0.5 * values_[from == row ? to : from]);
-      return std::abs(mean - moved) < share * limit_.confirmed * off;
+      return std::abs(mean - moved) < within + (may_rest ? 3.0 * noise : 0.0);
     }
     if (traits_.at_rest == nullptr) return false;
     const Eigen::VectorXd& rate = *traits_.at_rest;

@@ -112,12 +112,14 @@ public:
 
   /// Whether that decides. Only where hardly any block speaks against it, as what is better here and worse there has to
   /// be weighed by how much; and where it is at least twice as good in the blocks in which the other is above the noise
-  /// at all: a tenth may come of an error that all blocks share.
-  bool decides() const {
+  /// at all: a tenth may come of an error that all blocks share. Not where the better one leaves the noise alone
+  /// everywhere: then what the other has above it is the other's error.
+  /// @param leaves_noise  whether the better one does
+  bool decides(bool leaves_noise = false) const {
     constexpr double hardly_any = 0.05,  // of what speaks for it
         twice_as_good = 1.386;           // per reading: log of a quarter of the squares
     return readings_ > 0.0 && variance_ > 0.0 && against_ <= hardly_any * (value_ + against_) &&
-           clearly_ >= twice_as_good * readings_;
+           (leaves_noise || clearly_ >= twice_as_good * readings_);
   }
 
 private:

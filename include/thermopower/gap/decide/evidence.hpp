@@ -371,7 +371,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     BlockByBlock by_block;
     by_block.add(bad.train, good.train, merged(bad.train, weight.correlation), weight.correlation);
     by_block.add(bad.held_out, good.held_out, merged(bad.held_out, weight.held_out), weight.held_out);
-    if (!by_block.decides()) return pooled;
+    if (!by_block.decides(is_at_the_noise(good))) return pooled;
     return std::min(pooled, (fit(bad) - fit(good)) / by_block.value() * by_block.standard_error());
   };
   if (best == nullptr) {
