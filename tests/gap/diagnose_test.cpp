@@ -5,7 +5,9 @@
 
 #include <thermopower/gap/diagnose.hpp>
 
+#include <algorithm>
 #include <atomic>
+#include <utility>
 
 using namespace engine_fixture;
 
@@ -119,6 +121,34 @@ TEST_CASE("the missing effect is named, and held-out data shrinks to the noise")
       CHECK(gap.after < 1.3 * gap.noise_floor);
       CHECK(gap.ci95.low <= gap.shrunk_by);
       CHECK(gap.shrunk_by <= gap.ci95.high);
+    }
+  }
+}
+
+TEST_CASE("a command that is lost here and there hides neither a delay nor a spring") {
+  // A spring swings on for longer than a command is under way.
+  for (const auto& [id, every] :
+       {std::pair<const char*, Eigen::Index>("actuation_delay", 131), {"compliance", 677}}) {
+    const Trial trial = trial_of(id);
+    const auto with_holes = [&, step = every](std::uint64_t seed) {
+      Recording r = recorded(trial, seed);
+      Eigen::VectorXd drive = r.column("drive_A");
+      for (Eigen::Index row = 90; row + 90 < r.rows(); row += step)
+        drive.segment(row, 5).setConstant(missing);
+      r.set("drive_A", drive);
+      return r;
+    };
+    const Diagnosis diagnosis = diagnose(baseline_of(trial), {with_holes(31)}, {with_holes(41)});
+    INFO(id << ": " << diagnosis.reason);
+    CHECK(diagnosis.verdict == Verdict::explained);
+    REQUIRE(diagnosis.cause.size() == 1);
+    CHECK(diagnosis.cause[0].effect == id);
+    for (const auto& [name, value] : trial.parameters) {
+      const auto& found = diagnosis.cause[0].parameters;
+      const auto one = std::find_if(found.begin(), found.end(),
+                                    [&](const ParameterEstimate& p) { return p.name == name; });
+      REQUIRE(one != found.end());
+      CHECK(one->value == Approx(value).epsilon(0.1));
     }
   }
 }

@@ -104,10 +104,11 @@ struct Recording {
     part.name = name;
     part.first_row = first_row + begin;
     part.t_s = t_s.segment(begin, end - begin);
-    for (const RunSpan& run : runs) {
+    for (const RunSpan& run : spans()) {
       const Eigen::Index first = run.begin > begin ? run.begin : begin;
       const Eigen::Index last = run.end < end ? run.end : end;
-      if (first < last) part.runs.push_back({first - begin, last - begin, run.label});
+      const bool is_cut = run.begin < first;
+      if (first < last) part.runs.push_back({first - begin, last - begin, run.label, run.goes_on || is_cut});
     }
     for (const Column& one : columns)
       part.columns.push_back({one.name, one.values.segment(begin, end - begin)});

@@ -46,7 +46,9 @@ public:
         const std::vector<Eigen::Index> starts = window_starts(inputs, run, horizon_s);
         for (std::size_t i = 0; i < starts.size(); ++i) {
           const Eigen::Index end = i + 1 < starts.size() ? starts[i + 1] : run.end;
-          if (starts[i] + 1 < end) segments.push_back({&inputs, run, starts[i], end, true, i > 0, false});
+          const bool warms_up =
+              starts.size() > 1 && is_before(inputs, run, starts[i], known_from_s(inputs, run));
+          if (starts[i] + 1 < end) segments.push_back({&inputs, run, starts[i], end, true, i > 0, warms_up});
         }
       }
     }

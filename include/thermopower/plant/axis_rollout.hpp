@@ -253,7 +253,23 @@ private:
   AxisStep<Scalar> step_;
 };
 
-/// The rows at which windows of `horizon_s` begin in a run; whole runs where the horizon is not positive.
+/// When a run under way is known well enough to be judged: states that nobody measures are about what the motion makes of them,
+/// and commands from before its first row have arrived. That takes 0.5 s, 1 s where a spring swings on; but no more than half
+/// of a run, and a quarter of what is longer. At once where a run begins at rest.
+inline double known_from_s(const Inputs& inputs, const RunSpan& run) {
+  constexpr double least_s = 0.5, enough_s = 1.0;
+  const double begin_s = inputs.t_s[run.begin], length_s = inputs.t_s[run.end - 1] - begin_s;
+  if (!run.goes_on) return begin_s;
+  return begin_s + std::min(0.5 * length_s, std::clamp(0.25 * length_s, least_s, enough_s));
+}
+
+/// Whether a row is before a time, by more than stamps are rounded.
+inline bool is_before(const Inputs& inputs, const RunSpan& run, Eigen::Index row, double at_s) {
+  return inputs.t_s[row] < at_s - stamp_rounding_s(at_s, inputs.t_s[run.begin]);
+}
+
+/// The rows at which windows of `horizon_s` begin in a run; whole runs where the horizon is not positive. One begins where a
+/// run under way is known.
 inline std::vector<Eigen::Index> window_starts(const Inputs& inputs, const RunSpan& run, double horizon_s) {
   std::vector<Eigen::Index> starts;
   const auto usable = [&](Eigen::Index row) {
@@ -263,10 +279,12 @@ inline std::vector<Eigen::Index> window_starts(const Inputs& inputs, const RunSp
   };
   double next_s = -1e300;
   for (Eigen::Index row = run.begin; row < run.end; ++row) {
-    if (inputs.t_s[row] < next_s - stamp_rounding_s(next_s, inputs.t_s[run.begin]) || !usable(row)) continue;
+    if (is_before(inputs, run, row, next_s) || !usable(row)) continue;
     starts.push_back(row);
     if (!(horizon_s > 0.0) || !std::isfinite(horizon_s)) break;
+    const double known_s = known_from_s(inputs, run);
     next_s = inputs.t_s[row] + horizon_s;
+    if (is_before(inputs, run, row, known_s)) next_s = std::min(next_s, known_s);
   }
   return starts;
 }

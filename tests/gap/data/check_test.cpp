@@ -8,11 +8,14 @@
 #include "../plants.hpp"
 
 #include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <set>
+#include <utility>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
@@ -791,6 +794,44 @@ TEST_CASE("what sticks and breaks away repeats no frame") {
   CHECK_FALSE(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked));
 }
 
+/// The windows of an axis that are simulated and not judged, and all of them.
+std::pair<std::vector<Segment>, std::vector<Segment>> windows_of(const Recording& r, double horizon_s = 1.0) {
+  static std::vector<std::unique_ptr<PreparedRecording>> kept;  // windows refer to it
+  kept.push_back(std::make_unique<PreparedRecording>(test::axis_model(), r));
+  std::vector<Segment> all, not_judged;
+  ActuatorPlant().cut(kept.back()->inputs(), horizon_s, all);
+  for (const Segment& one : all)
+    if (one.warm_up) not_judged.push_back(one);
+  return {not_judged, all};
+}
+
+TEST_CASE("what was under way before its first row is judged a second later, what begins at rest at once") {
+  const Recording whole = axis();  // rows 0.01 s apart
+  CHECK(windows_of(whole).first.empty());
+
+  const auto [late, all] = windows_of(whole.slice(700, 2000));
+  REQUIRE(late.size() == 1);
+  CHECK(late[0].begin == 0);
+  CHECK(late[0].end == 100);
+  CHECK(all[1].begin == 100);
+  CHECK(all[1].carries_on);
+  CHECK(windows_of(whole.slice(700, 2000), 0.3).first.size() == 4);
+  // Of what is shorter than four a quarter is left out, but half a second, and of what is shorter than one the half.
+  CHECK(windows_of(whole.slice(700, 1001), 0.75).first.at(0).end == 75);
+  CHECK(windows_of(whole.slice(700, 820)).first.at(0).end == 50);
+  CHECK(windows_of(whole.slice(700, 740)).first.at(0).end == 20);
+
+  // Where the command is lost nobody knows what arrives after it; where rows are lost, what happened in them.
+  Recording holes = whole;
+  change(holes, "drive_A", [](double x, Eigen::Index i) { return i / 3 % 100 == 50 ? missing : x; });
+  const std::vector<RunSpan> pieces = PreparedRecording(test::axis_model(), holes).recording().spans();
+  CHECK(pieces.size() > 5);  // but for the holes between two commands that are the same
+  CHECK(windows_of(holes).first.size() == pieces.size() - 1);
+  Recording paused = whole;
+  for (Eigen::Index i = 1000; i < paused.rows(); ++i) paused.t_s[i] += 3.0;
+  CHECK(windows_of(paused).first.size() == 1);
+}
+
 TEST_CASE("a coarse thermometer that stands still is nothing to talk about") {
   Recording r = bench();
   change(r, "motor_C", [](double x, Eigen::Index) { return std::round(x); });
@@ -938,6 +979,7 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
   REQUIRE(runs.size() == 6);
   for (std::size_t i = 0; i < runs.size(); ++i)
     CHECK(runs[i].begin == static_cast<Eigen::Index>(i) * swing_rows);
+  for (const RunSpan& run : runs) CHECK_FALSE(run.goes_on);  // each is let go from rest
   // One swing, and a sensor that reads another angle for a while, are one run.
   Recording one = r;
   for (int i = 0; i < rows; ++i) angle[i] = 30.0 * std::sin(0.02 * i) + 0.02 * noise();

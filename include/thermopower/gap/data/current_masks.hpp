@@ -26,7 +26,7 @@ inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std:
   RowMask starts(static_cast<std::size_t>(power.size()), 0);
   for (Eigen::Index i = 1; i < power.size(); ++i)
     starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
-  return cut_at(runs, starts);
+  return cut_at(runs, starts, true);
 }
 
 /// The current without what the voltage at the motor does to it at once: the steps of the power are gone. What flows at

@@ -148,7 +148,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
     }
   RowMask starts(unknown_.size(), 0);
   check_stamps(list, believed_.runs, starts);
-  believed_.runs = cut_at(believed_.runs, starts);
+  believed_.runs = cut_at(believed_.runs, starts, true);
   if (model.own) own_ = model.own->equations->info();
   moves_ = model.has_axis();
   read_the_clock(list);
@@ -156,7 +156,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
     RowMask elsewhere(unknown_.size(), 0);
     check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
                  believed_.runs, elsewhere);
-    believed_.runs = cut_at(believed_.runs, elsewhere);
+    believed_.runs = cut_at(believed_.runs, elsewhere, false);
   }
   electrical_ = model.has_current() && recorded.has("power_param");
   drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
@@ -447,7 +447,7 @@ inline void PreparedRecording::keep_known_rows() {
     const auto begin = static_cast<Eigen::Index>(source_rows_.size());
     for (Eigen::Index row = run.begin; row < run.end; ++row)
       source_rows_.push_back(believed_.first_row + row);
-    run = {begin, static_cast<Eigen::Index>(source_rows_.size()), run.label};
+    run = {begin, static_cast<Eigen::Index>(source_rows_.size()), run.label, run.goes_on};
   }
   believed_.runs = std::move(kept);
   const auto rows = static_cast<Eigen::Index>(source_rows_.size());

@@ -64,7 +64,8 @@ inline const std::vector<InputColumn>& input_columns() {
 
 /// Runs cut at some rows: `starts[row]` set means that a new segment begins there. The cut pieces keep their
 /// run's label.
-inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMask& starts) {
+/// @param goes_on  whether what a cut separates went on meanwhile; else each piece begins at rest
+inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMask& starts, bool goes_on) {
   std::vector<RunSpan> result;
   for (const RunSpan& run : runs) {
     RunSpan piece = run;
@@ -73,6 +74,7 @@ inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMa
       piece.end = row;
       result.push_back(piece);
       piece.begin = row;
+      piece.goes_on = goes_on;
     }
     piece.end = run.end;
     result.push_back(piece);
@@ -91,6 +93,7 @@ inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowM
       }
       RunSpan piece = run;
       piece.begin = row;
+      piece.goes_on = run.goes_on || row > run.begin;
       while (row < run.end && unknown[static_cast<std::size_t>(row)] == 0) ++row;
       piece.end = row;
       result.push_back(piece);

@@ -27,7 +27,8 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
           {signal_name(model, static_cast<Signal>(i)), Eigen::VectorXd::Constant(recording.rows(), missing)});
     }
   const Plant& plant = plant_of(model);
-  const std::vector<Segment> segments = engine::cut(inputs, options.horizon_s, plant);
+  std::vector<Segment> segments = engine::cut(inputs, options.horizon_s, plant);
+  for (Segment& segment : segments) segment.warm_up = false;  // what is not judged is asked for, too
   engine::simulate_segments(
       model, catalogue, segments, options.mode, [&](std::size_t index, const Readings& readings) {
         const std::vector<Signal>& signals = plant.signals(segments[index]);

@@ -52,7 +52,8 @@ inline Recording joined(const std::vector<Recording>& recordings) {
         column.values.segment(at, part->rows()).setConstant(missing);
       }
     }
-    for (const RunSpan& run : part->spans()) out.runs.push_back({run.begin + at, run.end + at, run.label});
+    for (const RunSpan& run : part->spans())
+      out.runs.push_back({run.begin + at, run.end + at, run.label, run.goes_on});
     at += part->rows();
   }
   return out;
@@ -76,7 +77,8 @@ inline Recording stretches(const Recording& recording, Eigen::Index most) {
     }
     for (const RunSpan& run : recording.spans()) {
       const Eigen::Index from = std::max(run.begin, begin), end = std::min(run.end, begin + length);
-      if (from < end) out.runs.push_back({from - begin + to, end - begin + to, run.label});
+      if (from < end)
+        out.runs.push_back({from - begin + to, end - begin + to, run.label, run.goes_on || run.begin < from});
     }
   }
   return out;

@@ -51,6 +51,7 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
   const Plant& plant = plant_of(model);
   const auto take = [&](std::size_t index, const Readings& readings) {
     const Segment& segment = segments[index];
+    if (segment.warm_up) return;
     const auto r = static_cast<std::size_t>(segment.inputs - inputs.data());
     const std::vector<Signal>& signals = plant.signals(segment);
     for (std::size_t k = 0; k < signals.size(); ++k) {
