@@ -370,9 +370,21 @@ private:
     refine(candidates, first, 5, options.hopeless);
   }
 
+  /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
+  /// stood in for only one is found at a time.
+  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+    constexpr int rounds = 2;
+    for (int round = 0; round < rounds; ++round) {
+      const Explanation leader = best(candidates).explanation;
+      exchange_members(candidates, singles);
+      const Explanation& now = best(candidates).explanation;
+      if (now.size() == leader.size() && now.includes(leader)) return;
+    }
+  }
+
   /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
   /// same submodel: of two that do the same beside a third, only one may have been tried.
-  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+  void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = best(candidates);
     const Explanation& leader = near.explanation;
     if (leader.size() < 2) return;
