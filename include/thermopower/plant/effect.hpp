@@ -209,6 +209,9 @@ struct EffectInfo {
   /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds half of the
   /// longest run stands for something that does not change in it. None: any.
   double (*slowest_s)(const double* parameters) = nullptr;
+  /// Whether it is what it is called with these parameters; a fit that ends where it is not stands for something else. None:
+  /// always.
+  bool (*is_itself)(const double* parameters) = nullptr;
   /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
   std::optional<WhereEqual> where_equal = {};
   /// The same where one of its parameters is small beside another.

@@ -113,11 +113,12 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
       all = (at_bound[at++] || parameter.standard.has_value()) && all;
     }
     if (all && !entry->info.parameters.empty()) return true;
-    if (entry->info.slowest_s != nullptr) {
-      std::vector<double> values;
-      for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
-      if (entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s) return true;
-    }
+    std::vector<double> values;
+    for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
+    if (entry->info.slowest_s != nullptr &&
+        entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s)
+      return true;
+    if (entry->info.is_itself != nullptr && !entry->info.is_itself(values.data())) return true;
   }
   return false;
 }

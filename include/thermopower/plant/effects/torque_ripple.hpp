@@ -24,18 +24,29 @@ struct TorqueRipple {
 
   /// What it is.
   static EffectInfo info() {
-    return {"torque_ripple",
-            Submodel::mechanical_drive,
-            "torque = drive (1 + sin_share sin(cycles theta) + cos_share cos(cycles theta))",
-            "The same current gives more torque at some angles than at others, several times a turn.",
-            {parameter(sin_share, "sin_share").within(-1.0, 1.0).starts({0.0}),
-             parameter(cos_share, "cos_share").within(-1.0, 1.0).starts({0.0}),
-             parameter(cycles_per_turn, "cycles_per_turn")
-                 .within(1.6, 400.0)
-                 .starts({2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 16, 18,
-                          20, 21, 22, 24, 28, 30, 33, 36, 40, 42, 44, 48, 54, 60, 72})},
-            {Need::axis_model, Need::angle_deg},
-            "slow motion through a full turn at large and at small current"};
+    EffectInfo one = {
+        "torque_ripple",
+        Submodel::mechanical_drive,
+        "torque = drive (1 + sin_share sin(cycles theta) + cos_share cos(cycles theta))",
+        "The same current gives more torque at some angles than at others, several times a turn.",
+        {parameter(sin_share, "sin_share").within(-1.0, 1.0).starts({0.0}),
+         parameter(cos_share, "cos_share").within(-1.0, 1.0).starts({0.0}),
+         parameter(cycles_per_turn, "cycles_per_turn").within(1.6, 400.0).starts({2,  3,  4,  5,  6,  7,
+                                                                                  8,  9,  10, 11, 12, 13,
+                                                                                  14, 16, 18, 20, 21, 22,
+                                                                                  24, 28, 30, 33, 36, 40,
+                                                                                  42, 44, 48, 54, 60, 72})},
+        {Need::axis_model, Need::angle_deg},
+        "slow motion through a full turn at large and at small current"};
+    one.is_itself = leaves_torque;
+    return one;
+  }
+
+  /// Whether the drive still gives torque at every angle, a tenth of it at least: what takes it away or turns it around at some
+  /// angles is something that holds the axis there.
+  static bool leaves_torque(const double* p) {
+    constexpr double most = 0.9;
+    return std::hypot(p[sin_share], p[cos_share]) <= most;
   }
 
   /// Scales what arrives of the drive.
