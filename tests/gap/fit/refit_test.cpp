@@ -55,3 +55,38 @@ TEST_CASE("a fit that is better where it stands is kept") {
   attribution.refit_from(right, far, a_step, 0.5);
   CHECK(right.fit.point == before);
 }
+
+TEST_CASE("friction that rises near standstill is found outside its transition, from inside it, too") {
+  const Model model = axis_model();
+  const std::vector<Inputs> inputs{
+      prepare(model, joint_in_fine_steps(
+                         [](double rate) {
+                           const double rise = 0.005 * std::exp(-std::pow(rate / 0.12, 2.0));
+                           return 1e-3 * rate + (0.006 + rise) * std::tanh(rate / 0.002);
+                         },
+                         13))};
+  const FitProblem problem = problem_of(model, inputs);
+  const Attribution attribution(problem);
+  const Explanation stribeck{{standard_catalogue().find("stribeck_friction")}, {}};
+  // A film as wide as the knee and a rise several times as large make nearly the same curve.
+  const std::vector<Coordinate> list = coordinates(model, stribeck, standard_catalogue());
+  Eigen::VectorXd inside(static_cast<Eigen::Index>(list.size()));
+  const auto start_of = [](const std::string& name, double otherwise) {
+    if (name == "stribeck_friction.Nm") return 0.006;
+    if (name == "stribeck_friction.rise_Nm") return 0.035;
+    if (name == "stribeck_friction.knee_rad_per_s") return 0.0635;
+    if (name == "stribeck_friction.transition_rad_per_s") return 0.0948;
+    return otherwise;
+  };
+  for (std::size_t i = 0; i < list.size(); ++i)
+    inside[static_cast<Eigen::Index>(i)] =
+        list[i].coordinate_of(start_of(list[i].name, list[i].value_of(list[i].start)));
+  const Candidate found = attribution.fit_from(stribeck, {inside}, {});
+  const auto value = [&](const char* parameter) {
+    return found.value(found.place_of(*stribeck.effects.front(), parameter));
+  };
+  CHECK(found.train.mean(2) < 3.0);  // 174 inside; a film of another form leaves some
+  CHECK(value("knee_rad_per_s") > value("transition_rad_per_s"));
+  CHECK(value("knee_rad_per_s") == Approx(0.12).epsilon(0.2));
+  CHECK(value("rise_Nm") == Approx(0.005).epsilon(0.2));
+}

@@ -52,10 +52,8 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
     return false;
   if (parameter.within_the_motion && candidate.value(at) > shown.fastest_rad_per_s) return false;
   if (parameter.exceeds.empty()) return true;
-  for (std::size_t i = 0; i < candidate.list.size(); ++i)
-    if (candidate.list[i].name == entry.info.id + "." + parameter.exceeds)
-      return candidate.value(at) > candidate.value(i);
-  return true;
+  const std::size_t other = candidate.place_of(entry, parameter.exceeds);
+  return other >= candidate.list.size() || candidate.value(at) > candidate.value(other);
 }
 
 /// Whether the training data tell a parameter at all, where an effect has another one of its kind (friction forward and

@@ -34,6 +34,13 @@ struct Candidate {
   double value(std::size_t place) const {
     return list[place].value_of(fit.point[static_cast<Eigen::Index>(place)]);
   }
+
+  /// Place in `list` of a parameter of one of its effects; the list's size where it has none of that name.
+  std::size_t place_of(const CatalogueEntry& entry, const std::string& parameter) const {
+    const std::string name = entry.info.id + "." + parameter;
+    const auto is_it = [&](const Coordinate& one) { return one.name == name; };
+    return static_cast<std::size_t>(std::find_if(list.begin(), list.end(), is_it) - list.begin());
+  }
 };
 
 /// Indices into Model::calibrated() of the constants that a fit moved by more than is known of them.
@@ -109,6 +116,7 @@ public:
       candidate.fit = fitter.minimise(starts.front(), options);
     }
     free_from_trap(fitter, candidate, options);
+    lead_out(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
     return candidate;
   }
@@ -123,7 +131,8 @@ public:
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2) free_from_trap(fitter, candidate, options);
+    if (options.iterations > 2)
+      free_from_trap(fitter, candidate, options), lead_out(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
@@ -292,6 +301,51 @@ private:
     better.hopeless = 0.99 * candidate.fit.cost;
     FitResult freed = fitter.minimise(again, better, &candidate.fit.starts);
     if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
+  }
+
+  /// A parameter that has to exceed another one (Parameter::exceeds) and ended below it can often do the same from above, with
+  /// other values of the rest: a fit that ended so begins once more where the other one is as small as it may be, and stays
+  /// there unless it is clearly worse.
+  static void lead_out(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+    if (candidate.fit.cost > options.hopeless) return;
+    constexpr double clearly_worse = 1.02;  // of the cost
+    Eigen::VectorXd again = candidate.fit.point, smaller_too = again;
+    bool is_inside = false;
+    for (const CatalogueEntry* entry : candidate.explanation.effects) {
+      const std::vector<Parameter>& parameters = entry->info.parameters;
+      for (const Parameter& parameter : parameters) {
+        if (parameter.exceeds.empty()) continue;
+        const std::size_t larger = candidate.place_of(*entry, parameter.name),
+                          smaller = candidate.place_of(*entry, parameter.exceeds);
+        if (smaller >= candidate.list.size() || candidate.value(larger) > candidate.value(smaller)) continue;
+        const auto at = static_cast<Eigen::Index>(smaller);
+        again[at] = smaller_too[at] = candidate.list[smaller].lower;
+        is_inside = true;
+        for (const Parameter& shape : parameters) {
+          const auto one = candidate.place_of(*entry, shape.name);
+          if (one != smaller && one < candidate.list.size() && candidate.list[one].standard)
+            smaller_too[static_cast<Eigen::Index>(one)] = *candidate.list[one].standard;
+        }
+        if (!entry->info.where_small) continue;
+        // Inside, a film takes most of a rise away, and it has grown to make up for that.
+        const auto place = [&](int i) {
+          return static_cast<Eigen::Index>(
+              candidate.place_of(*entry, parameters[static_cast<std::size_t>(i)].name));
+        };
+        smaller_too[place(entry->info.where_small->small)] =
+            0.5 * again[place(entry->info.where_small->beside)];
+      }
+    }
+    if (!is_inside) return;
+    FitOptions better = options;
+    better.hopeless = clearly_worse * candidate.fit.cost;
+    better.hopeful = 8;  // the way leads through worse places
+    for (const Eigen::VectorXd& from : {again, smaller_too}) {
+      FitResult out = fitter.minimise(from, better, &candidate.fit.starts);
+      if (out.cost >= better.hopeless) continue;
+      candidate.fit = std::move(out);
+      return;
+    }
   }
 
   /// An explanation of which nothing is known yet.
