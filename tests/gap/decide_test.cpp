@@ -331,6 +331,23 @@ TEST_CASE("what is damped too much to ring is no part on a spring, and what ring
   CHECK(ends_on_bounds(one, model));
 }
 
+TEST_CASE("a ripple that takes nearly all of the torque away at some angles is none") {
+  const Model model = axis_model();
+  Candidate one;
+  one.explanation.effects.push_back(standard_catalogue().find("torque_ripple"));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+  one.fit.at_bound.assign(one.list.size(), false);
+  const auto at = static_cast<Eigen::Index>(model.calibrated().size());
+  one.fit.point[at + 2] = 6.0;
+  for (const auto& [sine, cosine, is_none] :
+       {std::tuple(0.5, -0.6, false), {0.6, -0.8, true}, {0.0, 0.95, true}}) {
+    one.fit.point[at] = sine;
+    one.fit.point[at + 1] = cosine;
+    CHECK(ends_on_bounds(one, model) == is_none);
+  }
+}
+
 TEST_CASE("a sink that does not change in a run is no sink, but air of another temperature") {
   const auto lasts = [](double longest_run_s) {
     Shown shown;
