@@ -77,6 +77,20 @@ public:
     return candidates[order.front()].explanation.refined;
   }
 
+  /// Looks beside the frequencies of the best candidates, where these leave more than `enough` (mean square).
+  /// @return whether the best one has changed
+  bool look_beside(std::vector<Candidate>& candidates, double enough) const {
+    constexpr std::size_t looked_at = 2;
+    if (best(candidates).train.within(enough)) return false;
+    FitOptions options;
+    options.iterations = 12;
+    std::vector<std::size_t> order = by_fitness(candidates, 0);
+    order.resize(std::min(looked_at, order.size()));
+    const double before = fitness(best(candidates));
+    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.look_beside(candidates[order[i]], options); });
+    return fitness(best(candidates)) < before;
+  }
+
   /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
   void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
                 double enough) const {

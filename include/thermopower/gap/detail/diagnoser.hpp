@@ -329,6 +329,7 @@ private:
       renew();
     }
     if (searching.refine_shapes(candidates)) renew();
+    if (searching.look_beside(candidates, decision.room_for_sets)) renew();
     if (worst != nullptr && !(*worst = overlooked_by(attempt)).empty()) return attempt;
     if (options_.effects_at_once > 1) {
       // Constants move in every explanation: only effects are joined.

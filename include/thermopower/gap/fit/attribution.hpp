@@ -147,6 +147,28 @@ public:
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
 
+  /// Fits once more from beside where a candidate's fit ended, in the frequencies of what rings: over windows of several periods a
+  /// fit that is one period off in each is a valley of its own.
+  void look_beside(Candidate& candidate, const FitOptions& options) const {
+    const double shares[] = {0.8, 0.87, 0.94, 1.06, 1.15, 1.25};
+    FitOptions soon = options;
+    const Eigen::VectorXd from = candidate.fit.point;
+    Fitter fitter(problem_, candidate.explanation, candidate.list);
+    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+      const Coordinate& one = candidate.list[i];
+      if (one.unit != "Hz") continue;
+      for (const double share : shares) {
+        Eigen::VectorXd beside = from;
+        const auto at = static_cast<Eigen::Index>(i);
+        beside[at] = std::clamp(beside[at] + std::log(share), one.lower, one.upper);
+        soon.hopeless = 0.98 * candidate.fit.cost;
+        FitResult found = fitter.minimise(beside, soon, starts_of(candidate));
+        if (found.cost < soon.hopeless) candidate.fit = std::move(found);
+      }
+    }
+    candidate.train = sums(candidate, problem_, candidate.fit.starts);
+  }
+
   /// Looks at the curvature where a fit ended: what the intervals of its parameters are made of.
   void survey(Candidate& candidate) const {
     if (candidate.fit.information.size() > 0) return;
