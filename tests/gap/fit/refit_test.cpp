@@ -90,3 +90,25 @@ TEST_CASE("friction that rises near standstill is found outside its transition, 
   CHECK(value("knee_rad_per_s") == Approx(0.12).epsilon(0.2));
   CHECK(value("rise_Nm") == Approx(0.005).epsilon(0.2));
 }
+
+TEST_CASE("a spring whose frequency a fit ended beside is found from there") {
+  const Trial trial{"compliance", {{"far_share", 0.4}, {"frequency_Hz", 6.0}, {"damping", 0.02}}, true};
+  const Model model = axis_model();
+  const std::vector<Inputs> inputs{prepare(model, recorded(trial, 17))};
+  const FitProblem problem = problem_of(model, inputs);
+  const Attribution attribution(problem);
+  const Explanation spring{{standard_catalogue().find("compliance")}, {}};
+  const std::vector<Coordinate> list = coordinates(model, spring, standard_catalogue());
+  Eigen::VectorXd off(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    off[static_cast<Eigen::Index>(i)] =
+        list[i].name == "compliance.frequency_Hz" ? std::log(4.0) : list[i].start;
+  Candidate found = attribution.fit_from(spring, {off}, {});
+  const auto frequency_Hz = [&] {
+    return found.value(found.place_of(*spring.effects.front(), "frequency_Hz"));
+  };
+  REQUIRE(frequency_Hz() < 5.7);
+  attribution.look_beside(found, {});
+  CHECK(frequency_Hz() == Approx(6.0).epsilon(0.01));
+  CHECK(found.train.mean(3) < 1.3);
+}
