@@ -2,8 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/fit/candidate.hpp>
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
+#include <thermopower/gap/fit/traps.hpp>
 #include <thermopower/gap/data/noise.hpp>
 
 #include <algorithm>
@@ -13,58 +15,6 @@
 #include <vector>
 
 namespace thermopower::gap::engine {
-
-/// An explanation with its fit and what speaks for it.
-struct Candidate {
-  Explanation explanation;       ///< the causes it consists of
-  std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
-  FitResult fit;                 ///< on training data, in the coordinates of `list`
-  SignalSums train;              ///< residuals of the fit where it was fitted
-  SignalSums held_out;    ///< as a gap is judged, in units of the noise floor; empty until somebody looks
-  int hidden_starts = 0;  ///< starts that the held-out score fitted, because nobody measures them
-  double deviance = 0.0;  ///< twice the negative log evidence, without the shared constant
-  double train_deviance = 0.0;     ///< what the training data alone say, no penalty counted
-  double held_out_deviance = 0.0;  ///< what the held-out data alone say; 0 until somebody looks
-  double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered
-  double probability = 0.0;  ///< among the candidates weighed together, 0..1
-  bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
-  bool idle = false;  ///< another one says the same with less: moved constants alone, or a simpler cause
-
-  /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
-  double value(std::size_t place) const {
-    return list[place].value_of(fit.point[static_cast<Eigen::Index>(place)]);
-  }
-
-  /// Place in `list` of a parameter of one of its effects; the list's size where it has none of that name.
-  std::size_t place_of(const CatalogueEntry& entry, const std::string& parameter) const {
-    const std::string name = entry.info.id + "." + parameter;
-    const auto is_it = [&](const Coordinate& one) { return one.name == name; };
-    return static_cast<std::size_t>(std::find_if(list.begin(), list.end(), is_it) - list.begin());
-  }
-};
-
-/// Indices into Model::calibrated() of the constants that a fit moved by more than is known of them.
-inline std::vector<int> moved_constants(const Candidate& candidate, const Model& model) {
-  constexpr double rounding = 1e-9;  // of the bound that the empty explanation stays within
-  std::vector<int> moved;
-  int index = 0;
-  for (const CalibratedConstant& constant : model.calibrated()) {
-    if (std::abs(candidate.fit.point[index]) >
-        known_constants.within * model.uncertainty_of(constant) * (1.0 + rounding))
-      moved.push_back(index);
-    ++index;
-  }
-  return moved;
-}
-
-/// What the constants of a candidate paid for having moved, a released one included: twice a log odds.
-inline double price_of_constants(const Candidate& candidate, const Model& model) {
-  double price = 0.0;
-  Eigen::Index at = 0;
-  for (const CalibratedConstant& constant : model.calibrated())
-    price += Prior{model.uncertainty_of(constant)}.price(candidate.fit.point[at++]);
-  return price;
-}
 
 /// What one linear step from some starts promises.
 struct LinearGuess {
@@ -115,8 +65,7 @@ public:
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
-    free_from_trap(fitter, candidate, options);
-    lead_out(fitter, candidate, options);
+    free_from_traps(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
     return candidate;
   }
@@ -131,8 +80,7 @@ public:
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2)
-      free_from_trap(fitter, candidate, options), lead_out(fitter, candidate, options);
+    if (options.iterations > 2) free_from_traps(fitter, candidate, options);
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
@@ -289,85 +237,6 @@ private:
     return first != nullptr && second != nullptr && *first == *second &&
            bare(one.list[i].name) == bare(other.list[k].name) &&
            one.list[i].logarithmic == other.list[k].logarithmic;
-  }
-
-  /// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
-  /// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
-  /// that ended shortly before it begins once more there. A shape that ended at its far bound may have run there from
-  /// a start on the wrong side: then all that have a standard begin once more from it. Two families of shapes meet at
-  /// the standard one, and a fit that stopped shortly below it looks at the other side.
-  /// What is hopeless stays where it is.
-  static void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
-    if (candidate.fit.cost > options.hopeless) return;
-    Eigen::VectorXd again = candidate.fit.point;
-    bool trapped = false, far = false;
-    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
-      const Coordinate& one = candidate.list[i];
-      const auto at = static_cast<Eigen::Index>(i);
-      if (!one.standard) continue;
-      if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
-      const bool other_side = one.two_families && again[at] < *one.standard && again[at] > 0.5 * one.lower;
-      if (other_side) {
-        again[at] = 2.0 * *one.standard - again[at];
-        trapped = true;
-      }
-      if (!one.logarithmic || !(*one.standard > one.lower) || again[at] > *one.standard) continue;
-      again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
-      trapped = true;
-    }
-    if (!trapped) return;
-    for (std::size_t i = 0; far && i < candidate.list.size(); ++i)
-      if (candidate.list[i].standard) again[static_cast<Eigen::Index>(i)] = *candidate.list[i].standard;
-    FitOptions better = options;  // soon, by as much as tells that it was a trap
-    better.hopeful = 3;
-    better.hopeless = 0.99 * candidate.fit.cost;
-    FitResult freed = fitter.minimise(again, better, &candidate.fit.starts);
-    if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
-  }
-
-  /// A parameter that has to exceed another one (Parameter::exceeds) and ended below it can often do the same from above, with
-  /// other values of the rest: a fit that ended so begins once more where the other one is as small as it may be, and stays
-  /// there unless it is clearly worse.
-  static void lead_out(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
-    if (candidate.fit.cost > options.hopeless) return;
-    constexpr double clearly_worse = 1.02;  // of the cost
-    Eigen::VectorXd again = candidate.fit.point, smaller_too = again;
-    bool is_inside = false;
-    for (const CatalogueEntry* entry : candidate.explanation.effects) {
-      const std::vector<Parameter>& parameters = entry->info.parameters;
-      for (const Parameter& parameter : parameters) {
-        if (parameter.exceeds.empty()) continue;
-        const std::size_t larger = candidate.place_of(*entry, parameter.name),
-                          smaller = candidate.place_of(*entry, parameter.exceeds);
-        if (smaller >= candidate.list.size() || candidate.value(larger) > candidate.value(smaller)) continue;
-        const auto at = static_cast<Eigen::Index>(smaller);
-        again[at] = smaller_too[at] = candidate.list[smaller].lower;
-        is_inside = true;
-        for (const Parameter& shape : parameters) {
-          const auto one = candidate.place_of(*entry, shape.name);
-          if (one != smaller && one < candidate.list.size() && candidate.list[one].standard)
-            smaller_too[static_cast<Eigen::Index>(one)] = *candidate.list[one].standard;
-        }
-        if (!entry->info.where_small) continue;
-        // Inside, a film takes most of a rise away, and it has grown to make up for that.
-        const auto place = [&](int i) {
-          return static_cast<Eigen::Index>(
-              candidate.place_of(*entry, parameters[static_cast<std::size_t>(i)].name));
-        };
-        smaller_too[place(entry->info.where_small->small)] =
-            0.5 * again[place(entry->info.where_small->beside)];
-      }
-    }
-    if (!is_inside) return;
-    FitOptions better = options;
-    better.hopeless = clearly_worse * candidate.fit.cost;
-    better.hopeful = 8;  // the way leads through worse places
-    for (const Eigen::VectorXd& from : {again, smaller_too}) {
-      FitResult out = fitter.minimise(from, better, &candidate.fit.starts);
-      if (out.cost >= better.hopeless) continue;
-      candidate.fit = std::move(out);
-      return;
-    }
   }
 
   /// An explanation of which nothing is known yet.
