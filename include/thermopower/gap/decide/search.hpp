@@ -87,7 +87,8 @@ public:
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(looked_at, order.size()));
     const double before = fitness(best(candidates));
-    in_parallel(order.size(), threads_, [&](std::size_t i) { fine_.look_beside(candidates[order[i]], options); });
+    in_parallel(order.size(), threads_,
+                [&](std::size_t i) { fine_.look_beside(candidates[order[i]], options); });
     return fitness(best(candidates)) < before;
   }
 
