@@ -145,8 +145,9 @@ TEST_CASE("a command that is lost here and there hides neither a delay nor a spr
     CHECK(diagnosis.cause[0].effect == id);
     for (const auto& [name, value] : trial.parameters) {
       const auto& found = diagnosis.cause[0].parameters;
-      const auto one = std::find_if(found.begin(), found.end(),
-                                    [&](const ParameterEstimate& p) { return p.name == name; });
+      const auto one =
+          std::find_if(found.begin(), found.end(),
+                       [&, wanted = name](const ParameterEstimate& p) { return p.name == wanted; });
       REQUIRE(one != found.end());
       CHECK(one->value == Approx(value).epsilon(0.1));
     }
