@@ -33,9 +33,9 @@ struct RunSpan {
   Eigen::Index begin = 0;  ///< first row
   Eigen::Index end = 0;    ///< one past the last row
   std::string label;       ///< text of the `run` column, may be empty
-  bool goes_on =
-      false;  ///< it was under way before its first row, and nobody knows how: what it was commanded, and
-              ///< states that nobody measures, are unknown there
+  /// Whether it was under way before its first row, and nobody knows how: what it was commanded, and states that nobody
+  /// measures, are unknown there.
+  bool goes_on = false;
 
   /// Number of rows.
   Eigen::Index size() const { return end - begin; }

@@ -104,11 +104,11 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     for (std::size_t i = 0; i < candidate.list.size(); ++i) {
       const Coordinate& one = candidate.list[i];
-      if (one.unit != "Hz") continue;
+      if (one.unit != "Hz" || one.still) continue;
+      const auto at = static_cast<Eigen::Index>(i);
       for (const double share : shares) {
         Eigen::VectorXd beside = from;
-        const auto at = static_cast<Eigen::Index>(i);
-        beside[at] = std::clamp(beside[at] + std::log(share), one.lower, one.upper);
+        beside[at] = std::clamp(one.coordinate_of(share * one.value_of(from[at])), one.lower, one.upper);
         soon.hopeless = 0.98 * candidate.fit.cost;
         FitResult found = fitter.minimise(beside, soon, starts_of(candidate));
         if (found.cost < soon.hopeless) candidate.fit = std::move(found);
