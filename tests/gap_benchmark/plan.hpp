@@ -107,7 +107,8 @@ inline std::string title(const CaseOrder& order) {
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
-/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `servo` or `misspecified`; everything when empty
+/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `dirty_none` (of the dirty half those without a gap),
+/// `servo` or `misspecified`; everything when empty
 /// With 5 recordings per effect: 250 single effects, 60 none, 48 pairs, 45 outside the catalogue; 116 dirty; 54 with
 /// the servo's target; 56 misspecified.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
@@ -171,9 +172,10 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
     if (random.chance(0.25)) list.push_back(kinds[(turn + 3) % kinds.size()]);
     return list;
   };
-  if (wanted("dirty"))
+  const bool all_dirty = wanted("dirty");
+  if (all_dirty || wanted("dirty_none"))
     for (const bool axis : {false, true}) {
-      for (const auto& id : all_ids(axis))
+      for (const auto& id : all_dirty ? all_ids(axis) : std::vector<std::string>())
         for (int i = 0; i < std::max(1, count / 3); ++i) {
           CaseOrder order;
           order.half = Half::dirty;
@@ -192,7 +194,7 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
         orders.push_back(order);
       }
       const int unknowns = static_cast<int>(axis ? axis_unknowns().size() : bench_unknowns().size());
-      for (int i = 0; i < scaled(8); ++i) {
+      for (int i = 0; all_dirty && i < scaled(8); ++i) {
         CaseOrder order;
         order.half = Half::dirty;
         order.axis = axis;
