@@ -173,6 +173,42 @@ TEST_CASE("an output that stands still while its noise should show is masked fro
   CHECK(out.size() < static_cast<std::size_t>(to - from + 5));
 }
 
+TEST_CASE(
+    "an output that stood still when a run ended, and when the next one began, is masked from there on") {
+  Recording r = bench();
+  const Eigen::Index from = 680, next = 750, to = 800;
+  const double held = r.column("current_A")[from];
+  change(r, "current_A", [&](double x, Eigen::Index i) { return i >= from && i < to ? held : x; });
+  r.runs = {{0, next, "first"}, {next, r.rows(), "second"}};
+  for (Eigen::Index i = next; i < r.rows(); ++i) r.t_s[i] -= r.t_s[next - 1];
+  const PreparedRecording prepared(test::bench_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "current_A");
+  for (Eigen::Index i = from + 1; i < to; ++i) {
+    CAPTURE(i);
+    CHECK(out.count(i) == 1);
+  }
+  CHECK(out.size() < static_cast<std::size_t>(to - from + 3));
+}
+
+TEST_CASE("a spike of a current whose power never rests is seen in the first row after a pause, too") {
+  // The power wanders, so that few rows of the sixteen between two pauses have one near that of the first.
+  Recording r = bench();
+  Eigen::VectorXd power(r.rows()), current(r.rows());
+  test::Noise noise(4);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    power[i] = std::round(127.0 + 120.0 * std::sin(0.29 * static_cast<double>(i)));
+    current[i] = 1.5 * std::sqrt(power[i] / 255.0) + 0.005 * noise();
+  }
+  constexpr Eigen::Index first = 704, second = 720;
+  for (const Eigen::Index pause : {first, second})
+    for (Eigen::Index i = pause; i < r.rows(); ++i) r.t_s[i] += 40.0;
+  for (const Eigen::Index row : {Eigen::Index{300}, first, Eigen::Index{900}}) current[row] += 3.0;
+  r.set("power_param", power);
+  r.set("current_A", current);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(taken(r, prepared, "current_A") == std::set<Eigen::Index>{300, first, 900});
+}
+
 TEST_CASE("a rate cut off at the end of its range is masked there") {
   Recording r = axis();
   const double limit = 0.7 * r.column("rate_dps").cwiseAbs().maxCoeff();

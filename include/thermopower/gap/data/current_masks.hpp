@@ -29,9 +29,18 @@ inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std:
   return cut_at(runs, starts, true);
 }
 
+/// Runs with the pauses of a logger inside them.
+inline std::vector<RunSpan> joined_at_pauses(const std::vector<RunSpan>& runs) {
+  std::vector<RunSpan> joined;
+  for (const RunSpan& run : runs)
+    if (!joined.empty() && run.goes_on && joined.back().end == run.begin) joined.back().end = run.end;
+    else joined.push_back(run);
+  return joined;
+}
+
 /// The current without what the voltage at the motor does to it at once: the steps of the power are gone. What flows at
-/// a voltage is told by the rows before and after whose voltage is nearest, whatever the law between the two; missing where no
-/// rows are near.
+/// a voltage is told by the rows before and after whose voltage is nearest, whatever the law between the two, and be there a
+/// pause between them; missing where no rows are near.
 /// @param supply  V by row; none: whatever it is, it stays the same
 inline Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power,
                                          const Eigen::VectorXd* supply, const std::vector<RunSpan>& runs) {
@@ -50,7 +59,7 @@ inline Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A, const
   Eigen::VectorXd result = current_A;
   std::vector<std::pair<double, Eigen::Index>> rows;  // by distance in volts
   std::vector<double> list;
-  for (const RunSpan& run : runs)
+  for (const RunSpan& run : joined_at_pauses(runs))
     for (Eigen::Index i = run.begin; i < run.end; ++i) {
       rows.clear();
       list.clear();

@@ -138,9 +138,11 @@ public:
     return mask;
   }
 
-  /// Stretches of one value where noise or motion would show: all but their first row.
+  /// Stretches of one value where noise or motion would show: all but their first row, and that one, too, where the column stood
+  /// there already when the run before it ended.
   RowMask frozen() {
     RowMask mask = empty();
+    double stood_at = missing;  // at the end of the run before
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
       // A temperature does not jump while the logger pauses, either.
@@ -151,8 +153,12 @@ public:
       for (std::size_t begin = 0; begin < rows.size();) {
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
-        if (is_frozen(rows, begin, end))
-          for (std::size_t k = begin + 1; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
+        const bool frozen = is_frozen(rows, begin, end), goes_on = begin == 0 &&
+                                                                   values_[rows[begin]] == stood_at &&
+                                                                   equal_share_ < limit_.rarely_equal;
+        for (std::size_t k = goes_on ? begin : begin + 1; k < end && (frozen || goes_on); ++k)
+          mask[static_cast<std::size_t>(rows[k])] = 1;
+        if (end == rows.size()) stood_at = frozen || goes_on ? values_[rows[begin]] : missing;
         begin = end;
       }
     }
