@@ -35,7 +35,7 @@ struct HeatThresholds {
   double least_share = 0.25;     ///< switched at any time is a half
   double most_share = 1.25;      ///< of the interval that is over is one
   double whole = 0.8;            ///< from here on it is the interval that is over
-  double sure = 4.0;      ///< standard errors that the share differs from 0 by: one in 2000, of 20 parts
+  double sure = 5.0;      ///< standard errors that the share differs from 0 by: one in 25 000, of 20 parts
   double agree = 2.5;     ///< standard errors that few and all bodies may differ by
   double precise = 0.12;  ///< largest standard error of the share
 };
