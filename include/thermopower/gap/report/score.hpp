@@ -6,11 +6,13 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
+#include <thermopower/gap/report/noise_at_a_row.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -145,6 +147,31 @@ inline double with_wander(double noise, double wander, double rms) {
   return wander > 0.0 ? std::max(noise, std::min(std::hypot(noise, wander), rms)) : noise;
 }
 
+/// The noise of every signal as large as it was in the row that a window of an axis starts from.
+class NoiseOfStarts {
+public:
+  explicit NoiseOfStarts(const std::array<double, signal_count>& sigma) : sigma_(sigma) {}
+
+  /// As measured_start_sd() of a rollout takes it.
+  std::array<double, signal_count> at(const Segment& segment) {
+    std::array<double, signal_count> there = sigma_;
+    if (!segment.axis) return there;
+    const Inputs& inputs = *segment.inputs;
+    auto& readings = of_[&inputs];
+    for (std::size_t i = 0; i < signal_count; ++i) {
+      const Signal signal = static_cast<Signal>(i);
+      if (!inputs.judged(signal)) continue;
+      if (!readings[i]) readings[i].emplace(inputs.of(signal), inputs.runs);
+      there[i] *= readings[i]->share_at(segment.begin, segment.run);
+    }
+    return there;
+  }
+
+private:
+  std::array<double, signal_count> sigma_;
+  std::map<const Inputs*, std::array<std::optional<NoiseAtARow>, signal_count>> of_;
+};
+
 /// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
 /// from, carried through the model.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
@@ -156,10 +183,11 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   int directions = 0;
   for (const Segment& segment : segments) directions = std::max(directions, plant.start_size(segment));
   const auto rollout = plant.rollout(model, catalogue, {}, {0, directions}, SimulationMode::free_running);
+  NoiseOfStarts starts(sigma);
   for (Segment segment : segments) {
     segment.carries_on = false;
     const Inputs& inputs = *segment.inputs;
-    const Start sd = rollout->measured_start_sd(segment, sigma);
+    const Start sd = rollout->measured_start_sd(segment, starts.at(segment));
     rollout->roll(segment, Start::Zero(sd.size()), readings);
     const std::vector<Signal>& signals = plant.signals(segment);
     for (Eigen::Index row = segment.begin + (segment.axis ? 1 : 0); row < segment.end; ++row)

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/plant/rows.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+using plant::RunSpan;
+
+/// How large the noise of a column was in single rows, of which the rows around tell. A simulation that starts from what was
+/// measured errs by what the noise was there, and a few dozen starts from noise with heavy tails can have twice the noise of
+/// all rows.
+///
+/// A parabola through the four rows before and after, and the row itself, leaves r of it. Of white Gaussian noise of standard
+/// deviation sigma the noise there has, given r, the mean square r^2 + h sigma^2, with h the weight of the row in its own
+/// smoothed value (Savitzky and Golay 1964, Anal. Chem. 36); over all rows its mean is sigma^2.
+/// Held by tests/gap/data/noise_test.cpp.
+class NoiseAtARow {
+public:
+  /// @param values  of the column, NaN where missing; kept by reference
+  /// @param runs    inside which rows follow on each other
+  NoiseAtARow(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) : values_(values) {
+    double sum = 0.0, count = 0.0;
+    for (const RunSpan& run : runs)
+      for (Eigen::Index row = run.begin + around; row + around < run.end; ++row) {
+        const double left = left_at(row);
+        if (std::isfinite(left)) sum += left * left, count += 1.0;
+      }
+    if (count > 0.0) variance_ = sum / count / (1.0 - own);
+  }
+
+  /// Of the noise in a row of a run, its magnitude as a share of the standard deviation of all; 1 where the rows around do not
+  /// tell.
+  double share_at(Eigen::Index row, const RunSpan& run) const {
+    if (!(variance_ > 0.0) || row - around < run.begin || row + around >= run.end) return 1.0;
+    const double left = left_at(row);
+    return std::isfinite(left) ? std::sqrt(left * left / variance_ + own) : 1.0;
+  }
+
+private:
+  static constexpr Eigen::Index around = 4;
+  static constexpr std::array<double, 5> weights{59.0 / 231.0, 54.0 / 231.0, 39.0 / 231.0, 14.0 / 231.0,
+                                                 -21.0 / 231.0};
+  static constexpr double own = weights[0];
+
+  double left_at(Eigen::Index row) const {
+    double smoothed = own * values_[row];
+    for (Eigen::Index k = 1; k <= around; ++k)
+      smoothed += weights[static_cast<std::size_t>(k)] * (values_[row - k] + values_[row + k]);
+    return values_[row] - smoothed;
+  }
+
+  const Eigen::VectorXd& values_;
+  double variance_ = 0.0;
+};
+
+}  // namespace thermopower::gap::engine
