@@ -323,11 +323,13 @@ private:
       searching.renew(candidates);
     };
     renew();
-    if (!costly.empty() && !does_for_now(Search::best(candidates))) {
+    const auto add_costly = [&] {
       searching.add_singles(candidates, costly);
       causes.insert(causes.end(), costly.begin(), costly.end());
+      costly.clear();
       renew();
-    }
+    };
+    if (!costly.empty() && !does_for_now(Search::best(candidates))) add_costly();
     if (searching.refine_shapes(candidates)) renew();
     if (searching.look_beside(candidates, decision.room_for_sets)) renew();
     if (worst != nullptr && !(*worst = overlooked_by(attempt)).empty()) return attempt;
@@ -340,13 +342,22 @@ private:
       renew();
       if (searching.refine_shapes(candidates)) renew();
     }
-    searching.refit_rivals(candidates);
-    name_moved_constants(candidates, model_);
-    attempt.weight = correlation_of(Search::best(candidates), problem);
-    attempt.weight.shown = shown_by(train_inputs_);
-    attempt.recalibrated = recalibrate(candidates, fine);
-    judge(attempt, fine);
-    weigh(candidates, attempt.weight, model_);
+    const auto decide = [&] {
+      searching.refit_rivals(candidates);
+      name_moved_constants(candidates, model_);
+      attempt.weight = correlation_of(Search::best(candidates), problem);
+      attempt.weight.shown = shown_by(train_inputs_);
+      attempt.recalibrated = recalibrate(candidates, fine);
+      judge(attempt, fine);
+      weigh(candidates, attempt.weight, model_);
+    };
+    decide();
+    // What fits the data it was fitted to, and fails on others, was a stand-in.
+    constexpr double near = decision.near_floor;
+    if (!costly.empty() && !Search::best(candidates).held_out.within(near * near)) {
+      add_costly();
+      decide();
+    }
     return attempt;
   }
 
@@ -395,6 +406,10 @@ private:
   /// judged. The others are out of the running.
   void judge(Attempt& attempt, const Attribution& fine) const {
     std::vector<Candidate>& candidates = attempt.candidates;
+    for (Candidate& one : candidates) {
+      one.held_out = {};
+      one.hidden_starts = 0;
+    }
     const std::vector<Segment> segments = judged_segments(held_out_inputs_);
     const auto model_of = [&](const Candidate& one) {
       return augmented(model_, one.explanation, one.list, one.fit.point);
