@@ -5,11 +5,13 @@
 // seconds apart, lines drawn between the readings. None of it is a gap, and none hides one.
 #include "../catch.hpp"
 #include "data/switched_bench.hpp"
+#include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -39,6 +41,64 @@ void check_sound_and_wound(test::SwitchedBench bench, unsigned seed, Change chan
   CHECK(wound.verdict == Verdict::explained);
   REQUIRE(wound.cause.size() == 1);
   CHECK(wound.cause[0].effect == "second_thermal_mass");
+}
+
+/// A motor on a battery that nobody logs: 0.3 ohm, and 2 V lower for each Ah that it has given.
+Recording on_a_battery(std::uint64_t seed) {
+  constexpr int rows = 2400;
+  test::Noise noise(seed);
+  Recording r;
+  r.name = "on a battery";
+  r.t_s.resize(rows);
+  Eigen::VectorXd power(rows), current(rows), motor(rows), ambient(rows);
+  double motor_C = 24.0, given_Ah = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    r.t_s[i] = 2.0 * i;
+    power[i] = 25.0 * std::floor(5.2 + 5.0 * std::sin(static_cast<double>(seed) + 1.7 * (i / 60)));
+    ambient[i] = 23.0;
+    const double duty = power[i] / 255.0, ohm = 8.0 * (1.0 + 0.00393 * (motor_C - 25.0));
+    const double amps = (12.0 - 2.0 * given_Ah) * std::sqrt(duty) / (ohm + 0.3 * duty);
+    current[i] = amps + 0.003 * noise();
+    motor[i] = motor_C + 0.1 * noise();
+    given_Ah += amps * std::sqrt(duty) * 2.0 / 3600.0;
+    for (int k = 0; k < 20; ++k) motor_C += 0.1 * (amps * amps * ohm - 0.15 * (motor_C - 23.0)) / 60.0;
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  r.set("motor_C", motor);
+  r.set("ambient_C", ambient);
+  return r;
+}
+
+TEST_CASE(
+    "a battery is not full again where a power was lost, a logger paused, or the held-out part begins") {
+  Model model = test::bench_model();
+  const auto check_battery = [&](const Diagnosis& found) {
+    INFO(found.reason);
+    CHECK(found.verdict == Verdict::explained);
+    REQUIRE(found.cause.size() == 1);
+    CHECK(found.cause.front().effect == "supply_sag");
+    CHECK(test::parameter_of(found, "V_per_Ah") == Approx(2.0).epsilon(0.05));
+    CHECK(test::parameter_of(found, "internal_ohm") == Approx(0.3).epsilon(0.2));
+  };
+  Recording lost = on_a_battery(2), paused = on_a_battery(3);
+  Eigen::VectorXd power = lost.column("power_param");
+  for (const int hole : {700, 1500}) power.segment(hole, 10).setConstant(missing);
+  lost.set("power_param", power);
+  check_battery(diagnose(model, {on_a_battery(1)}, {lost}));
+  // The logger lost rows; the motor did not stop.
+  const Recording first = paused.slice(0, 900), second = paused.slice(930, paused.rows());
+  Recording with_pause;
+  with_pause.name = "paused";
+  with_pause.t_s.resize(first.rows() + second.rows());
+  with_pause.t_s << first.t_s, second.t_s;
+  for (const Column& column : first.columns) {
+    Eigen::VectorXd both(with_pause.t_s.size());
+    both << column.values, second.column(column.name);
+    with_pause.set(column.name, both);
+  }
+  check_battery(diagnose(model, {on_a_battery(1)}, {with_pause}));
+  check_battery(diagnose(model, {on_a_battery(4)}, {}));
 }
 
 TEST_CASE("a power that is switched between the rows makes no gap, and hides none") {

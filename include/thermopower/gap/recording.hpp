@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/charge_before.hpp>
 #include <thermopower/plant/rows.hpp>
 
 #include <Eigen/Core>
@@ -104,11 +105,15 @@ struct Recording {
     part.name = name;
     part.first_row = first_row + begin;
     part.t_s = t_s.segment(begin, end - begin);
+    const Eigen::VectorXd none, *amps = find("current_A"), *power = find("power_param");
+    const RecordedCharge charge(t_s, amps != nullptr ? *amps : none, power != nullptr ? *power : none);
     for (const RunSpan& run : spans()) {
       const Eigen::Index first = run.begin > begin ? run.begin : begin;
       const Eigen::Index last = run.end < end ? run.end : end;
+      if (first >= last) continue;
       const bool is_cut = run.begin < first;
-      if (first < last) part.runs.push_back({first - begin, last - begin, run.label, run.goes_on || is_cut});
+      part.runs.push_back(
+          {first - begin, last - begin, run.label, run.goes_on || is_cut, charge.until(run, first)});
     }
     for (const Column& one : columns)
       part.columns.push_back({one.name, one.values.segment(begin, end - begin)});

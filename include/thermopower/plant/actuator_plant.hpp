@@ -228,6 +228,7 @@ private:
     const Eigen::VectorXd& temperature = inputs.held_motor_C;
     BenchState<Scalar> state =
         rollout.start(segment.begin, temperature.size() > 0 ? temperature[segment.begin] : 25.0);
+    state.charge_Ah = constant<Scalar>(segment.run.drawn_Ah);
     state.winding_C += start[0];
     state.surface_C = state.winding_C + start[1];
     state.thermometer_C = state.winding_C;

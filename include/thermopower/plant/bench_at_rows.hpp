@@ -127,7 +127,7 @@ private:
       for (Eigen::VectorXd* one : {&v.ohm, &v.v_rms_V, &v.supply_V, &v.relaxation_per_s, &v.winding_C})
         *one = Eigen::VectorXd::Zero(n);
     for (const RunSpan& run : inputs_.runs) {
-      double charge_Ah = 0.0;
+      double charge_Ah = run.drawn_Ah;
       HiddenNodes hidden;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         const double t_s = inputs_.t_s[i] - inputs_.t_s[run.begin];

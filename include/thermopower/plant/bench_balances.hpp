@@ -39,7 +39,7 @@ inline Balance current_balance(const BenchAtRows& bench, const std::vector<Covar
   k->on = (k->v.v_rms_V.array() > 0.0).cast<double>();
   k->charge = Eigen::VectorXd::Zero(n);
   for (const RunSpan& run : in.runs) {
-    double sum = 0.0;
+    double sum = run.drawn_Ah;
     for (Eigen::Index i = run.begin; i < run.end; ++i) {
       k->charge[i] = sum;
       if (i + 1 == run.end) break;

@@ -5,6 +5,7 @@
 #include <thermopower/actuator/duty.hpp>
 #include <thermopower/plant/bench_state.hpp>
 #include <thermopower/plant/body_network.hpp>
+#include <thermopower/plant/charge_before.hpp>
 #include <thermopower/plant/exchange_step.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/instance.hpp>
@@ -211,8 +212,7 @@ public:
 
   /// Share of the motor's current that the supply carries: sqrt(duty).
   double charge_share(Eigen::Index row) const {
-    if (inputs_.power_param.size() == 0) return 1.0;
-    return std::sqrt(std::clamp(inputs_.power_param[row], 0.0, 255.0) / 255.0);
+    return inputs_.power_param.size() == 0 ? 1.0 : share_of_supply(inputs_.power_param[row]);
   }
 
 private:

@@ -203,7 +203,8 @@ struct EffectInfo {
   /// What the joint remembers because of it; only with hooks on AxisTerms or FrictionTerms, at most
   /// `most_own_states` in a model.
   std::vector<HiddenState> states = {};
-  /// Whether it is looked at only where no other single cause brings the data to their noise: it costs much to
+  /// Whether it is looked at only where no other single cause brings the training data to their noise, or where what does fails on
+  /// held-out data: it costs much to
   /// simulate, or is a richer kind of a cause that is cheaper.
   bool costly = false;
   /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds half of the

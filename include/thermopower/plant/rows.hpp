@@ -36,6 +36,8 @@ struct RunSpan {
   /// Whether it was under way before its first row, and nobody knows how: what it was commanded, and states that nobody
   /// measures, are unknown there.
   bool goes_on = false;
+  /// Charge that the supply had given before its first row, as far as that is known; see RecordedCharge.
+  double drawn_Ah = 0.0;
 
   /// Number of rows.
   Eigen::Index size() const { return end - begin; }

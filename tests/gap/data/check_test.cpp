@@ -1040,4 +1040,19 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
     CHECK(stopped.recording().spans().size() == 1);
     for (const Finding& finding : stopped.findings()) CHECK(finding.kind != FindingKind::position_reset);
   }
+  // And one that goes on where the axis turns round, with a reading astray now and then while it stands.
+  for (int i = 0; i < rows; ++i) {
+    angle[i] = 60.0 * std::sin(0.04 * i) + 0.02 * noise();
+    rate[i] = 240.0 * std::cos(0.04 * i) + 0.2 * noise();
+  }
+  for (int i = 1401; i < 1610; ++i) angle[i] = i == 1450 || i == 1530 ? 150.0 : angle[1400];
+  one.set("angle_deg", angle);
+  one.set("rate_dps", rate);
+  const PreparedRecording turned(model, one);
+  CHECK(turned.recording().spans().size() == 1);
+  const std::set<Eigen::Index> out = taken(one, turned, "angle_deg");
+  for (Eigen::Index i = 1401; i < 1610; ++i) {
+    CAPTURE(i);
+    CHECK(out.count(i) == 1);
+  }
 }

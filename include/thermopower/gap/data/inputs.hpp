@@ -6,6 +6,7 @@
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
+#include <thermopower/plant/charge_before.hpp>
 #include <thermopower/plant/plant.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -114,6 +115,7 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
   if (model.has_thermal()) inputs.heat_W = take("heat_W");
   if (inputs.heat == HeatSource::none && inputs.heat_W.size() > 0) inputs.heat = HeatSource::recorded;
   if (recording.has("current_A")) inputs.held_current_A = take("current_A");
+  plant::RecordedCharge(inputs.t_s, inputs.held_current_A, inputs.power_param).tell(inputs.runs);
   if (recording.has("motor_C")) inputs.held_motor_C = take("motor_C");
 
   auto& notes = inputs.not_judged;

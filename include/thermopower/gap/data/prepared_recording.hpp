@@ -447,7 +447,8 @@ inline void PreparedRecording::keep_known_rows() {
     const auto begin = static_cast<Eigen::Index>(source_rows_.size());
     for (Eigen::Index row = run.begin; row < run.end; ++row)
       source_rows_.push_back(believed_.first_row + row);
-    run = {begin, static_cast<Eigen::Index>(source_rows_.size()), run.label, run.goes_on};
+    run.begin = begin;
+    run.end = static_cast<Eigen::Index>(source_rows_.size());
   }
   believed_.runs = std::move(kept);
   const auto rows = static_cast<Eigen::Index>(source_rows_.size());

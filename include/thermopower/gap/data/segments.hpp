@@ -166,7 +166,10 @@ inline double went_while_standing(const Eigen::VectorXd& angle, const Eigen::Vec
   double went = 0.0;
   Eigen::Index first = row;
   bool stood = true;
-  for (Eigen::Index i = row; i >= begin && angle[i] == angle[row]; first = i--) {
+  const auto stands = [&](Eigen::Index i) {  // a spike in between says nothing
+    return angle[i] == angle[row] || (i > begin && angle[i - 1] == angle[row]);
+  };
+  for (Eigen::Index i = row; i >= begin && stands(i); first = i--) {
     stood = stood && rate_dps[i] == rate_dps[row];
     if (std::isfinite(rate_dps[i])) went += rate_dps[i] * (t_s[i + 1] - t_s[i]);
   }

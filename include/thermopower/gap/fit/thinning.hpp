@@ -65,7 +65,8 @@ public:
     for (const RunSpan& span : full_.runs) {
       const Eigen::Index begin = static_cast<Eigen::Index>(rows_.size());
       for (Eigen::Index row = span.begin; row < span.end;) row = add_block(span, row);
-      thin.runs.push_back({begin, static_cast<Eigen::Index>(rows_.size()), span.label, span.goes_on});
+      thin.runs.push_back(
+          {begin, static_cast<Eigen::Index>(rows_.size()), span.label, span.goes_on, span.drawn_Ah});
     }
     if (10 * rows_.size() > 8 * static_cast<std::size_t>(full_.rows())) return full_;
     const Eigen::Index count = static_cast<Eigen::Index>(rows_.size());

@@ -53,7 +53,7 @@ inline Recording joined(const std::vector<Recording>& recordings) {
       }
     }
     for (const RunSpan& run : part->spans())
-      out.runs.push_back({run.begin + at, run.end + at, run.label, run.goes_on});
+      out.runs.push_back({run.begin + at, run.end + at, run.label, run.goes_on, run.drawn_Ah});
     at += part->rows();
   }
   return out;
