@@ -7,6 +7,7 @@
 #include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
+#include <tuple>
 #include <utility>
 
 using namespace engine_fixture;
@@ -346,6 +347,38 @@ TEST_CASE("a ripple that takes nearly all of the torque away at some angles is n
     one.fit.point[at + 1] = cosine;
     CHECK(ends_on_bounds(one, model) == is_none);
   }
+}
+
+TEST_CASE("a gear that passes less than a tenth of the torque is none") {
+  const Model model = axis_model();
+  for (const auto& [id, lossy, blocked] :
+       {std::tuple("drive_efficiency", 0.15, 0.06), {"load_friction", 0.85, 0.94}}) {
+    CAPTURE(id);
+    Candidate one;
+    one.explanation.effects.push_back(standard_catalogue().find(id));
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    const auto constants = static_cast<Eigen::Index>(model.calibrated().size());
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.point.tail(one.fit.point.size() - constants).setConstant(0.5);
+    one.fit.at_bound.assign(one.list.size(), false);
+    one.fit.point[constants] = lossy;
+    CHECK_FALSE(ends_on_bounds(one, model));
+    one.fit.point[constants] = blocked;
+    CHECK(ends_on_bounds(one, model));
+  }
+}
+
+TEST_CASE("what fits its own data clearly worse is not as good, though it does better on fewer others") {
+  const Model model = axis_model();
+  std::vector<Candidate> candidates = nothing_friction_and(model, "asymmetric_friction");
+  Candidate &simple = candidates[1], &rich = candidates[2];
+  rich.train = sums_of(blocks(1.0, 1.0));
+  rich.held_out = sums_of(blocks(1.2, 1.2));
+  simple.held_out = sums_of(blocks(0.98, 0.98));
+  simple.train = sums_of(blocks(1.05, 1.05));
+  CHECK(scores_alike(simple, rich));
+  simple.train = sums_of(blocks(1.3, 1.3));
+  CHECK_FALSE(scores_alike(simple, rich));
 }
 
 TEST_CASE("a sink that does not change in a run is no sink, but air of another temperature") {

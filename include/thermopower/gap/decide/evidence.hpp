@@ -129,7 +129,7 @@ inline double noise_multiple(const Candidate& candidate, std::size_t signal) {
   return std::sqrt((candidate.train.squares[signal] + candidate.held_out.squares[signal]) / samples);
 }
 
-/// The root mean square of a held-out signal, in units of the noise floor.
+/// The root mean square of a signal, in units of the noise or the noise floor.
 inline double noise_multiple(const SignalSums& sums, std::size_t signal) {
   return std::sqrt(sums.mean(signal));
 }
@@ -162,6 +162,9 @@ inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
         candidate.held_out.mean(i) > held_out * held_out * other.held_out.mean(i))
       return false;
     if (noise_multiple(candidate, i) > (1.0 + decision.alike_overall + margin) * noise_multiple(other, i))
+      return false;
+    if (noise_multiple(candidate.train, i) >
+        (1.0 + decision.alike_in_training + margin) * noise_multiple(other.train, i))
       return false;
   }
   return true;

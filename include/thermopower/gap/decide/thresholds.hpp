@@ -18,6 +18,8 @@ struct DecisionThresholds {
   double alike_held_out = 0.005;
   /// The same over training and held-out data together, where starts are fitted and less is noise.
   double alike_overall = 0.02;
+  /// The same over training data alone: what fits these clearly worse is another thing, however well it does on fewer others.
+  double alike_in_training = 0.06;
   /// Share of the score, for an explanation with fewer parameters, where the best one is far above the noise: a
   /// model that is wrong by several times the noise proves nothing by its last twentieth.
   double alike_far_from_noise = 0.05;

@@ -34,20 +34,30 @@ struct DriveEfficiency {
 
   /// What it is.
   static EffectInfo info() {
-    return {"drive_efficiency",
-            Submodel::mechanical_friction,
-            "torque -= |drive| (1 - efficiency) film(w) where drive w > 0, "
-            "|drive| (1 / back_efficiency - 1) film(w) where drive w < 0",
-            "A gear loses another part of the torque when the motor drives than when the load does.",
-            {parameter(efficiency, "efficiency").unit("1").within(0.05, 1.0).starts({0.85}).absent_at(1.0),
-             parameter(back_efficiency, "back_efficiency")
-                 .unit("1")
-                 .within(0.05, 1.0)
-                 .starts({0.7})
-                 .absent_at(1.0),
-             begun_once(friction_transition(transition)), begun_once(friction_tail(tail))},
-            {Need::axis_model},
-            "driving and braking in turn, under a load that is known"};
+    EffectInfo one = {
+        "drive_efficiency",
+        Submodel::mechanical_friction,
+        "torque -= |drive| (1 - efficiency) film(w) where drive w > 0, "
+        "|drive| (1 / back_efficiency - 1) film(w) where drive w < 0",
+        "A gear loses another part of the torque when the motor drives than when the load does.",
+        {parameter(efficiency, "efficiency").unit("1").within(0.05, 1.0).starts({0.85}).absent_at(1.0),
+         parameter(back_efficiency, "back_efficiency")
+             .unit("1")
+             .within(0.05, 1.0)
+             .starts({0.7})
+             .absent_at(1.0),
+         begun_once(friction_transition(transition)), begun_once(friction_tail(tail))},
+        {Need::axis_model},
+        "driving and braking in turn, under a load that is known"};
+    one.is_itself = drives;
+    return one;
+  }
+
+  /// Whether a tenth of the torque at least arrives while the motor drives: worms and screws pass a fifth, and what takes more
+  /// than nine tenths away stands for something that the motion itself feels.
+  static bool drives(const double* p) {
+    constexpr double least = 0.1;
+    return p[efficiency] >= least;
   }
 
   /// With the first of its starts alone: how the film turns over shows as in `load_friction`, which a fit goes on from.

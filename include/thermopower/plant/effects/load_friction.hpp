@@ -23,14 +23,22 @@ struct LoadFriction {
 
   /// What it is.
   static EffectInfo info() {
-    return {"load_friction",
-            Submodel::mechanical_friction,
-            "torque -= share |drive - load| film(w / transition, tail)",
-            "Friction that grows with the torque transmitted (gears, screws).",
-            {parameter(share, "share").unit("1").within(0.0, 0.95).starts({0.0}),
-             friction_transition(transition), friction_tail(tail)},
-            {Need::axis_model},
-            "fast and slow motion at large and at small torque"};
+    EffectInfo one = {"load_friction",
+                      Submodel::mechanical_friction,
+                      "torque -= share |drive - load| film(w / transition, tail)",
+                      "Friction that grows with the torque transmitted (gears, screws).",
+                      {parameter(share, "share").unit("1").within(0.0, 0.95).starts({0.0}),
+                       friction_transition(transition), friction_tail(tail)},
+                      {Need::axis_model},
+                      "fast and slow motion at large and at small torque"};
+    one.is_itself = passes_torque;
+    return one;
+  }
+
+  /// Whether a tenth of the torque at least is left, as DriveEfficiency::drives() asks it.
+  static bool passes_torque(const double* p) {
+    constexpr double most = 0.9;
+    return p[share] <= most;
   }
 
   /// Adds dry friction in proportion to what the gears transmit.
