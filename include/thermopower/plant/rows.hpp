@@ -43,6 +43,21 @@ struct RunSpan {
   Eigen::Index size() const { return end - begin; }
 };
 
+/// What a command did between the rows, as far as nobody knows: errors by row of its mean until the next one, in its unit.
+struct UnknownCommand {
+  Eigen::VectorXd between;  ///< of each row on its own; empty: it is known
+  Eigen::VectorXd
+      shift;  ///< of all rows together, with signs: all are early or late by as much; empty: they are not
+
+  /// Whether anything is unknown.
+  bool any() const { return between.size() > 0 || shift.size() > 0; }
+  /// An error of a row's command: its own, of so many standard deviations, and what all may be off by.
+  double error(Eigen::Index row, double standard_deviations) const {
+    return (between.size() > 0 ? standard_deviations * between[row] : 0.0) +
+           (shift.size() > 0 ? shift[row] : 0.0);
+  }
+};
+
 /// Where the heat of the thermal model comes from.
 enum class HeatSource {
   law,       ///< the current law, from `power_param`
@@ -99,8 +114,9 @@ struct Inputs {
   Eigen::MatrixXd
       command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
                        ///< rows x parts; empty: it holds
-  double command_noise = 0.0;    ///< standard deviation of what is noise in the command, in its unit
-  double current_noise_A = 0.0;  ///< the same of a recorded current that heats: its variance heats nothing
+  double command_noise = 0.0;      ///< standard deviation of what is noise in the command, in its unit
+  UnknownCommand command_unknown;  ///< what it did between the rows, as far as nobody knows
+  double current_noise_A = 0.0;    ///< the same of a recorded current that heats: its variance heats nothing
   HeatSource heat = HeatSource::none;  ///< what drives the thermal model
   Eigen::VectorXd
       next_share;  ///< of a bench: part of the interval after each row in which the next row's inputs are in
@@ -115,6 +131,8 @@ struct Inputs {
   Eigen::Index rows() const { return t_s.size(); }
   /// Whether inputs change at instants between the rows that nobody knows: `next_share` is their mean.
   bool switched_anytime() const { return (next_share.array() > 0.0 && next_share.array() < 1.0).any(); }
+  /// Whether the command is known but for some error.
+  bool errs_in_command() const { return command_noise > 0.0 || command_unknown.any(); }
   /// Whether the signal is recorded and has a law.
   bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
   /// Measured values of a judged signal.

@@ -23,7 +23,8 @@ std::optional<double> share_of(const Recording& r) {
   const Inputs inputs = prepare(test::SampledAxis::model(), r);
   CommandBetweenRows between;
   between.add(inputs, inputs.drive_A);
-  return between.share();
+  const auto share = between.share();
+  return share ? std::optional<double>(share->value) : std::nullopt;
 }
 
 /// Standard deviation of what is noise in the command.

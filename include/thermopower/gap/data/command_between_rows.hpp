@@ -33,6 +33,7 @@ struct CommandThresholds {
   double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
   double sure = 5.0;          ///< standard errors that a share differs from 0 by
   double precise = 0.08;      ///< largest standard error of the share
+  double agree = 2.0;         ///< standard errors that two shares may differ by
   double matters = 0.2;       ///< noise scales of what half a row changes: less is nobody's concern
   double bend_known = 0.015;  ///< largest standard error of a bend that is believed
   double angle_off = 0.1;     ///< noise scales of the angle that a command held at its mean may cost
@@ -49,17 +50,23 @@ public:
   /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
   void add(const Inputs& inputs, const Eigen::VectorXd& command) { motion_.add(inputs, command); }
 
+  /// Part of a command's next step, and how well it is known.
+  struct Share {
+    double value = 0.0;  ///< 0..1
+    double error = 0.0;  ///< standard error
+  };
+
   /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
   /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
   /// tell.
-  std::optional<double> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
+  std::optional<Share> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
 
   /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
-  std::optional<double> steady() const { return steady_share(share(), CommandThresholds().least_share); }
+  std::optional<Share> steady() const { return steady_share(share(), CommandThresholds().least_share); }
 
   /// The same of a servo's target: what the motion shows of what the servo makes of its next step. An axis that follows a smooth target
   /// closely moves as that steps: then nobody can tell it from damping.
-  std::optional<double> steady_target(const ServoGains<double>& gains) const {
+  std::optional<Share> steady_target(const ServoGains<double>& gains) const {
     const auto fit = motion_.fit(
         [&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run, Eigen::Index k) {
           constexpr double saturated = 0.98;  // of the limit
@@ -137,16 +144,45 @@ private:
     return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
   }
 
-  std::optional<double> share_of_clean() const {
-    const auto fit = motion_.fit(held_and_next);
-    if (!fit) return std::nullopt;
-    const std::optional<double> from_rows = share_of(*fit);
-    if (tells(*fit)) return from_rows;
-    // Rows that are too noisy to tell a command that holds from one that goes on: their means may.
-    for (const Eigen::Index together : {Eigen::Index{4}, Eigen::Index{8}})
-      if (const auto smoother = motion_.fit(held_and_next, together))
-        if (tells(*smoother)) return share_of(*smoother);
-    return from_rows;
+  /// From rows, else from means of rows where single ones are too rough, else from the means around them.
+  std::optional<Share> share_of_clean() const {
+    if (const std::optional<Share> held = share_of_held()) return held;
+    const auto rows = motion_.fit(held_and_next);
+    const std::optional<Share> from_rows = rows ? share_of(*rows) : std::nullopt;
+    return from_rows && smooth() && tells(*smooth()) ? share_around_rows() : from_rows;
+  }
+
+  /// From means around the rows: the noise of single ones would make every share a half, more so the fewer rows are taken
+  /// together. Where these do not tell, a share that is the same for rows and for their means is no noise's, but that
+  /// of a loop that went on between the rows and whose own noise is in the command.
+  std::optional<Share> share_of_noisy() const {
+    const std::optional<Share> around_rows = share_around_rows();
+    return around_rows ? around_rows : share_of_held();
+  }
+
+  /// From single rows and from means of 4, 8 and 16, as they can tell a command that holds from one that goes on: the most
+  /// precise of them that agree with the means of most. A controller that was given a noisy motion has its noise
+  /// in the command, and the acceleration from row to row the same: means are free of that.
+  std::optional<Share> share_of_held() const {
+    constexpr CommandThresholds limit;
+    std::optional<Share> best;
+    for (const Eigen::Index together : {16, 8, 4, 1}) {
+      if (best && together > 1) continue;
+      const auto fit = motion_.fit(held_and_next, together);
+      if (!fit || !tells(*fit)) continue;
+      const std::optional<Share> found = share_of(*fit);
+      if (!best ||
+          (found && found->error < best->error &&
+           std::abs(found->value - best->value) < limit.agree * std::hypot(found->error, best->error)))
+        best = found;
+    }
+    return best;
+  }
+
+  std::optional<Share> share_around_rows() const {
+    const std::optional<MotionFit>& fit = smooth();
+    if (!fit || fit->value[0] == 0.0) return std::nullopt;
+    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
   }
 
   /// Whether a share of none can be told from the least that is believed.
@@ -158,29 +194,22 @@ private:
   }
 
   /// Of the next step of what the first term is.
-  std::optional<double> share_of(const MotionFit& fit) const {
+  std::optional<Share> share_of(const MotionFit& fit) const {
     constexpr CommandThresholds limit;
     if (fit.value[0] == 0.0 || 0.5 * fit.first_dps < limit.matters * motion_.noise(Signal::rate_dps))
       return std::nullopt;
     return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
   }
 
-  static std::optional<double> steady_share(const std::optional<double>& share, double least) {
+  static std::optional<Share> steady_share(const std::optional<Share>& share, double least) {
     constexpr CommandThresholds limit;
-    return share && *share > least && *share < limit.most_share ? share : std::nullopt;
+    return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
   }
 
-  /// From means of the rows around: the noise of single ones would make every share a half.
-  std::optional<double> share_of_noisy() const {
-    const std::optional<MotionFit>& fit = smooth();
-    if (!fit || fit->value[0] == 0.0) return std::nullopt;
-    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
-  }
-
-  static std::optional<double> sure_of(const std::pair<double, double>& share) {
+  static std::optional<Share> sure_of(const std::pair<double, double>& share) {
     constexpr CommandThresholds limit;
     if (!(share.second < limit.precise)) return std::nullopt;
-    return std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first;
+    return Share{std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first, share.second};
   }
 
   /// What of the command around each row the motion follows.
@@ -192,25 +221,33 @@ private:
   /// What the command turns the rate by, deg/s^2 for each of its unit; 0 where nobody knows.
   double response() const { return smooth() ? std::abs(smooth()->value[0]) : 0.0; }
 
+  /// The longest of the recordings' intervals.
+  double step_s() const {
+    double longest_s = 0.0;
+    for (const auto& one : motion_.recordings())
+      longest_s = std::max(longest_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
+    return longest_s;
+  }
+
+  /// Command and motion at each frequency.
+  CommandNoise spectra(const MotionFit& fit) const {
+    Eigen::Index rows = 0;
+    for (const auto& one : motion_.recordings()) rows += one.inputs->rows();
+    CommandNoise all(step_s(), rows);
+    for (const auto& one : motion_.recordings())
+      all.add(*one.inputs, *one.command,
+              [&](double dps, double rad) { return MotionRegression::beside(fit, dps, rad); });
+    return all;
+  }
+
   double find_noise() const {
     constexpr CommandThresholds limit;
     const std::optional<MotionFit>& fit = smooth();
     if (!fit) return 0.0;
     const double response = this->response();
-    double step_s = 0.0;
-    Eigen::Index rows = 0;
-    for (const auto& one : motion_.recordings()) {
-      step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
-      rows += one.inputs->rows();
-    }
-    CommandNoise spectra(step_s, rows);
-    for (const auto& one : motion_.recordings()) {
-      spectra.add(*one.inputs, *one.command,
-                  [&](double dps, double rad) { return MotionRegression::beside(*fit, dps, rad); });
-    }
-    const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
+    const double sd = spectra(*fit).sd(response, 0.5 + fit->value[1] / fit->value[0]);
     // A random walk of the rate, and its sum.
-    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
+    const double wander_dps = response * sd * std::sqrt(step_s() * horizon_s_),
                  wander_deg = wander_dps * horizon_s_ / std::sqrt(3.0);
     const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
     const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
@@ -223,6 +260,34 @@ private:
   mutable std::optional<double> noise_;                     ///< once it was asked for
   mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
 };
+
+/// Standard deviation of the command's mean until the next row that a straight line does not tell: a step between two rows is at
+/// any instant there, and of what a loop's own noise did meanwhile the rows say nothing. Where steps follow on each
+/// other as those of a smooth command do, nothing is unknown.
+inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
+  const double of_a_step = 1.0 / std::sqrt(12.0);  // a uniform distribution's
+  // Of white noise: that of a mean of four or more, which nobody logged, and two fifths to a half of either end's.
+  constexpr double of_noise = 0.7;
+  const double noise = of_noise * white_scale(command, runs);
+  Eigen::VectorXd sd = Eigen::VectorXd::Zero(command.size());
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
+      const double step = command[row + 1] - command[row],
+                   before = row > run.begin ? command[row] - command[row - 1] : step,
+                   after = row + 2 < run.end ? command[row + 2] - command[row + 1] : step;
+      sd[row] =
+          std::max(of_a_step * std::min(std::abs(step), std::abs(step - 0.5 * (before + after))), noise);
+    }
+  return sd;
+}
+
+/// Steps of a command from each row to the next; 0 from a run's last one.
+inline Eigen::VectorXd steps_of(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
+  Eigen::VectorXd steps = Eigen::VectorXd::Zero(command.size());
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) steps[row] = command[row + 1] - command[row];
+  return steps;
+}
 
 /// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.
 ///

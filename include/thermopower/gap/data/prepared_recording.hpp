@@ -49,10 +49,13 @@ public:
   double interval_s() const { return interval_s_; }
   /// Takes other values of a command than were recorded.
   /// @param within  its means in equal parts of the intervals, rows of recording() x parts
-  void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within) {
+  /// @param unknown what of each row's nobody knows
+  void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within,
+                    UnknownCommand unknown) {
     believed_.set(column, within.rowwise().mean());
     renew_inputs(model);
     if (within.cols() > 1) inputs_.command_within = std::move(within);
+    inputs_.command_unknown = std::move(unknown);
   }
   /// Lets a servo's target go on between the rows. @param share  of the way to the next row's, on average
   void take_targets_between(const Model& model, double share) {

@@ -68,7 +68,7 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
   };
   for (const PreparedRecording& one : checked.train)
     if (is_closed(one)) between.add(one.inputs(), one.inputs().servo_A);
-  const std::optional<double> share = between.steady_target(plant::servo_gains(model));
+  const auto share = between.steady_target(plant::servo_gains(model));
   if (!share) return;
   for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
     findings.push_back({FindingKind::sampled_command,
@@ -76,11 +76,12 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
                         one.recording().name,
                         one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
                         "went on between the rows, as the motion shows: the servo is given what lies " +
-                            short_number(100.0 * *share) + " % of the way to the next row's, on average",
+                            short_number(100.0 * share->value) +
+                            " % of the way to the next row's, on average",
                         "log the target at the rate it is set",
                         FindingAction::none,
                         {}});
-    one.take_targets_between(model, *share);
+    one.take_targets_between(model, share->value);
   });
 }
 
@@ -98,7 +99,7 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) between.add(one.inputs(), command_of(one));
   const double noise = between.noise();
-  const std::optional<double> share = between.steady();
+  const auto share = between.steady();
   if (!share && !(noise > 0.0)) return;
   const bool bends = share && between.bends();
   const int parts = share ? between.pieces() : 1;
@@ -111,10 +112,16 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
     if (share) {
       note(FindingKind::sampled_command,
            "went on between the rows, as the motion shows: its mean until the next row is taken, " +
-               short_number(100.0 * *share) + " % of the way to that one's",
+               short_number(100.0 * share->value) + " % of the way to that one's",
            "log the command at the rate it is set, or the mean of it between the rows");
-      one.take_command(model, column,
-                       command_within(command_of(one), one.recording().spans(), *share, bends, parts));
+      const Eigen::VectorXd& command = command_of(one);
+      const std::vector<RunSpan> runs = one.recording().spans();
+      UnknownCommand unknown;
+      if (!(noise > 0.0)) unknown.between = unknown_between(command, runs);
+      constexpr double sure = 2.0;  // standard errors: 95 %
+      unknown.shift = sure * share->error * steps_of(command, runs);
+      one.take_command(model, column, command_within(command, runs, share->value, bends, parts),
+                       std::move(unknown));
     }
     if (noise > 0.0) {
       const char* unit = model.axis->voltage_driven() ? " V" : " A";

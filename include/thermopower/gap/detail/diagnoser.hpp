@@ -134,14 +134,25 @@ private:
     if (is_cause) return fit_both_parts(model_);
     const Model constants = augmented(model_, empty.explanation, empty.list, empty.fit.point);
     if (is_enough(constants, held_out_inputs_, false) || (chance && fit_both_parts(constants))) return true;
+    // Where the training data are rough they leave constants open that the held-out data tell: what those ask for may do for both.
     std::vector<Inputs> all = train_inputs_;
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
-    FitProblem together =
-        problem_of(all, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, fit_horizon_s());
-    together.sigma = attempt.problem.sigma;
-    together.correlation = attempt.problem.correlation;
-    const Candidate fitted = Attribution(together).fit({}, {}, &empty);
-    return fit_both_parts(augmented(model_, fitted.explanation, fitted.list, fitted.fit.point));
+    return fit_both_parts(refitted_to(all, attempt)) ||
+           (chance && fit_both_parts(refitted_to(held_out_inputs_, attempt)));
+  }
+
+  /// The model with its constants, within their slack, fitted to some data; they begin where the search left them.
+  Model refitted_to(const std::vector<Inputs>& inputs, const Attempt& attempt) {
+    FitProblem problem =
+        problem_of(inputs, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, fit_horizon_s());
+    problem.sigma = attempt.problem.sigma;
+    problem.correlation = attempt.problem.correlation;
+    Candidate fitted = attempt.candidates.front();
+    for (int round = 0; round < 2; ++round) {
+      fitted = Attribution(problem).fit({}, {}, &fitted);
+      measure_noise(problem, fitted, inputs);
+    }
+    return augmented(model_, fitted.explanation, fitted.list, fitted.fit.point);
   }
 
   /// Whether an explanation leaves no more than noise in the windows of its fit and, as a gap is judged, lowers it on

@@ -138,6 +138,11 @@ private:
     thin.command_within.resize(0, 0);
     for (Eigen::VectorXd& values : thin.between_samples) values.resize(0);
     thin.command_noise = full_.command_noise / std::sqrt(static_cast<double>(rows));
+    const auto& unknown = full_.command_unknown;
+    if (unknown.between.size() > 0)
+      thin.command_unknown.between =
+          (held_means(unknown.between.cwiseAbs2(), thin) / static_cast<double>(rows)).cwiseSqrt();
+    if (unknown.shift.size() > 0) thin.command_unknown.shift = held_means(unknown.shift, thin);
     for (Eigen::VectorXd Inputs::*input : {&Inputs::drive_A, &Inputs::voltage_V, &Inputs::torque_Nm})
       if ((full_.*input).size() > 0) thin.*input = held_means(full_.*input, thin);
     for (std::size_t k = 0; k < thin.measured.size(); ++k) {

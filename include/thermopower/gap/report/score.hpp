@@ -120,15 +120,16 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
   Dice dice(1);
   for (const Segment& segment : segments) {
     const Inputs& inputs = *segment.inputs;
-    if ((!(inputs.command_noise > 0.0) && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
+    if ((!inputs.errs_in_command() && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
     // More noise on a current that heats is no more heat.
     if (inputs.current_noise_A > 0.0)
       copy.current_noise_A = std::hypot(copy.current_noise_A, copy.command_noise);
     for (double& share : copy.next_share)  // of its mean; within the interval
       share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
-    for (Eigen::Index row = 0; row < inputs.rows() && inputs.command_noise > 0.0; ++row) {
-      const double by = inputs.command_noise * dice.normal();
+    for (Eigen::Index row = 0; row < inputs.rows() && inputs.errs_in_command(); ++row) {
+      const double by =
+          inputs.command_noise * dice.normal() + inputs.command_unknown.error(row, dice.normal());
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
       if (inputs.heat == HeatSource::measured) copy.held_current_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
