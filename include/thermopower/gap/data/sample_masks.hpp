@@ -430,24 +430,40 @@ private:
     return off > (share * std::abs(rate) + quantum_) * lasts_s + quanta * position_step();
   }
 
-  /// Whether an angle that stood from a row on reads at another one, at once, about what its rate says it moved by in
-  /// between: it did not rest, though its rate does for most of the time.
-  bool catches_up(Eigen::Index from, Eigen::Index to) const {
-    constexpr Eigen::Index least = 6;  // rows of a motion: a rate may have spikes
-    constexpr double at_least = 0.5, at_most = 2.0;
+  /// Ways by which a rate says that an angle went over some rows, of all its motions that last: a rate may have spikes.
+  struct Ways {
+    double all = 0.0;       ///< their sum
+    double farthest = 0.0;  ///< the longest, either way
+  };
+
+  Ways ways_between(Eigen::Index from, Eigen::Index to) const {
+    constexpr Eigen::Index least = 6;  // rows of a motion
     const Eigen::VectorXd &rate = *traits_.at_rest, &t_s = *traits_.t_s;
-    double moved = 0.0, part = 0.0;
+    Ways ways;
+    double part = 0.0;
     Eigen::Index in_a_row = 0;
     for (Eigen::Index row = from; row < to; ++row) {
       const bool moves = !resting(row) && std::isfinite(rate[row]);
+      const double way = moves ? rate[row] * (t_s[row + 1] - t_s[row]) : 0.0;
       in_a_row = moves ? in_a_row + 1 : 0;
-      part = moves ? part + rate[row] * (t_s[row + 1] - t_s[row]) : 0.0;
-      if (in_a_row == least) moved += part;
-      else if (in_a_row > least) moved += rate[row] * (t_s[row + 1] - t_s[row]);
+      part = moves ? part + way : 0.0;
+      if (in_a_row == least) ways.all += part;
+      else if (in_a_row > least) ways.all += way;
+      if (in_a_row >= least) ways.farthest = std::max(ways.farthest, std::abs(part));
     }
-    const double jump = values_[to] - values_[from];
-    return std::abs(moved) > limit_.jump_scales * std::max(scale_, quantum_) && jump * moved > 0.0 &&
-           std::abs(jump) > at_least * std::abs(moved) && std::abs(jump) < at_most * std::abs(moved);
+    return ways;
+  }
+
+  /// Whether an angle that stood from a row on went somewhere meanwhile, or reads at another one at once, about what its rate
+  /// says it moved by in between: it did not rest, though its rate does for most of the time.
+  bool did_not_rest(Eigen::Index from, Eigen::Index to, bool ends) const {
+    constexpr double at_least = 0.5, at_most = 2.0, clearly = 4.0;
+    const double seen = limit_.jump_scales * std::max(scale_, quantum_);
+    const Ways ways = ways_between(from, to);
+    if (ways.farthest > clearly * seen) return true;
+    const double jump = ends ? values_[to] - values_[from] : 0.0;
+    return std::abs(ways.all) > seen && jump * ways.all > 0.0 &&
+           std::abs(jump) > at_least * std::abs(ways.all) && std::abs(jump) < at_most * std::abs(ways.all);
   }
 
   /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the same twice, and
@@ -502,7 +518,10 @@ private:
     if (traits_.at_rest != nullptr) {
       std::size_t moving = 0;
       for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
-      if (2 * moving < end - begin) return end < rows.size() && catches_up(rows[begin], rows[end]);
+      if (2 * moving < end - begin) {
+        const bool ends = end < rows.size();
+        return did_not_rest(rows[begin], ends ? rows[end] : rows[end - 1], ends);
+      }
     }
     if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value)) return false;
     const double share = std::max(equal_share_, 1e-4);
