@@ -250,5 +250,7 @@ TEST_CASE(
     const thermopower::plant::RunSpan begins{4000, rows, ""};
     CHECK(told.share_at(4003, begins) == 1.0);  // too little before it tells
     CHECK(told.share_at(4004, begins) != 1.0);
+    const Eigen::VectorXd rounded = (values.array() / 8.0).round() * 8.0;
+    CHECK(NoiseAtARow(rounded, runs).share_at(4004, begins) == 1.0);  // neighbours are rounded alike
   }
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
 
 #include <Eigen/Core>
@@ -34,6 +35,9 @@ public:
         if (std::isfinite(left)) sum += left * left, count += 1.0;
       }
     if (count > 0.0) variance_ = sum / count / (1.0 - own);
+    // Steps that the noise hardly crosses are rounded alike in neighbouring rows, which tell nothing of it then.
+    constexpr double crossed = 0.5;
+    if (std::sqrt(variance_) < crossed * quantum_of(values)) variance_ = 0.0;
   }
 
   /// Of the noise in a row of a run, its magnitude as a share of the standard deviation of all; 1 where the rows around do not
