@@ -7,6 +7,7 @@
 #include <thermopower/gap/diagnose.hpp>
 
 #include <algorithm>
+#include <map>
 
 // Inputs besides command and power: the voltage of a brushed motor, a torque from outside, a heat that is known. The
 // plants are stepped here, apart from the library's equations.
@@ -153,10 +154,22 @@ bool names_or_lists(const Diagnosis& diagnosis, const std::string& id) {
 }  // namespace
 
 TEST_CASE("an axis at a voltage follows its law, back-EMF included") {
-  const Diagnosis diagnosis = diagnosed(brushed_model(), record({}, 1500, 3), record({}, 900, 5));
-  INFO(diagnosis.reason);
-  CHECK(diagnosis.verdict == Verdict::no_gap);
-  for (const GapScore& gap : diagnosis.gap) CHECK(gap.before < 1.15 * gap.noise_floor);
+  // Nine seconds hold eighteen windows: what they score scatters about the floor by a tenth, and on average it is there.
+  constexpr unsigned draws = 8;
+  std::map<std::string, double> scores;
+  for (unsigned seed = 3; seed < 3 + draws; ++seed) {
+    const Diagnosis diagnosis =
+        diagnosed(brushed_model(), record({}, 1500, seed), record({}, 900, seed + 100));
+    INFO(diagnosis.reason);
+    CHECK(diagnosis.verdict == Verdict::no_gap);
+    for (const GapScore& gap : diagnosis.gap)
+      scores[to_string(gap.signal)] += gap.before / gap.noise_floor / draws;
+  }
+  REQUIRE(scores.size() == 2);
+  for (const auto& [signal, score] : scores) {
+    CAPTURE(signal);
+    CHECK(score == Approx(1.0).margin(0.1));
+  }
 }
 
 TEST_CASE("what an axis at a voltage lacks is found") {

@@ -19,6 +19,9 @@ inline double share_of_supply(double power_param) {
 }
 
 /// What a supply has given by the current that was recorded; what a row lacks counts as none.
+///
+/// @snippet plant_examples.cpp charge
+/// How to: @ref gap_method.
 class RecordedCharge {
 public:
   /// Keeps references to all.

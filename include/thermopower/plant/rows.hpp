@@ -44,6 +44,9 @@ struct RunSpan {
 };
 
 /// What a command did between the rows, as far as nobody knows: errors by row of its mean until the next one, in its unit.
+///
+/// @snippet plant_examples.cpp unknown command
+/// How to: @ref gap_files.
 struct UnknownCommand {
   Eigen::VectorXd between;  ///< of each row on its own; empty: it is known
   Eigen::VectorXd

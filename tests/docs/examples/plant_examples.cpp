@@ -176,6 +176,28 @@ TEST_CASE("a plant, as a fit sees it: rows, segments, a rollout, readings") {
   //! [rollout]
   REQUIRE(segments.size() == 1);
   CHECK(inputs.runs[0].size() == 601);
+
+  //! [charge]
+  // Half an ampere for an hour, at full power, in two runs of one recording: the second one goes on from the first.
+  const Eigen::VectorXd t_s = Eigen::VectorXd::LinSpaced(61, 0.0, 3600.0),
+                        current_A = Eigen::VectorXd::Constant(61, 0.5),
+                        power_param = Eigen::VectorXd::Constant(61, 255.0);
+  std::vector<plant::RunSpan> runs{{0, 40, "day"}, {40, 61, "day", true}};
+  plant::RecordedCharge(t_s, current_A, power_param).tell(runs);
+  //! [charge]
+  CHECK(runs[0].drawn_Ah == 0.0);
+  CHECK(runs[1].drawn_Ah == Approx(0.5 * 40.0 / 60.0));
+
+  //! [unknown command]
+  // A command that switched at some time between its second row and the third, and may be early or late by a tenth of a row.
+  plant::UnknownCommand unknown;
+  unknown.between = Eigen::Vector3d(0.0, 0.029, 0.0);
+  unknown.shift = Eigen::Vector3d(0.0, 0.01, 0.0);
+  const double off_A = unknown.error(1, -1.0);  // where it switched a standard deviation late
+  //! [unknown command]
+  CHECK(unknown.any());
+  CHECK(off_A == Approx(-0.019));
+  CHECK_FALSE(plant::UnknownCommand().any());
   bool is_warm = false;
   for (int signal = 0; signal < signals; ++signal) is_warm = is_warm || readings.value(600, signal) > 30.0;
   CHECK(is_warm);

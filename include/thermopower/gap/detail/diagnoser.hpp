@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/check.hpp>
+#include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/localise/occurrence.hpp>
 #include <thermopower/gap/localise/own_plant.hpp>
@@ -44,7 +45,8 @@ public:
   Diagnosis run(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
     gather(train, held_out);
     stage("data gate");
-    if (!enough()) return std::move(result_);
+    if (!enough_data(result_, model_, train_inputs_, held_out_inputs_, options_.horizon_s))
+      return std::move(result_);
     Localisation found;
     if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
     else found = localise(model_, train_recordings_, {}, catalogue_);
@@ -202,45 +204,6 @@ private:
       for (const Inputs& one : *part) all.push_back(&one);
     result_.not_judged = not_judged_in(all);
     result_.augmented = result_.recalibrated = model_;
-  }
-
-  bool enough() {
-    if (const Finding* finding = deciding(result_.findings)) {
-      result_.verdict = Verdict::insufficient;
-      result_.reason = "the data cannot be believed as they stand: " +
-                       (finding->column.empty() ? "'" + finding->recording + "'" : finding->column) + " " +
-                       finding->message;
-      result_.next_experiment = finding->mend;
-      return false;
-    }
-    constexpr double least = 12.0;
-    for (const auto* all : {&train_inputs_, &held_out_inputs_}) {
-      double most = 0.0;
-      for (int i = 0; i < signal_count; ++i) {
-        double samples = 0.0;
-        for (const Inputs& one : *all)
-          if (one.judged(static_cast<Signal>(i)))
-            samples += static_cast<double>(one.of(static_cast<Signal>(i)).array().isFinite().count());
-        most = std::max(most, samples);
-      }
-      if (most < least) {
-        result_.verdict = Verdict::insufficient;
-        result_.reason = most == 0.0
-                             ? "no signal of the model can be judged with the columns recorded"
-                             : "fewer than 12 samples of every signal: too little data for any statement";
-        return false;
-      }
-    }
-    const auto can_start = [&](const std::vector<Inputs>& all) {
-      return !cut(all, options_.horizon_s, plant_of(model_)).empty();
-    };
-    if (!can_start(train_inputs_) || !can_start(held_out_inputs_)) {
-      result_.verdict = Verdict::insufficient;
-      result_.reason =
-          "no row has a reading of each signal that the model judges, so that no simulation can start there";
-      return false;
-    }
-    return true;
   }
 
   /// The thinned data of a fit. @param all  receives what it is a part of

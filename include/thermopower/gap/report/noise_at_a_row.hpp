@@ -40,6 +40,9 @@ public:
     if (std::sqrt(variance_) < crossed * quantum_of(values)) variance_ = 0.0;
   }
 
+  /// Standard deviation of the noise, as what parabolas leave tells it: of a motion that bends within nine rows it is too much.
+  double sd() const { return std::sqrt(variance_); }
+
   /// Of the noise in a row of a run, its magnitude as a share of the standard deviation of all; 1 where the rows around do not
   /// tell.
   double share_at(Eigen::Index row, const RunSpan& run) const {

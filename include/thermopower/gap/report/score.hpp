@@ -128,8 +128,9 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
     for (double& share : copy.next_share)  // of its mean; within the interval
       share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
     for (Eigen::Index row = 0; row < inputs.rows() && inputs.errs_in_command(); ++row) {
-      const double by =
-          inputs.command_noise * dice.normal() + inputs.command_unknown.error(row, dice.normal());
+      const UnknownCommand& unknown = inputs.command_unknown;
+      const double by = (inputs.command_noise > 0.0 ? inputs.command_noise * dice.normal() : 0.0) +
+                        unknown.error(row, unknown.between.size() > 0 ? dice.normal() : 0.0);
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
       if (inputs.heat == HeatSource::measured) copy.held_current_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
@@ -163,7 +164,9 @@ public:
       const Signal signal = static_cast<Signal>(i);
       if (!inputs.judged(signal)) continue;
       if (!readings[i]) readings[i].emplace(inputs.of(signal), inputs.runs);
-      there[i] *= readings[i]->share_at(segment.begin, segment.run);
+      constexpr double clearly = 1.5;  // more than the noise: there the motion bends
+      if (readings[i]->sd() < clearly * sigma_[i])
+        there[i] *= readings[i]->share_at(segment.begin, segment.run);
     }
     return there;
   }
