@@ -152,6 +152,7 @@ inline double with_wander(double noise, double wander, double rms) {
 /// The noise of every signal as large as it was in the row that a window of an axis starts from.
 class NoiseOfStarts {
 public:
+  /// @param sigma  noise of each signal, over all rows
   explicit NoiseOfStarts(const std::array<double, signal_count>& sigma) : sigma_(sigma) {}
 
   /// As measured_start_sd() of a rollout takes it.
