@@ -144,10 +144,10 @@ private:
     return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
   }
 
-  /// From rows, else from means of rows where single ones are too rough, else from the means around them.
+  /// From rows and means of them, else from the means around them where single rows are too rough.
   std::optional<Share> share_of_clean() const {
-    if (const std::optional<Share> held = share_of_held()) return held;
-    const auto rows = motion_.fit(held_and_next);
+    const std::optional<MotionFit> rows = motion_.fit(held_and_next);
+    if (const std::optional<Share> held = share_of_held(rows)) return held;
     const std::optional<Share> from_rows = rows ? share_of(*rows) : std::nullopt;
     return from_rows && smooth() && tells(*smooth()) ? share_around_rows() : from_rows;
   }
@@ -157,26 +157,26 @@ private:
   /// of a loop that went on between the rows and whose own noise is in the command.
   std::optional<Share> share_of_noisy() const {
     const std::optional<Share> around_rows = share_around_rows();
-    return around_rows ? around_rows : share_of_held();
+    return around_rows ? around_rows : share_of_held(motion_.fit(held_and_next));
   }
 
-  /// From single rows and from means of 4, 8 and 16, as they can tell a command that holds from one that goes on: the most
-  /// precise of them that agree with the means of most. A controller that was given a noisy motion has its noise
-  /// in the command, and the acceleration from row to row the same: means are free of that.
-  std::optional<Share> share_of_held() const {
+  /// From single rows and from means of them, as they can tell a command that holds from one that goes on: the more precise
+  /// where both agree, else the means. A controller that was given a noisy motion has its noise in the command, and
+  /// the acceleration from row to row the same: means of most rows are freest of that.
+  /// @param rows  the fit of single ones
+  std::optional<Share> share_of_held(const std::optional<MotionFit>& rows) const {
     constexpr CommandThresholds limit;
-    std::optional<Share> best;
-    for (const Eigen::Index together : {16, 8, 4, 1}) {
-      if (best && together > 1) continue;
-      const auto fit = motion_.fit(held_and_next, together);
-      if (!fit || !tells(*fit)) continue;
-      const std::optional<Share> found = share_of(*fit);
-      if (!best ||
-          (found && found->error < best->error &&
-           std::abs(found->value - best->value) < limit.agree * std::hypot(found->error, best->error)))
-        best = found;
-    }
-    return best;
+    const auto told_by = [&](const std::optional<MotionFit>& fit) {
+      return fit && tells(*fit) ? share_of(*fit) : std::nullopt;
+    };
+    std::optional<Share> means;
+    for (const Eigen::Index together : {16, 8, 4})
+      if (!means) means = told_by(motion_.fit(held_and_next, together));
+    const std::optional<Share> single = told_by(rows);
+    if (!means || !single) return means ? means : single;
+    const bool agree =
+        std::abs(single->value - means->value) < limit.agree * std::hypot(single->error, means->error);
+    return agree && single->error < means->error ? single : means;
   }
 
   std::optional<Share> share_around_rows() const {
@@ -221,33 +221,25 @@ private:
   /// What the command turns the rate by, deg/s^2 for each of its unit; 0 where nobody knows.
   double response() const { return smooth() ? std::abs(smooth()->value[0]) : 0.0; }
 
-  /// The longest of the recordings' intervals.
-  double step_s() const {
-    double longest_s = 0.0;
-    for (const auto& one : motion_.recordings())
-      longest_s = std::max(longest_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
-    return longest_s;
-  }
-
-  /// Command and motion at each frequency.
-  CommandNoise spectra(const MotionFit& fit) const {
-    Eigen::Index rows = 0;
-    for (const auto& one : motion_.recordings()) rows += one.inputs->rows();
-    CommandNoise all(step_s(), rows);
-    for (const auto& one : motion_.recordings())
-      all.add(*one.inputs, *one.command,
-              [&](double dps, double rad) { return MotionRegression::beside(fit, dps, rad); });
-    return all;
-  }
-
   double find_noise() const {
     constexpr CommandThresholds limit;
     const std::optional<MotionFit>& fit = smooth();
     if (!fit) return 0.0;
     const double response = this->response();
-    const double sd = spectra(*fit).sd(response, 0.5 + fit->value[1] / fit->value[0]);
+    double step_s = 0.0;
+    Eigen::Index rows = 0;
+    for (const auto& one : motion_.recordings()) {
+      step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
+      rows += one.inputs->rows();
+    }
+    CommandNoise spectra(step_s, rows);
+    for (const auto& one : motion_.recordings()) {
+      spectra.add(*one.inputs, *one.command,
+                  [&](double dps, double rad) { return MotionRegression::beside(*fit, dps, rad); });
+    }
+    const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
     // A random walk of the rate, and its sum.
-    const double wander_dps = response * sd * std::sqrt(step_s() * horizon_s_),
+    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
                  wander_deg = wander_dps * horizon_s_ / std::sqrt(3.0);
     const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
     const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
@@ -261,10 +253,20 @@ private:
   mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
 };
 
+/// Steps of a command from each row to the next; 0 from a run's last one.
+inline Eigen::VectorXd steps_of(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
+  Eigen::VectorXd steps = Eigen::VectorXd::Zero(command.size());
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) steps[row] = command[row + 1] - command[row];
+  return steps;
+}
+
 /// Standard deviation of the command's mean until the next row that a straight line does not tell: a step between two rows is at
 /// any instant there, and of what a loop's own noise did meanwhile the rows say nothing. Where steps follow on each
 /// other as those of a smooth command do, nothing is unknown.
-inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
+/// @param steps  of the command, as steps_of() has them
+inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eigen::VectorXd& steps,
+                                       const std::vector<RunSpan>& runs) {
   const double of_a_step = 1.0 / std::sqrt(12.0);  // a uniform distribution's
   // Of white noise: that of a mean of four or more, which nobody logged, and two fifths to a half of either end's.
   constexpr double of_noise = 0.7;
@@ -272,21 +274,12 @@ inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const std
   Eigen::VectorXd sd = Eigen::VectorXd::Zero(command.size());
   for (const RunSpan& run : runs)
     for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
-      const double step = command[row + 1] - command[row],
-                   before = row > run.begin ? command[row] - command[row - 1] : step,
-                   after = row + 2 < run.end ? command[row + 2] - command[row + 1] : step;
+      const double step = steps[row], before = row > run.begin ? steps[row - 1] : step,
+                   after = row + 2 < run.end ? steps[row + 1] : step;
       sd[row] =
           std::max(of_a_step * std::min(std::abs(step), std::abs(step - 0.5 * (before + after))), noise);
     }
   return sd;
-}
-
-/// Steps of a command from each row to the next; 0 from a run's last one.
-inline Eigen::VectorXd steps_of(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs) {
-  Eigen::VectorXd steps = Eigen::VectorXd::Zero(command.size());
-  for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) steps[row] = command[row + 1] - command[row];
-  return steps;
 }
 
 /// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.

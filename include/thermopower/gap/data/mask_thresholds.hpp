@@ -2,9 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/finding_list.hpp>
-#include <thermopower/gap/data/robust.hpp>
-
 #include <Eigen/Core>
 
 #include <cstddef>
@@ -49,11 +46,5 @@ struct ColumnTraits {
   const Eigen::VectorXd* t_s = nullptr;       ///< stamps, where `integral` or `at_rest` is given
   const Eigen::VectorXd* driver = nullptr;    ///< a column that this one rises with (the power of a current)
 };
-
-/// Makes samples of a column missing. @param mask  which; empty: none
-inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
-}
 
 }  // namespace thermopower::gap::engine

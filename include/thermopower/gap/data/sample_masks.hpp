@@ -19,6 +19,12 @@
 
 namespace thermopower::gap::engine {
 
+/// Makes samples of a column missing. @param mask  which; empty: none
+inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
+}
+
 /// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
 /// one took.
 class SampleMasks {
@@ -109,9 +115,9 @@ public:
       for (std::size_t begin = 0; begin < rows.size();) {
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
-        const bool frozen = is_frozen(rows, begin, end), goes_on = begin == 0 &&
-                                                                   values_[rows[begin]] == stood_at &&
-                                                                   equal_share_ < limit_.rarely_equal;
+        const bool frozen = is_frozen(rows, begin, end);
+        const bool goes_on =
+            begin == 0 && values_[rows[begin]] == stood_at && equal_share_ < limit_.rarely_equal;
         for (std::size_t k = goes_on ? begin : begin + 1; k < end && (frozen || goes_on); ++k)
           mask[static_cast<std::size_t>(rows[k])] = 1;
         if (end == rows.size()) stood_at = frozen || goes_on ? values_[rows[begin]] : missing;

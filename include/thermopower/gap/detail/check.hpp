@@ -116,10 +116,11 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
            "log the command at the rate it is set, or the mean of it between the rows");
       const Eigen::VectorXd& command = command_of(one);
       const std::vector<RunSpan> runs = one.recording().spans();
+      const Eigen::VectorXd steps = steps_of(command, runs);
       UnknownCommand unknown;
-      if (!(noise > 0.0)) unknown.between = unknown_between(command, runs);
+      if (!(noise > 0.0)) unknown.between = unknown_between(command, steps, runs);
       constexpr double sure = 2.0;  // standard errors: 95 %
-      unknown.shift = sure * share->error * steps_of(command, runs);
+      unknown.shift = sure * share->error * steps;
       one.take_command(model, column, command_within(command, runs, share->value, bends, parts),
                        std::move(unknown));
     }

@@ -149,11 +149,9 @@ private:
         problem_of(inputs, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, fit_horizon_s());
     problem.sigma = attempt.problem.sigma;
     problem.correlation = attempt.problem.correlation;
-    Candidate fitted = attempt.candidates.front();
-    for (int round = 0; round < 2; ++round) {
-      fitted = Attribution(problem).fit({}, {}, &fitted);
-      measure_noise(problem, fitted, inputs);
-    }
+    const Candidate first = Attribution(problem).fit({}, {}, &attempt.candidates.front());
+    measure_noise(problem, first, inputs);
+    const Candidate fitted = Attribution(problem).fit({}, {}, &first);
     return augmented(model_, fitted.explanation, fitted.list, fitted.fit.point);
   }
 

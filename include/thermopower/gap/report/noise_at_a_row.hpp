@@ -13,8 +13,6 @@
 
 namespace thermopower::gap::engine {
 
-using plant::RunSpan;
-
 /// How large the noise of a column was in single rows, of which the rows around tell. A simulation that starts from what was
 /// measured errs by what the noise was there, and a few dozen starts from noise with heavy tails can have twice the noise of
 /// all rows.
@@ -27,9 +25,9 @@ class NoiseAtARow {
 public:
   /// @param values  of the column, NaN where missing; kept by reference
   /// @param runs    inside which rows follow on each other
-  NoiseAtARow(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) : values_(values) {
+  NoiseAtARow(const Eigen::VectorXd& values, const std::vector<plant::RunSpan>& runs) : values_(values) {
     double sum = 0.0, count = 0.0;
-    for (const RunSpan& run : runs)
+    for (const plant::RunSpan& run : runs)
       for (Eigen::Index row = run.begin + around; row + around < run.end; ++row) {
         const double left = left_at(row);
         if (std::isfinite(left)) sum += left * left, count += 1.0;
@@ -45,7 +43,7 @@ public:
 
   /// Of the noise in a row of a run, its magnitude as a share of the standard deviation of all; 1 where the rows around do not
   /// tell.
-  double share_at(Eigen::Index row, const RunSpan& run) const {
+  double share_at(Eigen::Index row, const plant::RunSpan& run) const {
     if (!(variance_ > 0.0) || row - around < run.begin || row + around >= run.end) return 1.0;
     const double left = left_at(row);
     return std::isfinite(left) ? std::sqrt(left * left / variance_ + own) : 1.0;
