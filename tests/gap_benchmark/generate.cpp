@@ -35,7 +35,8 @@ struct Options {
 constexpr const char* usage =
     "usage: gap_benchmark_generate --out DIR --seed S [options]\n"
     "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
-    "  --only LIST   effect ids, none, pairs, unknown, dirty, dirty_none, servo, misspecified, with commas between\n"
+    "  --only LIST   effect ids, none, pairs, unknown, dirty, dirty_none, dirty_unknown, servo, misspecified,\n"
+    "                with commas between\n"
     "  --case N      draw only this case of the plan\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
     "  --visible LOW,HIGH  only causes whose RMS over the floor is in this range, in whichever recording shows less\n"

@@ -107,8 +107,8 @@ inline std::string title(const CaseOrder& order) {
 }
 
 /// The list of what to draw, in an order that says nothing about the causes.
-/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `dirty_none` (of the dirty half those without a gap),
-/// `servo` or `misspecified`; everything when empty
+/// @param only comma-separated effect ids, `none`, `pairs`, `unknown`, `dirty`, `dirty_none` and `dirty_unknown` (of the dirty half
+/// those without a gap, or with a cause outside the catalogue), `servo` or `misspecified`; everything when empty
 /// With 5 recordings per effect: 250 single effects, 60 none, 48 pairs, 45 outside the catalogue; 116 dirty; 54 with
 /// the servo's target; 56 misspecified.
 inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std::string& only,
@@ -173,7 +173,9 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
     return list;
   };
   const bool all_dirty = wanted("dirty");
-  if (all_dirty || wanted("dirty_none"))
+  const bool dirty_none = all_dirty || wanted("dirty_none"),
+             dirty_unknown = all_dirty || wanted("dirty_unknown");
+  if (dirty_none || dirty_unknown)
     for (const bool axis : {false, true}) {
       for (const auto& id : all_dirty ? all_ids(axis) : std::vector<std::string>())
         for (int i = 0; i < std::max(1, count / 3); ++i) {
@@ -186,7 +188,7 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
           order.dirt = dirty();
           orders.push_back(order);
         }
-      for (int i = 0; i < scaled(25); ++i) {
+      for (int i = 0; dirty_none && i < scaled(25); ++i) {
         CaseOrder order;
         order.half = Half::dirty;
         order.axis = axis;
@@ -194,7 +196,7 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
         orders.push_back(order);
       }
       const int unknowns = static_cast<int>(axis ? axis_unknowns().size() : bench_unknowns().size());
-      for (int i = 0; all_dirty && i < scaled(8); ++i) {
+      for (int i = 0; dirty_unknown && i < scaled(8); ++i) {
         CaseOrder order;
         order.half = Half::dirty;
         order.axis = axis;
