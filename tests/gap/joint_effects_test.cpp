@@ -166,6 +166,7 @@ TEST_CASE("a band is measured on the rows as they are, where their mean would sm
   CHECK(diagnosis.verdict == Verdict::explained);
   REQUIRE(diagnosis.cause.size() == 1);
   REQUIRE(diagnosis.cause.front().effect == "drive_deadband");
+  CHECK(diagnosis.cause.front().probability > 0.95);
   const ParameterEstimate& band = diagnosis.cause.front().parameters.front();
   CHECK(band.value == Approx(band_A).epsilon(0.005));
   CHECK(band.ci95.low < band_A);

@@ -48,19 +48,30 @@ public:
         threads_(threads),
         suspects_(std::move(suspects)) {}
 
-  /// The empty explanation and every single one, fitted.
-  std::vector<Candidate> run_singles(const std::vector<Explanation>& singles) const {
-    std::vector<Candidate> candidates{fit(coarse_, {}, quick())};
-    for (Candidate& one : fit_all(singles, candidates.front())) candidates.push_back(std::move(one));
-    refine(candidates, 0, 7);
-    return candidates;
+  /// The empty explanation and every single one, fitted to the first look's data alone.
+  std::vector<Candidate> try_singles(const std::vector<Explanation>& singles) const {
+    std::vector<Candidate> tried{fit(coarse_, {}, quick())};
+    for (Candidate& one : fit_all(singles, tried.front())) tried.push_back(std::move(one));
+    return tried;
   }
 
-  /// Adds further single explanations, fitted.
-  void add_singles(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+  /// Further single explanations, fitted to the first look's data alone.
+  std::vector<Candidate> try_further(const std::vector<Explanation>& singles,
+                                     const std::vector<Candidate>& candidates) const {
+    return fit_all(singles, best(candidates));
+  }
+
+  /// Adds candidates that were tried to others, and fits the best of all to the fine data.
+  void add(std::vector<Candidate>& candidates, const std::vector<Candidate>& tried) const {
     const std::size_t first = candidates.size();
-    for (Candidate& one : fit_all(singles, best(candidates))) candidates.push_back(std::move(one));
+    candidates.insert(candidates.end(), tried.begin(), tried.end());
     refine(candidates, first, 7);
+  }
+
+  /// Takes candidates to fine data that have become others, and fits the best of them there.
+  /// @param hopeless  cost of a fit so far from which on a candidate is taken as it stands
+  void take_over(std::vector<Candidate>& candidates, double hopeless) const {
+    refine(candidates, 0, 5, hopeless);
   }
 
   /// Looks at the details of the effects of the best candidates, where these leave more than noise: a second harmonic is one
@@ -92,12 +103,69 @@ public:
     return fitness(best(candidates)) < before;
   }
 
+  /// A set worth fitting.
+  struct Promise {
+    LinearGuess guess;     ///< after one linear step; of a set that nobody looked at it is empty
+    std::size_t near = 0;  ///< place among the candidates of the fit of a part of it
+    Explanation together;
+  };
+
+  /// The sets of `size` causes that promise most, the best first: the best candidates of one cause fewer with every single
+  /// one, ranked by one linear step. They refer to the candidates by their places.
+  std::vector<Promise> promising_sets(const std::vector<Candidate>& candidates,
+                                      const std::vector<Explanation>& singles, int size) const {
+    std::vector<Promise> promises;
+    for (const std::size_t near : seeds_of(candidates, size - 1))
+      for (const Explanation& single : singles)
+        if (!candidates[near].explanation.includes(single))
+          promises.push_back({{}, near, candidates[near].explanation.with(single)});
+    constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
+    const FirstLook look(best(candidates), glimpse_, coarse_);
+    const Attribution glimpse(look.few), coarse(look.some, look.few);
+    const auto rank = [&](const Attribution& on) {
+      in_parallel(promises.size(), threads_, [&](std::size_t i) {
+        Promise& one = promises[i];
+        one.guess = one.guess.starts.empty() ? on.promise(one.together, candidates[one.near])
+                                             : on.promise(one.together, one.guess.starts);
+      });
+      sort_by(promises, [](const Promise& one) { return one.guess.cost; });
+    };
+    if (&glimpse_ != &coarse_ && promises.size() > looked_at) {
+      rank(glimpse);
+      promises.resize(looked_at);
+    }
+    rank(coarse);
+    std::set<std::vector<std::string>> seen;
+    std::vector<Promise> kept;
+    for (Promise& one : promises) {
+      std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
+      std::sort(ids.begin(), ids.end());
+      if (kept.size() < fitted && seen.insert(ids).second) kept.push_back(std::move(one));
+    }
+    return kept;
+  }
+
+  /// Whether one of the sets that promise most comes within some multiple of the noise in the longer windows of the first look.
+  bool come_near(const std::vector<Promise>& sets, double multiple) const {
+    constexpr std::size_t looked_at = 3;
+    std::vector<char> near(std::min(looked_at, sets.size()), 0);
+    in_parallel(near.size(), threads_, [&](std::size_t i) {
+      const Candidate found = longer_.fit_from(sets[i].together, sets[i].guess.starts, quick());
+      near[i] = found.train.within(multiple * multiple);
+    });
+    return std::find(near.begin(), near.end(), 1) != near.end();
+  }
+
   /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
+  /// @param pairs  the most promising sets of two, where they are known
   void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
-                double enough) const {
+                double enough, std::vector<Promise> pairs = {}) const {
     for (int size = 2; size <= largest; ++size) {
       if (best(candidates).train.within(enough)) break;
-      join(candidates, singles, size);
+      const bool known = size == 2 && !pairs.empty();
+      const std::vector<Promise> sets = known ? std::move(pairs) : promising_sets(candidates, singles, size);
+      const FirstLook look(best(candidates), glimpse_, coarse_);
+      add_fitted(candidates, sets, Attribution(look.some, look.few));
       exchange(candidates, singles);
     }
   }
@@ -260,13 +328,6 @@ private:
     }
   };
 
-  /// A set worth fitting.
-  struct Promise {
-    LinearGuess guess;      ///< after one linear step; of a set that nobody looked at it is empty
-    const Candidate* near;  ///< the fit of a part of it
-    Explanation together;
-  };
-
   /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
   /// after some steps are in sight of the best one.
   /// @param hopeless  cost of a first fit from which on a candidate is taken there as it stands
@@ -308,55 +369,21 @@ private:
                 [&](std::size_t i) { fine_.polish(candidates[unfinished[i]], rest); });
   }
 
-  /// Adds sets of `size` causes: the best sets of one fewer with every single one, ranked by the linear
-  /// promise, the most promising fitted.
-  void join(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int size) const {
-    const std::vector<const Candidate*> seeds = seeds_of(candidates, size - 1);
-    std::vector<Promise> promises;
-    for (const Candidate* near : seeds)
-      for (const Explanation& single : singles)
-        if (!near->explanation.includes(single))
-          promises.push_back({{}, near, near->explanation.with(single)});
-    constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
-    const FirstLook look(best(candidates), glimpse_, coarse_);
-    const Attribution glimpse(look.few), coarse(look.some, look.few);
-    const auto rank = [&](const Attribution& on) {
-      in_parallel(promises.size(), threads_, [&](std::size_t i) {
-        Promise& one = promises[i];
-        one.guess = one.guess.starts.empty() ? on.promise(one.together, *one.near)
-                                             : on.promise(one.together, one.guess.starts);
-      });
-      sort_by(promises, [](const Promise& one) { return one.guess.cost; });
-    };
-    if (&glimpse_ != &coarse_ && promises.size() > looked_at) {
-      rank(glimpse);
-      promises.resize(looked_at);
-    }
-    rank(coarse);
-    std::set<std::vector<std::string>> seen;
-    std::vector<Promise> kept;
-    for (Promise& one : promises) {
-      std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
-      std::sort(ids.begin(), ids.end());
-      if (kept.size() < fitted && seen.insert(ids).second) kept.push_back(std::move(one));
-    }
-    add_fitted(candidates, kept, coarse);
-  }
-
-  /// The best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
+  /// Places of the best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
   /// causes of one size neither does well alone, and what does is another effect that makes up for some of both.
-  std::vector<const Candidate*> seeds_of(const std::vector<Candidate>& candidates, int size) const {
+  std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates, int size) const {
     constexpr std::size_t best_of_all = 5;
     constexpr int best_of_submodel = 2;
-    std::vector<const Candidate*> seeds, others;
+    std::vector<std::size_t> seeds, others;
     for (std::size_t index : by_fitness(candidates, 0))
       if (static_cast<int>(candidates[index].explanation.effects.size()) == size)
-        (seeds.size() < best_of_all ? seeds : others).push_back(&candidates[index]);
+        (seeds.size() < best_of_all ? seeds : others).push_back(index);
     if (size != 1) return seeds;
     for (const plant::SubmodelName& suspect : suspects_) {
       int found = 0;
-      for (const Candidate* one : others)
-        if (found < best_of_submodel && one->explanation.effects.front()->info.submodel == suspect &&
+      for (const std::size_t one : others)
+        if (found < best_of_submodel &&
+            candidates[one].explanation.effects.front()->info.submodel == suspect &&
             std::find(seeds.begin(), seeds.end(), one) == seeds.end())
           seeds.push_back(one), ++found;
     }
@@ -374,7 +401,7 @@ private:
     FitOptions options = quick();
     options.iterations = 12;
     const auto fit_one = [&](std::size_t i) {
-      found[i] = fit(coarse, sets[i].together, options, sets[i].near, sets[i].guess.starts);
+      found[i] = fit(coarse, sets[i].together, options, &candidates[sets[i].near], sets[i].guess.starts);
     };
     fit_one(0);
     if (!wants_longer(sets.front().together))
@@ -401,6 +428,7 @@ private:
   /// same submodel: of two that do the same beside a third, only one may have been tried.
   void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = best(candidates);
+    const auto place = static_cast<std::size_t>(&near - candidates.data());
     const Explanation& leader = near.explanation;
     if (leader.size() < 2) return;
     std::vector<Promise> tries;
@@ -414,9 +442,10 @@ private:
         bool known = false;
         for (const Candidate& one : candidates)
           known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
-        if (!known) tries.push_back({{}, &near, std::move(other)});
+        if (!known) tries.push_back({{}, place, std::move(other)});
       }
-    add_fitted(candidates, tries, coarse_);
+    const FirstLook look(near, glimpse_, coarse_);
+    add_fitted(candidates, tries, Attribution(look.some, look.few));
   }
 
   const Attribution& glimpse_;

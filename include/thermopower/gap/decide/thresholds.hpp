@@ -132,8 +132,10 @@ inline constexpr DecisionThresholds decision{};
 /// How much a search looks at: enough for what the benchmark names (seed 20270211), and few enough for 100 000 rows in some
 /// seconds (`gap_speed`). Held by tests/gap/fit/shortened_test.cpp and tests/gap/fit/segment_choice_test.cpp.
 struct SearchThresholds {
-  Eigen::Index fitted_bench_rows = 2500;   ///< that explanations are fitted to in the end
-  Eigen::Index fitted_axis_rows = 4000;    ///< the same of an axis
+  Eigen::Index fitted_bench_rows = 2500;  ///< that explanations are fitted to in the end
+  Eigen::Index fitted_axis_rows = 4000;   ///< the same of an axis
+  Eigen::Index fitted_recorded_rows =
+      8000;  ///< the same of a fast one's rows as recorded, where their averages will not do
   Eigen::Index tried_bench_rows = 900;     ///< of the first look
   Eigen::Index tried_axis_rows = 1600;     ///< the same of an axis
   Eigen::Index shortest_axis_rows = 2000;  ///< of the first look in windows that are shorter still

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -25,6 +26,8 @@ struct FitProblem {
   const Model* model = nullptr;          ///< the baseline, not owned
   const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
   std::vector<Segment> segments;         ///< simulated one after the other
+  std::shared_ptr<const std::vector<Inputs>>
+      data;  ///< what the segments are parts of, where the problem keeps it
   std::array<double, signal_count> sigma = plant::for_each_signal(1.0);  ///< noise of each signal
   double correlation = 1.0;                 ///< samples that count as one, 1 or more
   const std::atomic<bool>* stop = nullptr;  ///< as in Options

@@ -26,6 +26,29 @@ inline void take_estimates(Diagnosis& result, const Candidate& candidate, const 
     if (entry.effects == ids) describe_fit(entry, candidate, model, weight);
 }
 
+/// Whether what a search fitted are averages of a fast recording of an axis.
+inline bool is_averaged(const FitProblem& searched) {
+  return std::any_of(searched.segments.begin(), searched.segments.end(),
+                     [](const Segment& one) { return one.axis && one.inputs->repeats.size() > 0; });
+}
+
+/// The rows as they were recorded that a search fitted averages of, in windows of the same length, and the candidate fitted
+/// to them from where the search ended.
+/// @param recordings as recorded, which the averages are made of
+/// @param horizon_s  length of the windows
+/// @param rows       about so many of them
+inline FitProblem fitted_to_rows(Candidate& candidate, const FitProblem& searched,
+                                 const std::vector<Inputs>& recordings, double horizon_s, Eigen::Index rows) {
+  FitProblem problem = searched;
+  problem.segments =
+      thinned_axis(cut(recordings, horizon_s, searched.plant()), rows, {}, search_extent.windows_together);
+  FitOptions options;
+  options.iterations = 15;  // as a search ends with; it begins close to the end
+  options.relative_decrease = 1e-7;
+  Attribution(problem).polish(candidate, options);
+  return problem;
+}
+
 /// Fits an explanation once more, to the rows as they were recorded, where the search fitted averages of a fast recording.
 ///
 /// A mean command over some rows is the command to a model that is linear in it, and only to that: inside a deadband, where
@@ -39,21 +62,16 @@ inline void take_estimates(Diagnosis& result, const Candidate& candidate, const 
 inline void fit_to_rows(Diagnosis& result, Candidate& candidate, const FitProblem& searched,
                         const std::vector<Inputs>& recordings, double horizon_s, Weight& weight) {
   constexpr Eigen::Index most_rows = 20000;  // a second's work at most; of 1 kHz, all of 20 s
-  const auto is_average = [](const Segment& one) { return one.axis && one.inputs->repeats.size() > 0; };
-  if (std::none_of(searched.segments.begin(), searched.segments.end(), is_average)) return;
-  FitProblem problem = searched;
-  problem.segments = thinned_axis(cut(recordings, horizon_s, searched.plant()), most_rows, {},
-                                  search_extent.windows_together);
-  const Attribution fit(problem);
-  FitOptions options;
-  options.iterations = 15;  // as a search ends with; it begins close to the end
-  options.relative_decrease = 1e-7;
-  fit.polish(candidate, options);
+  if (!is_averaged(searched)) return;
+  FitProblem problem = fitted_to_rows(candidate, searched, recordings, horizon_s, most_rows);
   measure_noise(problem, candidate, recordings);
   const Weight of_rows = correlation_of(candidate, problem);
   problem.correlation = mean_correlation(of_rows);
+  FitOptions options;
+  options.iterations = 15;
+  options.relative_decrease = 1e-7;
   options.curvature = true;
-  fit.polish(candidate, options);
+  Attribution(problem).polish(candidate, options);
   weight.correlation = of_rows.correlation;
   take_estimates(result, candidate, *problem.model, weight);
 }

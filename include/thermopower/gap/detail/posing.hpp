@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/fit/axis_averaging.hpp>
+#include <thermopower/gap/fit/fit_problem.hpp>
+#include <thermopower/gap/fit/segment_choice.hpp>
+#include <thermopower/gap/fit/thinning.hpp>
+#include <thermopower/gap/options.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// Puts recordings to a model: thinned to what its dynamics need, in windows, few enough of them to fit many explanations.
+class Posing {
+public:
+  /// How much of the data, in which windows.
+  struct Extent {
+    double window_s;                ///< length of the windows of an axis
+    Eigen::Index bench_rows;        ///< of all recordings on the bench, about
+    Eigen::Index axis_rows;         ///< of all windows of an axis, about
+    Eigen::Index together = 1;      ///< neighbours among these that are kept or left out together
+    std::vector<std::size_t> also;  ///< places of further windows to keep, in order
+  };
+
+  /// All of them must outlive this object.
+  Posing(const Model& model, const Options& options, const Catalogue& catalogue)
+      : model_(model), options_(options), catalogue_(catalogue) {}
+
+  const Model& model() const { return model_; }
+  const Options& options() const { return options_; }
+  const Catalogue& catalogue() const { return catalogue_; }
+
+  /// Long windows tell more than the short ones of the score; the short ones keep a bad model near the data.
+  double long_window_s() const { return std::max(search_extent.fitted_window_s, options_.horizon_s); }
+
+  /// The windows that explanations are fitted to in the end.
+  Extent fitted(double window_s) const {
+    return {window_s, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, 1, {}};
+  }
+
+  /// What is fitted to. It keeps the thinned data.
+  /// @param all  where given, receives every window, of which the problem has some in the same order
+  FitProblem pose(const std::vector<Inputs>& inputs, const Extent& extent,
+                  std::vector<Segment>* all = nullptr) const {
+    auto thin = std::make_shared<std::vector<Inputs>>();
+    for (const Inputs& one : inputs) {
+      const Eigen::Index share = std::max<Eigen::Index>(
+          300, extent.bench_rows * one.rows() / std::max<Eigen::Index>(1, total_rows(inputs)));
+      if (one.axis()) thin->push_back(one.bench() ? one : AxisAveraging(one).run(options_.horizon_s));
+      else thin->push_back(one.bench() ? thinned_bench(one, share, model_, catalogue_) : one);
+    }
+    FitProblem problem;
+    problem.model = &model_;
+    problem.catalogue = &catalogue_;
+    problem.stop = options_.stop;
+    std::vector<Segment> segments = cut(*thin, extent.window_s, plant_of(model_));
+    problem.segments = thinned_axis(segments, extent.axis_rows, extent.also, extent.together);
+    if (all != nullptr) *all = std::move(segments);
+    problem.data = std::move(thin);
+    return problem;
+  }
+
+  /// Segments as a gap is judged, few enough to judge many explanations on.
+  std::vector<Segment> judged(const std::vector<Inputs>& inputs) const {
+    return thinned_axis(cut(inputs, options_.horizon_s, plant_of(model_)), search_extent.judged_rows);
+  }
+
+private:
+  const Model& model_;
+  const Options& options_;
+  const Catalogue& catalogue_;
+};
+
+}  // namespace thermopower::gap::engine
