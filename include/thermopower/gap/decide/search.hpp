@@ -31,7 +31,7 @@ inline std::vector<plant::SubmodelName> suspects_among(const std::vector<Locatio
 ///
 /// Everything is first tried on a small part of the data (`coarse`), of a moving axis in windows so short that even
 /// friction that holds and lets go is nearly linear in its parameters; effects with states that nobody measures, which
-/// such windows do not tell, then in longer ones (`longer`). What does well there is fitted to more of the data
+/// such windows do not tell, in longer ones (`longer`). What does well there is fitted to more of the data
 /// (`fine`). Every candidate it returns has its residuals on the fine data. Which sets are worth that is first looked at in
 /// few of the short windows (`glimpse`).
 class Search {
@@ -263,12 +263,13 @@ private:
   /// A first fit, away from the fine data.
   Candidate fit(const Attribution& coarse, const Explanation& explanation, const FitOptions& options,
                 const Candidate* near = nullptr, const std::vector<Eigen::VectorXd>& starts = {}) const {
-    Candidate found = starts.empty() ? coarse.fit(explanation, options, near)
-                                     : coarse.fit_from(explanation, starts, options);
-    if (!wants_longer(explanation)) return found;
+    const bool longer = wants_longer(explanation);
     FitOptions on_longer = options;
     on_longer.hopeless = FitOptions{}.hopeless;  // that was a cost on other data
-    return longer_.fit(explanation, on_longer, near, &found.fit.point);
+    if (starts.empty())
+      return longer ? longer_.fit(explanation, on_longer, near) : coarse.fit(explanation, options, near);
+    Candidate found = coarse.fit_from(explanation, starts, options);
+    return longer ? longer_.fit(explanation, on_longer, near, &found.fit.point) : found;
   }
 
   /// Whether an explanation is fitted to longer segments.

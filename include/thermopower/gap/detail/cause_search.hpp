@@ -287,11 +287,15 @@ private:
     std::vector<std::size_t> looked_at;
     std::size_t single = 0;
     const std::vector<std::size_t> modest = Search::modest(candidates, model_);
+    // A set that lost by far on what it was fitted to is in nobody's way.
+    const double lost = Attribution::lost_from * Search::best(candidates).train.total();
     for (std::size_t place = 0; place < order.size(); ++place) {
       const Explanation& one = candidates[order[place]].explanation;
       const bool among_singles = one.size() == 1 && single++ < 7;
+      const bool is_lost = one.effects.size() > 1 && candidates[order[place]].train.total() > lost;
       const bool is_modest = std::find(modest.begin(), modest.end(), order[place]) != modest.end();
-      if (place < 14 || among_singles || is_modest || one.effects.empty()) looked_at.push_back(order[place]);
+      if ((place < 14 && !is_lost) || among_singles || is_modest || one.effects.empty())
+        looked_at.push_back(order[place]);
     }
     in_parallel(looked_at.size(), options_.threads, [&](std::size_t i) {
       Candidate& one = candidates[looked_at[i]];
