@@ -5,6 +5,7 @@
 #include "plants.hpp"
 
 #include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/gap/report/estimates.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
 #include <tuple>
@@ -782,6 +783,22 @@ TEST_CASE("what only a prior knows stays as uncertain as that, however many samp
     one.fit.per_prior = samples_as_one;
     one.fit.priors[0] = one.fit.information(0, 0) = samples_as_one / (sd * sd);
     CHECK(std::sqrt(covariance_of(one, Weight()).of(0, 0)) == Approx(sd));
+  }
+}
+
+TEST_CASE("of a parameter that the data say nothing of, any value in its range is as good") {
+  constexpr double information = 1e4;
+  for (const double known : {0.0, information}) {
+    CAPTURE(known);
+    Candidate one = mean_of_blocks(Eigen::VectorXd::Zero(40), 1.0);
+    one.list[0].lower = -0.5;
+    one.list[0].upper = 1.0;
+    one.fit.at_bound = {false};
+    one.fit.information(0, 0) = known;
+    const Interval interval = estimates(one, Model{}, Weight()).front().ci95;
+    if (known > 0.0)
+      CHECK(interval.high - interval.low == Approx(2.0 * 1.96 / std::sqrt(information)).epsilon(0.1));
+    else CHECK((interval.low == -0.5 && interval.high == 1.0));
   }
 }
 

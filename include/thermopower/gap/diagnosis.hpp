@@ -61,9 +61,9 @@ inline bool takes_gap_away(const Location& place) { return !(place.share < 0.005
 
 /// A fitted parameter of an effect.
 struct ParameterEstimate {
-  std::string name;       ///< as the effect declares it, with the unit as its ending
-  double value = 0.0;     ///< maximum-posterior estimate, in `unit`
-  Interval ci95;          ///< accounts for autocorrelated residuals
+  std::string name;    ///< as the effect declares it, with the unit as its ending
+  double value = 0.0;  ///< maximum-posterior estimate, in `unit`
+  Interval ci95;  ///< accounts for autocorrelated residuals; its whole range where the data say nothing of it
   std::string unit;       ///< "1" for a pure number
   bool at_bound = false;  ///< ended on a bound of its range: then it is no explanation
 };

@@ -23,6 +23,16 @@ inline std::string name_of_move(const Coordinate& constant) {
   return constant.name + (constant.logarithmic ? ".scale" : ".shift");
 }
 
+/// How far to either side of where a fit ended the 95 % interval of a coordinate reaches: over all of its range where moving it
+/// that far changes nothing there, as of a friction's transition that no sample fell into.
+inline double reach_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
+  const Coordinate& one = candidate.list[place];
+  const double range = one.upper - one.lower;
+  const auto at = static_cast<Eigen::Index>(place);
+  if (covariance.of.size() == 0 || candidate.fit.information(at, at) * range * range < 1.0) return range;
+  return covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+}
+
 /// Values and intervals of an explanation's own parameters. The intervals are those of the fit's coordinate
 /// carried over.
 inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,
@@ -36,11 +46,8 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
         std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
                   static_cast<int>(i)) != candidate.explanation.released.end();
     if ((i < constants && !released) || one.still) continue;
-    const Eigen::Index at = static_cast<Eigen::Index>(i);
-    const double value = candidate.fit.point[at],
-                 reach = covariance.of.size() == 0
-                             ? one.upper - one.lower
-                             : covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+    const double value = candidate.fit.point[static_cast<Eigen::Index>(i)],
+                 reach = reach_of(candidate, i, covariance);
     ParameterEstimate estimate;
     estimate.name = i < constants ? name_of_move(one) : one.name;
     estimate.value = one.value_of(value);
