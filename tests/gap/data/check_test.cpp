@@ -352,6 +352,25 @@ TEST_CASE("a current in coarse steps that stands at its end while the power move
   CHECK_FALSE(found(sound, FindingKind::clipped_samples, "current_A", FindingAction::masked));
 }
 
+TEST_CASE("where a column stands frozen at its end for most of the time, what it reads there is its limit") {
+  // A current in coarse steps that comes to its end six times, and stands there twice for long and else for four rows.
+  Recording r = bench();
+  const double quantum = r.column("current_A").maxCoeff() / 40.0, limit = quantum * 24.0;
+  test::Noise noise(5);
+  std::set<Eigen::Index> beyond;
+  change(r, "current_A", [&](double, Eigen::Index i) {
+    const Eigen::Index stretch = i / 75, length = stretch % 10 == 3 ? 60 : stretch % 5 == 0 ? 4 : 0;
+    const double wanted = i % 75 < length ? 27.0 : 12.0 + 3.0 * std::sin(0.02 * static_cast<double>(i));
+    const double steps = std::round(wanted + 0.6 * noise());
+    if (steps > 24.0) beyond.insert(i);
+    return std::min(quantum * steps, limit);
+  });
+  r.set("power_param", Eigen::VectorXd::Constant(r.rows(), 200.0));
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::bench_model(), r), "current_A");
+  CHECK(std::includes(out.begin(), out.end(), beyond.begin(), beyond.end()));
+  CHECK(out.size() <= beyond.size() + 3);
+}
+
 TEST_CASE(
     "a range ends on both sides alike: where one end is proven, a rest out of range at the other is cut off, too") {
   // An angle in fine steps that swings past one end, and rests beyond the other.
@@ -628,6 +647,20 @@ TEST_CASE("spikes a few rows apart do not hide each other") {
   const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
   for (const Eigen::Index row : bad) CHECK(out.count(row) == 1);
   CHECK(out.size() <= bad.size() + 2);
+}
+
+TEST_CASE("three spikes of unlike height within five rows do not hide each other") {
+  // As two neighbours and one before them, the farthest last: seen from one side the second lies halfway to the third.
+  const double heights[] = {164.0, 226.0, 305.0};
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (int k = 0; k < places; ++k) bad.insert({place(r, k), place(r, k) + 3, place(r, k) + 4});
+  int next = 0;
+  change(r, "angle_deg",
+         [&](double x, Eigen::Index i) { return bad.count(i) != 0 ? x + heights[next++ % 3] : x; });
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  for (const Eigen::Index row : bad) CHECK(out.count(row) == 1);
+  CHECK(out.size() <= bad.size() + places);  // what is right in the midst of three may go with them
 }
 
 TEST_CASE("a run that begins with a push keeps its first row: it says where it starts") {

@@ -14,6 +14,8 @@ struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
   std::size_t bends_around = 5;      ///< second differences before and after
+  double as_far_as_another = 0.25;   ///< of how far it lies: what of another one may be a spike, too
+  std::size_t least_bends = 4;       ///< of them, where those of other spikes are left out
   std::size_t drawn_along = 3;       ///< rows before and after a spike that seem to lie far because of it
   double as_far = 0.6;               ///< of the farthest among them: what is a spike of its own
   double confirmed = 0.35;           ///< of how far a sample lies: what a rate and its angle may differ by

@@ -101,7 +101,8 @@ public:
   }
 
   /// Stretches of one value where noise or motion would show: all but their first row, and that one, too, where the column stood
-  /// there already when the run before it ended.
+  /// there already when the run before it ended; every sample of the largest or the least value, where that stands so for most
+  /// of its time, since the range ends there.
   RowMask frozen() {
     RowMask mask = empty();
     double stood_at = missing;  // at the end of the run before
@@ -124,6 +125,7 @@ public:
         begin = end;
       }
     }
+    add_ends(mask);
     take(mask);
     return mask;
   }
@@ -150,6 +152,21 @@ public:
 private:
   RowMask empty() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
 
+  /// Adds the other samples of an extreme that most of all its samples in a mask have.
+  void add_ends(RowMask& mask) const {
+    std::vector<double> list = finite_samples(values_);
+    if (list.empty()) return;
+    std::sort(list.begin(), list.end());
+    for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
+      if (one.value == 0.0 || one.count < limit_.least_clipped) continue;
+      std::ptrdiff_t masked = 0;
+      for (Eigen::Index i = 0; i < values_.size(); ++i)
+        masked += values_[i] == one.value && mask[static_cast<std::size_t>(i)] != 0 ? 1 : 0;
+      for (Eigen::Index i = 0; 2 * masked > one.count && i < values_.size(); ++i)
+        if (values_[i] == one.value) mask[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+
   std::vector<Eigen::Index> finite_rows(const RunSpan& run) const {
     std::vector<Eigen::Index> rows;
     for (Eigen::Index i = run.begin; i < run.end; ++i)
@@ -170,11 +187,14 @@ private:
     const auto at = [&](std::size_t k) { return values_[rows[k]]; };
     const double least = std::max(limit_.spike_scales * scale_, limit_.quanta * quantum_);
     if (!(least > 0.0)) return;
-    std::vector<double> far(count, 0.0);
+    std::vector<double> off_median(count), far(count, 0.0);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t from = i < 2 ? 0 : std::min(i - 2, count - 5);
-      double off =
+      off_median[i] =
           std::abs(at(i) - median_of_five(at(from), at(from + 1), at(from + 2), at(from + 3), at(from + 4)));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      double off = off_median[i];
       if (!(off > least)) continue;
       // What continues either side in a straight line is the corner of a motion and no spike.
       if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
@@ -188,12 +208,22 @@ private:
       if (!(off > least) || confirmed_[static_cast<std::size_t>(rows[i])] != 0 ||
           is_motion(run, rows[i], off))
         continue;
-      // So many that another spike among them does not move the median.
-      std::vector<double> bends;
+      // So many that another spike among them does not move the median. Those of two more, and of what is right between them,
+      // are left out, but of a rate: blows of teeth look like that.
+      std::vector<double> bends, without_spikes;
+      const double another = std::max(least, limit_.as_far_as_another * off);
+      std::size_t others = 0;
       for (std::size_t k = i < limit_.bends_around + 1 ? 1 : i - limit_.bends_around;
-           k < std::min(count - 1, i + limit_.bends_around + 1); ++k)
-        if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
-      if (off > limit_.spike_bends * median_of(bends)) far[i] = off;
+           k < std::min(count - 1, i + limit_.bends_around + 1); ++k) {
+        if (k != i && off_median[k] > another) ++others;
+        if (k + 1 >= i && k <= i + 1) continue;
+        bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
+        const double spike = std::max({off_median[k - 1], off_median[k], off_median[k + 1]});
+        if (!(spike > another)) without_spikes.push_back(bends.back());
+      }
+      const bool may_be_three =
+          traits_.integral == nullptr && others <= 3 && without_spikes.size() >= limit_.least_bends;
+      if (off > limit_.spike_bends * median_of(may_be_three ? without_spikes : bends)) far[i] = off;
     }
     // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
     for (std::size_t i = 0; i < count; ++i) {
