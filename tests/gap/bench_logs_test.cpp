@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace thermopower;
@@ -230,3 +231,39 @@ TEST_CASE("rows of their own for each stream, and lines drawn between readings, 
 }
 
 }  // namespace
+
+TEST_CASE(
+    "noise that remembers twenty readings is no gap in a few hundred of them, and hides no clear cause") {
+  // As likely as not such noise comes to a quarter more or less than itself in a recording.
+  const auto recorded = [](const test::BenchFault& fault, int rows, std::uint64_t seed) {
+    constexpr double memory = 0.95;
+    Recording r = test::bench_recording(fault, rows, seed);
+    test::Noise noise(1000 * seed + static_cast<std::uint64_t>(rows));
+    for (const auto& [column, sd] : {std::pair<const char*, double>{"current_A", 0.01}, {"motor_C", 0.3}}) {
+      Eigen::VectorXd values = r.column(column);
+      double last = noise();
+      for (double& one : values) {
+        last = memory * last + std::sqrt(1.0 - memory * memory) * noise();
+        one += sd * last;
+      }
+      r.set(column, values);
+    }
+    return r;
+  };
+  const auto answer = [&](const test::BenchFault& fault, std::uint64_t seed) {
+    return diagnose(test::bench_model(), {recorded(fault, 300, seed)}, {recorded(fault, 225, seed)});
+  };
+  int gaps = 0, named = 0;
+  constexpr int draws = 80;
+  for (std::uint64_t seed = 1; seed <= draws; ++seed)
+    gaps += answer({}, seed).verdict == Verdict::no_gap ? 0 : 1;
+  CHECK(gaps <= 0.02 * draws);
+  constexpr int causes = 10;
+  test::BenchFault offset;
+  offset.sensor_offset_A = 0.05;
+  for (std::uint64_t seed = 1; seed <= causes; ++seed) {
+    const Diagnosis found = answer(offset, seed);
+    named += found.cause.size() == 1 && found.cause.front().effect == "current_sensor_offset" ? 1 : 0;
+  }
+  CHECK(named >= 9);
+}

@@ -161,8 +161,8 @@ TEST_CASE("noise alone is seldom larger than it may be by chance, and white nois
   const auto none = [](int) { return 0.0; };
   const int count = GENERATE(250, 1000, 4000);
   CHECK(beyond(count, 0.0, none) == 0);
-  CHECK(beyond(count, 0.8, none) <= 7);
-  CHECK(beyond(count, 0.95, none) <= 7);
+  CHECK(beyond(count, 0.8, none) <= 2);
+  CHECK(beyond(count, 0.95, none) <= 2);
   // A few hundred samples do not tell it from noise that remembers.
   if (count >= 1000) CHECK(beyond(count, 0.0, [&](int i) { return 2.0 * std::sin(25.0 * i / count); }) >= 90);
 }

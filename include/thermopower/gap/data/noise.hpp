@@ -32,11 +32,12 @@ struct NoiseThresholds {
   double part_penalty = 2.0;      ///< by which a further part must lower the weighted squares (Akaike)
   double quanta = 2.5;            ///< quanta up to which a difference is no jump
   double same_level = 0.01;       ///< by which levels may differ that are the same, where the largest is 1
-  double as_likely = 4.0;  ///< penalised squares by which a sum may be behind the best: two standard errors
-  double rough = 2.0;      ///< times the usual scale of third differences up to which those of noise may be
-  double smooth = 0.7;     ///< times the scale of the least of them that those of noise have at least
-  double standard_errors = 1.64;          ///< of a mean square: one-sided 95 %
-  double uncorrelated = 0.05;             ///< autocorrelation below which samples are taken for independent
+  double as_likely =
+      6.0;  ///< penalised squares by which a sum may be behind the best: two and a half standard errors
+  double rough = 2.0;   ///< times the usual scale of third differences up to which those of noise may be
+  double smooth = 0.7;  ///< times the scale of the least of them that those of noise have at least
+  double standard_errors = 2.6;  ///< of a mean square: one-sided 99.5 %, as several signals are asked twice
+  double uncorrelated = 0.05;    ///< autocorrelation below which samples are taken for independent
   std::size_t least_for_correlation = 8;  ///< samples; fewer count one by one
 };
 
@@ -66,7 +67,7 @@ struct NoiseEstimate {
 
 /// The same, and how large the residual may be with nothing but noise in it: of the sums that explain the variogram as
 /// well (NoiseThresholds::as_likely), the one with the most noise, whose mean square over so few samples may be larger by
-/// chance the longer it remembers (one-sided 95 %). White noise knows itself; a few hundred samples of noise that remembers
+/// chance the longer it remembers (one-sided 99.5 %). White noise knows itself; a few hundred samples of noise that remembers
 /// twenty know it to a third.
 NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
                                 double quantum = 0.0, const std::vector<double>& levels = {},

@@ -51,6 +51,8 @@ struct DecisionThresholds {
   double no_gap = 1.25;
   /// The same on every row held out, as the table is printed: many rows know their floor better than a search does.
   double no_gap_in_full = 1.2;
+  /// Multiple of the noise floor up to which what noise that remembers comes to by chance, in a few hundred samples, is none.
+  double most_by_chance = 2.0;
   /// Multiple of the noise, over the windows of a fit, from which no constants are looked for that bring everything to it.
   double far_from_noise = 8.0;
   /// Share of the score by which a cause must shrink the held-out gap, beyond what re-calibration does, to be

@@ -120,6 +120,22 @@ private:
            (chance && fit_both_parts(refitted_to(held_out_inputs_, attempt)));
   }
 
+  /// Whether noise that remembers may be all that some constants within their slack leave of both parts: where no cause is
+  /// believed, and a few readings may be anything by chance.
+  bool suffice_by_chance(const Attempt& attempt) {
+    const auto may_be_noise = [&](const Model& model) {
+      for (const std::vector<Inputs>* part : {&held_out_inputs_, &train_inputs_})
+        if (!is_within_noise(model, *part, nullptr, options_.horizon_s, catalogue_, false, true))
+          return false;
+      return true;
+    };
+    const Candidate& empty = attempt.candidates.front();
+    if (largest_noise_multiple(empty) > decision.far_from_noise) return false;
+    return may_be_noise(model_) ||
+           may_be_noise(augmented(model_, empty.explanation, empty.list, empty.fit.point)) ||
+           may_be_noise(refitted_to(held_out_inputs_, attempt));
+  }
+
   /// The model with its constants, within their slack, fitted to some data; they begin where the search left them.
   Model refitted_to(const std::vector<Inputs>& inputs, const Attempt& attempt) {
     FitProblem problem = posing_.pose(inputs, posing_.fitted(posing_.long_window_s()));
@@ -205,6 +221,8 @@ private:
                             has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
     if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));
     const bool taken_back = short_of_noise || unproven || on_its_own;
+    if (taken_back && result_.verdict == Verdict::unexplained && suffice_by_chance(attempt))
+      take_causes_back(result_, model_, nothing_missing());
     if (named && leaves_a_rest && !taken_back)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()

@@ -365,8 +365,9 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
   const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
-    const double by_chance =
-        chance && noise[i].sd > 0.0 ? std::min(noise[i].by_chance / noise[i].sd, decision.near_floor) : 1.0;
+    const double by_chance = chance && noise[i].sd > 0.0
+                                 ? std::min(noise[i].by_chance / noise[i].sd, decision.most_by_chance)
+                                 : 1.0;
     const double rms = errors.rms(static_cast<Signal>(i)),
                  within = std::max(decision.no_gap_in_full, by_chance) * floor[i];
     const bool may_be_chance =
