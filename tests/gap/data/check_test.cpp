@@ -649,6 +649,60 @@ TEST_CASE("spikes a few rows apart do not hide each other") {
   CHECK(out.size() <= bad.size() + 2);
 }
 
+namespace {
+
+/// The row where a rate passes 0 for the n-th time, away from the ends.
+Eigen::Index turn_of(const Eigen::VectorXd& rate, int n) {
+  for (Eigen::Index i = 100; i + 150 < rate.size(); ++i)
+    if (rate[i - 1] * rate[i] <= 0.0 && std::abs(rate[i + 20]) > 20.0 && n-- == 0) return i;
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an angle in coarse steps that stood where it turned, and catches up with its rate, was a sensor's that had stopped") {
+  Recording r = axis();
+  const double step = 0.0879;
+  change(r, "angle_deg", [&](double x, Eigen::Index) { return step * std::round(x / step); });
+  const Eigen::Index turn = turn_of(r.column("rate_dps"), 3);
+  REQUIRE(turn > 0);
+  // It goes on for longer than it came: what is left is a small part of the way.
+  Eigen::VectorXd angle = r.column("angle_deg");
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = turn - 12; i < turn + 22; ++i) {
+    angle[i] = angle[turn - 13];
+    bad.insert(i);
+  }
+  r.set("angle_deg", angle);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  CHECK(std::includes(out.begin(), out.end(), bad.begin(), bad.end()));
+  CHECK(out.size() <= bad.size() + 3);
+}
+
+TEST_CASE("a rate of exactly 0 whose angle goes on is a sensor's that has stopped, and a rest is one") {
+  Recording r = axis();
+  const Eigen::Index turn = turn_of(r.column("rate_dps"), 3);
+  REQUIRE(turn > 0);
+  Eigen::VectorXd rate = r.column("rate_dps"), angle = r.column("angle_deg");
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = turn; i < turn + 40; ++i) {
+    rate[i] = 0.0;
+    if (i > turn) bad.insert(i);
+  }
+  r.set("rate_dps", rate);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "rate_dps");
+  CHECK(std::includes(out.begin(), out.end(), bad.begin(), bad.end()));
+  CHECK(out.size() <= bad.size() + 3);
+  // The same rate above an angle that rests with it, and jumps with what pushes it on.
+  const double moved = angle[turn + 40] - angle[turn];
+  test::Noise noise(9);
+  for (Eigen::Index i = turn + 1; i < angle.size(); ++i)
+    angle[i] = i < turn + 40 ? angle[turn] + 0.02 * noise() : angle[i] - moved;
+  r.set("angle_deg", angle);
+  CHECK(taken(r, PreparedRecording(test::axis_model(), r), "rate_dps").size() <= 3);
+}
+
 TEST_CASE("three spikes of unlike height within five rows do not hide each other") {
   // As two neighbours and one before them, the farthest last: seen from one side the second lies halfway to the third.
   const double heights[] = {164.0, 226.0, 305.0};

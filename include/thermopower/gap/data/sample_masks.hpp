@@ -446,17 +446,22 @@ private:
     return ways;
   }
 
-  /// Whether an angle that stood from a row on went somewhere meanwhile, or reads at another one at once, about what its rate
-  /// says it moved by in between: it did not rest, though its rate does for most of the time.
-  bool did_not_rest(Eigen::Index from, Eigen::Index to, bool ends) const {
-    constexpr double at_least = 0.5, at_most = 2.0, clearly = 4.0;
-    const double seen = limit_.jump_scales * std::max(scale_, quantum_);
-    const Ways ways = ways_between(from, to);
-    if (ways.farthest > clearly * seen) return true;
-    const double jump = ends ? values_[to] - values_[from] : 0.0;
-    return std::abs(ways.all) > seen && jump * ways.all > 0.0 &&
-           std::abs(jump) > at_least * std::abs(ways.all) && std::abs(jump) < at_most * std::abs(ways.all);
+  /// Whether an angle that stood from a row on went somewhere meanwhile, though its rate rests for most of the time.
+  bool went_somewhere(Eigen::Index from, Eigen::Index to) const {
+    constexpr double clearly = 4.0;
+    return ways_between(from, to).farthest > clearly * visible_way();
   }
+
+  /// Whether an angle that stood from a row on reads at another one at once, about what its rate says it moved by meanwhile.
+  bool catches_up(Eigen::Index from, Eigen::Index to) const {
+    constexpr double at_least = 0.5, at_most = 2.0;
+    const double jump = values_[to] - values_[from], all = ways_between(from, to).all;
+    return std::abs(all) > visible_way() && jump * all > 0.0 && std::abs(jump) > at_least * std::abs(all) &&
+           std::abs(jump) < at_most * std::abs(all);
+  }
+
+  /// A motion of an angle that neither its noise nor its steps hide.
+  double visible_way() const { return limit_.jump_scales * std::max(scale_, quantum_); }
 
   /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the same twice, and
   /// how rarely it steps as far as it does after that. A slow one in coarse steps does stand, but its noise shows.
@@ -506,26 +511,32 @@ private:
     const auto length = static_cast<Eigen::Index>(end - begin);
     if (length < limit_.least_frozen) return false;
     const double value = values_[rows[begin]];
-    if (traits_.zero_is_rest && value == 0.0) return false;
+    const double share = std::max(equal_share_, 1e-4);
+    const bool improbable = equal_share_ < limit_.rarely_equal &&
+                            -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
+    // An exact 0 is a rest, but of a rate whose angle goes on, and which jumps where it is read again.
+    if (traits_.zero_is_rest && value == 0.0)
+      return improbable && moves_otherwise(rows[begin], rows[end - 1], value) && end < rows.size() &&
+             std::abs(values_[rows[end]]) > limit_.jump_scales * scale_;
     if (traits_.at_rest != nullptr) {
+      if (end < rows.size() && catches_up(rows[begin], rows[end])) return true;
       std::size_t moving = 0;
       for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
-      if (2 * moving < end - begin) {
-        const bool ends = end < rows.size();
-        return did_not_rest(rows[begin], ends ? rows[end] : rows[end - 1], ends);
-      }
+      if (2 * moving < end - begin)
+        return went_somewhere(rows[begin], end < rows.size() ? rows[end] : rows[end - 1]);
     }
     if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value)) return false;
-    const double share = std::max(equal_share_, 1e-4);
-    const bool improbable = -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
-    if (equal_share_ < limit_.rarely_equal && improbable &&
-        (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value)))
-      return true;
+    if (improbable && (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value))) return true;
     if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
     // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
     // a current that somebody sets.
-    if (end == rows.size() || is_set()) return false;
-    const double jump = std::abs(values_[rows[end]] - value);
+    return !is_set() && jumps_after(rows, end);
+  }
+
+  /// Whether a column that stood jumps where it goes on, and stays away.
+  bool jumps_after(const std::vector<Eigen::Index>& rows, std::size_t end) const {
+    if (end == rows.size()) return false;
+    const double value = values_[rows[end - 1]], jump = std::abs(values_[rows[end]] - value);
     return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
                             limit_.quanta * quantum_}) &&
            (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
