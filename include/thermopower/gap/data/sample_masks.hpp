@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
 
@@ -273,31 +274,6 @@ private:
       if (!(std::abs(values_[k + 1] - values_[k] - step) < limit_.confirmed * off)) return false;
     }
     return true;
-  }
-
-  /// The largest or the least value of a column.
-  struct Extreme {
-    double value = 0.0;         ///< itself
-    double next = 0.0;          ///< the one next to it
-    std::ptrdiff_t count = 0;   ///< samples that have it
-    std::ptrdiff_t beside = 0;  ///< samples that have the one next to it
-  };
-
-  static Extreme extreme_of(const std::vector<double>& sorted, bool top) {
-    Extreme one;
-    one.value = top ? sorted.back() : sorted.front();
-    one.count = std::count(sorted.begin(), sorted.end(), one.value);
-    const auto last = static_cast<std::ptrdiff_t>(sorted.size()) - 1;
-    const std::ptrdiff_t at = std::min(one.count, last);
-    one.next = sorted[static_cast<std::size_t>(top ? last - at : at)];
-    one.beside = std::count(sorted.begin(), sorted.end(), one.next);
-    return one;
-  }
-
-  /// Whether far more samples have an extreme than the value next to it.
-  static bool piles_up(const Extreme& one) {
-    return one.count >= limit_.least_clipped && one.value != 0.0 &&
-           static_cast<double>(one.count) >= limit_.clip_ratio * static_cast<double>(one.beside);
   }
 
   /// Whether the sensor's range ends at an extreme.
