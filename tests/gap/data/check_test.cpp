@@ -703,6 +703,19 @@ TEST_CASE("a rate of exactly 0 whose angle goes on is a sensor's that has stoppe
   CHECK(taken(r, PreparedRecording(test::axis_model(), r), "rate_dps").size() <= 3);
 }
 
+TEST_CASE(
+    "a thermometer of 1 degC that flickers at a threshold, and stands once it has left it, has not stopped") {
+  Recording r = axis();
+  test::Noise noise(3);
+  Eigen::VectorXd motor(r.rows());
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    motor[i] =
+        std::round(36.45 + 0.5 * static_cast<double>(i) / static_cast<double>(r.rows()) + 0.08 * noise());
+  r.set("motor_C", motor);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK_FALSE(found(prepared, FindingKind::frozen_samples, "motor_C", FindingAction::masked));
+}
+
 TEST_CASE("three spikes of unlike height within five rows do not hide each other") {
   // As two neighbours and one before them, the farthest last: seen from one side the second lies halfway to the third.
   const double heights[] = {164.0, 226.0, 305.0};

@@ -30,7 +30,9 @@ struct MaskThresholds {
   double rarely_equal = 0.5;         ///< share of equal neighbours below which the noise shows at every row
   double nearly_always_equal =
       0.9;  ///< share of equal neighbours from which a column that may jump is set, not measured
-  double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
+  double hardly_equal = 0.2;  ///< share of equal neighbours below which a value hardly repeats by chance
+  double wide_steps =
+      0.01;  ///< of the steps of a temperature, beyond one quantum, from which its noise is as large
   double log_chance = 20.7;        ///< -ln(1e-9): how improbable a frozen stretch must be
   Eigen::Index least_frozen = 6;   ///< rows of the shortest frozen stretch
   double clip_ratio = 8.0;         ///< times as many samples at the extreme as at the value next to it

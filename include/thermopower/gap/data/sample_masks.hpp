@@ -156,7 +156,8 @@ private:
   /// Adds the other samples of an extreme that most of all its samples in a mask have.
   void add_ends(RowMask& mask) const {
     std::vector<double> list = finite_samples(values_);
-    if (list.empty()) return;
+    if (list.empty() || traits_.cannot_jump)
+      return;  // a temperature nears its end slowly, and reads it for long
     std::sort(list.begin(), list.end());
     for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
       if (one.value == 0.0 || one.count < limit_.least_clipped) continue;
@@ -444,7 +445,7 @@ private:
   bool rests_otherwise(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
     constexpr std::size_t around =
         6;  // samples before and after, over which one that rests moves by a quantum at most
-    double still = 0.0, equal = 0.0, as_far = 0.0, steps = 0.0;
+    double still = 0.0, equal = 0.0, as_far = 0.0, steps = 0.0, moves = 0.0, wide = 0.0;
     const double step = end < rows.size() ? std::abs(values_[rows[end]] - values_[rows[begin]]) : 0.0;
     constexpr std::size_t looked_at =
         5000;  // samples before and after: of a million there are stretches in thousands
@@ -454,13 +455,17 @@ private:
       if (k >= begin && k <= end) continue;
       const double own = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
       steps += 1.0;
+      moves += own > 0.0 ? 1.0 : 0.0;
+      wide += own > 1.5 * quantum_ ? 1.0 : 0.0;
       as_far += own >= step ? 1.0 : 0.0;
       if (k < around || k + around >= rows.size() || (k + around >= begin && k < end + around)) continue;
       if (std::abs(values_[rows[k + around]] - values_[rows[k - around]]) > 1.5 * quantum_) continue;
       still += 1.0;
       equal += own == 0.0 ? 1.0 : 0.0;
     }
-    const double share = (equal + 1.0) / (still + 1.0);
+    // What only ever goes from one step to the next and back has less noise than a step: between two thresholds it stands.
+    const bool is_quiet = wide < limit_.wide_steps * moves;
+    const double share = is_quiet ? 1.0 : (equal + 1.0) / (still + 1.0);
     const double far = step > limit_.quanta * quantum_ ? std::log((steps + 1.0) / (as_far + 1.0)) : 0.0;
     return -std::log(share) * static_cast<double>(end - begin - 1) + far > limit_.log_chance;
   }
