@@ -26,7 +26,7 @@
 namespace thermopower::plant {
 
 /// What the freedoms of a moving axis are tried at. Held by tests/gap/localise/localisation_test.cpp and the rows "signal and
-/// submodel right" of docs/reference/gap-benchmark.md (seed 20270211).
+/// submodel right" of docs/reference/gap-benchmark.md (seed 20270221).
 struct AxisFreedomThresholds {
   double widest_rad = 0.5;      ///< angle over which a friction builds up, at most; shares of it by the next,
   double narrower = 0.3;        ///< each of the one before

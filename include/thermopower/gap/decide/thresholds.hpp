@@ -7,7 +7,7 @@
 namespace thermopower::gap::engine {
 
 /// The thresholds of the decision, each with its unit and its reason. They were chosen on recordings of
-/// `gap_benchmark_generate` with seeds of their own, and docs/reference/gap-benchmark.md judges them on seed 20270211; held by
+/// `gap_benchmark_generate` with seeds of their own, and docs/reference/gap-benchmark.md judges them on seed 20270221; held by
 /// tests/gap/decide_test.cpp.
 struct DecisionThresholds {
   // Evidence
@@ -131,7 +131,7 @@ struct DecisionThresholds {
 /// The values in force.
 inline constexpr DecisionThresholds decision{};
 
-/// How much a search looks at: enough for what the benchmark names (seed 20270211), and few enough for 100 000 rows in some
+/// How much a search looks at: enough for what the benchmark names (seed 20270221), and few enough for 100 000 rows in some
 /// seconds (`gap_speed`). Held by tests/gap/fit/shortened_test.cpp and tests/gap/fit/segment_choice_test.cpp.
 struct SearchThresholds {
   Eigen::Index fitted_bench_rows = 2500;  ///< that explanations are fitted to in the end

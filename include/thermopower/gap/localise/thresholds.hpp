@@ -9,7 +9,7 @@ namespace thermopower::gap::engine {
 /// Thresholds of the localisation. Sums of squares are in units of what the sensor's noise alone leaves (the
 /// floor), unless it says otherwise. They were chosen on recordings drawn by `gap_benchmark_generate`, whose
 /// table's rows "signal and submodel right" and "no gap, and none found" they serve.
-/// Held by tests/gap/localise/localisation_test.cpp, and judged on seed 20270211 in docs/reference/gap-benchmark.md.
+/// Held by tests/gap/localise/localisation_test.cpp, and judged on seed 20270221 in docs/reference/gap-benchmark.md.
 struct LocalisationThresholds {
   // When there is something to place.
   Eigen::Index least_rows = 30;  ///< rows; fewer cannot be cross-validated on eight stretches
