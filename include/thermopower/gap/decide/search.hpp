@@ -107,7 +107,7 @@ public:
   struct Promise {
     LinearGuess guess;     ///< after one linear step; of a set that nobody looked at it is empty
     std::size_t near = 0;  ///< place among the candidates of the fit of a part of it
-    Explanation together;
+    Explanation together;  ///< that part and what is added
   };
 
   /// The sets of `size` causes that promise most, the best first: the best candidates of one cause fewer with every single
