@@ -155,9 +155,9 @@ private:
 
   /// Adds the other samples of an extreme that most of all its samples in a mask have.
   void add_ends(RowMask& mask) const {
+    if (traits_.cannot_jump) return;  // a temperature nears its end slowly, and reads it for long
+    if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return;
     std::vector<double> list = finite_samples(values_);
-    if (list.empty() || traits_.cannot_jump)
-      return;  // a temperature nears its end slowly, and reads it for long
     std::sort(list.begin(), list.end());
     for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
       if (one.value == 0.0 || one.count < limit_.least_clipped) continue;

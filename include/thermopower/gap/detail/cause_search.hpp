@@ -170,6 +170,7 @@ private:
           fitted_to_rows(leader, problem, train_, attempt.horizon_s, search_extent.fitted_recorded_rows);
       if (!leader.train.within(near * near)) return;
       problem = std::move(rows);
+      attempt.all = problem.segments;  // no window of averages is one of these
       searching.take_over(candidates, hopeless);
       renew();
     };

@@ -90,14 +90,11 @@ private:
     // What an explanation leaves may be less than rows tell of their noise. Where nothing explains, what the best of the
     // explanations leaves is no noise.
     const FitProblem* witness = conclusion.verdict == Verdict::unexplained ? nullptr : &attempt.problem;
-    const auto is_enough = [&](const Model& model, const std::vector<Inputs>& inputs, bool chance) {
-      return is_within_noise(model, inputs, witness, options_.horizon_s, catalogue_, false, chance);
-    };
     // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it, where
     // both parts say so: a few readings alone may be anything by chance.
     const bool chance = witness == nullptr;
     const auto fit_both_parts = [&](const Model& model) {
-      return is_enough(model, held_out_inputs_, chance) && is_enough(model, train_inputs_, chance);
+      return is_within_noise_of_both_parts(model, witness, chance);
     };
     // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
     if (largest_noise_multiple(empty) > decision.far_from_noise)
@@ -112,7 +109,9 @@ private:
                           are_dearer(empty, attempt.candidates[conclusion.chosen], model_);
     if (is_cause) return fit_both_parts(model_);
     const Model constants = augmented(model_, empty.explanation, empty.list, empty.fit.point);
-    if (is_enough(constants, held_out_inputs_, false) || (chance && fit_both_parts(constants))) return true;
+    if (is_within_noise(constants, held_out_inputs_, witness, options_.horizon_s, catalogue_) ||
+        (chance && fit_both_parts(constants)))
+      return true;
     // Where the training data are rough they leave constants open that the held-out data tell: what those ask for may do for both.
     std::vector<Inputs> all = train_inputs_;
     all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
@@ -120,14 +119,19 @@ private:
            (chance && fit_both_parts(refitted_to(held_out_inputs_, attempt)));
   }
 
+  /// Whether a model scores what the noise allows on held-out and training data, see is_within_noise().
+  bool is_within_noise_of_both_parts(const Model& model, const FitProblem* witness, bool chance) const {
+    const auto is_within = [&](const std::vector<Inputs>& part) {
+      return is_within_noise(model, part, witness, options_.horizon_s, catalogue_, false, chance);
+    };
+    return is_within(held_out_inputs_) && is_within(train_inputs_);
+  }
+
   /// Whether noise that remembers may be all that some constants within their slack leave of both parts: where no cause is
   /// believed, and a few readings may be anything by chance.
   bool suffice_by_chance(const Attempt& attempt) {
     const auto may_be_noise = [&](const Model& model) {
-      for (const std::vector<Inputs>* part : {&held_out_inputs_, &train_inputs_})
-        if (!is_within_noise(model, *part, nullptr, options_.horizon_s, catalogue_, false, true))
-          return false;
-      return true;
+      return is_within_noise_of_both_parts(model, nullptr, true);
     };
     const Candidate& empty = attempt.candidates.front();
     if (largest_noise_multiple(empty) > decision.far_from_noise) return false;

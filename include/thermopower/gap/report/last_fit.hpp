@@ -32,6 +32,14 @@ inline bool is_averaged(const FitProblem& searched) {
                      [](const Segment& one) { return one.axis && one.inputs->repeats.size() > 0; });
 }
 
+/// When a fit to rows ends: as a search does, since it begins close to the end.
+inline FitOptions last_fit() {
+  FitOptions options;
+  options.iterations = 15;
+  options.relative_decrease = 1e-7;
+  return options;
+}
+
 /// The rows as they were recorded that a search fitted averages of, in windows of the same length, and the candidate fitted
 /// to them from where the search ended.
 /// @param recordings as recorded, which the averages are made of
@@ -42,10 +50,7 @@ inline FitProblem fitted_to_rows(Candidate& candidate, const FitProblem& searche
   FitProblem problem = searched;
   problem.segments =
       thinned_axis(cut(recordings, horizon_s, searched.plant()), rows, {}, search_extent.windows_together);
-  FitOptions options;
-  options.iterations = 15;  // as a search ends with; it begins close to the end
-  options.relative_decrease = 1e-7;
-  Attribution(problem).polish(candidate, options);
+  Attribution(problem).polish(candidate, last_fit());
   return problem;
 }
 
@@ -67,9 +72,7 @@ inline void fit_to_rows(Diagnosis& result, Candidate& candidate, const FitProble
   measure_noise(problem, candidate, recordings);
   const Weight of_rows = correlation_of(candidate, problem);
   problem.correlation = mean_correlation(of_rows);
-  FitOptions options;
-  options.iterations = 15;
-  options.relative_decrease = 1e-7;
+  FitOptions options = last_fit();
   options.curvature = true;
   Attribution(problem).polish(candidate, options);
   weight.correlation = of_rows.correlation;
