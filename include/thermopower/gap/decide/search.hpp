@@ -2,30 +2,19 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/decide/fitness.hpp>
+#include <thermopower/gap/decide/promises.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
-#include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/in_parallel.hpp>
-#include <thermopower/gap/fit/segment_choice.hpp>
 #include <thermopower/gap/fit/short_windows.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <set>
-#include <string>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
-
-/// The submodels in which places say that something is missing, where there are several: then two causes may be.
-inline std::vector<plant::SubmodelName> suspects_among(const std::vector<Location>& where) {
-  std::vector<plant::SubmodelName> found;
-  for (const Location& one : where)
-    if (std::find(found.begin(), found.end(), one.submodel) == found.end()) found.push_back(one.submodel);
-  return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
-}
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
@@ -46,7 +35,7 @@ public:
         longer_(longer),
         fine_(fine),
         threads_(threads),
-        suspects_(std::move(suspects)) {}
+        promising_(glimpse, coarse, threads, std::move(suspects)) {}
 
   /// The empty explanation and every single one, fitted to the first look's data alone.
   std::vector<Candidate> try_singles(const std::vector<Explanation>& singles) const {
@@ -58,7 +47,7 @@ public:
   /// Further single explanations, fitted to the first look's data alone.
   std::vector<Candidate> try_further(const std::vector<Explanation>& singles,
                                      const std::vector<Candidate>& candidates) const {
-    return fit_all(singles, best(candidates));
+    return fit_all(singles, fittest(candidates));
   }
 
   /// Adds candidates that were tried to others, and fits the best of all to the fine data.
@@ -92,67 +81,35 @@ public:
   /// @return whether the best one has changed
   bool look_beside(std::vector<Candidate>& candidates, double enough) const {
     constexpr std::size_t looked_at = 2;
-    if (best(candidates).train.within(enough)) return false;
+    if (fittest(candidates).train.within(enough)) return false;
     FitOptions options;
     options.iterations = 12;
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(looked_at, order.size()));
-    const double before = fitness(best(candidates));
+    const double before = fitness(fittest(candidates));
     in_parallel(order.size(), threads_,
                 [&](std::size_t i) { fine_.look_beside(candidates[order[i]], options); });
-    return fitness(best(candidates)) < before;
+    return fitness(fittest(candidates)) < before;
   }
 
-  /// A set worth fitting.
-  struct Promise {
-    LinearGuess guess;     ///< after one linear step; of a set that nobody looked at it is empty
-    std::size_t near = 0;  ///< place among the candidates of the fit of a part of it
-    Explanation together;  ///< that part and what is added
-  };
-
-  /// The sets of `size` causes that promise most, the best first: the best candidates of one cause fewer with every single
-  /// one, ranked by one linear step. They refer to the candidates by their places.
-  std::vector<Promise> promising_sets(const std::vector<Candidate>& candidates,
-                                      const std::vector<Explanation>& singles, int size) const {
-    std::vector<Promise> promises;
-    for (const std::size_t near : seeds_of(candidates, size - 1))
-      for (const Explanation& single : singles)
-        if (!candidates[near].explanation.includes(single))
-          promises.push_back({{}, near, candidates[near].explanation.with(single)});
-    constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
-    const FirstLook look(best(candidates), glimpse_, coarse_);
-    const Attribution glimpse(look.few), coarse(look.some, look.few);
-    const auto rank = [&](const Attribution& on) {
-      in_parallel(promises.size(), threads_, [&](std::size_t i) {
-        Promise& one = promises[i];
-        one.guess = one.guess.starts.empty() ? on.promise(one.together, candidates[one.near])
-                                             : on.promise(one.together, one.guess.starts);
-      });
-      sort_by(promises, [](const Promise& one) { return one.guess.cost; });
-    };
-    if (&glimpse_ != &coarse_ && promises.size() > looked_at) {
-      rank(glimpse);
-      promises.resize(looked_at);
-    }
-    rank(coarse);
-    std::set<std::vector<std::string>> seen;
-    std::vector<Promise> kept;
-    for (Promise& one : promises) {
-      std::vector<std::string> ids = one.together.ids(*fine_.problem().model);
-      std::sort(ids.begin(), ids.end());
-      if (kept.size() < fitted && seen.insert(ids).second) kept.push_back(std::move(one));
-    }
-    return kept;
+  /// The sets of two causes that promise most, the best first.
+  std::vector<Promise> promising_pairs(const std::vector<Candidate>& candidates,
+                                       const std::vector<Explanation>& singles) const {
+    return promising_.of_size(candidates, singles, 2);
   }
 
   /// Whether one of the sets that promise most comes within some multiple of the noise in the longer windows of the first look.
   bool come_near(const std::vector<Promise>& sets, double multiple) const {
     constexpr std::size_t looked_at = 3;
     std::vector<char> near(std::min(looked_at, sets.size()), 0);
-    in_parallel(near.size(), threads_, [&](std::size_t i) {
+    const auto look = [&](std::size_t i) {
       const Candidate found = longer_.fit_from(sets[i].together, sets[i].guess.starts, quick());
       near[i] = found.train.within(multiple * multiple);
-    });
+    };
+    if (near.empty()) return false;
+    look(0);
+    if (near[0]) return true;
+    in_parallel(near.size() - 1, threads_, [&](std::size_t i) { look(i + 1); });
     return std::find(near.begin(), near.end(), 1) != near.end();
   }
 
@@ -161,10 +118,11 @@ public:
   void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
                 double enough, std::vector<Promise> pairs = {}) const {
     for (int size = 2; size <= largest; ++size) {
-      if (best(candidates).train.within(enough)) break;
+      if (fittest(candidates).train.within(enough)) break;
       const bool known = size == 2 && !pairs.empty();
-      const std::vector<Promise> sets = known ? std::move(pairs) : promising_sets(candidates, singles, size);
-      const FirstLook look(best(candidates), glimpse_, coarse_);
+      const std::vector<Promise> sets =
+          known ? std::move(pairs) : promising_.of_size(candidates, singles, size);
+      const FirstLook look(fittest(candidates), glimpse_, coarse_);
       add_fitted(candidates, sets, Attribution(look.some, look.few));
       exchange(candidates, singles);
     }
@@ -180,7 +138,7 @@ public:
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
     constexpr std::size_t looked_at = 6, related_to = 2;
     for (std::size_t place = 0; place < std::min(looked_at, order.size()); ++place) {
-      const double farthest = Attribution::out_of_sight * best(candidates).train.total();
+      const double farthest = Attribution::out_of_sight * fittest(candidates).train.total();
       if (candidates[order[place]].train.total() > farthest) continue;
       const Candidate leader = candidates[order[place]];
       std::vector<std::size_t> rivals;
@@ -206,50 +164,6 @@ public:
       candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), candidates[i].fit.starts);
     });
     refine(candidates, candidates.size(), 4);
-  }
-
-  /// The candidate with the least deviance, whatever its size.
-  static const Candidate& best(const std::vector<Candidate>& candidates) {
-    const Candidate* least = &candidates.front();
-    for (const Candidate& one : candidates)
-      if (fitness(one) < fitness(*least)) least = &one;
-    return *least;
-  }
-
-  /// Sum over the signals of samples times the logarithm of the mean square: twice the negative log
-  /// likelihood where the noise of every signal is unknown. No credit is given below the noise.
-  static double fitness(const Candidate& candidate) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (candidate.train.samples[i] > 0.0)
-        sum += candidate.train.samples[i] * std::log(std::max(candidate.train.mean(i), 1e-6));
-    return sum;
-  }
-
-  /// Of the candidates that fit nearly as well as the best, those whose constants moved least: constants that ran far off
-  /// together in the place of what is missing, and any effect beside them, fit a little better than it.
-  static std::vector<std::size_t> modest(const std::vector<Candidate>& candidates, const Model& model) {
-    constexpr double nearly = 0.02;  // of what the best gains
-    constexpr std::size_t some = 4;
-    double best = fitness(candidates.front()), worst = best;
-    for (const Candidate& one : candidates) {
-      best = std::min(best, fitness(one));
-      worst = std::max(worst, fitness(one));
-    }
-    std::vector<std::size_t> list;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (fitness(candidates[i]) - best <= nearly * (worst - best)) list.push_back(i);
-    sort_by(list, [&](std::size_t i) { return price_of_constants(candidates[i], model); });
-    list.resize(std::min(list.size(), some));
-    return list;
-  }
-
-  /// Indices of the candidates from index `first` on, the fittest first.
-  static std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candidates, std::size_t first) {
-    std::vector<std::size_t> order;
-    for (std::size_t i = first; i < candidates.size(); ++i) order.push_back(i);
-    sort_by(order, [&](std::size_t i) { return fitness(candidates[i]); });
-    return order;
   }
 
 private:
@@ -309,26 +223,6 @@ private:
            is_related(rich, simple);
   }
 
-  /// What explanations are first looked at in. Where all that there is so far leaves far more than noise, half of an axis'
-  /// windows tells as well as all of them which are worth more.
-  struct FirstLook {
-    FitProblem few, some;
-
-    /// @param so_far  the best candidate
-    FirstLook(const Candidate& so_far, const Attribution& glimpse, const Attribution& coarse)
-        : few(glimpse.problem()), some(coarse.problem()) {
-      if (so_far.train.within(search_extent.plain_above)) return;
-      for (FitProblem* one : {&few, &some}) one->segments = thinned_axis(one->segments, rows(*one) / 2);
-    }
-
-    static Eigen::Index rows(const FitProblem& problem) {
-      Eigen::Index count = 0;
-      for (const Segment& one : problem.segments)
-        if (one.axis && !one.warm_up) count += one.end - one.begin;
-      return count;
-    }
-  };
-
   /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
   /// after some steps are in sight of the best one.
   /// @param hopeless  cost of a first fit from which on a candidate is taken there as it stands
@@ -348,14 +242,14 @@ private:
     some.iterations = 10;
     rest.iterations = 15;
     FitOptions in_sight = some;
-    in_sight.hopeless = Attribution::out_of_sight * best(candidates).train.total();
+    in_sight.hopeless = Attribution::out_of_sight * fittest(candidates).train.total();
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
       // What constants alone can do is said whoever wins.
       fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
     });
     constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
-    const Candidate& leader = best(candidates);
+    const Candidate& leader = fittest(candidates);
     double samples = 0.0;
     for (double of_signal : leader.train.samples) samples += of_signal;
     const double least = fitness(leader);
@@ -370,33 +264,25 @@ private:
                 [&](std::size_t i) { fine_.polish(candidates[unfinished[i]], rest); });
   }
 
-  /// Places of the best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
-  /// causes of one size neither does well alone, and what does is another effect that makes up for some of both.
-  std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates, int size) const {
-    constexpr std::size_t best_of_all = 5;
-    constexpr int best_of_submodel = 2;
-    std::vector<std::size_t> seeds, others;
-    for (std::size_t index : by_fitness(candidates, 0))
-      if (static_cast<int>(candidates[index].explanation.effects.size()) == size)
-        (seeds.size() < best_of_all ? seeds : others).push_back(index);
-    if (size != 1) return seeds;
-    for (const plant::SubmodelName& suspect : suspects_) {
-      int found = 0;
-      for (const std::size_t one : others)
-        if (found < best_of_submodel &&
-            candidates[one].explanation.effects.front()->info.submodel == suspect &&
-            std::find(seeds.begin(), seeds.end(), one) == seeds.end())
-          seeds.push_back(one), ++found;
-    }
-    return seeds;
+  /// Adds sets, fitted. Those that keep states, which cost most and have more to be bent with, only where the others leave more
+  /// than noise.
+  /// @param sets    the most promising one first, where that is known
+  /// @param coarse  what they are first fitted to
+  void add_fitted(std::vector<Candidate>& candidates, std::vector<Promise> sets,
+                  const Attribution& coarse) const {
+    const auto plain = [&](const Promise& one) { return !wants_longer(one.together); };
+    const auto rest = std::stable_partition(sets.begin(), sets.end(), plain);
+    const std::vector<Promise> later(std::make_move_iterator(rest), std::make_move_iterator(sets.end()));
+    sets.erase(rest, sets.end());
+    add_all_fitted(candidates, sets, coarse);
+    constexpr double room = decision.room_for_costly;
+    if (!fittest(candidates).train.within(room * room)) add_all_fitted(candidates, later, coarse);
   }
 
   /// Fits sets from the fits of their parts, the first one to the end, the others as long as they are in its sight, and
   /// takes them among the candidates.
-  /// @param sets    the most promising one first, where that is known
-  /// @param coarse  what they are first fitted to
-  void add_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
-                  const Attribution& coarse) const {
+  void add_all_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
+                      const Attribution& coarse) const {
     if (sets.empty()) return;
     std::vector<Candidate> found(sets.size());
     FitOptions options = quick();
@@ -418,9 +304,9 @@ private:
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) {
-      const Explanation leader = best(candidates).explanation;
+      const Explanation leader = fittest(candidates).explanation;
       exchange_members(candidates, singles);
-      const Explanation& now = best(candidates).explanation;
+      const Explanation& now = fittest(candidates).explanation;
       if (now.size() == leader.size() && now.includes(leader)) return;
     }
   }
@@ -428,7 +314,7 @@ private:
   /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
   /// same submodel: of two that do the same beside a third, only one may have been tried.
   void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
-    const Candidate& near = best(candidates);
+    const Candidate& near = fittest(candidates);
     const auto place = static_cast<std::size_t>(&near - candidates.data());
     const Explanation& leader = near.explanation;
     if (leader.size() < 2) return;
@@ -454,7 +340,7 @@ private:
   const Attribution& longer_;
   const Attribution& fine_;
   unsigned threads_;
-  std::vector<plant::SubmodelName> suspects_;
+  PromisingSets promising_;
 };
 
 }  // namespace thermopower::gap::engine

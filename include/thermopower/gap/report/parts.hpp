@@ -154,7 +154,7 @@ inline void name_moved_constants(std::vector<Candidate>& candidates, const Model
         return other.explanation.effects.empty() && other.explanation.released == one.explanation.released;
       });
       if (same != kept.end()) {
-        if (Search::fitness(one) < Search::fitness(*same)) *same = std::move(one);
+        if (fitness(one) < fitness(*same)) *same = std::move(one);
         continue;
       }
     }

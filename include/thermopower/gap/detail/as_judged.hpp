@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/detail/attempt.hpp>
+#include <thermopower/gap/detail/posing.hpp>
+#include <thermopower/gap/fit/in_parallel.hpp>
+#include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/report/score.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// Scores explanations as a gap is judged: free-running, in the windows of the score.
+class AsJudged {
+public:
+  /// All of them must outlive this object.
+  AsJudged(const Posing& posing, const std::vector<Inputs>& train, const std::vector<Inputs>& held_out)
+      : posing_(posing),
+        model_(posing.model()),
+        catalogue_(posing.catalogue()),
+        train_(train),
+        held_out_(held_out) {}
+
+  /// Whether an explanation lowers the error of some signal by a fifth on the data it was fitted to.
+  bool lowers(const Candidate& one) const {
+    const std::vector<Segment> segments = posing_.judged(train_);
+    const Errors before = errors_of(model_, segments, catalogue_),
+                 after = errors_of(model_of(one), segments, catalogue_);
+    for (int i = 0; i < signal_count; ++i)
+      if (after.rms(static_cast<Signal>(i)) <
+          decision.lowered_without_costly * before.rms(static_cast<Signal>(i)))
+        return true;
+    return false;
+  }
+
+  /// The model with its constants refitted: the best explanation by constants alone, or as configured where that
+  /// scores better on the very data.
+  Model recalibrate(std::vector<Candidate>& candidates, const Attribution& fine) const {
+    Candidate* best = &candidates.front();
+    for (Candidate& one : candidates)
+      if (one.explanation.effects.empty() && fitness(one) < fitness(*best)) best = &one;
+    fine.polish(*best, {});
+    const Model fitted = model_of(*best);
+    const std::vector<Segment> segments = posing_.judged(train_);
+    const Errors before = errors_of(model_, segments, catalogue_),
+                 after = errors_of(fitted, segments, catalogue_);
+    double worse = 0.0;
+    for (int i = 0; i < signal_count; ++i) {
+      const Signal signal = static_cast<Signal>(i);
+      if (before.rms(signal) > 0.0 && after.rms(signal) > 0.0)
+        worse += std::log(after.rms(signal) / before.rms(signal));
+    }
+    return worse > 0.0 ? model_ : fitted;
+  }
+
+  /// Scores the empty explanation, those by constants alone, and the best ones on held-out data. The others are out of
+  /// the running.
+  void judge(Attempt& attempt, const Attribution& fine) const {
+    std::vector<Candidate>& candidates = attempt.candidates;
+    for (Candidate& one : candidates) {
+      one.held_out = {};
+      one.hidden_starts = 0;
+    }
+    const std::vector<Segment> segments = posing_.judged(held_out_);
+    const Model best = model_of(attempt.best());
+    const Model& witness = follows_its_data(attempt.best()) ? best : model_;
+    const Errors errors = errors_of(best, segments, catalogue_);
+    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_),
+                                           floor = floor_of(witness, errors, sigma, segments, catalogue_);
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
+    // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its
+    // noise, or a wrong first reading speaks for hidden nodes.
+    const auto scored = [&](const Model& model) {
+      const Errors own = errors_of(model, segments, catalogue_, &sigma);
+      SignalSums sums;
+      for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
+      return sums;
+    };
+    const std::vector<std::size_t> order = by_fitness(candidates, 0);
+    std::vector<std::size_t> looked_at;
+    std::size_t single = 0;
+    const std::vector<std::size_t> fairly_modest = modest(candidates, model_);
+    // A set that lost by far on what it was fitted to is in nobody's way.
+    const double lost = Attribution::lost_from * attempt.best().train.total();
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      const Explanation& one = candidates[order[place]].explanation;
+      const bool among_singles = one.size() == 1 && single++ < 7;
+      const bool is_lost = one.effects.size() > 1 && candidates[order[place]].train.total() > lost;
+      const bool is_modest =
+          std::find(fairly_modest.begin(), fairly_modest.end(), order[place]) != fairly_modest.end();
+      if ((place < 14 && !is_lost) || among_singles || is_modest || one.effects.empty())
+        looked_at.push_back(order[place]);
+    }
+    in_parallel(looked_at.size(), posing_.options().threads, [&](std::size_t i) {
+      Candidate& one = candidates[looked_at[i]];
+      const Model model = model_of(one);
+      one.held_out = scored(model);
+      fine.survey(one);
+      const auto rollout = plant_of(model).rollout(model, catalogue_, {}, {}, SimulationMode::free_running);
+      for (const Segment& segment : segments)
+        one.hidden_starts += static_cast<int>(rollout->hidden_starts(segment).size());
+    });
+    attempt.reference.as_configured = scored(model_);
+    attempt.reference.recalibrated = scored(attempt.recalibrated);
+  }
+
+private:
+  Model model_of(const Candidate& one) const {
+    return augmented(model_, one.explanation, one.list, one.fit.point);
+  }
+
+  const Posing& posing_;
+  const Model& model_;
+  const Catalogue& catalogue_;
+  const std::vector<Inputs>& train_;
+  const std::vector<Inputs>& held_out_;
+};
+
+}  // namespace thermopower::gap::engine

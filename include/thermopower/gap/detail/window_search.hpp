@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/decide/search.hpp>
+#include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/detail/as_judged.hpp>
+#include <thermopower/gap/detail/attempt.hpp>
+#include <thermopower/gap/detail/posing.hpp>
+#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/short_windows.hpp>
+#include <thermopower/gap/fit/single_causes.hpp>
+#include <thermopower/gap/report/fit_noise.hpp>
+#include <thermopower/gap/report/last_fit.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace thermopower::gap::engine {
+
+/// One search for causes, in windows of one length: single causes, sets of them, and what they weigh. Call its steps in the
+/// order in which they stand here.
+class WindowSearch {
+public:
+  /// All of them must outlive this object.
+  /// @param as_judged  scores what was found
+  /// @param suspects   submodels in which the measured rows themselves say that something is missing
+  /// @param horizon_s  length of the windows
+  /// @param also       places of windows to fit, too
+  WindowSearch(const Posing& posing, const AsJudged& as_judged, const std::vector<Inputs>& train,
+               const std::vector<plant::SubmodelName>& suspects, double horizon_s,
+               std::vector<std::size_t> also)
+      : posing_(posing),
+        options_(posing.options()),
+        as_judged_(as_judged),
+        train_(train),
+        horizon_s_(horizon_s),
+        also_(std::move(also)) {
+    attempt_.problem = fitted(horizon_s_);
+    pose_first_looks();
+    glimpse_.emplace(glimpse_problem_);
+    coarse_.emplace(coarse_problem_, glimpse_problem_);
+    longer_.emplace(longer_problem_);
+    fine_.emplace(attempt_.problem);
+    for (int round = 0; round < 2; ++round) measure_noise(longer_problem_, longer_->fit({}, {}), train_);
+    set_noise(longer_problem_.sigma);
+    const bool in_short_windows = shortest_s_ < short_s_;
+    search_.emplace(in_short_windows ? *glimpse_ : *coarse_, *coarse_, in_short_windows ? *longer_ : *coarse_,
+                    *fine_, options_.threads, suspects);
+    for (Explanation& one : single_causes(posing.model(), posing.catalogue(), options_.without, train_)) {
+      const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
+      (is_costly ? costly_ : causes_).push_back(std::move(one));
+    }
+  }
+
+  WindowSearch(const WindowSearch&) = delete;  // its parts refer to each other
+  WindowSearch& operator=(const WindowSearch&) = delete;
+
+  /// What it came to so far.
+  const Attempt& attempt() const { return attempt_; }
+  /// The same, to keep. The search is over then.
+  Attempt take() { return std::move(attempt_); }
+
+  /// Every single cause: those that cost much to simulate only where the others leave more than noise.
+  void try_singles() {
+    tried_ = search_->try_singles(with_pairs_of_constants(causes_));
+    search_->add(attempt_.candidates, tried_);
+    renew();
+    if (!costly_.empty() && !does_for_now(attempt_.best())) add_costly();
+    look_closely();
+  }
+
+  /// Where averages leave the best explanation above the noise and the rows themselves do not, the rows are what is fitted to.
+  void look_at_rows() {
+    constexpr double near = decision.near_floor;
+    Candidate leader = attempt_.best();
+    if (!is_averaged(attempt_.problem) || leader.train.within(near * near)) return;
+    const double hopeless = 2.0 * leader.fit.cost;
+    FitProblem rows = fitted_to_rows(leader, attempt_.problem, train_, attempt_.horizon_s,
+                                     search_extent.fitted_recorded_rows);
+    if (!leader.train.within(near * near)) return;
+    attempt_.problem = std::move(rows);
+    attempt_.all = attempt_.problem.segments;  // no window of averages is one of these
+    search_->take_over(attempt_.candidates, hopeless);
+    renew();
+  }
+
+  /// Sets of causes. Where neither a single cause nor a set that promises much comes near the noise in long windows, the
+  /// search goes on in the short ones of the score, if it is nearer there.
+  void try_sets() {
+    // Constants move in every explanation: only effects are joined.
+    std::vector<Explanation> effects;
+    for (const Explanation& one : causes_)
+      if (!one.effects.empty() && options_.effects_at_once > 1) effects.push_back(one);
+    std::vector<Promise> pairs;
+    if (horizon_s_ > options_.horizon_s && train_.front().axis() && attempt_.is_far()) {
+      pairs = search_->promising_pairs(attempt_.candidates, effects);
+      if (!search_->come_near(pairs, decision.far_for_long_windows)) shorten();
+    }
+    if (effects.empty()) return;
+    search_->run_sets(attempt_.candidates, effects, options_.effects_at_once, decision.room_for_sets,
+                      std::move(pairs));
+    renew();
+    if (search_->refine_shapes(attempt_.candidates)) renew();
+    look_at_rows();
+  }
+
+  /// Weighs what was found on held-out data.
+  void decide() {
+    weigh_all();
+    // What fits the data it was fitted to, and fails on others, was a stand-in.
+    constexpr double near = decision.near_floor;
+    if (!costly_.empty() && !attempt_.best().held_out.within(near * near)) {
+      add_costly();
+      weigh_all();
+    }
+  }
+
+private:
+  /// What explanations are fitted to in the end, in windows of some length.
+  FitProblem fitted(double window_s) {
+    Posing::Extent extent = posing_.fitted(window_s);
+    extent.together = search_extent.windows_together;
+    if (window_s == horizon_s_) extent.also = also_;
+    attempt_.horizon_s = window_s;
+    return posing_.pose(train_, extent, &attempt_.all);
+  }
+
+  /// What they are first tried on.
+  void pose_first_looks() {
+    constexpr Eigen::Index bench_rows = search_extent.tried_bench_rows;
+    const auto pose = [&](const Posing::Extent& extent) {
+      FitProblem posed = posing_.pose(train_, extent);
+      posed.segments = thinned_runs(posed.segments, bench_rows);
+      return posed;
+    };
+    short_s_ = std::min(search_extent.tried_window_s, options_.horizon_s);
+    longer_problem_ =
+        pose({short_s_, bench_rows, search_extent.tried_axis_rows, search_extent.windows_together,
+              short_s_ == horizon_s_ ? also_ : std::vector<std::size_t>()});
+    coarse_problem_ = glimpse_problem_ = longer_problem_;
+    shortest_s_ = shortest_window_s(posing_.model(), posing_.catalogue(), train_, short_s_);
+    if (!(shortest_s_ < short_s_)) return;
+    coarse_problem_ = pose({shortest_s_, bench_rows, search_extent.shortest_axis_rows, 1, {}});
+    glimpse_problem_ = pose({shortest_s_, bench_rows, search_extent.glimpsed_axis_rows, 1, {}});
+  }
+
+  void set_noise(const std::array<double, signal_count>& sigma) {
+    attempt_.problem.sigma = glimpse_problem_.sigma = coarse_problem_.sigma = longer_problem_.sigma = sigma;
+  }
+
+  /// The noise is what the best explanation leaves; then all are looked at anew.
+  void renew() {
+    measure_noise(attempt_.problem, attempt_.best(), train_);
+    set_noise(attempt_.problem.sigma);
+    attempt_.problem.correlation = mean_correlation(correlation_of(attempt_.best(), attempt_.problem));
+    search_->renew(attempt_.candidates);
+  }
+
+  void add_costly() {
+    const std::vector<Candidate> further = search_->try_further(costly_, attempt_.candidates);
+    search_->add(attempt_.candidates, further);
+    tried_.insert(tried_.end(), further.begin(), further.end());
+    causes_.insert(causes_.end(), costly_.begin(), costly_.end());
+    costly_.clear();
+    renew();
+  }
+
+  void look_closely() {
+    if (search_->refine_shapes(attempt_.candidates)) renew();
+    if (search_->look_beside(attempt_.candidates, decision.room_for_sets)) renew();
+  }
+
+  /// Fits to the short windows of the score instead, where the best explanation is nearer to the noise there.
+  void shorten() {
+    Attempt in_long_windows = attempt_;
+    attempt_.problem = fitted(options_.horizon_s);
+    attempt_.problem.sigma = in_long_windows.problem.sigma;
+    attempt_.candidates.clear();
+    search_->add(attempt_.candidates, tried_);
+    renew();
+    look_closely();
+    if (attempt_.is_nearer_than(in_long_windows)) return;
+    attempt_ = std::move(in_long_windows);
+    set_noise(attempt_.problem.sigma);
+  }
+
+  void weigh_all() {
+    search_->refit_rivals(attempt_.candidates);
+    name_moved_constants(attempt_.candidates, posing_.model());
+    attempt_.weight = correlation_of(attempt_.best(), attempt_.problem);
+    attempt_.weight.shown = shown_by(train_);
+    attempt_.recalibrated = as_judged_.recalibrate(attempt_.candidates, *fine_);
+    as_judged_.judge(attempt_, *fine_);
+    weigh(attempt_.candidates, attempt_.weight, posing_.model());
+  }
+
+  /// Whether an explanation leaves no more than noise in the windows of its fit and, as a gap is judged, lowers it on
+  /// the data it was fitted to. Rough motion that no window follows looks like noise in the first.
+  bool does_for_now(const Candidate& one) const {
+    constexpr double room = decision.room_for_costly;
+    return one.train.within(room * room) && (one.explanation.effects.empty() || as_judged_.lowers(one));
+  }
+
+  const Posing& posing_;
+  const Options& options_;
+  const AsJudged& as_judged_;
+  const std::vector<Inputs>& train_;
+  double horizon_s_;
+  std::vector<std::size_t> also_;
+
+  double short_s_ = 0.0;     ///< of the windows of the first look
+  double shortest_s_ = 0.0;  ///< of those in which friction that holds and lets go is nearly linear
+  FitProblem glimpse_problem_, coarse_problem_, longer_problem_;
+  std::optional<Attribution> glimpse_, coarse_, longer_, fine_;  ///< once the problems are posed
+  std::optional<Search> search_;
+  std::vector<Explanation> causes_, costly_;  ///< those that are tried, and those that wait
+  std::vector<Candidate> tried_;              ///< the singles, as fitted to the first look
+  Attempt attempt_;
+};
+
+}  // namespace thermopower::gap::engine
