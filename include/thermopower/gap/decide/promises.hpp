@@ -70,13 +70,23 @@ public:
 
   /// The sets of `size` causes that promise most, the best first: the best candidates of one cause fewer with every single
   /// one, ranked by one linear step. They refer to the candidates by their places.
+  /// @param known  where given, sets that were found before: of the others only those with one of `late` are looked at
+  /// @param late   single causes that came later
   std::vector<Promise> of_size(const std::vector<Candidate>& candidates,
-                               const std::vector<Explanation>& singles, int size) const {
-    std::vector<Promise> promises;
+                               const std::vector<Explanation>& singles, int size,
+                               std::vector<Promise> known = {},
+                               const std::vector<Explanation>& late = {}) const {
+    const auto is_new = [&](const Explanation& one) {
+      return late.empty() ||
+             std::any_of(late.begin(), late.end(), [&](const Explanation& of) { return one.includes(of); });
+    };
+    std::vector<Promise> promises = std::move(known);
     for (const std::size_t near : seeds_of(candidates, size - 1))
-      for (const Explanation& single : singles)
-        if (!candidates[near].explanation.includes(single))
-          promises.push_back({{}, near, candidates[near].explanation.with(single)});
+      for (const Explanation& single : singles) {
+        if (candidates[near].explanation.includes(single)) continue;
+        Explanation together = candidates[near].explanation.with(single);
+        if (is_new(together)) promises.push_back({{}, near, std::move(together)});
+      }
     constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
     const Attribution glimpse(look.few), coarse(look.some, look.few);

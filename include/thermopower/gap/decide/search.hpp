@@ -60,6 +60,7 @@ public:
   /// Takes candidates to fine data that have become others, and fits the best of them there.
   /// @param hopeless  cost of a fit so far from which on a candidate is taken as it stands
   void take_over(std::vector<Candidate>& candidates, double hopeless) const {
+    for (Candidate& one : candidates) one.settled = false;
     refine(candidates, 0, 5, hopeless);
   }
 
@@ -92,11 +93,8 @@ public:
     return fitness(fittest(candidates)) < before;
   }
 
-  /// The sets of two causes that promise most, the best first.
-  std::vector<Promise> promising_pairs(const std::vector<Candidate>& candidates,
-                                       const std::vector<Explanation>& singles) const {
-    return promising_.of_size(candidates, singles, 2);
-  }
+  /// The sets of causes that promise most.
+  const PromisingSets& promising() const { return promising_; }
 
   /// Whether one of the sets that promise most comes within some multiple of the noise in the longer windows of the first look.
   bool come_near(const std::vector<Promise>& sets, double multiple) const {
@@ -113,19 +111,13 @@ public:
     return std::find(near.begin(), near.end(), 1) != near.end();
   }
 
-  /// Adds sets of up to `largest` causes where smaller ones leave some signal above `enough` (mean square).
-  /// @param pairs  the most promising sets of two, where they are known
-  void run_sets(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles, int largest,
-                double enough, std::vector<Promise> pairs = {}) const {
-    for (int size = 2; size <= largest; ++size) {
-      if (fittest(candidates).train.within(enough)) break;
-      const bool known = size == 2 && !pairs.empty();
-      const std::vector<Promise> sets =
-          known ? std::move(pairs) : promising_.of_size(candidates, singles, size);
-      const FirstLook look(fittest(candidates), glimpse_, coarse_);
-      add_fitted(candidates, sets, Attribution(look.some, look.few));
-      exchange(candidates, singles);
-    }
+  /// Adds sets of causes, fitted, and the best one again with members exchanged for their relatives.
+  /// @param sets  the most promising one first
+  void add_sets(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
+                const std::vector<Explanation>& singles) const {
+    const FirstLook look(fittest(candidates), glimpse_, coarse_);
+    add_fitted(candidates, sets, Attribution(look.some, look.few));
+    exchange(candidates, singles);
   }
 
   /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the
@@ -161,6 +153,7 @@ public:
   /// Fits the best candidates, and looks at all others, anew: the noise has changed.
   void renew(std::vector<Candidate>& candidates) const {
     in_parallel(candidates.size(), threads_, [&](std::size_t i) {
+      candidates[i].settled = false;
       candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), candidates[i].fit.starts);
     });
     refine(candidates, candidates.size(), 4);
@@ -245,8 +238,10 @@ private:
     in_sight.hopeless = Attribution::out_of_sight * fittest(candidates).train.total();
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
+      if (one.settled) return;
       // What constants alone can do is said whoever wins.
       fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
+      one.settled = one.fit.iterations < some.iterations;
     });
     constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
     const Candidate& leader = fittest(candidates);
@@ -256,12 +251,14 @@ private:
     std::vector<std::size_t> unfinished;
     for (std::size_t index : order) {
       const Candidate& one = candidates[index];
-      const bool converged = one.fit.iterations < some.iterations;
-      if (!converged && (index == 0 || fitness(one) - least < out_of_sight * samples))
+      if (!one.settled && (index == 0 || fitness(one) - least < out_of_sight * samples))
         unfinished.push_back(index);
     }
-    in_parallel(unfinished.size(), threads_,
-                [&](std::size_t i) { fine_.polish(candidates[unfinished[i]], rest); });
+    in_parallel(unfinished.size(), threads_, [&](std::size_t i) {
+      Candidate& one = candidates[unfinished[i]];
+      fine_.polish(one, rest);
+      one.settled = one.fit.iterations < rest.iterations;
+    });
   }
 
   /// Adds sets, fitted. Those that keep states, which cost most and have more to be bent with, only where the others leave more

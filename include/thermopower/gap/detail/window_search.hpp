@@ -65,12 +65,14 @@ public:
   /// The same, to keep. The search is over then.
   Attempt take() { return std::move(attempt_); }
 
-  /// Every single cause: those that cost much to simulate only where the others leave more than noise.
+  /// Every single cause: those that cost much to simulate only where neither the others nor, far from the noise, sets of
+  /// them promise to come near it.
   void try_singles() {
     tried_ = search_->try_singles(with_pairs_of_constants(causes_));
     search_->add(attempt_.candidates, tried_);
     renew();
-    if (!costly_.empty() && !does_for_now(attempt_.best())) add_costly();
+    const bool sets_may_do = options_.effects_at_once > 1 && sets_come_near();
+    if (!costly_.empty() && !sets_may_do && !does_for_now(attempt_.best())) add_costly();
     look_closely();
   }
 
@@ -92,19 +94,19 @@ public:
   /// Sets of causes. Where neither a single cause nor a set that promises much comes near the noise in long windows, the
   /// search goes on in the short ones of the score, if it is nearer there.
   void try_sets() {
-    // Constants move in every explanation: only effects are joined.
-    std::vector<Explanation> effects;
-    for (const Explanation& one : causes_)
-      if (!one.effects.empty() && options_.effects_at_once > 1) effects.push_back(one);
-    std::vector<Promise> pairs;
-    if (horizon_s_ > options_.horizon_s && train_.front().axis() && attempt_.is_far()) {
-      pairs = search_->promising_pairs(attempt_.candidates, effects);
-      if (!search_->come_near(pairs, decision.far_for_long_windows)) shorten();
+    if (options_.effects_at_once < 2) return;
+    if (may_be_shorter() && attempt_.is_far() && !sets_come_near()) shorten();
+    if (!has_room()) return;
+    const auto promising = [&](int size, const std::vector<Explanation>& late) {
+      return search_->promising().of_size(attempt_.candidates, effects(), size, {}, late);
+    };
+    for (int size = 2; size <= options_.effects_at_once && has_room(); ++size) {
+      add_sets(size == 2 && !pairs_.empty() ? pairs_ : promising(size, {}));
+      if (costly_.empty() || does_for_now(attempt_.best())) continue;
+      const std::vector<Explanation> late = costly_;
+      add_costly();
+      if (has_room()) add_sets(promising(size, late));
     }
-    if (effects.empty()) return;
-    search_->run_sets(attempt_.candidates, effects, options_.effects_at_once, decision.room_for_sets,
-                      std::move(pairs));
-    renew();
     if (search_->refine_shapes(attempt_.candidates)) renew();
     look_at_rows();
   }
@@ -121,6 +123,37 @@ public:
   }
 
 private:
+  /// Single effects that may act together. Constants move in every explanation.
+  std::vector<Explanation> effects() const {
+    std::vector<Explanation> some;
+    for (const Explanation& one : causes_)
+      if (!one.effects.empty()) some.push_back(one);
+    return some;
+  }
+
+  /// Whether there are windows that are shorter than these.
+  bool may_be_shorter() const { return horizon_s_ > options_.horizon_s && train_.front().axis(); }
+
+  /// Whether the best explanation leaves room for a further cause.
+  bool has_room() const { return !attempt_.best().train.within(decision.room_for_sets); }
+
+  /// Whether, far from the noise in long windows, a set that promises much comes near it.
+  bool sets_come_near() {
+    if (!may_be_shorter() || !attempt_.is_far()) return false;
+    if (pairs_.empty() || !late_.empty()) {
+      pairs_ = search_->promising().of_size(attempt_.candidates, effects(), 2, std::move(pairs_), late_);
+      late_.clear();
+      pairs_come_near_ = search_->come_near(pairs_, decision.far_for_long_windows);
+    }
+    return pairs_come_near_;
+  }
+
+  /// @param sets  the most promising one first
+  void add_sets(const std::vector<Promise>& sets) {
+    search_->add_sets(attempt_.candidates, sets, effects());
+    renew();
+  }
+
   /// What explanations are fitted to in the end, in windows of some length.
   FitProblem fitted(double window_s) {
     Posing::Extent extent = posing_.fitted(window_s);
@@ -166,6 +199,7 @@ private:
     search_->add(attempt_.candidates, further);
     tried_.insert(tried_.end(), further.begin(), further.end());
     causes_.insert(causes_.end(), costly_.begin(), costly_.end());
+    if (!pairs_.empty()) late_ = costly_;
     costly_.clear();
     renew();
   }
@@ -220,6 +254,9 @@ private:
   std::optional<Search> search_;
   std::vector<Explanation> causes_, costly_;  ///< those that are tried, and those that wait
   std::vector<Candidate> tried_;              ///< the singles, as fitted to the first look
+  std::vector<Promise> pairs_;                ///< the most promising ones, where somebody asked
+  std::vector<Explanation> late_;             ///< causes that came after that
+  bool pairs_come_near_ = false;
   Attempt attempt_;
 };
 

@@ -92,6 +92,7 @@ public:
     finer.fit = Fitter(problem_, finer.explanation, finer.list)
                     .minimise(candidate.fit.point, options, starts_of(candidate));
     finer.train = sums(finer, problem_, finer.fit.starts);
+    finer.settled = false;
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
 
@@ -111,7 +112,9 @@ public:
         beside[at] = std::clamp(one.coordinate_of(share * one.value_of(from[at])), one.lower, one.upper);
         soon.hopeless = 0.98 * candidate.fit.cost;
         FitResult found = fitter.minimise(beside, soon, starts_of(candidate));
-        if (found.cost < soon.hopeless) candidate.fit = std::move(found);
+        if (!(found.cost < soon.hopeless)) continue;
+        candidate.fit = std::move(found);
+        candidate.settled = false;
       }
     }
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
@@ -195,6 +198,7 @@ public:
     FitResult again = fitter.minimise(from, in_sight, starts_of(other));
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
     candidate.fit = std::move(again);
+    candidate.settled = false;
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 

@@ -26,6 +26,7 @@ struct Candidate {
   double against = 0.0;      ///< log odds of the best candidate against it, >= 0; imperfect models considered
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
+  bool settled = false;      ///< a fit goes nowhere from where it ended, as long as data and noise stay
   bool idle = false;  ///< another one says the same with less: moved constants alone, or a simpler cause
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
