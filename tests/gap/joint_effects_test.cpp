@@ -403,3 +403,78 @@ TEST_CASE(
   CHECK(test::parameter_of(diagnosis, "lag_s") == Approx(0.04).epsilon(0.03));
   for (const GapScore& gap : diagnosis.gap) CHECK(gap.after < 1.3 * gap.noise_floor);
 }
+
+TEST_CASE("a log of an axis with its motor's temperature in it is judged in both") {
+  const auto recording_of = [](std::uint64_t seed) {
+    test::AxisFault fault;
+    fault.coulomb_Nm = 0.006;
+    Recording one = test::axis_recording(fault, 4000, seed);
+    test::Noise noise(seed + 100);
+    Eigen::VectorXd motor_C(one.rows());
+    double body_C = 25.0;
+    for (Eigen::Index i = 0; i < one.rows(); ++i) {
+      motor_C[i] = body_C + 0.05 * noise();
+      const double amps = one.column("drive_A")[i], ohms = 200.0 * (1.0 + 0.00393 * (body_C - 25.0));
+      body_C += 0.01 * (amps * amps * ohms - 0.15 * (body_C - 25.0)) / 3.0;
+    }
+    one.set("motor_C", motor_C);
+    one.set("ambient_C", Eigen::VectorXd::Constant(one.rows(), 25.0));
+    return one;
+  };
+  Model model = test::axis_model();
+  model.supply = SupplyModel{24.0};
+  model.current = OhmicCurrentModel{200.0, 0.00393, 25.0};
+  model.thermal = LumpedThermalModel{3.0, 0.15};
+  const Diagnosis diagnosis = diagnose(model, {recording_of(3)}, {recording_of(4)});
+  CHECK(diagnosis.verdict == Verdict::explained);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "coulomb_friction");
+  CHECK(diagnosis.gap.size() == 3);  // angle, rate and the motor's temperature
+}
+
+TEST_CASE("a delay is found in a log that begins under a command that was there before") {
+  constexpr int late = 3;  // rows
+  const auto recording_of = [](std::uint64_t seed, int cut) {
+    test::Noise noise(seed), dice(seed + 50);
+    const int rows = 3000 + cut;
+    Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+    double level = 0.3, theta = 0.0, omega = 0.0;
+    for (int i = 0; i < rows; ++i) {
+      if (i > 0 && i % 25 == 0) level = 0.3 * dice();
+      drive[i] = level;
+      angle[i] = theta * 57.29577951308232 + 0.02 * noise();
+      rate[i] = omega * 57.29577951308232 + 0.15 * noise();
+      const double torque = i >= late ? 0.2 * drive[i - late] : 0.0;
+      for (int k = 0; k < 100; ++k) {
+        omega += 1e-4 * (torque - 1e-3 * omega) / 1e-3;
+        theta += 1e-4 * omega;
+      }
+    }
+    Recording one;
+    one.name = "cut";
+    one.t_s = Eigen::VectorXd::LinSpaced(rows - cut, 0.0, 0.01 * (rows - cut - 1));
+    one.set("drive_A", drive.tail(rows - cut));
+    one.set("angle_deg", angle.tail(rows - cut));
+    one.set("rate_dps", rate.tail(rows - cut));
+    return one;
+  };
+  // What is left of the first rows decides whether the axis rests there: idle, under a command at rest, under way.
+  for (const int cut : {0, late, 40}) {
+    INFO(cut << " rows cut off");
+    const Diagnosis diagnosis = diagnose(test::axis_model(), {recording_of(5, cut)}, {recording_of(6, cut)});
+    CHECK(diagnosis.verdict == Verdict::explained);
+    REQUIRE(diagnosis.cause.size() == 1);
+    CHECK(diagnosis.cause.front().effect == "actuation_delay");
+    CHECK(test::parameter_of(diagnosis, "s") == Approx(0.03).margin(0.0005));
+  }
+}
+
+TEST_CASE("a simulation that runs away is near no noise") {
+  test::AxisFault none;
+  Recording train = test::axis_recording(none, 600, 3), held_out = test::axis_recording(none, 400, 4);
+  Model model = test::axis_model();
+  model.axis->torque_constant_Nm_per_A = 1e300;
+  const Diagnosis diagnosis = diagnose(model, {train}, {held_out});
+  CHECK(diagnosis.verdict == Verdict::insufficient);
+  CHECK_FALSE(diagnosis.next_experiment.empty());
+}

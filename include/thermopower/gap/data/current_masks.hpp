@@ -33,7 +33,8 @@ inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std:
 inline std::vector<RunSpan> joined_at_pauses(const std::vector<RunSpan>& runs) {
   std::vector<RunSpan> joined;
   for (const RunSpan& run : runs)
-    if (!joined.empty() && run.goes_on && joined.back().end == run.begin) joined.back().end = run.end;
+    if (!joined.empty() && run.goes_on && joined.back().end == run.begin && joined.back().label == run.label)
+      joined.back().end = run.end;
     else joined.push_back(run);
   return joined;
 }

@@ -10,6 +10,7 @@
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
+#include <thermopower/gap/data/under_way.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -166,6 +167,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
                        model.has_thermal();
   mask_outputs(recorded, list);
   fill_inputs(recorded, list);
+  if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
     std::vector<Finding> all = list.take();

@@ -14,6 +14,7 @@
 #include <thermopower/gap/report/last_fit.hpp>
 #include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
+#include <thermopower/gap/report/runaway.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/splitting.hpp>
@@ -246,6 +247,7 @@ private:
       }
     }
     result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
+    take_back_a_runaway(result_, model_);
     result_.predictions =
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);
   }

@@ -105,6 +105,9 @@ struct FitProblem {
     std::vector<double> measured;
     for (const Segment& segment : segments) {
       if (segment.warm_up || !segment.axis || !segment.inputs->judged(signal)) continue;
+      // A log of an axis may hold its motor's temperature, which is judged in segments of its own.
+      const std::vector<Signal>& signals = plant().signals(segment);
+      if (std::find(signals.begin(), signals.end(), signal) == signals.end()) continue;
       const Eigen::VectorXd& values = segment.inputs->of(signal);
       for (Eigen::Index row = segment.begin; row < segment.end; ++row)
         if (std::isfinite(values[row]))
