@@ -149,6 +149,8 @@ struct SearchThresholds {
   Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
   double tried_window_s = 0.5;   ///< of the first look, at most
+  /// Share of the windows of the score that shorter ones have, in which a load that holds an axis is looked for.
+  double shorter_than_the_score = 0.4;
 };
 
 /// The values in force.

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/decide/gap_taken.hpp>
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -36,6 +38,15 @@ struct Attempt {
   /// Whether it is so much nearer to the noise in its shorter windows that these are believed instead.
   bool is_nearer_than(const Attempt& longer) const {
     return best_noise_multiple() < decision.short_windows_lower * longer.best_noise_multiple();
+  }
+
+  /// The least share of the held-out gap that a candidate leaves, of those that were judged.
+  double least_left() const {
+    double least = 1.0;
+    for (const Candidate& one : candidates)
+      if (one.held_out.total() > 0.0)
+        least = std::min(least, left_over(one.held_out, reference.as_configured));
+    return least;
   }
 
   /// The windows that the best explanation fits worst, of those that were not fitted; none where even those that were are

@@ -16,14 +16,20 @@ namespace thermopower::gap::engine {
 /// Searches the causes of what a model and its recordings differ by, and weighs what it finds.
 ///
 /// In long windows at first: they tell more. Over such a window a small error can send an axis into the next dip of a load,
-/// and short ones forgive that: where neither a single cause nor a set comes near the noise, they are tried, too.
+/// and short ones forgive that: where neither a single cause nor a set comes near the noise, they are tried, too. Dips that
+/// hold the axis are passed within the windows of the score as well: where a load is blamed and everything leaves more than a tenth of the gap,
+/// shorter ones still are tried, and what was found there is judged in those of the score like all else.
 class CauseSearch {
 public:
   /// All of them must outlive this object.
-  /// @param suspects  submodels in which the measured rows themselves say that something is missing
+  /// @param where  in which submodels the measured rows themselves say that something is missing
   CauseSearch(const Posing& posing, const std::vector<Inputs>& train, const std::vector<Inputs>& held_out,
-              std::vector<plant::SubmodelName> suspects)
-      : posing_(posing), as_judged_(posing, train, held_out), train_(train), suspects_(std::move(suspects)) {}
+              const std::vector<Location>& where)
+      : posing_(posing),
+        as_judged_(posing, train, held_out),
+        train_(train),
+        suspects_(suspects_among(where)),
+        blames_a_load_(!where.empty() && where.front().submodel == plant::Submodel::mechanical_load) {}
 
   /// A search, and another one with the windows that the first overlooked.
   Attempt run() const {
@@ -35,6 +41,12 @@ public:
     if (attempt.horizon_s == long_s && train_.front().axis() && short_s < long_s && attempt.is_far()) {
       Attempt shorter = search(short_s);
       if (shorter.is_nearer_than(attempt)) attempt = std::move(shorter);
+    }
+    constexpr double tenth = 0.1;
+    if (blames_a_load_ && train_.front().axis() && attempt.is_far() && attempt.least_left() > tenth) {
+      Attempt shortest = search(search_extent.shorter_than_the_score * short_s);
+      if (shortest.least_left() < decision.short_windows_lower * attempt.least_left())
+        attempt = std::move(shortest);
     }
     return attempt;
   }
@@ -61,6 +73,7 @@ private:
   AsJudged as_judged_;
   const std::vector<Inputs>& train_;
   std::vector<plant::SubmodelName> suspects_;
+  bool blames_a_load_;
 };
 
 }  // namespace thermopower::gap::engine

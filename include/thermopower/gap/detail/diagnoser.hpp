@@ -50,8 +50,7 @@ public:
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
-    Attempt attempt =
-        CauseSearch(posing_, train_inputs_, held_out_inputs_, suspects_among(result_.where)).run();
+    Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where).run();
     stage("which");
     const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
                          return is_blamed(known, submodel);

@@ -171,7 +171,7 @@ private:
       posed.segments = thinned_runs(posed.segments, bench_rows);
       return posed;
     };
-    short_s_ = std::min(search_extent.tried_window_s, options_.horizon_s);
+    short_s_ = std::min({search_extent.tried_window_s, options_.horizon_s, horizon_s_});
     longer_problem_ =
         pose({short_s_, bench_rows, search_extent.tried_axis_rows, search_extent.windows_together,
               short_s_ == horizon_s_ ? also_ : std::vector<std::size_t>()});
