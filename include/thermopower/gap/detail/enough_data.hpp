@@ -103,7 +103,7 @@ inline std::string lacking(const Model& model, const std::vector<Inputs>& part, 
     return "too little data: " + words + " last " + short_number(most.lasts_s) +
            " s, less than two windows of " + short_number(lasts_s / least.windows) + " s";
   }
-  const bool is_short = most.recorded >= floor;
+  const bool is_short = most.recorded >= floor && 2 * most.told < most.recorded;
   mend = is_short ? "give what was recorded in one go one label in the column run: runs of at least " +
                         std::to_string(least.run_rows) + " rows, better of hundreds"
                   : "record for longer: at least " + std::to_string(least.train) + " rows to train on and " +
