@@ -333,7 +333,7 @@ int check(const Arguments& arguments) {
     outputs.commit();
   }
   std::fputs(io::check_text(report).c_str(), stdout);
-  return gap::deciding(report.findings) != nullptr ? too_little_data : made;
+  return gap::deciding(report.findings) != nullptr || !report.too_little.empty() ? too_little_data : made;
 }
 
 // A number as recordings have it: decimal and finite, or nothing.

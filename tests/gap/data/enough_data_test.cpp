@@ -6,6 +6,7 @@
 
 #include "../plants.hpp"
 
+#include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
@@ -81,6 +82,15 @@ TEST_CASE("where nothing can be judged the columns are named that were recorded,
   refused(test::bench_model(), other, bench(900, 2), "has no column motor_C", "--column NAME=HEADER");
   refused(test::bench_model(), other, bench(900, 2), "in the training rows of a.csv", "columns FILE");
   refused(test::bench_model(), other, bench(900, 2), "Winding", "columns FILE");
+}
+
+TEST_CASE("the check says the same before anything is diagnosed") {
+  const DataReport few = check_data(test::bench_model(), {named(bench(40, 1), "a.csv")});
+  CHECK_THAT(few.too_little, ContainsSubstring("the training rows of a.csv hold 39 readings"));
+  CHECK_THAT(few.next_experiment, ContainsSubstring("record for longer"));
+  CHECK_THAT(check_data(test::bench_model(), {bench(900, 1)}, {named(bench(20, 2), "b.csv")}).too_little,
+             ContainsSubstring("the held-out rows of b.csv hold 19 readings"));
+  CHECK(check_data(test::bench_model(), {bench(900, 1)}).too_little.empty());
 }
 
 TEST_CASE("what is just enough is diagnosed") {
