@@ -29,8 +29,8 @@ file(CREATE_LINK ${json}/nlohmann ${web}/include/nlohmann SYMBOLIC)
 
 set(gap check_data diagnose simulate standard_catalogue)
 set(io chart check_report chunk_compression column_choice column_list crc32 csv_table expression_text field_tree file_source held_out_runs
-       html_text json_message mcap_file mcap_list mcap_messages mcap_records model_file recording_file report_html report_json
-       residual_statistics ros2_schema sbgc_capture stream_join summary)
+       html_text json_message json_place mcap_file mcap_list mcap_messages mcap_records model_file nearest_name recording_file report_html
+       report_json residual_statistics ros2_schema sbgc_capture stream_join summary)
 list(TRANSFORM gap PREPEND ${PROJECT_SOURCE_DIR}/tools/gap-library/)
 list(TRANSFORM io PREPEND ${PROJECT_SOURCE_DIR}/tools/io-library/)
 set(here ${PROJECT_SOURCE_DIR}/tools/web)

@@ -276,3 +276,58 @@ TEST_CASE("a file's columns are listed, and what they may be is proposed") {
     if (!one.proposed.empty() && !one.unit.empty())
       CHECK(io::parse_column_choice(one.proposed + "=" + one.header + ":" + one.unit).header == one.header);
 }
+
+TEST_CASE("a row that is there twice is left out, and where the clock begins anew a run does") {
+  std::string twice = "t_s,motor_C,x\n0,20,\n1,21,1\n1,21,1\n2,22,2\n3,23,\n3,23,\n3,23,\n4,24,\n";
+  const io::RecordingFile mended = io::to_recording(parse(twice));
+  REQUIRE(mended.recording.rows() == 5);
+  CHECK(mended.recording.t_s[4] == 4.0);
+  CHECK(mended.recording.column("motor_C")[4] == 24.0);
+  CHECK(mended.recording.column("x").size() == 5);
+  REQUIRE(mended.findings.size() == 1);
+  CHECK(mended.findings[0].kind == FindingKind::repeated_frames);
+  CHECK(mended.findings[0].action == FindingAction::masked);
+  CHECK_THAT(mended.findings[0].message, ContainsSubstring("3 rows are") && ContainsSubstring("line 4"));
+
+  std::string restarted = "t_s,motor_C\n";
+  for (const int first : {10, 0, 5})
+    for (int i = 0; i < 12; ++i) restarted += std::to_string(first + 10 * i) + "," + std::to_string(i) + "\n";
+  const io::RecordingFile cut = io::to_recording(parse(restarted));
+  REQUIRE(cut.recording.runs.size() == 3);
+  CHECK(cut.recording.runs[1].begin == 12);
+  CHECK(cut.recording.runs[2].begin == 24);
+  REQUIRE(cut.findings.size() == 1);
+  CHECK(cut.findings[0].kind == FindingKind::gap_in_stamps);
+  CHECK(cut.findings[0].action == FindingAction::segmented);
+  REQUIRE(cut.findings[0].rows.size() == 2);
+  CHECK(cut.findings[0].rows[0].begin == 12);
+  CHECK_THAT(cut.findings[0].message, ContainsSubstring("2 times") && ContainsSubstring("line 14"));
+}
+
+TEST_CASE("what a column may be in is told by words and ranges") {
+  const auto proposals = [](const std::string& header, const std::string& first, const std::string& last) {
+    const std::string text = header + "\n" + first + "\n" + last + "\n";
+    std::string all;
+    for (const io::ListedColumn& one : io::list_columns("log.csv", text.data(), text.size()))
+      all += (all.empty() ? "" : " ") + (one.proposed.empty() ? "-" : one.proposed) +
+             (one.unit.empty() ? "" : ":" + one.unit);
+    return all;
+  };
+  CHECK(proposals("time", "0", "4200000") == "t_s:ms");
+  CHECK(proposals("t_s", "0", "4200000") == "t_s:ms");
+  CHECK(proposals("t_s", "0", "4200") == "t_s");
+  CHECK(proposals("time", "0", "4200000000") == "t_s:us");
+  CHECK(proposals("time", "1764000000", "1764000600") == "t_s");
+  CHECK(proposals("time", "1764000000000", "1764000600000") == "t_s:ms");
+  CHECK(proposals("stamp", "1764000000000000000", "1764000600000000000") == "t_s:ns");
+  CHECK(proposals("duty_pct", "0", "0.9") == "power_param:%");
+  CHECK(proposals("duty", "0", "1023") == "-");
+  CHECK(proposals("power_param", "0", "80") == "power_param");
+  CHECK(proposals("power_param", "0", "0.8") == "power_param:1");
+  CHECK(proposals("Tamb (K)", "293", "294") == "ambient_C:K");
+  CHECK(proposals("T_amb", "293", "294") == "ambient_C:K");
+  CHECK(proposals("T_amb", "20", "21") == "ambient_C");
+  CHECK(proposals("Tmotor", "300", "340") == "motor_C:K");
+  CHECK(proposals("current", "-3", "850") == "current_A:mA");
+  CHECK(proposals("current_A", "0", "2") == "current_A");
+}

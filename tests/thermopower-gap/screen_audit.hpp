@@ -95,6 +95,12 @@ private:
       std::string others;
       for (const auto& one : r_["alternatives"]) others += (others.empty() ? "" : "; ") + together(one);
       need(text.rfind(others + " (", 0) == 0, "other alternatives", text);
+    } else if (label == "rows") {
+      bool any = false;
+      for (const auto& one : r_["findings"]) any = any || !one["rows"].empty();
+      need(any, "rows are counted where no finding has any", text);
+      sentence.take("are counted from 0 ");  // what the format says of them
+      sentence.take("row 0 is line 2");
     } else if (label == "constants") {
       need(text == of(r_["recalibration"]), "another recalibration", text);
       sentence.take(of(r_["recalibration"]));

@@ -6,6 +6,7 @@
 #include "../catch.hpp"
 #include "../../tools/thermopower-gap/text_file.hpp"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -85,6 +86,7 @@ TEST_CASE("every wrong input gets the answer that the table says, and leaves no 
   const fs::path work = fs::temp_directory_path() / "thermopower_wrong_inputs";
   fs::remove_all(work);
   fs::create_directories(work / "directory");
+  REQUIRE(mkfifo((work / "pipe").c_str(), 0600) == 0);
   const std::vector<Row> rows = table();
   REQUIRE(rows.size() >= 200);
   for (const Row& row : rows) {
@@ -144,4 +146,37 @@ TEST_CASE("what the table spoils is in order before") {
   CHECK(first.find("21.5") != std::string::npos);
   REQUIRE(std::system((predict + " --start motor_C=40.25").c_str()) == 0);
   CHECK(read_text(work / "out.csv").find("40.25") != std::string::npos);
+}
+
+TEST_CASE("a covariate may be called anything that is no name of the format") {
+  const fs::path work = fs::temp_directory_path() / "thermopower_covariate_names";
+  fs::remove_all(work);
+  fs::create_directories(work);
+  write(work / "model.json", good_model);
+  write(work / "recording.csv",
+        "t_s,power_param,ambient_C,motor_C,fan\n0,100,25,25,1\n1,100,25,26,1\n2,100,25,27,1\n");
+  const std::string predict = "cd '" + work.string() +
+                              "' && '" THERMOPOWER_GAP_PROGRAM
+                              "' predict --model model.json --recording recording.csv --predictions out.csv";
+  CHECK(std::system((predict + " --column gyro=fan --column current_A=fan 2>error.txt").c_str()) != 0);
+  CHECK(std::system((predict + " --column gyro=fan").c_str()) == 0);
+}
+
+TEST_CASE("what is predicted from inputs with missing cells comes with a warning") {
+  const fs::path work = fs::temp_directory_path() / "thermopower_missing_inputs";
+  fs::remove_all(work);
+  fs::create_directories(work);
+  write(work / "model.json", good_model);
+  const std::string predict =
+      "cd '" + work.string() +
+      "' && '" THERMOPOWER_GAP_PROGRAM
+      "' predict --model model.json --recording recording.csv --predictions out.csv 2>error.txt";
+  write(work / "recording.csv", good_csv);
+  REQUIRE(std::system(predict.c_str()) == 0);
+  CHECK(read_text(work / "error.txt").empty());
+  write(work / "recording.csv", "t_s,power_param,ambient_C\n0,100,21\n1,,21\n2,100,21\n");
+  REQUIRE(std::system(predict.c_str()) == 0);
+  CHECK(read_text(work / "error.txt")
+            .find("recording.csv: column 'power_param': 1 of 3 cells are missing, first at t_s = 1") !=
+        std::string::npos);
 }

@@ -36,9 +36,12 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 std::string check_text(const DataReport& report) {
   constexpr double visible = 0.5;  // noise units
   const bool decided = deciding(report.findings) != nullptr;
-  std::string out = decided                   ? "THE DATA CANNOT BE BELIEVED AS THEY STAND\n"
-                    : report.findings.empty() ? "NOTHING WRONG WITH THE DATA\n"
-                                              : "THE DATA CAN BE USED\n";
+  std::string out = decided                      ? "THE DATA CANNOT BE BELIEVED AS THEY STAND\n"
+                    : !report.too_little.empty() ? "TOO LITTLE DATA\n"
+                    : report.findings.empty()    ? "NOTHING WRONG WITH THE DATA\n"
+                                                 : "THE DATA CAN BE USED\n";
+  if (!decided && !report.too_little.empty())
+    out += summary_line("", report.too_little) + summary_line("next", report.next_experiment);
   out += findings_text(report.findings, Severity::note);
   for (const auto& one : report.not_judged) out += summary_line("not judged", one);
   char row[160];
@@ -92,6 +95,8 @@ std::string check_json(const DataReport& report) {
   Json root;
   root["format"] = "thermopower-gap-check/1";
   root["believable"] = deciding(report.findings) == nullptr;
+  if (!report.too_little.empty())
+    root["too_little"] = {{"reason", report.too_little}, {"next_experiment", report.next_experiment}};
   root["findings"] = Json::parse(findings_json(report.findings));
   root["not_judged"] = report.not_judged;
   root["signals"] = Json::object();

@@ -4,8 +4,12 @@
 #include <thermopower/io/column_choice.hpp>
 
 #include <thermopower/io/input_error.hpp>
+#include <thermopower/io/recording_file.hpp>
 #include <thermopower/plant/radians.hpp>
 
+#include "nearest_name.hpp"
+
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -24,6 +28,7 @@ struct Unit {
 struct Quantity {
   const char* ending;  // of the names that have it
   std::vector<Unit> units;
+  const char* one_sided = nullptr;  // why its sign cannot be turned round
 };
 
 constexpr double ice_K = 273.15, ice_F = 32.0;
@@ -36,8 +41,9 @@ const std::vector<Quantity>& quantities() {
         {"us", 1e-6, 0.0},
         {"ns", 1e-9, 0.0},
         {"min", 60.0, 0.0},
-        {"h", 3600.0, 0.0}}},
-      {"power_param", {{"255", 1.0, 0.0}, {"%", 2.55, 0.0}, {"1", 255.0, 0.0}}},
+        {"h", 3600.0, 0.0}},
+       "time goes on one way"},
+      {"power_param", {{"255", 1.0, 0.0}, {"%", 2.55, 0.0}, {"1", 255.0, 0.0}}, "a power is not below 0"},
       {"_dps",
        {{"deg/s", 1.0, 0.0},
         {"dps", 1.0, 0.0},
@@ -59,7 +65,8 @@ const std::vector<Quantity>& quantities() {
         {"C", 1.0, 0.0},
         {"degF", 5.0 / 9.0, ice_F},
         {"F", 5.0 / 9.0, ice_F},
-        {"K", 1.0, ice_K}}},
+        {"K", 1.0, ice_K}},
+       "a temperature has no sign to turn round"},
   };
   return list;
 }
@@ -100,6 +107,9 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   const bool turned = !unit.empty() && unit[0] == '-';
   if (turned) unit.erase(0, 1);
   const Quantity* quantity = quantity_of(choice.name);
+  if (turned && quantity != nullptr && quantity->one_sided != nullptr)
+    fail("a unit with a minus turns the sign round, and " + std::string(quantity->one_sided) +
+         "; expected the unit without it");
   std::string known;
   for (const auto& one : quantity != nullptr ? quantity->units : std::vector<Unit>()) {
     if (unit == one.text) {
@@ -122,6 +132,25 @@ std::string trimmed(const std::string& text) {
 }  // namespace
 
 ColumnChoice parse_column_choice(const std::string& text) { return parse_choice("--column ", text); }
+
+std::string unknown_name(const ColumnChoice& choice, const std::vector<std::string>& others) {
+  std::vector<std::string> known = known_columns();
+  known.insert(known.begin() + 1, "run");
+  known.insert(known.end(), others.begin(), others.end());
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  if (is_known(choice.name)) return {};
+  const std::string nearest = nearest_name(choice.name, known);
+  if (nearest.empty() && !is_known(choice.header)) return {};
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  return excerpt(choice.name) + " is no name of the format" +
+         (nearest.empty() ? ", and " + choice.header + " would be lost under it."
+                          : "; did you mean " + nearest + "?") +
+         " Expected one of " + list +
+         "; a covariate may be called anything else, where its column has none of these names";
+}
 
 std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::string& text) {
   std::vector<ColumnChoice> choices;

@@ -42,7 +42,12 @@ bool has(const Words& words, std::initializer_list<const char*> any) {
 std::string name_of(const Words& words) {
   const bool wanted = has(
       words, {"cmd", "command", "commanded", "ref", "reference", "setpoint", "target", "desired", "goal"});
-  const bool air = has(words, {"ambient", "air", "env", "room", "outside"});
+  const bool air = has(words, {"ambient", "amb", "air", "env", "room", "outside"});
+  // "T_amb", "Tamb", "Twinding": a temperature, and no time.
+  const bool body = has(words, {"motor", "mot", "winding", "coil", "case", "housing", "stator"});
+  if (has(words, {"tamb", "tair", "tenv", "troom"}) || (air && has(words, {"t"}))) return "ambient_C";
+  if (has(words, {"tmotor", "tmot", "twinding", "tcoil", "tcase"}) || (body && has(words, {"t"})))
+    return "motor_C";
   if (has(words, {"time", "timestamp", "stamp", "t", "elapsed"})) return "t_s";
   if (has(words, {"airspeed", "wind", "windspeed"})) return "airspeed_mps";
   if (has(words, {"temp", "temperature", "celsius"})) return air ? "ambient_C" : "motor_C";
@@ -83,6 +88,7 @@ std::string unit_in(const std::string& header, const std::string& name) {
     const std::string small = lower(unit);
     const std::size_t slash = small.find('/');
     bool there = stands_in(small, all);
+    if (unit == "%") there = there || stands_in("pct", all) || stands_in("percent", all);
     if (slash != std::string::npos) {
       const std::string above = small.substr(0, slash), below = small.substr(slash + 1);
       there = there || stands_in(above + "_" + below, all) || stands_in(above + below, all);
@@ -90,6 +96,58 @@ std::string unit_in(const std::string& header, const std::string& name) {
     if (there && unit.size() > found.size()) found = unit;
   }
   return found;
+}
+
+// The unit of time in which a column's stamps are those of a log: of a day at most, or counted from 1970.
+std::string unit_of_time(const ListedColumn& column) {
+  constexpr double longest_s = 86400.0, since_1970_s = 1e9;
+  struct Unit {
+    const char* text;
+    double per_s;
+  };
+  constexpr Unit units[] = {{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
+  const double range = column.greatest - column.least;
+  for (const Unit& unit : units) {
+    const bool dates =
+        column.least >= since_1970_s * unit.per_s && column.least < 1e2 * since_1970_s * unit.per_s;
+    const bool counts = column.least < since_1970_s && range <= longest_s * unit.per_s;
+    if (dates || counts) return unit.text;
+  }
+  return "s";
+}
+
+// What the numbers of a column say of its unit, where its name does not; a column with the format's own name is only contradicted.
+void ask_the_range(ListedColumn& column, bool is_own_name) {
+  const double largest = std::max(std::fabs(column.least), std::fabs(column.greatest));
+  const auto tell = [&](const char* unit, const std::string& range) {
+    column.unit = unit;
+    column.why += ", and a range " + range;
+  };
+  const auto ends_with = [&](const std::string& end) {
+    return column.proposed.size() > end.size() &&
+           column.proposed.compare(column.proposed.size() - end.size(), end.size(), end) == 0;
+  };
+  constexpr double coldest_K = 200.0, many_A = 100.0, many_V = 1000.0, full_power = 255.0;
+  if (column.samples == 0 && largest == 0.0) return;
+  if (column.proposed == "t_s") {
+    const std::string unit = unit_of_time(column);
+    if (unit != "s") tell(unit.c_str(), "of " + readable(column.greatest - column.least));
+  } else if (column.proposed == "power_param") {
+    if (largest > full_power) {
+      column.proposed.clear();
+      column.why = "may be power_param, but goes up to " + readable(largest) + ", beyond 255";
+    } else if (largest <= 1.0 && (!is_own_name || largest > 0.0)) {
+      tell("1", "up to " + readable(largest));
+    } else if (largest <= 100.0 && !is_own_name) {
+      tell("%", "up to " + readable(largest));
+    }
+  } else if (ends_with("_C") && column.least > coldest_K) {
+    tell("K", "from " + readable(column.least));
+  } else if (ends_with("_A") && largest > many_A) {
+    tell("mA", "up to " + readable(largest));
+  } else if (ends_with("_V") && largest > many_V) {
+    tell("mV", "up to " + readable(largest));
+  }
 }
 
 }  // namespace
@@ -104,6 +162,7 @@ void propose(ListedColumn& column) {
       if (column.header == known && !column.text) {
         column.proposed = known;
         column.why = "its name";
+        ask_the_range(column, true);
         return;
       }
     if (column.text) return;
@@ -116,11 +175,7 @@ void propose(ListedColumn& column) {
     column.why += " and the unit in it";
     return;
   }
-  const double largest = std::max(std::fabs(column.least), std::fabs(column.greatest));
-  if (column.proposed == "power_param" && largest <= 100.0) {
-    column.unit = largest <= 1.0 ? "1" : "%";
-    column.why += ", and a range up to " + readable(largest);
-  }
+  ask_the_range(column, false);
 }
 
 void settle_rivals(std::vector<ListedColumn>& list) {

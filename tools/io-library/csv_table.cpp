@@ -5,6 +5,8 @@
 
 #include <thermopower/io/input_error.hpp>
 
+#include "file_source.hpp"
+
 #include <csv.h>
 
 #include <algorithm>
@@ -15,11 +17,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <limits>
-#include <memory>
 #include <new>
-#include <system_error>
 
 namespace thermopower::io {
 namespace {
@@ -51,8 +50,6 @@ NumberFault parse_number(const char* text, std::size_t size, double& value) {
   }
   return std::isfinite(value) ? NumberFault::none : NumberFault::not_finite;
 }
-
-int leave_open(std::FILE*) { return 0; }
 
 std::string shortest(double value) {
   char text[32];
@@ -210,6 +207,13 @@ private:
       fail(1, {}, "UTF-16 text; expected UTF-8 (save the file as 'CSV UTF-8')");
     if (starts("PK\x03\x04", 4)) fail(1, {}, "a ZIP archive (a spreadsheet?); expected CSV text");
     if (starts("\x1f\x8b", 2)) fail(1, {}, "a gzip file; expected CSV text (unpack it first)");
+    // Text has line breaks and tabs, and no other control characters, but for a stray one.
+    constexpr std::size_t looked_at = 1024, stray = 3;
+    const auto controls = std::count_if(bytes, bytes + std::min(size, looked_at), [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
+    });
+    if (static_cast<std::size_t>(controls) > stray)
+      fail(1, {}, "not a CSV, MCAP or SimpleBGC capture: bytes that are no text; expected CSV text in UTF-8");
   }
 
   std::string column_name() const {
@@ -263,16 +267,40 @@ private:
       fail(1, {}, "a byte 0x00 in the header row; expected CSV text");
     if (size > longest_field || field_ >= most_columns)
       fail(1, {}, "a header row of this size; expected at most 4096 names");
-    if (size == 0) {
-      fail(1, {},
-           "the name of column number " + std::to_string(field_ + 1) +
-               " is empty; expected a name for each column");
+    header_.emplace_back(text, size);
+  }
+
+  // What a header row must be: names, one for each column, no two the same.
+  void check_names() {
+    if (has_numbers_only())
+      fail(
+          line_, {},
+          "the first row holds numbers only: the header row is missing; expected names of columns above it, such as "
+          "t_s,power_param,ambient_C,motor_C");
+    for (std::size_t i = 0; i < header_.size(); ++i) {
+      if (header_[i].empty())
+        fail(1, {},
+             "the name of column number " + std::to_string(i + 1) +
+                 " is empty; expected a name for each column");
+      const auto end = header_.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::find(header_.begin(), end, header_[i]) != end)
+        fail(1, {},
+             "column " + excerpt(header_[i]) + " appears twice in the header row; expected distinct names");
     }
-    const std::string name(text, size);
-    if (std::find(header_.begin(), header_.end(), name) != header_.end()) {
-      fail(1, {}, "column " + excerpt(name) + " appears twice in the header row; expected distinct names");
+  }
+
+  // Whether cells are missing or numbers, and some are: no names.
+  bool has_numbers_only() const {
+    bool any = false;
+    for (const std::string& cell : header_) {
+      std::string text = cell;
+      if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');
+      double number = 0.0;
+      if (is_missing(text.data(), text.size())) continue;
+      if (parse_number(text.data(), text.size(), number) != NumberFault::none) return false;
+      any = true;
     }
-    header_.push_back(name);
+    return any;
   }
 
   // Gives the columns the names that were chosen for them.
@@ -332,6 +360,7 @@ private:
 
   void end_header() {
     const bool names_above = take_names_from_comment();
+    check_names();
     header_done_ = true;
     targets_.resize(header_.size());
     choose_columns();
@@ -386,6 +415,29 @@ private:
                "; expected points or commas throughout");
   }
 
+  // What a cell that is no number seems to be, and what to do about it.
+  std::string in_place_of_number(const char* text, std::size_t size) const {
+    std::string word(text, std::min<std::size_t>(size, 64));
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const bool any_digit = std::any_of(word.begin(), word.end(), is_digit);
+    if (field_ == time_ && any_digit && is_digit(word[0]) &&
+        (word.find(':') != std::string::npos || std::count(word.begin(), word.end(), '-') == 2 ||
+         std::count(word.begin(), word.end(), '/') == 2))
+      return " is a date or a time of day; expected seconds since the start, such as 0.25: subtract the first stamp from "
+             "all (in Python: (datetime.fromisoformat(stamp) - first).total_seconds())";
+    const std::string expected =
+        " is not a number; expected a decimal number, or an empty cell or nan for a missing sample";
+    if (table_.rows > 0 || any_digit) return expected;
+    word.erase(
+        std::remove_if(word.begin(), word.end(), [](char c) { return std::strchr("[]() ", c) != nullptr; }),
+        word.end());
+    const std::vector<std::string> units = units_of(names_[field_]);
+    const bool is_unit = word == "-" || std::find(units.begin(), units.end(), word) != units.end();
+    return is_unit
+               ? " is no number: this looks like a row of units; delete it (--column NAME=HEADER:UNIT says a unit)"
+               : expected;
+  }
+
   void take_value(const char* text, std::size_t size) {
     if (field_ >= targets_.size())
       return;  // counted, and refused at the end of the row, where the count is known
@@ -405,9 +457,7 @@ private:
           target.values = {};
           return;
         }
-        fail(line_ + lines_in_row_, header_[field_],
-             excerpt(text, size) +
-                 " is not a number; expected a decimal number, or an empty cell or nan for a missing sample");
+        fail(line_ + lines_in_row_, header_[field_], excerpt(text, size) + in_place_of_number(text, size));
       }
       if (fault == NumberFault::not_finite) {
         fail(line_ + lines_in_row_, header_[field_],
@@ -468,12 +518,49 @@ private:
       table_.run_labels.push_back(label_);
       table_.line_of_run.push_back(line_);
     } else if (!(time[row] > time[row - 1])) {
-      fail(line_, "t_s",
-           "time " + shortest(time[row]) + " s follows " + shortest(time[row - 1]) +
-               " s; expected strictly increasing time inside a run" +
-               (run_ == none ? " (a column 'run' separates independent runs)" : ""));
+      if (repeats_the_row_before(row)) {
+        table_.repeated.push_back({row, line_});
+        for (Target& target : targets_)
+          if (target.values.size() > row) target.values.pop_back();
+        return;
+      }
+      if (!is_restart(time, row))
+        fail(line_, "t_s",
+             "time " + shortest(time[row]) + " s follows " + shortest(time[row - 1]) +
+                 " s; expected strictly increasing time inside a run: " + what_is_out_of_order(time, row));
+      table_.restarts.push_back({row, line_});
+      table_.run_begin.push_back(row);
+      table_.run_labels.push_back(label_);
+      table_.line_of_run.push_back(line_);
     }
     ++table_.rows;
+  }
+
+  // Whether all cells of a row are those of the row before it, empty ones included.
+  bool repeats_the_row_before(std::size_t row) const {
+    return std::all_of(targets_.begin(), targets_.end(), [row](const Target& one) {
+      if (one.values.size() <= row) return true;  // text, or a label
+      const double now = one.values[row], before = one.values[row - 1];
+      return now == before || (std::isnan(now) && std::isnan(before));
+    });
+  }
+
+  // Whether time falls back to where the run began, or before that, after it has gone on for some rows.
+  bool is_restart(const std::vector<double>& time, std::size_t row) const {
+    constexpr std::size_t least_rows = 8;
+    constexpr double near = 0.1;  // of how long the run has lasted
+    const std::size_t begin = table_.run_begin.back();
+    return row - begin >= least_rows && time[row] - time[begin] < near * (time[row - 1] - time[begin]);
+  }
+
+  // What to do about time that does not increase.
+  std::string what_is_out_of_order(const std::vector<double>& time, std::size_t row) const {
+    if (time[row] == time[row - 1])
+      return "two rows of one time that differ; keep one of them, or write the stamps with more digits";
+    const bool swapped = row >= table_.run_begin.back() + 2 && time[row] > time[row - 2];
+    return std::string(swapped ? "this row belongs before the one above it; sort the rows by time"
+                               : "time goes back; sort the rows by time if they were mixed up") +
+           ", or, where a recording begins anew here, give each its own label in a column 'run'";
   }
 
   void collect() {
@@ -528,14 +615,8 @@ CsvTable parse_bytes(Parser& parser, const char* bytes, std::size_t size) {
 
 CsvTable read_file(const std::string& path, const std::vector<std::string>& numeric,
                    const std::vector<ColumnChoice>& choices, bool any) {
-  std::error_code status;
-  if (std::filesystem::is_directory(path, status))
-    throw InputError(path + ": is a directory; expected a CSV file");
-  const bool standard = path == "-";
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-      standard ? stdin : std::fopen(path.c_str(), "rb"), standard ? &leave_open : &std::fclose);
-  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
-  Parser parser(standard ? "standard input" : path, numeric, choices, any);
+  const OpenFile file = open_input(path, "a CSV file");
+  Parser parser(path == "-" ? "standard input" : path, numeric, choices, any);
   std::vector<char> block(65536);
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());

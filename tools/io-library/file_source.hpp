@@ -11,6 +11,9 @@
 
 namespace thermopower::io {
 
+/// An open file, closed with it.
+typedef std::unique_ptr<std::FILE, int (*)(std::FILE*)> OpenFile;
+
 /// @brief A file, or standard input, as a source of bytes.
 class FileSource {
 public:
@@ -24,8 +27,14 @@ public:
 
 private:
   std::string name_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  OpenFile file_;
 };
+
+/// Opens a file for reading, `-` for standard input. A pipe is waited for as long as somebody has it open for writing, and no
+/// longer than a second or two where nobody has.
+/// @param what  was expected, as in "a CSV file"
+/// @throws InputError where it is a directory, cannot be opened, or is a pipe that nobody writes to
+OpenFile open_input(const std::string& path, const std::string& what);
 
 /// Bytes in memory as a source.
 ByteSource memory_source(const char* bytes, std::size_t size);

@@ -44,7 +44,9 @@ public:
     unsigned char start[sizeof magic];
     const std::size_t got = take(start, sizeof start);
     if (!begins_like_mcap(start, got))
-      throw InputError(name_ + ": byte 0: not an MCAP file; expected it to begin with 0x89 'MCAP0'");
+      throw InputError(
+          name_ +
+          ": byte 0: not an MCAP file, and no CSV text or SimpleBGC capture; expected it to begin with 0x89 'MCAP0'");
     while (record()) {
     }
   }

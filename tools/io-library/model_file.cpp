@@ -6,6 +6,7 @@
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/plant/network_plant.hpp>
 
+#include "file_source.hpp"
 #include "json_place.hpp"
 
 #include <nlohmann/json.hpp>
@@ -16,11 +17,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <initializer_list>
-#include <memory>
 #include <set>
-#include <system_error>
 #include <vector>
 
 namespace thermopower::io {
@@ -50,6 +48,14 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
 
 /// What a constant may be.
 enum class Allowed { any, positive, not_negative, not_zero };
+
+/// What a constant that may have either sign can be at all: far beyond any material and any machine.
+struct Range {
+  double low, high;
+  const char* unit;
+};
+constexpr Range temperature_C{-273.15, 5000.0, "degC"};
+constexpr Range tempco_per_K{-1.0, 1.0, "1/K"};
 
 class Reader {
 public:
@@ -103,6 +109,10 @@ private:
   }
 
   Json parse(const std::string& text) const {
+    // The parser takes it for the end, whatever follows.
+    if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
+      throw InputError(file_ + ":" + line_and_column(text, zero + 1) +
+                       ": not JSON: a byte 0x00; expected text, and nothing after the last brace");
     Watch watch(file_, text);
     Json::sax_parse(text, &watch);
     return Json::parse(text);
@@ -219,6 +229,15 @@ private:
     return block.contains(key) ? number(block, pointer, key, allowed) : otherwise;
   }
 
+  double within(const Json& block, const std::string& pointer, const char* key, const Range& range,
+                double otherwise) const {
+    const double x = number_or(block, pointer, key, Allowed::any, otherwise);
+    if (!(x >= range.low && x <= range.high))
+      fail(below(pointer, key), "is " + shown(block[key]) + "; expected " + number_text(range.low) + " to " +
+                                    number_text(range.high) + " " + range.unit);
+    return x;
+  }
+
   std::string law(const Json& block, const std::string& pointer,
                   std::initializer_list<const char*> laws) const {
     std::string expected;
@@ -245,8 +264,8 @@ private:
       only(block, here, {"law", "resistance_ohm", "tempco_per_K", "reference_C", "uncertainty"});
       OhmicCurrentModel ohmic;
       ohmic.resistance_ohm = number(block, here, "resistance_ohm", Allowed::positive);
-      ohmic.tempco_per_K = number_or(block, here, "tempco_per_K", Allowed::any, 0.0);
-      ohmic.reference_C = number_or(block, here, "reference_C", Allowed::any, 25.0);
+      ohmic.tempco_per_K = within(block, here, "tempco_per_K", tempco_per_K, 0.0);
+      ohmic.reference_C = within(block, here, "reference_C", temperature_C, 25.0);
       model.current = ohmic;
       return;
     }
@@ -387,13 +406,13 @@ private:
       only(one, at, {"heat_capacity_J_per_K", "column", "initial_C", "uncertainty"});
       plant::NetworkNode node{name, number(one, at, "heat_capacity_J_per_K", Allowed::positive)};
       if (one.contains("column")) node.column = text(one, at, "column");
-      if (one.contains("initial_C")) node.initial_C = number(one, at, "initial_C", Allowed::any);
+      if (one.contains("initial_C")) node.initial_C = within(one, at, "initial_C", temperature_C, 0.0);
       network.nodes.push_back(std::move(node));
     });
     each(block, here, "given", true, [&](const Json& one, const std::string& at, const std::string& name) {
       only(one, at, {"column", "otherwise_C"});
       plant::GivenTemperature given{name, text(one, at, "column")};
-      if (one.contains("otherwise_C")) given.otherwise_C = number(one, at, "otherwise_C", Allowed::any);
+      if (one.contains("otherwise_C")) given.otherwise_C = within(one, at, "otherwise_C", temperature_C, 0.0);
       network.given.push_back(std::move(given));
     });
     each(block, here, "links", false, [&](const Json& one, const std::string& at, const std::string&) {
@@ -411,8 +430,8 @@ private:
       if (wound) {
         plant::NetworkWinding winding{text(one, at, "node"),
                                       number(one, at, "resistance_ohm", Allowed::positive)};
-        winding.tempco_per_K = number_or(one, at, "tempco_per_K", Allowed::any, 0.0);
-        winding.reference_C = number_or(one, at, "reference_C", Allowed::any, 25.0);
+        winding.tempco_per_K = within(one, at, "tempco_per_K", tempco_per_K, 0.0);
+        winding.reference_C = within(one, at, "reference_C", temperature_C, 25.0);
         heat.winding = winding;
       }
       if (one.contains("shares")) {
@@ -544,11 +563,9 @@ Model parse_model(const std::string& name, const std::string& text, const Catalo
 }
 
 Model read_model(const std::string& path, const Catalogue& catalogue) {
-  std::error_code status;
-  if (std::filesystem::is_directory(path, status))
-    throw InputError(path + ": is a directory; expected a model file (JSON)");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+  if (path == "-")
+    throw InputError(path + ": a model is not read from standard input; expected a model file (JSON)");
+  const OpenFile file = open_input(path, "a model file (JSON)");
   std::string text(largest_file + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file.get()));
   if (std::ferror(file.get())) throw InputError(path + ": cannot be read: " + std::strerror(errno));

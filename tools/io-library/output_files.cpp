@@ -56,6 +56,18 @@ void write_all(int descriptor, const std::string& contents, const std::string& p
   }
 }
 
+void write_through(const std::string& path, const std::string& contents) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, errno);
+  try {
+    write_all(descriptor, contents, path);
+  } catch (...) {
+    close(descriptor);
+    throw;
+  }
+  if (close(descriptor) != 0) fail(path, errno);
+}
+
 // mkstemp makes files private; an output should have the rights any new file gets, or those of the file it
 // replaces.
 mode_t rights_for(const std::string& path) {
@@ -102,6 +114,9 @@ void OutputFiles::commit() {
       }
       if (close(temporary.descriptor) != 0) fail(path, errno);
     }
+    // What cannot be taken back comes before what cannot fail any more.
+    for (const auto& [path, contents] : files_)
+      if (is_special(path)) write_through(path, contents);
     while (!pending.empty()) {
       if (std::rename(pending.front().first.c_str(), pending.front().second.c_str()) != 0)
         fail(pending.front().second, errno);
@@ -110,18 +125,6 @@ void OutputFiles::commit() {
   } catch (...) {
     for (const auto& [temporary, target] : pending) unlink(temporary.c_str());
     throw;
-  }
-  for (const auto& [path, contents] : files_) {
-    if (!is_special(path)) continue;
-    const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0) fail(path, errno);
-    try {
-      write_all(descriptor, contents, path);
-    } catch (...) {
-      close(descriptor);
-      throw;
-    }
-    close(descriptor);
   }
 }
 

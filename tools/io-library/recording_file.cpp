@@ -38,6 +38,32 @@ RecordingFile to_recording(CsvTable table) {
     recording.runs.push_back(
         {static_cast<Eigen::Index>(table.run_begin[i]), static_cast<Eigen::Index>(end), table.run_labels[i]});
   }
+  const auto ranges = [](const std::vector<CsvTable::Place>& places) {
+    std::vector<RowRange> list;
+    for (const CsvTable::Place& one : places) {
+      const auto row = static_cast<Eigen::Index>(one.row);
+      if (list.empty() || list.back().end < row) list.push_back({row, row});
+      list.back().end = row + 1;
+    }
+    return list;
+  };
+  const auto count = [](const std::vector<CsvTable::Place>& places, const char* one, const char* many) {
+    return std::to_string(places.size()) + (places.size() == 1 ? one : many) + std::to_string(places[0].line);
+  };
+  if (!table.repeated.empty())
+    file.findings.push_back(
+        {FindingKind::repeated_frames, Severity::note, table.file, "",
+         count(table.repeated, " row is the row before it once more, time included, in line ",
+               " rows are the row before them once more, time included, the first in line ") +
+             ": left out, and not counted where rows are counted",
+         "log each row once", FindingAction::masked, ranges(table.repeated)});
+  if (!table.restarts.empty())
+    file.findings.push_back({FindingKind::gap_in_stamps, Severity::warning, table.file, "t_s",
+                             count(table.restarts, " time falls back to where the run began, in line ",
+                                   " times falls back to where the run began, first in line ") +
+                                 ", as when what logs was restarted: a new run begins there",
+                             "give each run its own label in a column run", FindingAction::segmented,
+                             ranges(table.restarts)});
   for (const auto& name : table.ignored_text) {
     file.findings.push_back({FindingKind::text_column_ignored, Severity::note, table.file, name,
                              "holds text and is no run label; it is not used"});

@@ -177,6 +177,7 @@ std::string summary_line(const std::string& label, const std::string& text) { re
 
 std::string findings_text(const std::vector<Finding>& findings, Severity least) {
   std::string out;
+  bool counts_rows = false;
   std::vector<std::string> told;  // the same fault in several recordings is told once
   for (const auto& finding : findings) {
     if (finding.severity < least) continue;
@@ -187,7 +188,12 @@ std::string findings_text(const std::vector<Finding>& findings, Severity least) 
     if (finding.action != FindingAction::none) text += std::string(" [") + to_string(finding.action) + "]";
     if (!finding.mend.empty()) text += ". To mend it: " + finding.mend;
     out += line(finding.severity == Severity::note ? "note" : "data", text);
+    counts_rows = counts_rows || !finding.rows.empty();
   }
+  if (counts_rows)
+    out += line(
+        "rows",
+        "are counted from 0 below the header: in a CSV file without comments and blank lines, row 0 is line 2");
   return out;
 }
 

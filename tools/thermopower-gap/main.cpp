@@ -5,6 +5,8 @@
 // gap shrinks with it.
 
 #include "fleet.hpp"
+#include "html_text.hpp"
+#include "nearest_name.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
@@ -21,14 +23,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <charconv>
 #include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -102,9 +106,20 @@ private:
   std::thread thread_;
 };
 
+// Columns that a plant of one's own reads by names of its own.
+std::vector<std::string> own_columns(const gap::Model& model) {
+  std::vector<std::string> names;
+  if (!model.own) return names;
+  const auto& info = *model.own->equations->info();
+  for (const auto& one : info.inputs) names.push_back(one.name);
+  for (const auto& one : info.signals) names.push_back(one.name);
+  return names;
+}
+
 // What stands on the command line goes before what a mapping file says of the same name.
-std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
+std::vector<io::ColumnChoice> column_choices(const Arguments& arguments, const gap::Model& model) {
   std::vector<io::ColumnChoice> choices;
+  const std::vector<std::string> own = own_columns(model);
   const auto find = [&](const std::string& name) {
     return std::find_if(choices.begin(), choices.end(),
                         [&](const io::ColumnChoice& one) { return one.name == name; });
@@ -113,6 +128,8 @@ std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
     for (const auto& choice : io::read_column_map(path)) {
       if (find(choice.name) != choices.end())
         throw io::InputError(path + ": '" + choice.name + "' is in another mapping file, too");
+      if (const std::string wrong = io::unknown_name(choice, own); !wrong.empty())
+        throw io::InputError(path + ": " + wrong);
       choices.push_back(choice);
     }
   std::vector<std::string> given;
@@ -121,6 +138,8 @@ std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
       const io::ColumnChoice choice = io::parse_column_choice(text);
       if (std::find(given.begin(), given.end(), choice.name) != given.end())
         throw UsageError("--column " + choice.name + " is given twice");
+      if (const std::string wrong = io::unknown_name(choice, own); !wrong.empty())
+        throw UsageError("--column " + text + ": " + wrong);
       given.push_back(choice.name);
       if (const auto known = find(choice.name); known != choices.end()) *known = choice;
       else choices.push_back(choice);
@@ -129,6 +148,15 @@ std::vector<io::ColumnChoice> column_choices(const Arguments& arguments) {
     throw UsageError(error.what());
   }
   return choices;
+}
+
+// A choice of a fleet, before the models are known.
+void expect_choice(const std::string& text) {
+  try {
+    io::parse_column_choice(text);
+  } catch (const io::InputError& error) {
+    throw UsageError(error.what());
+  }
 }
 
 std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
@@ -233,7 +261,6 @@ int export_model(const Arguments& arguments) {
 int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   if (!arguments.of_fleet) refuse_overlaps(arguments);
-  const std::vector<io::ColumnChoice> choices = column_choices(arguments);
   io::OutputFiles outputs;
   for (const auto* path : arguments.outputs()) {
     if (!path->empty() && !arguments.of_fleet) outputs.expect(*path);
@@ -243,6 +270,7 @@ int diagnose(const Arguments& arguments) {
   {
     Progress progress;
     model = read_model(arguments, catalogue);
+    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
     check_ids(arguments.without, gap::catalogue_of(model, catalogue));
     std::vector<gap::Finding> findings;
     std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
@@ -285,13 +313,13 @@ int diagnose(const Arguments& arguments) {
 int check(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   refuse_overlaps(arguments);
-  const std::vector<io::ColumnChoice> choices = column_choices(arguments);
   io::OutputFiles outputs;
   if (!arguments.report.empty()) outputs.expect(arguments.report);
   gap::DataReport report;
   {
     Progress progress;
     const gap::Model model = io::read_model(arguments.model, catalogue);
+    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
     std::vector<gap::Finding> findings;
     const std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
     const std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
@@ -305,7 +333,31 @@ int check(const Arguments& arguments) {
     outputs.commit();
   }
   std::fputs(io::check_text(report).c_str(), stdout);
-  return gap::deciding(report.findings) != nullptr ? too_little_data : made;
+  return gap::deciding(report.findings) != nullptr || !report.too_little.empty() ? too_little_data : made;
+}
+
+// A number as recordings have it: decimal and finite, or nothing.
+std::optional<double> decimal_number(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || last != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+// Where a run can start at all: no motor is colder than nothing, or whole where metal boils.
+struct StartRange {
+  double low, high;
+  const char* unit;
+};
+StartRange range_of_start(const std::string& name) {
+  const auto ends = [&name](const std::string& with) {
+    return name.size() >= with.size() && name.compare(name.size() - with.size(), with.size(), with) == 0;
+  };
+  if (ends("_C")) return {-273.15, 5000.0, "degC"};
+  if (ends("_deg")) return {-1e7, 1e7, "deg"};
+  if (ends("_dps")) return {-1e6, 1e6, "deg/s"};
+  return {-1e12, 1e12, ""};
 }
 
 std::map<std::string, double> starts_of(const std::vector<std::string>& texts, const gap::Model& model) {
@@ -321,14 +373,42 @@ std::map<std::string, double> starts_of(const std::vector<std::string>& texts, c
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    double value = 0.0;
     const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    if (!known || equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(equals + 1), value) ||
-        !std::isfinite(value))
-      throw UsageError("--start " + text + ": expected " + expected + " with a number");
-    if (!starts.emplace(name, value).second) throw UsageError("--start " + name + " is given twice");
+    const std::optional<double> value =
+        equals == std::string::npos ? std::nullopt : decimal_number(text.substr(equals + 1));
+    if (!known || !value)
+      throw UsageError("--start " + text + ": expected " + expected + " with a decimal number");
+    const StartRange range = range_of_start(name);
+    if (!(*value >= range.low && *value <= range.high))
+      throw UsageError("--start " + text + ": expected " + io::readable(range.low, 5) + " to " +
+                       io::readable(range.high, 5) + " " + range.unit);
+    if (!starts.emplace(name, *value).second) throw UsageError("--start " + name + " is given twice");
   }
   return starts;
+}
+
+// Inputs with missing cells leave holes in what is predicted: nothing fills them here, as the check of a diagnosis does.
+void warn_of_holes(const gap::Recording& recording, const gap::Model& model) {
+  std::vector<std::string> inputs{"power_param", "drive_A", "voltage_V", "target_deg", "target_dps",
+                                  "torque_Nm",   "heat_W",  "supply_V",  "ambient_C"};
+  if (model.own) {
+    inputs.clear();
+    for (const auto& one : model.own->equations->info()->inputs) inputs.push_back(one.name);
+  }
+  for (const std::string& name : inputs) {
+    if (!recording.has(name)) continue;
+    const auto known = recording.column(name).array().isFinite();
+    const Eigen::Index missing = recording.rows() - known.count();
+    if (missing == 0) continue;
+    Eigen::Index first = 0;
+    while (known[first]) ++first;
+    std::fprintf(
+        stderr,
+        "thermopower-gap: %s: column '%s': %td of %td cells are missing, first at t_s = %s: what is predicted from "
+        "there on cannot be trusted, and may be empty; fill them, or cut the recording into runs there\n",
+        recording.name.c_str(), name.c_str(), static_cast<std::ptrdiff_t>(missing),
+        static_cast<std::ptrdiff_t>(recording.rows()), io::readable(recording.t_s[first]).c_str());
+  }
 }
 
 int predict(const Arguments& arguments) {
@@ -339,8 +419,9 @@ int predict(const Arguments& arguments) {
   const gap::Model augmented = io::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
   std::vector<gap::Recording> recordings =
-      read_all(arguments.recordings, column_choices(arguments), findings);
+      read_all(arguments.recordings, column_choices(arguments, augmented), findings);
   const std::map<std::string, double> starts = starts_of(arguments.starts, augmented);
+  for (const gap::Recording& one : recordings) warn_of_holes(one, augmented);
   for (gap::Recording& one : recordings) one = io::with_starts(std::move(one), augmented, starts);
   gap::Model bare = augmented;
   bare.effects.clear();
@@ -433,14 +514,14 @@ std::string text_of(double value) {
   return exact;
 }
 
-// CLI11's own would tell the largest double in 309 digits.
-const CLI::Validator positive(
+// What Options::validate() takes, as a fault of the usage.
+const CLI::Validator seconds(
     [](std::string& text) {
       double value = 0.0;
-      const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
-      return fine ? std::string() : "'" + text + "' is not a finite number above 0";
+      const bool fine = CLI::detail::lexical_cast(text, value) && value >= 1e-6 && value <= 1e9;
+      return fine ? std::string() : "'" + text + "' is not a number of seconds from 1e-6 to 1e9";
     },
-    "POSITIVE");
+    "1e-6..1e9");
 // CLI11's own takes nan for a number within.
 const CLI::Validator share(
     [](std::string& text) {
@@ -452,6 +533,20 @@ const CLI::Validator share(
 const CLI::Validator not_empty(
     [](std::string& text) { return text.empty() ? std::string("is empty; expected a name") : std::string(); },
     "", "not empty");
+
+// CLI11's own says only that a subcommand is required.
+void expect_subcommand(CLI::App& app, const std::string& given) {
+  std::vector<std::string> names;
+  for (const CLI::App* const one : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(one->get_name());
+  if (std::find(names.begin(), names.end(), given) != names.end()) return;
+  const std::string nearest = io::nearest_name(given, names);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  throw UsageError(
+      io::excerpt(given) + " is no subcommand" +
+      (nearest.empty() ? "; expected one of " : "; did you mean " + nearest + "? Expected one of ") + list);
+}
 
 std::string version() {
   using thermopower::Version;
@@ -485,7 +580,7 @@ int run(int count, char** values) {
   diagnosing->add_option("--without", arguments.without,
                          "remove an effect from the catalogue; may be repeated");
   diagnosing->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(positive)
+      ->check(seconds)
       ->capture_default_str();
   diagnosing
       ->add_option("--tolerance", arguments.tolerance,
@@ -511,7 +606,7 @@ int run(int count, char** values) {
                          "where a run starts, as in motor_C=40 (also angle_deg, rate_dps); without it as "
                          "measured, else at the air's temperature and at rest");
   predicting->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(positive)
+      ->check(seconds)
       ->capture_default_str();
 
   CLI::App* const checking = app.add_subcommand(
@@ -524,7 +619,7 @@ int run(int count, char** values) {
   checking->add_option("--heldout", arguments.held_out, "a recording to judge on; may be repeated");
   checking->add_option("--report", arguments.report, "write the same for machines (JSON)");
   checking->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
-      ->check(positive)
+      ->check(seconds)
       ->capture_default_str();
   for (CLI::App* const one : {diagnosing, checking})
     one->add_flag("--as-recorded", arguments.as_recorded,
@@ -569,7 +664,7 @@ int run(int count, char** values) {
   many->add_option("--column", arguments.columns, "as for diagnose, of every log");
   many->add_option("--without", arguments.without, "as for diagnose");
   CLI::Option* const horizon =
-      many->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(positive);
+      many->add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(seconds);
 
   CLI::App* const listing = app.add_subcommand("effects", "list the catalogue");
   listing->add_option("--model", arguments.model,
@@ -579,6 +674,7 @@ int run(int count, char** values) {
     for (CLI::Option* const option : subcommand->get_options([](const CLI::Option*) { return true; }))
       if (option->get_expected_min() > 0) option->check(not_empty);
 
+  if (count > 1 && values[1][0] != '-') expect_subcommand(app, values[1]);
   try {
     app.parse(count, values);
   } catch (const CLI::ParseError& error) {
@@ -588,7 +684,7 @@ int run(int count, char** values) {
   if (*checking) return check(arguments);
   if (*many) {
     check_ids(arguments.without, gap::standard_catalogue());
-    column_choices(arguments);
+    for (const std::string& one : arguments.columns) expect_choice(one);
     for (const std::string& one : arguments.columns)
       fleet.options.insert(fleet.options.end(), {"--column", one});
     for (const std::string& one : arguments.without)

@@ -52,6 +52,8 @@ struct EffectReport {
 /// What data are worth before anything is fitted.
 struct DataReport {
   std::vector<Finding> findings;           ///< those that decide first
+  std::string too_little;                  ///< what a diagnosis lacks to say anything; empty: nothing
+  std::string next_experiment;             ///< what would mend that; empty where nothing lacks
   std::vector<std::string> not_judged;     ///< one sentence for each signal that lacks a column
   std::vector<SignalReport> signals;       ///< of the training recordings
   std::vector<ConstantReport> constants;   ///< of the blocks that are judged

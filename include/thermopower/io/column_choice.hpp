@@ -30,6 +30,14 @@ std::vector<ColumnChoice> read_column_map(const std::string& path);
 /// @brief The same on a text in memory; `name` stands in messages where a path would.
 std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::string& text);
 
+/// @brief Says what is wrong with a name that is none of the format's; empty where it can only be meant for a covariate.
+///
+/// A covariate may be called anything, but for what is nearly a name of the format, and a column that already has such a name is
+/// none: a typing mistake would take it away without a word.
+/// @param choice  as it was given
+/// @param others  names that a plant of one's own reads besides
+std::string unknown_name(const ColumnChoice& choice, const std::vector<std::string>& others = {});
+
 /// @brief The units that a name knows, its own first; empty for a name without a unit.
 std::vector<std::string> units_of(const std::string& name);
 

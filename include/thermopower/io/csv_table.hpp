@@ -28,6 +28,13 @@ struct CsvTable {
       ignored_text;  ///< names of columns that hold text and are not `run`: read, checked, and left out
   std::vector<std::size_t> line_of_run;  ///< line in the file at which each run starts (1 is the header row)
   std::size_t rows = 0;                  ///< data rows
+  /// A place in the file at which something was mended.
+  struct Place {
+    std::size_t row = 0;   ///< of the table, that follows on it
+    std::size_t line = 0;  ///< in the file
+  };
+  std::vector<Place> repeated;  ///< rows that were the row before them once more, cell for cell: left out
+  std::vector<Place> restarts;  ///< rows whose time fell back to where the run began: a new run starts there
   bool ends_with_line_break =
       true;  ///< false: the last row has all its fields, but a cut in its last one would be invisible
 };
@@ -39,7 +46,9 @@ struct CsvTable {
 ///
 /// Strict, because a number that was read wrongly is worse than a file that was refused. Checked on the way:
 /// header names present and distinct; as many fields in each row as in the header; numbers complete, finite
-/// and in decimal notation; `t_s` present, never missing, strictly increasing inside a run;
+/// and in decimal notation; `t_s` present, never missing, strictly increasing inside a run, but for two faults that can mean one
+/// thing only: a row that is the one before it once more is left out (CsvTable::repeated), and where time falls back to where
+/// the run began, as after a restart of what logs, a new run starts (CsvTable::restarts);
 /// `power_param` inside 0..255. Columns whose first non-missing value is no number are text: `run` is the
 /// label of independent runs, any other is ignored and listed in CsvTable::ignored_text. A column of
 /// INTERFACE columns (numeric by definition) may not hold text.

@@ -33,8 +33,8 @@ public:
   /// @brief Sets the contents of a file. Nothing is written before commit().
   void put(const std::string& path, std::string contents);
 
-  /// @brief Writes every file under a temporary name, then renames them all.
-  /// @throws OutputError; then no target has changed and no temporary file is left
+  /// @brief Writes every file under a temporary name, special files straight through, then renames them all.
+  /// @throws OutputError; then no file has changed and no temporary file is left
   void commit();
 
 private:

@@ -7,8 +7,10 @@
 
 #include "../plants.hpp"
 
+#include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -1156,4 +1158,44 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
     CAPTURE(i);
     CHECK(out.count(i) == 1);
   }
+}
+
+TEST_CASE("one sample is spoken of as one") {
+  CHECK(said_of_one("lie far from all around them") == "lies far from all around it");
+  CHECK(said_of_one("are no temperature of a motor") == "is no temperature of a motor");
+  CHECK(said_of_one("repeat the value before them where noise or motion would show") ==
+        "repeats the value before it where noise or motion would show");
+  CHECK(said_of_one("of every output repeat the row before them") ==
+        "of every output repeats the row before it");
+  CHECK(said_of_one("are missing between values that differ; their rows are not judged") ==
+        "is missing between values that differ; its row is not judged");
+  Recording r = bench();
+  Eigen::VectorXd motor = r.column("motor_C");
+  motor[700] += 60.0;
+  r.set("motor_C", motor);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(std::any_of(prepared.findings().begin(), prepared.findings().end(), [](const Finding& one) {
+    return one.message.rfind("1 sample lies far from all around it, first in row 700", 0) == 0;
+  }));
+}
+
+TEST_CASE("a recording that repeats itself is not told to leave an option away") {
+  const Recording once = bench();
+  Recording twice = once;
+  twice.t_s.resize(2 * once.rows());
+  twice.t_s << once.t_s, (once.t_s.array() + once.t_s[once.rows() - 1] + 2.0).matrix();
+  for (Column& column : twice.columns) {
+    const Eigen::VectorXd values = column.values;
+    column.values.resize(2 * once.rows());
+    column.values << values, values;
+  }
+  const auto mend = [](const Recording& train, const Recording& held_out) {
+    for (const Finding& one :
+         engine::check(test::bench_model(), {train}, {held_out}, {}, standard_catalogue()).findings)
+      if (one.kind == FindingKind::held_out_in_training) return one.mend;
+    return std::string("nothing");
+  };
+  CHECK_THAT(mend(twice.slice(0, once.rows()), twice.slice(once.rows(), twice.rows())),
+             ContainsSubstring("hold out another recording with --heldout"));
+  CHECK_THAT(mend(once, once), ContainsSubstring("leave --heldout away"));
 }

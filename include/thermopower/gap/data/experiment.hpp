@@ -154,10 +154,16 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
         "hold out data in which the actuator is driven");
   for (const PreparedRecording& held : held_out)
     for (const PreparedRecording& one : train)
-      if (is_part_of(held, one))
+      if (is_part_of(held, one)) {
+        // A part of a recording knows which row of it is its first.
+        const bool is_its_end = held.recording().first_row > 0 && held.inputs().name == one.inputs().name;
         add(FindingKind::held_out_in_training, held, "",
-            "holds the same samples as the training recording '" + one.inputs().name + "'",
-            "hold out another recording, or leave --heldout away");
+            is_its_end
+                ? "holds the same samples in the part that is held out of it as before that: it repeats itself"
+                : "holds the same samples as the training recording '" + one.inputs().name + "'",
+            is_its_end ? "look at what logs, or hold out another recording with --heldout"
+                       : "hold out another recording, or leave --heldout away");
+      }
   for (std::size_t i = 0; i < train.size(); ++i)
     for (std::size_t k = i + 1; k < train.size(); ++k)
       if (is_part_of(train[k], train[i]))

@@ -22,6 +22,27 @@ inline std::string short_number(double value) {
   return text;
 }
 
+/// What is said of several samples, as it is said of one: "lie far from all around them", "lies far from all around it".
+inline std::string said_of_one(std::string words) {
+  const std::pair<const char*, const char*> verbs[] = {
+      {"are ", "is "},       {"lie ", "lies "},   {"repeat ", "repeats "}, {"jump ", "jumps "},
+      {"stand ", "stands "}, {"read ", "reads "}, {"follow ", "follows "}, {"begin ", "begins "}};
+  const std::string of_every = "of every output ";
+  const std::size_t at = words.compare(0, of_every.size(), of_every) == 0 ? of_every.size() : 0;
+  for (const auto& [many, one] : verbs) {
+    const std::string verb = many;
+    if (words.compare(at, verb.size(), verb) != 0) continue;
+    words.replace(at, verb.size(), one);
+    break;
+  }
+  for (const auto& [many, one] : {std::pair<const char*, const char*>{"before them", "before it"},
+                                  {"around them", "around it"},
+                                  {"their rows are", "its row is"}})
+    if (const std::size_t found = words.find(many); found != std::string::npos)
+      words.replace(found, std::string(many).size(), one);
+  return words;
+}
+
 /// Collects the findings of one recording.
 class FindingList {
 public:
@@ -35,7 +56,7 @@ public:
   }
 
   /// Adds a finding about the rows that are set in `mask`, and says how many and where; nothing where none is.
-  /// @param words  follows the count, as in "samples stand at ..."
+  /// @param words  follows the count, as in "samples stand at ..."; of one sample it is said_of_one()
   void add_rows(FindingKind kind, Severity severity, const std::string& column, const RowMask& mask,
                 FindingAction action, const std::string& words, const std::string& mend = {}) {
     std::vector<RowRange> rows = ranges_of(mask);
@@ -43,7 +64,8 @@ public:
     Eigen::Index count = 0;
     for (const RowRange& range : rows) count += range.end - range.begin;
     const Eigen::Index first = rows.front().begin;
-    const std::string message = std::to_string(count) + (count == 1 ? " sample " : " samples ") + words +
+    const std::string message = std::to_string(count) +
+                                (count == 1 ? " sample " + said_of_one(words) : " samples " + words) +
                                 ", first in row " + std::to_string(recording_.first_row + first) + " (" +
                                 short_number(recording_.t_s[first]) + " s)";
     for (RowRange& range : rows) range.begin += recording_.first_row, range.end += recording_.first_row;

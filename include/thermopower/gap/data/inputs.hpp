@@ -79,6 +79,17 @@ inline void close_loop(const Model& model, Inputs& inputs) {
   replay_servo(model, inputs);
 }
 
+/// The names of a recording's columns, as sentences have them.
+inline std::string columns_in_words(const Recording& recording) {
+  constexpr std::size_t most = 12;
+  std::string names = "t_s";
+  for (std::size_t i = 0; i < recording.columns.size() && i < most; ++i)
+    names += ", " + recording.columns[i].name;
+  if (recording.columns.size() > most)
+    names += " and " + std::to_string(recording.columns.size() - most) + " more";
+  return names;
+}
+
 /// Takes from a recording what the model needs, and notes what cannot be judged and why.
 /// @throws InvalidInput where the recording is invalid
 inline Inputs prepare(const Model& model, const Recording& recording) {
@@ -179,6 +190,8 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
     }
   }
   if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");
+  if (!inputs.bench() && !inputs.axis())
+    notes.push_back({"", "the columns that were recorded are " + columns_in_words(recording)});
   return inputs;
 }
 

@@ -9,6 +9,7 @@
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -227,6 +228,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   };
   take(train, result.train);
   take(held_out, result.held_out);
+  leave_out_what_is_dead(model, result, options.as_recorded, others);
   if (!options.as_recorded) {
     leave_out_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);

@@ -5,6 +5,7 @@
 #include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/gap/detail/check.hpp>
+#include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/simulate.hpp>
@@ -295,6 +296,11 @@ THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vect
   std::vector<const Inputs*> all;
   for (const Inputs& one : inputs) all.push_back(&one);
   report.not_judged = engine::not_judged_in(all);
+  std::vector<Inputs> judged_on;
+  for (const engine::PreparedRecording& one : checked.held_out) judged_on.push_back(one.inputs());
+  report.too_little = engine::lacking(model, inputs, false, options.horizon_s, report.next_experiment);
+  if (report.too_little.empty() && !judged_on.empty())
+    report.too_little = engine::lacking(model, judged_on, true, options.horizon_s, report.next_experiment);
   constexpr Eigen::Index few = 12;
   const Recording sample = engine::sampled(longest->recording(), engine::moves(model, longest->recording()));
   if (sample.rows() < few) return report;
