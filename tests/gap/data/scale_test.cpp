@@ -307,6 +307,21 @@ TEST_CASE("a heat capacity that is off by a thousand is no unit of time that no 
   CHECK(all.front().mend.find("--column") == std::string::npos);
 }
 
+TEST_CASE("tenths of a degree are told from kelvin by the air, and without it by whole numbers") {
+  // A motor that has been driven all along: 408 is 41 degC, and no 135.
+  Recording hot = bench();
+  change(hot, "motor_C", [](double x) { return std::round(10.0 * (40.8 + 0.1 * (x - 23.0))); });
+  CHECK(decision(bench_model(), hot) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
+  Recording whole = bench();
+  change(whole, "motor_C", [](double x) { return std::round(kelvin(x)); });
+  CHECK(decision(bench_model(), whole) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
+  Recording joint = axis();
+  joint.set("motor_C", Eigen::VectorXd::Constant(joint.rows(), 286.0));
+  CHECK(decision(axis_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
+  joint.set("motor_C", Eigen::VectorXd::Constant(joint.rows(), kelvin(28.6)));
+  CHECK(decision(axis_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
+}
+
 TEST_CASE("a temperature that none can be decides, as after a mend that was none") {
   Recording r = bench();
   change(r, "motor_C", [](double x) { return x - 273.15; });

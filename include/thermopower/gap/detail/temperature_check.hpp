@@ -27,6 +27,7 @@ struct TemperatureThresholds {
   double motor_high_C = 500.0;  ///< of a motor in the right unit
   double air_high_C = 70.0;     ///< of air in the right unit
   double below_air_K = 15.0;    ///< that a motor may be colder than the air around it
+  double nearer_K = 20.0;       ///< that it must begin nearer to the air in one unit than in another
   double range_K = 150.0;       ///< that a motor goes through at most
 };
 
@@ -77,7 +78,7 @@ private:
       for (const Unit& one : units) {
         const auto in_C = [&](double value) { return (value - one.ice) * one.factor; };
         if (!is_possible(name, {in_C(range.low), in_C(range.typical), in_C(range.high)})) continue;
-        if (one.ice != 0.0 && has_whole_numbers(name)) continue;
+        if (one.ice != 0.0 && are_tenths(name, range.low)) continue;
         list.add(FindingKind::wrong_unit, Severity::error, name,
                  "is at least " + short_number(range.low) + ": in " + one.words +
                      " where degrees Celsius are expected",
@@ -92,9 +93,14 @@ private:
              "look at its unit, and at what --column makes of it");
   }
 
-  /// Words of a sensor that counts parts of a degree are whole numbers, and kelvin that were degrees Celsius are none.
-  bool has_whole_numbers(const std::string& name) const {
-    if (recorded_.has("ambient_C")) return false;  // the air tells more
+  /// Words of a sensor that counts parts of a degree are whole numbers, and kelvin that were degrees Celsius are none. Kelvin may
+  /// be whole, too: where the air is known, tenths of a degree that are taken for kelvin must begin much further from it.
+  bool are_tenths(const std::string& name, double low) const {
+    constexpr double ice_K = 273.15, tenth = 0.1;
+    const double air = air_C();
+    if (recorded_.has("ambient_C") &&
+        !(std::abs(tenth * low - air) + TemperatureThresholds().nearer_K < std::abs(low - ice_K - air)))
+      return false;
     const std::vector<double> values = finite_samples(recorded_.column(name));
     return std::all_of(values.begin(), values.end(), [](double value) { return value == std::round(value); });
   }
