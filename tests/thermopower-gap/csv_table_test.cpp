@@ -180,8 +180,9 @@ TEST_CASE("columns go by other names and units where they are asked for so") {
 TEST_CASE("words of a power and parts of a degree are units") {
   const std::string text = "t_s,power_param,motor_C,ambient_C\n0,1023,251,24500\n";
   const auto table = io::parse_csv("log.csv", text.data(), text.size(), io::known_columns(),
-                                   {choice("power_param=power_param:1023"), choice("motor_C=motor_C:ddegC"),
-                                    choice("ambient_C=ambient_C:mdegC")});
+                                   {io::parse_column_choice("power_param=power_param:1023"),
+                                    io::parse_column_choice("motor_C=motor_C:ddegC"),
+                                    io::parse_column_choice("ambient_C=ambient_C:mdegC")});
   const Recording r = io::to_recording(table).recording;
   CHECK(r.column("power_param")[0] == Approx(255.0));
   CHECK(r.column("motor_C")[0] == Approx(25.1));
