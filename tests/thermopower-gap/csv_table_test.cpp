@@ -120,7 +120,9 @@ TEST_CASE("every kind of malformed input is refused with file, line, column and 
       {"t_s,motor_C\n0,1e999\n", {"log.csv:2: ", "'1e999' is not finite"}},
       {"t_s,motor_C\n0,\"1\n", {"log.csv:2: ", "column 'motor_C'", "never closed", "closing '\"'"}},
       {"t_s,motor_C\n0,1\"2\n", {"log.csv:2: ", "column 'motor_C'", "a quote inside a field"}},
-      {"t_s,power_param\n0,256\n", {"log.csv:2: ", "column 'power_param'", "expected 0..255"}},
+      {"t_s,power_param\n0,256\n",
+       {"log.csv:2: ", "column 'power_param'", "expected 0..255", "--column power_param=power_param:1023"}},
+      {"t_s,power_param\n0,60000\n", {"log.csv:2: ", "--column power_param=power_param:65535"}},
       {"t_s,power_param\n0,-1\n", {"log.csv:2: ", "expected 0..255"}},
       {"t_s,x\n0,1\n1,oops\n", {"log.csv:3: ", "column 'x'", "'oops' is not a number"}},
       {"t_s,motor_C\n0,warm\n", {"log.csv:2: ", "column 'motor_C'", "'warm' is not a number"}},
@@ -173,6 +175,18 @@ TEST_CASE("columns go by other names and units where they are asked for so") {
   CHECK(r.column("power_param")[0] == Approx(127.5));
   CHECK(r.column("drive_A")[1] == Approx(0.5));
   CHECK(r.columns.size() == 3);  // the file's own motor_C gave way
+}
+
+TEST_CASE("words of a power and parts of a degree are units") {
+  const std::string text = "t_s,power_param,motor_C,ambient_C\n0,1023,251,24500\n";
+  const auto table = io::parse_csv("log.csv", text.data(), text.size(), io::known_columns(),
+                                   {io::parse_column_choice("power_param=power_param:1023"),
+                                    io::parse_column_choice("motor_C=motor_C:ddegC"),
+                                    io::parse_column_choice("ambient_C=ambient_C:mdegC")});
+  const Recording r = io::to_recording(table).recording;
+  CHECK(r.column("power_param")[0] == Approx(255.0));
+  CHECK(r.column("motor_C")[0] == Approx(25.1));
+  CHECK(r.column("ambient_C")[0] == Approx(24.5));
 }
 
 TEST_CASE("what --column cannot mean is said") {

@@ -438,6 +438,17 @@ private:
                : expected;
   }
 
+  /// Which unit a power may be in that is too large, and how to say so.
+  std::string other_power(double value) const {
+    std::string units;
+    for (const char* full : {"1023", "4095", "65535"})
+      if (value > 0.0 && value <= std::atof(full)) units += (units.empty() ? "" : ", ") + std::string(full);
+    if (units.empty()) return {};
+    return "; where full power is another word, --column power_param=" + header_[field_] + ":" +
+           units.substr(0, units.find(',')) +
+           (units.find(',') == std::string::npos ? "" : " (known: " + units + ")");
+  }
+
   void take_value(const char* text, std::size_t size) {
     if (field_ >= targets_.size())
       return;  // counted, and refused at the end of the row, where the count is known
@@ -469,7 +480,7 @@ private:
       value = (value - target.offset) * target.factor;
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
         fail(line_ + lines_in_row_, header_[field_],
-             excerpt(text, size) + " is outside its range; expected 0..255");
+             excerpt(text, size) + " is outside its range; expected 0..255" + other_power(value));
       }
     } else if (field_ == time_ && !any_) {
       fail(line_ + lines_in_row_, header_[field_],

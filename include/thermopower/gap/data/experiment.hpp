@@ -18,7 +18,9 @@ namespace thermopower::gap::engine {
 /// Thresholds of the check of the experiment.
 /// Held by tests/gap/data/units_test.cpp.
 struct ExperimentThresholds {
-  double rows_per_window = 4.0;    ///< fewer say nothing about what happens between restarts of the axis
+  double rows_per_window = 4.0;  ///< fewer say nothing about what happens between restarts of the axis
+  double slow_axis_s =
+      1.0;  ///< interval between rows of an axis that is odd: another unit is asked for first
   double not_driven = 0.02;        ///< of the training data's largest command
   double not_moving = 0.2;         ///< of the training data's range of a judged signal
   double same_rows = 0.9;          ///< share of equal rows of two recordings that are one
@@ -122,7 +124,10 @@ inline std::vector<Finding> check_experiment(const std::vector<PreparedRecording
     add(FindingKind::sampled_too_slowly, *slow, "t_s",
         "has a row every " + short_number(slowest_s) + " s, fewer than " +
             short_number(limit.rows_per_window) + " in a window of " + short_number(horizon_s) + " s",
-        "sample faster, or judge over longer windows: --horizon " +
+        std::string(slowest_s > limit.slow_axis_s ? "say so where t_s is in another unit than seconds "
+                                                    "(--column t_s=t_s:ms); else sample faster, or "
+                                                  : "sample faster, or ") +
+            "judge over longer windows: --horizon " +
             short_number(std::ceil(10.0 * limit.rows_per_window * slowest_s * 2.0) / 10.0));
   for (const PreparedRecording& one : train) {
     const double most = largest_command(one.inputs());

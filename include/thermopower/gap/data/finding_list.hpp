@@ -78,6 +78,9 @@ public:
   /// The recording that the findings are about.
   const Recording& recording() const { return recording_; }
 
+  /// Whether nothing was found.
+  bool empty() const { return findings_.empty(); }
+
   /// What was collected.
   std::vector<Finding> take() { return std::move(findings_); }
 

@@ -10,6 +10,7 @@
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
+#include <thermopower/gap/detail/recordings_together.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -215,9 +216,11 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
       if (one.has("power_param"))
         for (const double power : one.column("power_param"))
           if (power > most_power) most_power = power;
+  RecordingsTogether together;
   const auto take = [&](std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
     to.reserve(recordings.size());
     for (Recording& one : recordings) {
+      if (!model.own) together.add(one);
       to.emplace_back(model, one, options.as_recorded);
       const std::vector<Finding>& own = to.back().findings();
       others.insert(others.end(), own.begin(), own.end());
@@ -229,6 +232,8 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   take(train, result.train);
   take(held_out, result.held_out);
   leave_out_what_is_dead(model, result, options.as_recorded, others);
+  together.find_air(others);
+  together.settle(others);
   if (!options.as_recorded) {
     leave_out_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);

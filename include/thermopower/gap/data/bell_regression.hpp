@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/normal_equations.hpp>
+#include <thermopower/gap/recording.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// @file bell_regression.hpp
+/// Coefficients of a differential equation from what was recorded, without simulating it: both of its sides are summed up
+/// under bells of some rows each. A derivative is then the sum of differences, which noise and missing rows hardly touch.
+
+namespace thermopower::gap::engine {
+
+/// A coefficient of a regression, and how well the data tell it.
+struct ToldCoefficient {
+  double value = missing;  ///< in the unit of the response by that of the term
+  double partial = 0.0;    ///< correlation of term and response beside all other terms, 0..1
+  double windows = 0.0;    ///< that told it
+
+  /// Its value by its standard error, as if the windows were independent.
+  double significance() const {
+    return partial * std::sqrt(windows / std::max(1e-12, 1.0 - partial * partial));
+  }
+};
+
+/// A linear regression that keeps its rows.
+class KeptRegression {
+public:
+  /// Adds a row; one that holds what is no number is left out.
+  void add(const Eigen::VectorXd& terms, double response) {
+    if (!terms.allFinite() || !std::isfinite(response)) return;
+    terms_.push_back(terms);
+    responses_.push_back(response);
+  }
+
+  /// Rows added.
+  std::size_t rows() const { return terms_.size(); }
+
+  /// All coefficients; empty where the rows are too few for as many.
+  std::vector<ToldCoefficient> solve() const {
+    constexpr std::size_t rows_a_term = 4;
+    if (terms_.empty() || terms_.size() < rows_a_term * static_cast<std::size_t>(terms_.front().size()))
+      return {};
+    const Eigen::Index count = terms_.front().size();
+    scale_ = Eigen::VectorXd::Zero(count);
+    for (const Eigen::VectorXd& one : terms_) scale_ += one.cwiseAbs2();
+    scale_ = (scale_ / static_cast<double>(terms_.size())).cwiseSqrt();
+    for (double& one : scale_)
+      if (!(one > 0.0)) one = 1.0;
+    const Eigen::VectorXd all = coefficients(-1);
+    const double left = squares(all, -1);
+    std::vector<ToldCoefficient> list;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double without = squares(coefficients(k), k);
+      const double share = without > 0.0 ? std::clamp(1.0 - left / without, 0.0, 1.0) : 0.0;
+      list.push_back({all[k] / scale_[k], std::sqrt(share), static_cast<double>(terms_.size())});
+    }
+    return list;
+  }
+
+private:
+  Eigen::VectorXd scaled(const Eigen::VectorXd& terms, Eigen::Index without) const {
+    Eigen::VectorXd x = terms.cwiseQuotient(scale_);
+    if (without >= 0) x[without] = 0.0;
+    return x;
+  }
+  Eigen::VectorXd coefficients(Eigen::Index without) const {
+    NormalEquations equations(scale_.size());
+    for (std::size_t i = 0; i < terms_.size(); ++i) equations.add(scaled(terms_[i], without), responses_[i]);
+    return equations.solve();
+  }
+  double squares(const Eigen::VectorXd& by, Eigen::Index without) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      const double error = responses_[i] - scaled(terms_[i], without).dot(by);
+      sum += error * error;
+    }
+    return sum;
+  }
+
+  std::vector<Eigen::VectorXd> terms_;
+  std::vector<double> responses_;
+  mutable Eigen::VectorXd scale_;
+};
+
+/// The rows of a recording in which a signal was read, run by run, and the bells over them.
+class ReadRows {
+public:
+  /// @param values  of the signal; NaN: not read
+  ReadRows(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs, const Eigen::VectorXd& values)
+      : t_s_(t_s) {
+    for (const RunSpan& run : runs) {
+      std::vector<Eigen::Index> rows;
+      for (Eigen::Index i = run.begin; i < run.end; ++i)
+        if (std::isfinite(values[i])) rows.push_back(i);
+      count_ += rows.size();
+      if (rows.size() > 1) runs_.push_back(std::move(rows));
+    }
+  }
+
+  /// Rows in which it was read.
+  std::size_t count() const { return count_; }
+
+  /// One interval between two readings under a bell.
+  struct Part {
+    Eigen::Index row;    ///< at which it begins
+    Eigen::Index next;   ///< at which it ends
+    double step_s;       ///< between the two
+    double weight;       ///< of the bell in its middle, 0..1
+    double slope_per_s;  ///< of the bell there
+  };
+
+  /// Hands the parts of each bell to `use(const std::vector<Part>&)`. @param intervals  of a bell
+  template <class Use>
+  void for_each_bell(std::size_t intervals, Use&& use) const {
+    constexpr std::size_t most = 1500;
+    constexpr double turn = 6.283185307179586;
+    const std::size_t step = std::max((intervals + 1) / 2, count_ / most + 1);
+    std::vector<Part> parts(intervals);
+    for (const std::vector<Eigen::Index>& rows : runs_)
+      for (std::size_t from = 0; from + intervals < rows.size(); from += step) {
+        const double start_s = t_s_[rows[from]], length_s = t_s_[rows[from + intervals]] - start_s;
+        for (std::size_t i = 0; i < intervals; ++i) {
+          const Eigen::Index row = rows[from + i], next = rows[from + i + 1];
+          const double at = (0.5 * (t_s_[row] + t_s_[next]) - start_s) / length_s;
+          parts[i] = {row, next, t_s_[next] - t_s_[row], 0.5 - 0.5 * std::cos(turn * at),
+                      0.5 * turn * std::sin(turn * at) / length_s};
+        }
+        use(parts);
+      }
+  }
+
+private:
+  const Eigen::VectorXd& t_s_;
+  std::vector<std::vector<Eigen::Index>> runs_;
+  std::size_t count_ = 0;
+};
+
+/// A column without holes: the last value before each; NaN before the first. Of an empty one nothing.
+inline Eigen::VectorXd last_known(Eigen::VectorXd values, const std::vector<RunSpan>& runs) {
+  if (values.size() == 0) return values;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
+      if (!std::isfinite(values[i])) values[i] = values[i - 1];
+  return values;
+}
+
+}  // namespace thermopower::gap::engine
