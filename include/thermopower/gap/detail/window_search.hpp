@@ -96,7 +96,7 @@ public:
   void try_sets() {
     if (options_.effects_at_once < 2) return;
     if (may_be_shorter() && attempt_.is_far() && !sets_come_near()) shorten();
-    if (!has_room()) return;
+    if (!has_room()) renew();  // once more: what is weighed in the end has seen the noise of the best one
     const auto promising = [&](int size, const std::vector<Explanation>& late) {
       return search_->promising().of_size(attempt_.candidates, effects(), size, {}, late);
     };
