@@ -21,6 +21,8 @@ namespace thermopower::gap::engine {
 /// Thresholds of what counts as told about the size of an axis' columns.
 /// Held by tests/gap/data/scale_test.cpp.
 struct MotionScaleThresholds {
+  Eigen::Index looked_at = 10000;  ///< rows of a recording, about; of longer ones stretches
+  Eigen::Index stretch = 1250;     ///< rows of such a stretch
   std::size_t shortest = 2;        ///< intervals of the shortest bell
   std::size_t longest = 512;       ///< of the longest
   int least_bells = 20;            ///< that compare two columns
@@ -58,7 +60,7 @@ public:
   /// @param inputs  of an axis; must outlive this object
   /// @param voltage  whether a voltage drives it, and not a current
   MotionScale(const Inputs& inputs, bool voltage)
-      : t_s_(inputs.t_s), runs_(inputs.runs), command_(voltage ? inputs.voltage_V : inputs.drive_A) {
+      : t_s_(inputs.t_s), runs_(some_of(inputs.runs)), command_(voltage ? inputs.voltage_V : inputs.drive_A) {
     if (inputs.judged(Signal::angle_deg)) angle_ = inputs.of(Signal::angle_deg);
     if (inputs.judged(Signal::rate_dps)) rate_ = inputs.of(Signal::rate_dps);
   }
@@ -105,6 +107,28 @@ private:
     double response = 0.0;
     bool moves = true;  // throughout
   };
+
+  /// Stretches all over long recordings: some thousand rows tell an order of magnitude as well as a million.
+  static std::vector<RunSpan> some_of(const std::vector<RunSpan>& runs) {
+    constexpr MotionScaleThresholds limit;
+    Eigen::Index rows = 0;
+    for (const RunSpan& run : runs) rows += run.size();
+    const Eigen::Index parts = rows / limit.looked_at;
+    if (parts < 2) return runs;
+    std::vector<RunSpan> some;
+    Eigen::Index before = 0;  // rows of the runs so far
+    for (const RunSpan& run : runs) {
+      for (Eigen::Index from = run.begin; from < run.end; from += limit.stretch) {
+        const Eigen::Index place = (before + from - run.begin) / limit.stretch;
+        if (place % parts != 0) continue;
+        some.push_back(run);
+        some.back().begin = from;
+        some.back().end = std::min(from + limit.stretch, run.end);
+      }
+      before += run.size();
+    }
+    return some;
+  }
 
   /// What one column is of another one's slope in time, by the bells under which they are most alike.
   ColumnRatio ratio_to_slope(const Eigen::VectorXd& column, const Eigen::VectorXd& whole) const {
@@ -198,7 +222,7 @@ private:
   }
 
   const Eigen::VectorXd& t_s_;
-  const std::vector<RunSpan>& runs_;
+  const std::vector<RunSpan> runs_;  ///< those that are looked at
   const Eigen::VectorXd& command_;
   Eigen::VectorXd angle_;
   Eigen::VectorXd rate_;
