@@ -92,14 +92,17 @@ inline Conclusion nothing_known(const char* reason) {
 }
 
 /// Whether the training data have readings enough for what an explanation leaves free: the parameters of its effects,
-/// and the constants that moved by more than is known of them.
+/// and the constants that moved by more than is known of them; and enough of some signal for any cause.
 inline bool has_readings_enough(const Candidate& candidate, const Model& model) {
   const double free = static_cast<double>(candidate.explanation.parameter_count()) +
                       static_cast<double>(moved_constants(candidate, model).size()) -
                       static_cast<double>(candidate.explanation.released.size());
-  double readings = 0.0;
-  for (double samples : candidate.train.samples) readings += samples;
-  return readings >= decision.readings_per_parameter * free;
+  double readings = 0.0, most = 0.0;
+  for (double samples : candidate.train.samples) {
+    readings += samples;
+    most = std::max(most, samples);
+  }
+  return readings >= decision.readings_per_parameter * free && most >= decision.least_readings;
 }
 
 /// Whether an explanation by constants alone needs them further off than a cause does, by more than chance: then that they

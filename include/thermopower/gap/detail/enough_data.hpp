@@ -14,18 +14,16 @@
 
 namespace thermopower::gap::engine {
 
-/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a handful of rows.
+/// The least data that anything is said of. Whoever asks for less is told what to record, and not what fits a handful of rows. A
+/// cause wants more (DecisionThresholds::least_readings): a table of some ten readings by hand can tell that there is a gap.
 /// Held by tests/gap/data/enough_data_test.cpp.
 struct LeastData {
-  /// Rows of a run. A simulation starts on the first one, which then tells nothing of it; in fewer than these the start is most
-  /// of what a run tells, and an effect that only acts on starts (a lag, a second mass) explains them all.
-  Eigen::Index run_rows = 8;
-  /// ReadingCount of some signal to fit to: fifteen for each parameter, as decided_by_data() wants it, of the smallest question there
-  /// is, two constants of a block and a cause of two parameters.
-  Eigen::Index train = 60;
-  /// ReadingCount of some signal to judge on: what is held out of so many without being asked to, rounded down.
-  Eigen::Index held_out = 25;
-  double windows = 2.0;  ///< of an axis, in time: one alone has no other to agree with
+  /// Rows of a run. A simulation starts on the first one, which then tells nothing of it; in a run of two there is one
+  /// difference, and an effect that only acts on starts (a lag, a second mass) explains them all.
+  Eigen::Index run_rows = 3;
+  Eigen::Index train = 12;     ///< readings of some signal to fit to
+  Eigen::Index held_out = 12;  ///< readings of some signal to judge on
+  double windows = 2.0;        ///< of an axis, in time: one alone has no other to agree with
 };
 
 /// What of a signal a simulation can be held against in a part of the data.
