@@ -47,9 +47,9 @@ struct DecisionThresholds {
   /// Readings of the training data for every parameter of a cause and every constant that moved beside it. The rule of
   /// thumb of regression is 10 to 20; with fewer an explanation can be bent to anything, and the next recording differs.
   double readings_per_parameter = 15.0;
-  /// Readings of some signal of the training data, without which no cause is named: so many for each parameter of the smallest
-  /// question there is, two constants of a block and a cause of two parameters.
-  double least_readings = 60.0;
+  /// Readings of some signal of the training data, without which no cause is named: twice as many as one parameter wants, for
+  /// constants are fitted beside it.
+  double least_readings = 30.0;
   /// Multiple of the noise floor below which nothing is missing.
   double no_gap = 1.25;
   /// The same on every row held out, as the table is printed: many rows know their floor better than a search does.
