@@ -42,7 +42,7 @@ public:
   /// @param sample     a part of a recording that spans its excitation
   /// @param horizon_s  length of the axis' windows in s
   Responses(const Model& model, const Recording& sample, double horizon_s, const Catalogue& catalogue)
-      : model_(model), sample_(sample), catalogue_(catalogue) {
+      : sample_(sample), catalogue_(catalogue) {
     options_.horizon_s = horizon_s;
     for (const SimulatedSignal& signal : simulate(model, sample, options_, catalogue)) {
       const Eigen::VectorXd measured = unwrapped(sample.column(to_string(signal.signal)), sample.spans());
@@ -120,7 +120,6 @@ public:
   }
 
 private:
-  const Model& model_;
   const Recording& sample_;
   const Catalogue& catalogue_;
   SimulationOptions options_;
