@@ -85,19 +85,21 @@ public:
     const ReadRows rows(t_s_, runs_, moved);
     const double slow = limit.moving * fast(rows, moved, by_rate);
     const Eigen::VectorXd angle = last_known(angle_, runs_);
-    for (const bool only_moving : {true, false})
-      for (std::size_t length = by_rate ? limit.shortest : 2 * limit.shortest; length <= limit.longest;
-           length *= 2) {
-        KeptRegression regression;
-        rows.for_each_bell(length, [&](const std::vector<ReadRows::Part>& parts) {
-          const Window window =
-              by_rate ? window_of_rate(parts, angle, slow) : window_of_angle(parts, angle, slow);
-          if (window.moves || !only_moving) regression.add(window.terms, window.response);
-        });
-        if (regression.rows() < limit.least_windows) continue;
-        const std::vector<ToldCoefficient> told = regression.solve();
+    for (std::size_t length = by_rate ? limit.shortest : 2 * limit.shortest; length <= limit.longest;
+         length *= 2) {
+      KeptRegression all, moving;
+      rows.for_each_bell(length, [&](const std::vector<ReadRows::Part>& parts) {
+        const Window window =
+            by_rate ? window_of_rate(parts, angle, slow) : window_of_angle(parts, angle, slow);
+        all.add(window.terms, window.response);
+        if (window.moves) moving.add(window.terms, window.response);
+      });
+      for (const KeptRegression* one : {&moving, &all}) {
+        if (one->rows() < limit.least_windows) continue;
+        const std::vector<ToldCoefficient> told = one->solve();
         if (!told.empty() && told[0].partial > best.drive.partial) best = {told[0], told[1]};
       }
+    }
     return best;
   }
 

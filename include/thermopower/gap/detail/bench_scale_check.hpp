@@ -5,7 +5,9 @@
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/heat_scale.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
 #include <thermopower/gap/detail/scale_check.hpp>
+#include <thermopower/gap/detail/time_units.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 
@@ -154,9 +156,6 @@ private:
     constexpr BenchScaleThresholds limit;
     if (!(current_.low * current_.high > 0.0)) return false;
     const std::string draws = " (it is " + short_number(current_.value) + " times what the circuit draws)";
-    const auto is_near = [&](double factor) {
-      return times_off(current_.value, factor) < limit.near_current;
-    };
     const auto add = [&](FindingKind kind, const char* column, const std::string& words, const char* unit) {
       list.add(kind, Severity::error, column, words + draws, column_option(column, unit));
       return true;
@@ -185,20 +184,10 @@ private:
     const double heat = warming_.heat.value, loss = warming_.loss.value;
     if (find_heating_current(list, heat, loss)) return true;
     if (times_off(heat, loss) > limit.together) return false;
-    struct Unit {
-      const char* option;
-      const char* words;
-      double in_s;
-    };
-    constexpr Unit units[] = {{"ms", "milliseconds", 1e-3},
-                              {"us", "microseconds", 1e-6},
-                              {"ns", "nanoseconds", 1e-9},
-                              {"min", "minutes", 60.0},
-                              {"h", "hours", 3600.0}};
     const double factor = std::sqrt(heat * loss), interval_s = prepared_.interval_s();
     const auto is_possible = [&](double s) { return s >= limit.shortest_s && s <= limit.longest_s; };
-    const Unit* best = nullptr;
-    for (const Unit& one : units)
+    const TimeUnit* best = nullptr;
+    for (const TimeUnit& one : time_units)
       if (is_possible(interval_s * one.in_s) && times_off(factor, one.in_s) < limit.near_time &&
           (best == nullptr || times_off(factor, one.in_s) < times_off(factor, best->in_s)))
         best = &one;

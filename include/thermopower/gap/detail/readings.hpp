@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
@@ -89,13 +90,10 @@ private:
     if (!r.has(column)) return;
     r.set(column, ((r.column(column).array() - offset) * factor).matrix());
   }
-  static std::string option(const std::string& column, const std::string& unit) {
-    return "--column " + column + "=" + column + ":" + unit;
-  }
   void scaled(const char* column, const char* unit, double factor, const std::string& words) {
     if (!recording_.has(column)) return;
     const std::string name = column;
-    list_.push_back({FindingKind::wrong_unit, name, words, option(name, unit),
+    list_.push_back({FindingKind::wrong_unit, name, words, column_option(name, unit),
                      [name, factor](Recording& r) { scale(r, name.c_str(), factor); }});
     constexpr const char* outputs[] = {"current_A", "angle_deg", "rate_dps"};
     if (factor < 1.0 && std::find(std::begin(outputs), std::end(outputs), name) == std::end(outputs))
@@ -104,7 +102,7 @@ private:
   void turned(const char* column, const char* unit, const std::string& words) {
     if (!recording_.has(column)) return;
     const std::string name = column;
-    list_.push_back({FindingKind::wrong_sign, name, words, option(name, std::string("-") + unit),
+    list_.push_back({FindingKind::wrong_sign, name, words, column_option(name, std::string("-") + unit),
                      [name](Recording& r) { scale(r, name.c_str(), -1.0); }});
   }
   double typical(const char* column) const {
@@ -123,7 +121,7 @@ private:
 
   void times() {
     const auto add = [&](const char* unit, double factor, const char* words) {
-      list_.push_back({FindingKind::wrong_unit, "t_s", words, option("t_s", unit),
+      list_.push_back({FindingKind::wrong_unit, "t_s", words, column_option("t_s", unit),
                        [factor](Recording& r) { r.t_s *= factor; }});
     };
     add("ms", 1e-3, "is in milliseconds where seconds are expected");
@@ -137,7 +135,7 @@ private:
     const auto both = [&](const char* unit, double factor, double offset, const char* words) {
       std::string mend;
       for (const char* name : {"motor_C", "ambient_C", "neighbour_C"})
-        if (recording_.has(name)) mend += (mend.empty() ? "" : " ") + option(name, unit);
+        if (recording_.has(name)) mend += (mend.empty() ? "" : " ") + column_option(name, unit);
       list_.push_back({FindingKind::wrong_unit, motor ? "motor_C" : "ambient_C", words, mend,
                        [factor, offset](Recording& r) {
                          for (const char* name : {"motor_C", "ambient_C", "neighbour_C"})
@@ -147,7 +145,7 @@ private:
     const auto one = [&](const char* name, const char* unit, double factor, double offset,
                          const char* words) {
       const std::string column = name;
-      list_.push_back({FindingKind::wrong_unit, column, words, option(column, unit),
+      list_.push_back({FindingKind::wrong_unit, column, words, column_option(column, unit),
                        [column, factor, offset](Recording& r) { scale(r, column.c_str(), factor, offset); }});
     };
     constexpr double per_fahrenheit = 5.0 / 9.0, ice_F = 32.0, ice_K = 273.15;
@@ -212,7 +210,7 @@ private:
     if (rate && angle)
       list_.push_back({FindingKind::wrong_unit, "rate_dps",
                        "and angle_deg are in radians where degrees are expected",
-                       option("rate_dps", "rad/s") + " " + option("angle_deg", "rad"),
+                       column_option("rate_dps", "rad/s") + " " + column_option("angle_deg", "rad"),
                        [](Recording& r) {
                          scale(r, "rate_dps", deg_per_rad);
                          scale(r, "angle_deg", deg_per_rad);
@@ -237,8 +235,7 @@ private:
       if (!recording_.has(a) || !recording_.has(b)) continue;
       const std::string first = a, second = b;
       list_.push_back({FindingKind::swapped_columns, first, "and " + second + " are exchanged",
-                       "--column " + first + "=" + second + " --column " + second + "=" + first,
-                       [first, second](Recording& r) {
+                       exchange_option(first, second), [first, second](Recording& r) {
                          const Eigen::VectorXd kept = r.column(first);
                          r.set(first, r.column(second));
                          r.set(second, kept);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/detail/scale_check.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/gap/recording.hpp>
 

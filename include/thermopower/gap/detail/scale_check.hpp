@@ -5,6 +5,8 @@
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/motion_scale.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
+#include <thermopower/gap/detail/time_units.hpp>
 #include <thermopower/gap/model.hpp>
 
 #include <algorithm>
@@ -37,16 +39,6 @@ struct ScaleThresholds {
   double shortest_axis_s = 1e-5;    ///< interval between rows of an axis
   double longest_axis_s = 0.5;      ///< interval between rows of an axis
 };
-
-/// How the program is told of a unit.
-inline std::string column_option(const std::string& column, const std::string& unit) {
-  return "--column " + column + "=" + column + ":" + unit;
-}
-
-/// How the program is told that two columns are exchanged.
-inline std::string exchange_option(const std::string& a, const std::string& b) {
-  return "--column " + a + "=" + b + " --column " + b + "=" + a;
-}
 
 /// How far two factors are from each other, as a factor of 1 and above; without end where their signs differ.
 inline double times_off(double a, double b) {
@@ -179,11 +171,6 @@ private:
                               {"rpm", "turns per minute", 1.0 / rpm_dps},
                               {"rev/s", "turns per second", 1.0 / turn_deg}};
     constexpr Unit angles[] = {{"rad", "radians", 1.0 / deg_per_rad}, {"rev", "turns", 1.0 / turn_deg}};
-    constexpr Unit times[] = {{"ms", "milliseconds", 1e3},
-                              {"us", "microseconds", 1e6},
-                              {"ns", "nanoseconds", 1e9},
-                              {"min", "minutes", 1.0 / 60.0},
-                              {"h", "hours", 1.0 / 3600.0}};
     constexpr Unit amperes[] = {{"mA", "milliamperes", 1e3}, {"uA", "microamperes", 1e6}};
     constexpr Unit volts[] = {{"mV", "millivolts", 1e3}};
     constexpr ScaleThresholds limit;
@@ -208,11 +195,11 @@ private:
                    " where degrees per second and degrees are expected",
                column_option("rate_dps", one.option) + " " + column_option("angle_deg", turned.option),
                one.factor, turned.factor});
-    for (const Unit& one : times) {
-      const double then_s = interval_s_ / one.factor;
+    for (const TimeUnit& one : time_units) {
+      const double then_s = interval_s_ * one.in_s;
       if (then_s > limit.shortest_axis_s && then_s < limit.longest_axis_s)
-        list.push_back(
-            {"t_s", is_where(one.words, "seconds"), column_option("t_s", one.option), 1.0, 1.0, one.factor});
+        list.push_back({"t_s", is_where(one.words, "seconds"), column_option("t_s", one.option), 1.0, 1.0,
+                        1.0 / one.in_s});
     }
     const auto command_in = [&](const Unit& one, const char* expected) {
       list.push_back({command(), is_where(one.words, expected), column_option(command(), one.option), 1.0,

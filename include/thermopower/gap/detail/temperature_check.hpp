@@ -4,7 +4,7 @@
 
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/detail/scale_check.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
 #include <thermopower/gap/recording.hpp>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/detail/column_option.hpp>
 #include <thermopower/gap/detail/bench_scale_check.hpp>
 #include <thermopower/gap/detail/readings.hpp>
 #include <thermopower/gap/detail/scale_check.hpp>
