@@ -1023,6 +1023,45 @@ TEST_CASE("lost rows cut the run, but not where the command stood still") {
   CHECK(PreparedRecording(test::axis_model(), holes, true).recording().rows() == holes.rows());
 }
 
+TEST_CASE("one lost row cuts the run where its command moves, though the stamps jitter by a tenth") {
+  const Recording whole = axis();
+  std::minstd_rand random(7);
+  std::vector<Eigen::Index> kept;
+  std::set<Eigen::Index> after_lost;  // rows that are kept, counted as kept
+  for (Eigen::Index i = 0; i < whole.rows(); ++i) {
+    if (i > 20 && i % 97 == 0) after_lost.insert(static_cast<Eigen::Index>(kept.size()));
+    else kept.push_back(i);
+  }
+  Recording r;
+  r.name = whole.name;
+  const double period_s = whole.t_s[1] - whole.t_s[0];
+  const auto rows = static_cast<Eigen::Index>(kept.size());
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive_A(rows), angle_deg(rows), rate_dps(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Eigen::Index from = kept[static_cast<std::size_t>(i)];
+    double jitter = -6.0;  // a sum of twelve evenly distributed: nearly normal
+    for (int k = 0; k < 12; ++k) jitter += static_cast<double>(random()) / 2147483647.0;
+    r.t_s[i] = whole.t_s[from] + 0.1 * period_s * std::clamp(jitter, -3.0, 3.0);
+    drive_A[i] = 0.3 * std::sin(2.0 * r.t_s[i]) + 0.2 * std::sin(31.0 * r.t_s[i]);
+    angle_deg[i] = whole.column("angle_deg")[from];
+    rate_dps[i] = whole.column("rate_dps")[from];
+  }
+  r.set("drive_A", drive_A);
+  r.set("angle_deg", angle_deg);
+  r.set("rate_dps", rate_dps);
+  const PreparedRecording prepared(test::axis_model(), r);
+  REQUIRE(found(prepared, FindingKind::gap_in_stamps, "t_s", FindingAction::segmented));
+  std::set<Eigen::Index> begins;
+  for (const RunSpan& run : prepared.recording().runs)
+    if (run.begin > 0) begins.insert(prepared.source_rows()[static_cast<std::size_t>(run.begin)]);
+  std::size_t right = 0;
+  for (const Eigen::Index row : begins) right += after_lost.count(row);
+  CHECK(right >= after_lost.size() * 8 /
+                     10);  // where the command moved between two rows by more than a fiftieth of its range
+  CHECK(begins.size() == right);
+}
+
 TEST_CASE("an input that is missing between values that differ is not made up") {
   Recording r = axis();
   change(r, "drive_A", [&](double x, Eigen::Index i) { return i >= 500 && i < 515 ? missing : x; });

@@ -22,8 +22,11 @@ namespace thermopower::gap::engine {
 struct SegmentThresholds {
   double regular_gap =
       1.6;  ///< intervals: of stamps on a grid, a row is missing (a rounded stamp moves by less)
-  double irregular_gap = 2.5;     ///< of the longest usual interval (95th percentile): of stamps that jitter
-  double jitter = 1.1;            ///< 95th percentile over the median above which stamps count as jittering
+  double irregular_gap = 2.5;  ///< of the longest usual interval (95th percentile): of stamps that jitter
+  double beyond_jitter =
+      5.0;              ///< robust scales of the intervals by which a rare one is longer that misses a row
+  double rare = 0.95;   ///< share of the intervals that have to be shorter for that
+  double jitter = 1.1;  ///< 95th percentile over the median above which stamps count as jittering
   double same_command = 0.02;     ///< of the command's range: what lies between two such values is known
   Eigen::Index bridged_rows = 5;  ///< a hole in a slow input (air, supply) of at most so many rows is bridged
   Eigen::Index held_rows = 20;    ///< a command is believed to have stood still for at most so many rows
@@ -118,6 +121,20 @@ private:
   double range_ = 0.0;
 };
 
+/// The interval from which time passed unrecorded, of the intervals between the stamps of runs. Where one in twenty is longer than
+/// a missing row would tell, the log has no interval of its own, and only far longer ones count.
+inline double shortest_pause(std::vector<double> steps) {
+  constexpr SegmentThresholds limit;
+  constexpr double normal_median = 0.6745;
+  const double usual = median_of(steps), longest = quantile_of(steps, 0.95);
+  std::vector<double> off;
+  for (const double step : steps) off.push_back(std::abs(step - usual));
+  const double of_a_row =
+      std::max(limit.regular_gap * usual, usual + limit.beyond_jitter / normal_median * median_of(off));
+  if (quantile_of(steps, limit.rare) < of_a_row) return std::min(of_a_row, limit.irregular_gap * longest);
+  return limit.irregular_gap * longest;
+}
+
 /// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
 /// a command did not stand still.
 inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, RowMask& starts) {
@@ -134,7 +151,7 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
     list.add(FindingKind::irregular_stamps, Severity::note, "t_s",
              "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
                  " s around " + short_number(usual) + " s");
-  const double pause = jitters ? limit.irregular_gap * longest : limit.regular_gap * usual;
+  const double pause = shortest_pause(steps);
   std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
   for (const InputColumn& input : input_columns())
     if (input.pace == InputPace::command && r.has(input.name))

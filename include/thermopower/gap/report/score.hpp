@@ -165,8 +165,10 @@ public:
       const Signal signal = static_cast<Signal>(i);
       if (!inputs.judged(signal)) continue;
       if (!readings[i]) readings[i].emplace(inputs.of(signal), inputs.runs);
-      constexpr double clearly = 1.5;  // more than the noise: there the motion bends
-      if (readings[i]->sd() < clearly * sigma_[i])
+      // Clearly more than the noise: there the motion bends. Clearly less: that lasts longer than these rows tell.
+      constexpr double clearly_more = 1.5, clearly_less = 0.7;
+      const double of_rows = readings[i]->sd() / sigma_[i];
+      if (of_rows < clearly_more && of_rows > clearly_less)
         there[i] *= readings[i]->share_at(segment.begin, segment.run);
     }
     return there;
