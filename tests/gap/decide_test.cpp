@@ -509,7 +509,10 @@ TEST_CASE("a second cause beside a rest is named only where the rows blame its s
                                     candidate({friction, spring}, 25.0, 1000.0)};
   CHECK(parsimonious(candidates, 2, all) == 2);
   CHECK(parsimonious(candidates, 2, only_friction) == 1);
-  // What leaves nothing but noise needs no other witness.
+  // What leaves hardly anything of the rest needs no other witness,
+  candidates[2].held_out = sums_of(blocks(15.0, 15.0));
+  CHECK(parsimonious(candidates, 2, only_friction) == 2);
+  // nor does what leaves nothing but noise.
   candidates[2].held_out = sums_of(blocks(1.1, 1.1));
   CHECK(parsimonious(candidates, 2, only_friction) == 2);
 }
@@ -672,6 +675,26 @@ TEST_CASE("a cause beside a rest is taken back where what is missing has a cours
   CHECK_FALSE(has_own_course(result, heated));
   result.gap.push_back({Signal::current_A, "A", {}, 20.0, 20.0, 4.0, 1.0, 0.8, {0.7, 0.85}});
   CHECK_FALSE(has_own_course(result, heated));  // the rest is elsewhere
+}
+
+TEST_CASE("what causes leave is little as a share of the gap, the recalibrated one's, too, and less of two") {
+  Diagnosis result;
+  result.cause.push_back({});
+  result.gap.push_back({Signal::motor_C, "degC", {}, 20.0, 10.0, 1.9, 0.5, 0.9, {0.8, 0.95}});
+  CHECK(leaves_little(result, 0.2));
+  result.gap.front().after = 2.1;
+  CHECK_FALSE(leaves_little(result, 0.2));
+  result.gap.front().after = 1.9;
+  result.cause.push_back({});
+  CHECK_FALSE(leaves_little(result, 0.2));
+  result.gap.front().noise_floor = 0.1;
+  result.gap.front().after = 0.39;
+  CHECK(leaves_little(result, 0.2));
+  // A signal at its noise has no rest, whatever its share is.
+  result.gap.push_back({Signal::current_A, "A", {}, 1.2, 1.2, 1.2, 1.0, 0.0, {}});
+  CHECK(leaves_little(result, 0.2));
+  result.gap.back().after = 1.6;
+  CHECK_FALSE(leaves_little(result, 0.2));
 }
 
 TEST_CASE("a cause about whose size the parts of the data disagree is not agreed upon") {

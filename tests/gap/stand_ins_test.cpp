@@ -111,6 +111,9 @@ TEST_CASE("a constant that moves far only beside a cause and a rest gives the ca
   CHECK(stood_in.reason == bends_a_constant);
   // A constant that is that far off takes most of the gap away by itself.
   CHECK(concluded(all, 150.0).verdict == Verdict::partial);
+  // What takes nearly all of the gap is no stand-in: the constant was fitted without it.
+  all[1].train = all[1].held_out = level(30.0);
+  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
   // Nothing above the noise is left: the constant was that far off, and the cause explains the rest.
   all[1].train = all[1].held_out = level(1.1);
   CHECK(concluded(all, 850.0).verdict == Verdict::explained);
@@ -195,4 +198,25 @@ TEST_CASE("friction that varies over the turn is no friction of one size, and is
   REQUIRE(even.cause.size() == 1);
   CHECK(even.cause.front().effect == "coulomb_friction");
   CHECK_FALSE(even.where.front().has_own_course);
+}
+
+TEST_CASE("causes are named beside a third one, though the viscous friction was fitted without the dry one") {
+  test::AxisFault joint;
+  joint.spring_Nm_per_rad = 0.02;
+  joint.coulomb_Nm = 0.004;
+  joint.ripple_share = 0.15;
+  Model model = test::axis_model();
+  model.axis->viscous_Nms_per_rad *= 8.0;
+  const Diagnosis diagnosis =
+      diagnose(model, {test::axis_recording(joint, 4000, 1)}, {test::axis_recording(joint, 4000, 2)});
+  INFO(diagnosis.reason);
+  CHECK(diagnosis.verdict == Verdict::partial);
+  std::vector<std::string> named;
+  for (const Cause& cause : diagnosis.cause) named.push_back(cause.effect);
+  CHECK(named == std::vector<std::string>{"cable_spring", "coulomb_friction"});
+  CHECK(test::parameter_of(diagnosis, "Nm_per_rad") == Approx(0.02).epsilon(0.1));
+  const auto moved = std::find_if(diagnosis.constants.begin(), diagnosis.constants.end(),
+                                  [](const MovedConstant& one) { return one.name == "viscous"; });
+  REQUIRE(moved != diagnosis.constants.end());
+  CHECK(moved->fitted < 2e-3);  // 1e-3 in truth
 }

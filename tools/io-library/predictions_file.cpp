@@ -117,6 +117,14 @@ std::string predictions_csv(const std::vector<HeldOutPrediction>& predictions,
   return out;
 }
 
+// Whether an axis' motion is recorded in more rows than its first.
+bool is_measured_throughout(const Recording& recording) {
+  for (const char* column : {"angle_deg", "rate_dps"}) {
+    if (recording.has(column) && recording.column(column).array().isFinite().count() > 1) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Recording with_starts(Recording recording, const Model& model, const std::map<std::string, double>& starts) {
@@ -156,8 +164,12 @@ std::string predictions_csv(const Model& baseline, const Model& augmented,
   options.horizon_s = horizon_s;
   std::vector<HeldOutPrediction> predictions;
   for (const auto& recording : recordings) {
-    predictions.push_back({simulate(baseline, recording, options, catalogue),
-                           simulate(augmented, recording, options, catalogue)});
+    const bool restarts = augmented.has_axis() && !augmented.own && is_measured_throughout(recording);
+    const auto predicted = [&](const Model& model) {
+      return restarts ? simulate_as_believed(model, recording, horizon_s, catalogue)
+                      : simulate(model, recording, options, catalogue);
+    };
+    predictions.push_back({predicted(baseline), predicted(augmented)});
   }
   return predictions_csv(predictions, recordings);
 }

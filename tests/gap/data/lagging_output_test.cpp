@@ -8,9 +8,11 @@
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
+#include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
@@ -67,6 +69,41 @@ TEST_CASE("a rate that is filtered or read late is found with its delay, and so 
     REQUIRE(slow);
     CHECK(*slow == Approx(0.01 * (1.0 - a) / a).epsilon(0.05));
   }
+}
+
+TEST_CASE(
+    "a rate that is filtered within half a row is read earlier, and one later only where it tells of more") {
+  const auto checked = [](const Recording& r) {
+    return check(test::SampledAxis::model(), {r}, {}, {}, thermopower::plant::standard_catalogue());
+  };
+  const Recording r = sound(33);  // a row each 10 ms
+  const Recording quick =
+      test::filtered(r, "rate_dps", 0.006);  // some 2 ms late, as differences of rows have it
+  REQUIRE(lag_of(quick));
+  const CheckedRecordings mended = checked(quick);
+  REQUIRE(mended.train.front().inputs().judged(Signal::rate_dps));
+  CHECK_FALSE(lag_of(mended.train.front().recording()));
+  const Recording slow = test::filtered(r, "rate_dps", 0.05);
+  CHECK_FALSE(checked(slow).train.front().inputs().judged(Signal::rate_dps));
+  Recording scaled = slow;
+  scaled.set("angle_deg", Eigen::VectorXd(4.0 * r.column("angle_deg")));
+  CHECK(checked(scaled).train.front().inputs().judged(Signal::rate_dps));
+}
+
+TEST_CASE("what a model predicts for an axis restarts from what is believed of a late rate") {
+  const Recording late = shifted(sound(34), "rate_dps", 3);
+  const auto missed = [&](const std::vector<SimulatedSignal>& simulated) {
+    double squares = 0.0, count = 0.0;
+    for (const SimulatedSignal& one : simulated)
+      for (Eigen::Index i = 0; to_string(one.signal) == "angle_deg" && i < late.rows(); ++i)
+        if (std::isfinite(one.values[i]))
+          squares += std::pow(one.values[i] - late.column("angle_deg")[i], 2.0), count += 1.0;
+    REQUIRE(count > 0.9 * static_cast<double>(late.rows()));
+    return std::sqrt(squares / count);
+  };
+  const Model model = test::SampledAxis::model();
+  CHECK(missed(simulate_as_believed(model, late, 0.5)) <
+        0.5 * missed(simulate(model, late, {SimulationMode::free_running, 0.5})));
 }
 
 TEST_CASE("what comes late is not judged, in every recording, and the reason is said once for each") {

@@ -31,7 +31,29 @@ struct LagThresholds {
   double sure = 8.0;             ///< standard errors that a lag differs from 0 by
   double matters = 0.5;          ///< noise scales of the rate that the lag makes: less is nobody's concern
   double precise = 0.1;          ///< largest standard error of a lag, of the lag
+  double within_a_row =
+      0.5;  ///< intervals between rows up to which a late reading is as good as one a little earlier
 };
+
+/// A column read earlier by what it comes late: linear between its rows, missing where a run ends before that.
+/// @param lag_s  at least 0
+inline Eigen::VectorXd read_earlier(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s,
+                                    const std::vector<RunSpan>& runs, double lag_s) {
+  Eigen::VectorXd earlier = Eigen::VectorXd::Constant(values.size(), plant::missing);
+  for (const RunSpan& run : runs) {
+    Eigen::Index next = run.begin;  // the first row that is not before the instant
+    for (Eigen::Index row = run.begin; row < run.end; ++row) {
+      const double at_s = t_s[row] + lag_s;
+      while (next < run.end && t_s[next] < at_s) ++next;
+      if (next == run.end) break;
+      const Eigen::Index last = std::max(next - 1, row);
+      const double step_s = t_s[next] - t_s[last];
+      const double share = step_s > 0.0 ? (at_s - t_s[last]) / step_s : 0.0;
+      earlier[row] = values[last] + share * (values[next] - values[last]);
+    }
+  }
+  return earlier;
+}
 
 /// Regresses what the slope of the angle has more than the rate on the acceleration: their ratio is the lag.
 ///
@@ -62,9 +84,18 @@ public:
 
   /// Seconds that the rate comes behind the angle, negative where the angle does; nothing where they belong together or
   /// nobody can tell.
-  std::optional<double> lag_s() const {
+  std::optional<double> lag_s() const { return lag_and_others().lag_s; }
+
+  /// The same, and whether rate and angle differ by more than that: by a factor, or over the turn. What those differences
+  /// make is then larger than what the lag does.
+  struct Found {
+    std::optional<double> lag_s;  ///< as lag_s() has it
+    bool differ_by_more = false;
+  };
+  /// Asks for both.
+  Found lag_and_others() const {
     constexpr LagThresholds limit;
-    if (rows_.size() < limit.least_rows) return std::nullopt;
+    if (rows_.size() < limit.least_rows) return {};
     std::vector<NormalEquations> blocks(limit.blocks, NormalEquations(terms));
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -85,8 +116,17 @@ public:
     const double lag = all.solve()[0], standard_error = jackknife_error(without);
     const bool sure =
         std::abs(lag) > limit.sure * standard_error && standard_error < limit.precise * std::abs(lag);
-    if (!sure || std::abs(lag) * std::sqrt(squares) < limit.matters * noise_dps_) return std::nullopt;
-    return lag;
+    const double made_by_lag = std::abs(lag) * std::sqrt(squares);
+    if (!sure || made_by_lag < limit.matters * noise_dps_) return {};
+    // A factor, or an eccentric encoder: the last three of the others, by as much as each makes.
+    double made_by_others = 0.0;
+    const Eigen::VectorXd coefficients = all.solve();
+    for (const Row& row : rows_) {
+      double more = 0.0;
+      for (int k = 2; k < terms; ++k) more += coefficients[k] * row.others[static_cast<std::size_t>(k)];
+      made_by_others += more * more / static_cast<double>(rows_.size());
+    }
+    return {lag, std::sqrt(made_by_others) > made_by_lag};
   }
 
 private:

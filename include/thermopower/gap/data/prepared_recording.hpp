@@ -7,6 +7,7 @@
 #include <thermopower/gap/data/current_masks.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/data/frame_masks.hpp>
+#include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
@@ -82,6 +83,11 @@ public:
   void set_current_noise(double sd_A) { inputs_.current_noise_A = inputs_.command_noise = sd_A; }
   /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row
   void take_next_before_it(Eigen::VectorXd share) { inputs_.next_share = std::move(share); }
+  /// Reads an output earlier that comes late. Comes before what is said of the command. @param lag_s  by so much, at least 0
+  void read_earlier_by(const Model& model, const std::string& column, double lag_s) {
+    believed_.set(column, read_earlier(believed_.column(column), believed_.t_s, believed_.spans(), lag_s));
+    renew_inputs(model);
+  }
   /// Leaves an output out. Comes before what is said of the command. @param sentence  why it is not judged
   void leave_out(const Model& model, const std::string& column, const std::string& sentence) {
     believed_.remove(column);

@@ -163,7 +163,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     const double rest = std::max(share_left, left_over(best.held_out, reference.recalibrated));
     if (rest > decision.may_leave && !is_agreed_upon(best, model, weight))
       return nothing_known(stands_in_for_another);
-    if (needs_a_bent_constant(best, reference, model)) return nothing_known(bends_a_constant);
+    if (rest > decision.may_leave_bent && needs_a_bent_constant(best, reference, model))
+      return nothing_known(bends_a_constant);
     if (leaves_its_place_at_fault(best, rest_above_noise(best.held_out, reference), rows))
       return nothing_known(does_not_mend_its_place);
     if (best.explanation.effects.size() > 1 && rows.cancels && rows.cancels(best))

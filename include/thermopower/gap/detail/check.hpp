@@ -32,31 +32,35 @@ void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& us
       if (is_asked(one)) use(one);
 }
 
-/// Leaves out a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate.
-inline void leave_out_what_lags(const Model& model, CheckedRecordings& checked,
-                                std::vector<Finding>& findings) {
+/// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate, earlier by as much
+/// where that is less than half a row, or where the two differ by more than the lag; else leaves it out.
+inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
   RateLag rate_lag;
   for (const PreparedRecording& one : checked.train) rate_lag.add(one.inputs());
-  const std::optional<double> lag_s = rate_lag.lag_s();
-  if (!lag_s) return;
-  const std::string late = *lag_s > 0.0 ? "rate_dps" : "angle_deg";
-  const std::string words = *lag_s > 0.0
-                                ? "comes " + short_number(*lag_s) + " s behind the slope of angle_deg"
-                                : "comes " + short_number(-*lag_s) + " s behind what rate_dps sums up to";
+  const RateLag::Found found = rate_lag.lag_and_others();
+  if (!found.lag_s) return;
+  const double lag_s = std::abs(*found.lag_s);
+  const std::string late = *found.lag_s > 0.0 ? "rate_dps" : "angle_deg";
+  const std::string words =
+      "comes " + short_number(lag_s) +
+      (*found.lag_s > 0.0 ? " s behind the slope of angle_deg" : " s behind what rate_dps sums up to");
   const auto has_both = [](const PreparedRecording& one) {
     return one.inputs().judged(Signal::angle_deg) && one.inputs().judged(Signal::rate_dps);
   };
   for_each_recording(checked, has_both, [&](PreparedRecording& one) {
-    findings.push_back({FindingKind::lagging_output,
-                        Severity::warning,
-                        one.recording().name,
-                        late,
-                        words + ": filtered, or read later; it is not judged",
-                        "log it unfiltered and with the instant it is of",
-                        FindingAction::masked,
-                        {}});
-    one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
+    const bool kept = found.differ_by_more || lag_s <= LagThresholds().within_a_row * one.interval_s();
+    findings.push_back(
+        {FindingKind::lagging_output,
+         kept ? Severity::note : Severity::warning,
+         one.recording().name,
+         late,
+         words + ": filtered, or read later; it is " + (kept ? "read that much earlier" : "not judged"),
+         "log it unfiltered and with the instant it is of",
+         kept ? FindingAction::none : FindingAction::masked,
+         {}});
+    if (kept) one.read_earlier_by(model, late, lag_s);
+    else one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
   });
 }
 
@@ -235,7 +239,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   together.find_air(others);
   together.settle(others);
   if (!options.as_recorded) {
-    leave_out_what_lags(model, result, others);
+    mend_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);
     read_targets_between_rows(model, result, others);
     read_current_noise(model, result, others);

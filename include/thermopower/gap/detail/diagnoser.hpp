@@ -222,6 +222,7 @@ private:
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     const bool unproven = named && take_back_the_unproven(result_, model_, chosen.explanation);
     const bool on_its_own = named && !unproven && leaves_a_rest &&
+                            !leaves_little(result_, decision.may_leave_a_course) &&
                             has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
     if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));
     const bool taken_back = short_of_noise || unproven || on_its_own;

@@ -2,9 +2,11 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
+#include <thermopower/gap/report/held_out_predictions.hpp>
 #include <thermopower/gap/simulate.hpp>
 
 #include <array>
@@ -38,6 +40,27 @@ THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate(const Model& model,
             results[static_cast<std::size_t>(at)].values[row] = readings.value(row, static_cast<int>(k));
         }
       });
+  return results;
+}
+
+THERMOPOWER_GAP_INLINE std::vector<SimulatedSignal> simulate_as_believed(const Model& model,
+                                                                         const Recording& recording,
+                                                                         double horizon_s,
+                                                                         const Catalogue& given) {
+  const Catalogue& catalogue = catalogue_of(model, given);
+  std::vector<SimulatedSignal> results =
+      simulate(model, recording, {SimulationMode::free_running, horizon_s}, given);
+  engine::CheckedRecordings checked = engine::check(model, {recording}, {}, {horizon_s, false}, catalogue);
+  const engine::RowsAsGiven rows = engine::rows_as_given(checked.train.front());
+  std::vector<Inputs> inputs;
+  inputs.push_back(std::move(checked.train.front()).take_inputs());
+  std::vector<Segment> segments = engine::cut(inputs, horizon_s, plant_of(model));
+  for (Segment& segment : segments) segment.warm_up = false;  // what is not judged is asked for, too
+  const auto simulated = engine::simulated_as_given(model, segments, inputs, {rows}, catalogue);
+  for (const SimulatedSignal& believed : simulated.front())
+    for (SimulatedSignal& one : results)
+      if (to_string(one.signal) == to_string(believed.signal))
+        one.values = believed.values.array().isFinite().select(believed.values, one.values);
   return results;
 }
 

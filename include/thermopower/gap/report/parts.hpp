@@ -229,6 +229,15 @@ inline bool has_own_course(const Diagnosis& result, const Explanation& chosen) {
   });
 }
 
+/// Whether causes leave hardly anything in the printed table: of each signal that is above the noise at most a share of the error,
+/// the simulation's and the recalibrated one's alike; of two causes, which follow a course more closely, the square of it.
+inline bool leaves_little(const Diagnosis& result, double share) {
+  const double at_most = std::pow(share, static_cast<double>(result.cause.size()));
+  return std::all_of(result.gap.begin(), result.gap.end(), [&](const GapScore& gap) {
+    return gap.after <= at_most * std::min(gap.before, gap.recalibrated) || !is_above_the_noise(gap);
+  });
+}
+
 /// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
 /// showed. @param model  as configured  @param instead  what is concluded
 inline void take_causes_back(Diagnosis& result, const Model& model, const Conclusion& instead) {
