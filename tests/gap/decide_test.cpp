@@ -677,6 +677,18 @@ TEST_CASE("a cause beside a rest is taken back where what is missing has a cours
   CHECK_FALSE(has_own_course(result, heated));  // the rest is elsewhere
 }
 
+TEST_CASE("constants that moved by more than is known of them are told from those that did not") {
+  const Model model = axis_model();
+  Model fitted = model;
+  fitted.axis->inertia_kgm2 *= 1.5;
+  fitted.axis->viscous_Nms_per_rad *= 1.09;  // known to 5 %
+  Diagnosis result;
+  note_moved_constants(result, model, fitted);
+  REQUIRE(result.constants.size() == 1);
+  CHECK(result.constants.front().name == "inertia");
+  CHECK(result.constants.front().fitted == Approx(1.5 * result.constants.front().configured));
+}
+
 TEST_CASE("what causes leave is little as a share of the gap, the recalibrated one's, too, and less of two") {
   Diagnosis result;
   result.cause.push_back({});

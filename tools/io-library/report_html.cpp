@@ -650,8 +650,9 @@ private:
     if (d_.constants.empty()) return;
     out_ +=
         "<h2>Constants</h2>\n<p class=\"soft\">Constants of the model that moved by more than two of their uncertainties.</p>\n"
-        "<table>\n<tr><th class=\"t\">constant</th><th>as con\u00adfigured</th><th>with the effect</th>"
-        "<th>moved by</th><th>known to</th></tr>\n";
+        "<table>\n<tr><th class=\"t\">constant</th><th>as con\u00adfigured</th><th>" +
+        std::string(d_.cause.empty() ? "re\u00adcalibrated" : "with the effect") +
+        "</th><th>moved by</th><th>known to</th></tr>\n";
     for (const auto& constant : d_.constants) {
       const double moved = constant.configured != 0.0 ? constant.fitted / constant.configured - 1.0 : 0.0;
       char text[24];

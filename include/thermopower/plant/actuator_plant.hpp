@@ -174,21 +174,25 @@ public:
   }
 
 private:
+  static constexpr Eigen::Index rows_around = 3;  ///< a start, in which the angle tells the rate
+
   /// The rate at a start of which the angle alone is recorded: between the slopes of the rows around it, which may all be
   /// the same where the encoder is coarse, and then are as far off as one of its steps makes them.
   static std::vector<HiddenStart> hidden_rate(const Segment& segment) {
     const Inputs& inputs = *segment.inputs;
     if (inputs.judged(Signal::rate_dps) || !inputs.judged(Signal::angle_deg) || segment.warm_up) return {};
-    constexpr Eigen::Index around = 3;
     const Eigen::VectorXd &angle = inputs.of(Signal::angle_deg), &t_s = inputs.t_s;
-    const Eigen::Index first = std::max(segment.run.begin, segment.begin - around),
-                       last = std::min(segment.run.end - 1, segment.begin + around);
+    const Eigen::Index first = std::max(segment.run.begin, segment.begin - rows_around),
+                       last = std::min(segment.run.end - 1, segment.begin + rows_around);
     double least = 1e300, most = -1e300;
-    for (Eigen::Index row = first; row < last; ++row) {
-      const double slope_dps = (angle[row + 1] - angle[row]) / (t_s[row + 1] - t_s[row]);
-      if (!std::isfinite(slope_dps)) continue;
-      least = std::min(least, slope_dps);
-      most = std::max(most, slope_dps);
+    for (Eigen::Index row = first, known = -1; row <= last; ++row) {
+      if (!std::isfinite(angle[row])) continue;
+      if (known >= 0) {
+        const double slope_dps = (angle[row] - angle[known]) / (t_s[row] - t_s[known]);
+        least = std::min(least, slope_dps);
+        most = std::max(most, slope_dps);
+      }
+      known = row;
     }
     if (!(most >= least)) return {};
     HiddenStart hidden;
@@ -279,18 +283,25 @@ private:
     carried_.leave(state);
   }
 
-  /// The measured state of the axis at a row; an unrecorded rate is the angle's difference, an unrecorded
-  /// angle 0.
+  /// The measured state of the axis at a row; an unrecorded rate is the angle's difference between the nearest rows before and
+  /// after that have one, an unrecorded angle 0.
   static AxisState<Scalar> measured_start(const AxisRollout<Scalar>& rollout, const Inputs& inputs,
                                           const RunSpan& run, Eigen::Index row) {
     double angle_deg = 0.0, rate_dps = 0.0;
     if (inputs.judged(Signal::angle_deg)) angle_deg = inputs.start_of(Signal::angle_deg, row);
     if (inputs.judged(Signal::rate_dps)) {
       rate_dps = inputs.start_of(Signal::rate_dps, row);
-    } else if (run.size() > 1) {
-      const Eigen::Index before = std::max(run.begin, row - 1), after = std::min(run.end - 1, row + 1);
+    } else {
       const Eigen::VectorXd& angle = inputs.of(Signal::angle_deg);
-      rate_dps = (angle[after] - angle[before]) / (inputs.t_s[after] - inputs.t_s[before]);
+      const auto nearest = [&](Eigen::Index step) {
+        for (Eigen::Index k = 1, at = row + step; k <= rows_around && at >= run.begin && at < run.end;
+             ++k, at += step)
+          if (std::isfinite(angle[at])) return at;
+        return row;
+      };
+      const Eigen::Index before = nearest(-1), after = nearest(1);
+      if (after > before)
+        rate_dps = (angle[after] - angle[before]) / (inputs.t_s[after] - inputs.t_s[before]);
       if (!std::isfinite(rate_dps)) rate_dps = 0.0;
     }
     return rollout.start(row, inputs.t_s[run.begin], angle_deg, rate_dps);

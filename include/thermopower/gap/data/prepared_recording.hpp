@@ -156,12 +156,13 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
       believed_.empty_columns.push_back(column.name);
       believed_.remove(column.name);
     }
+  if (model.own) own_ = model.own->equations->info();
+  moves_ = model.has_axis();
+  // A row that is lost stops no clock: it is read before the runs are cut there.
+  read_the_clock(list);
   RowMask starts(unknown_.size(), 0);
   check_stamps(list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts, true);
-  if (model.own) own_ = model.own->equations->info();
-  moves_ = model.has_axis();
-  read_the_clock(list);
   if (moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
     check_resets(list, unwrapped(believed_.column("angle_deg"), believed_.runs), believed_.find("rate_dps"),
@@ -208,7 +209,8 @@ inline void PreparedRecording::read_the_clock(FindingList& list) {
   std::vector<const Eigen::VectorXd*> outputs;
   for (const Column& column : believed_.columns)
     if (is_output(column.name)) outputs.push_back(&column.values);
-  std::optional<ClockStamps> clock = clock_behind(believed_.t_s, believed_.runs, outputs);
+  std::optional<ClockStamps> clock =
+      clock_behind(believed_.t_s, cut_at_long_pauses(believed_.t_s, believed_.runs), outputs);
   if (!clock) return;
   list.add(FindingKind::jittering_stamps, Severity::note, "t_s",
            "stray by " + short_number(clock->jitter_s) + " s around a clock of " +

@@ -121,8 +121,16 @@ private:
   double range_ = 0.0;
 };
 
-/// The interval from which time passed unrecorded, of the intervals between the stamps of runs. Where one in twenty is longer than
-/// a missing row would tell, the log has no interval of its own, and only far longer ones count.
+/// The intervals between the stamps of runs, in s.
+inline std::vector<double> intervals_of(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
+  std::vector<double> steps;
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(t_s[i] - t_s[i - 1]);
+  return steps;
+}
+
+/// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing row would tell,
+/// the log has no interval of its own, and only far longer ones count.
 inline double shortest_pause(std::vector<double> steps) {
   constexpr SegmentThresholds limit;
   constexpr double normal_median = 0.6745;
@@ -135,14 +143,23 @@ inline double shortest_pause(std::vector<double> steps) {
   return limit.irregular_gap * longest;
 }
 
+/// Runs cut where more than a row or two are missing: over such a pause a clock may have started anew.
+inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
+  std::vector<double> steps = intervals_of(t_s, runs);
+  const double longest = SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
+  RowMask starts(static_cast<std::size_t>(t_s.size()), 0);
+  for (const RunSpan& run : runs)
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
+      starts[static_cast<std::size_t>(i)] = t_s[i] - t_s[i - 1] > longest ? 1 : 0;
+  return cut_at(runs, starts, true);
+}
+
 /// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
 /// a command did not stand still.
 inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, RowMask& starts) {
   constexpr SegmentThresholds limit;
   const Recording& r = list.recording();
-  std::vector<double> steps;
-  for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) steps.push_back(r.t_s[i] - r.t_s[i - 1]);
+  std::vector<double> steps = intervals_of(r.t_s, runs);
   if (steps.size() < 3) return;
   const double usual = median_of(steps), longest = quantile_of(steps, 0.95),
                shortest = quantile_of(steps, 0.05);

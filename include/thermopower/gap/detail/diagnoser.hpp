@@ -218,6 +218,7 @@ private:
           catalogue_);
     const bool short_of_noise = constants_fall_short(result_);
     if (short_of_noise) take_causes_back(result_, model_, nothing_known(constants_leave_a_rest));
+    if (result_.reason == constants_leave_a_rest) note_moved_constants(result_, model_, result_.recalibrated);
     note_recalibration(result_);
     const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
     const bool unproven = named && take_back_the_unproven(result_, model_, chosen.explanation);

@@ -107,6 +107,17 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
   }
 }
 
+/// The constants that moved by more than is known of them, from a model to another one.
+inline void note_moved_constants(Diagnosis& result, const Model& model, const Model& fitted) {
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    const std::string name = constant.block + "." + constant.fields.front();
+    const double sd = model.uncertainty_of(constant),
+                 moved = constant.distance(model.get(name), fitted.get(name));
+    if (constant.fields.size() == 1 && std::abs(moved) > known_constants.within * sd)
+      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd, constant.is_place});
+  }
+}
+
 /// The chosen causes with their parameters, and the alternatives. `fitted` is the model with them.
 inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates,
                         const Conclusion& conclusion, const Model& model, const Model& fitted,
@@ -131,13 +142,7 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   for (std::size_t index : conclusion.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
   result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
-  for (const CalibratedConstant& constant : model.calibrated()) {
-    const std::string name = constant.block + "." + constant.fields.front();
-    const double sd = model.uncertainty_of(constant),
-                 moved = constant.distance(model.get(name), fitted.get(name));
-    if (constant.fields.size() == 1 && std::abs(moved) > known_constants.within * sd)
-      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd, constant.is_place});
-  }
+  note_moved_constants(result, model, fitted);
 }
 
 /// Where constants alone were fitted, those that moved by more than is known of them are its causes: one that was

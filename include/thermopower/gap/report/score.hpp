@@ -179,8 +179,23 @@ private:
   std::map<const Inputs*, std::array<std::optional<NoiseAtARow>, signal_count>> of_;
 };
 
+/// What of an error in one coordinate of a start another coordinate takes back that is fitted to the readings of one signal, by
+/// least squares: so many units of the latter for one of the former.
+/// @param signal  place of that signal among the plant's
+inline double taken_back(const Readings& readings, const Segment& segment, int signal, int coordinate,
+                         int fitted) {
+  double product = 0.0, square = 0.0;
+  for (Eigen::Index row = segment.begin; row < segment.end; ++row) {
+    const double with = readings.slope(row, signal, fitted);
+    product += with * readings.slope(row, signal, coordinate);
+    square += with * with;
+  }
+  return square > 0.0 ? product / square : 0.0;
+}
+
 /// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
-/// from, carried through the model.
+/// from, carried through the model. What nobody measures of that state is fitted, and takes a part of it back: of a window
+/// that starts an angle off, a rate that is a little off, too, leaves a quarter of the mean square.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
                                                     const Catalogue& catalogue) {
@@ -197,13 +212,25 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
     const Start sd = rollout->measured_start_sd(segment, starts.at(segment));
     rollout->roll(segment, Start::Zero(sd.size()), readings);
     const std::vector<Signal>& signals = plant.signals(segment);
+    Start back = Start::Zero(sd.size());
+    int fitted = 0;
+    for (const HiddenStart& hidden :
+         segment.axis ? rollout->hidden_starts(segment) : std::vector<HiddenStart>()) {
+      const auto shows = std::find(signals.begin(), signals.end(), hidden.shows_in);
+      fitted = hidden.coordinate;
+      for (int i = 0; i < sd.size() && shows != signals.end(); ++i)
+        back[i] = taken_back(readings, segment, static_cast<int>(shows - signals.begin()), i, fitted);
+    }
     for (Eigen::Index row = segment.begin + (segment.axis ? 1 : 0); row < segment.end; ++row)
       for (std::size_t k = 0; k < signals.size(); ++k) {
         const std::size_t at = static_cast<std::size_t>(signals[k]);
         if (!inputs.judged(signals[k]) || !std::isfinite(inputs.of(signals[k])[row])) continue;
         double variance = sigma[at] * sigma[at];
         for (Eigen::Index i = 0; i < sd.size(); ++i) {
-          const double carried = readings.slope(row, static_cast<int>(k), static_cast<int>(i)) * sd[i];
+          const auto slope = [&](Eigen::Index coordinate) {
+            return readings.slope(row, static_cast<int>(k), static_cast<int>(coordinate));
+          };
+          const double carried = (slope(i) - back[i] * slope(fitted)) * sd[i];
           variance += carried * carried;
         }
         sum[at] += variance;
