@@ -4,7 +4,6 @@
 
 #include <thermopower/gap/data/command_noise.hpp>
 #include <thermopower/gap/data/motion_regression.hpp>
-#include <thermopower/plant/servo_loop.hpp>
 #include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
@@ -27,9 +26,7 @@ namespace thermopower::gap::engine {
 /// Thresholds of the questions what a command did between the rows, and whether it is noisy.
 /// Held by tests/gap/data/command_test.cpp.
 struct CommandThresholds {
-  double least_share = 0.2;  ///< every second command logged is felt by a quarter
-  double least_target_share =
-      0.12;                   ///< of a servo that takes two targets in a row's time: a quarter, less is none
+  double least_share = 0.2;   ///< every second command logged is felt by a quarter
   double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
   double sure = 5.0;          ///< standard errors that a share differs from 0 by
   double precise = 0.08;      ///< largest standard error of the share
@@ -64,22 +61,11 @@ public:
   /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
   std::optional<Share> steady() const { return steady_share(share(), CommandThresholds().least_share); }
 
-  /// The same of a servo's target: what the motion shows of what the servo makes of its next step. An axis that follows a smooth target
-  /// closely moves as that steps: then nobody can tell it from damping.
-  std::optional<Share> steady_target(const ServoGains<double>& gains) const {
-    const auto fit = motion_.fit(
-        [&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run, Eigen::Index k) {
-          constexpr double saturated = 0.98;  // of the limit
-          if (k + 1 >= run.end || std::abs(servo_A[k]) > saturated * gains.limit_A) return Terms();
-          const auto step = [&](const Eigen::VectorXd& target) {
-            return target.size() > 0 ? target[k + 1] - target[k] : 0.0;
-          };
-          const double next = gains.position ? gains.proportional * step(inputs.target_deg) +
-                                                   gains.derivative * step(inputs.target_dps)
-                                             : gains.proportional * step(inputs.target_dps);
-          return terms({servo_A[k], next});
-        });
-    return fit ? steady_share(share_of(*fit), CommandThresholds().least_target_share) : std::nullopt;
+  /// A share that is that of a command which went on; nothing of others.
+  /// @param least  that it has at least
+  static std::optional<Share> steady_share(const std::optional<Share>& share, double least) {
+    constexpr CommandThresholds limit;
+    return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
   }
 
   /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
@@ -199,11 +185,6 @@ private:
     if (fit.value[0] == 0.0 || 0.5 * fit.first_dps < limit.matters * motion_.noise(Signal::rate_dps))
       return std::nullopt;
     return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
-  }
-
-  static std::optional<Share> steady_share(const std::optional<Share>& share, double least) {
-    constexpr CommandThresholds limit;
-    return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
   }
 
   static std::optional<Share> sure_of(const std::pair<double, double>& share) {

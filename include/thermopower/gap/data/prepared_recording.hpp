@@ -70,10 +70,8 @@ public:
     inputs_.target_deg = deg;
     inputs_.target_dps = dps;
     inputs_.target_moves = true;
-    // A servo that takes the target every so often holds it for half that long on average, whatever the target does.
     constexpr double told_apart = 0.1;  // rows
-    const double period_s = plant::servo_gains(model).period_s;
-    const double of_samples = 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s_, period_s));
+    const double of_samples = plant::moving_target_share(plant::servo_gains(model).period_s, interval_s_);
     if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
     replay_servo(model, inputs_);
   }

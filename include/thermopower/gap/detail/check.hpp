@@ -9,6 +9,7 @@
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/detail/recordings_together.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
@@ -66,15 +67,15 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
 inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
-                                      std::vector<Finding>& findings) {
+                                      const Catalogue& catalogue, std::vector<Finding>& findings) {
   if (!model.has_axis() || !model.has_servo()) return;
-  CommandBetweenRows between;
+  TargetBetweenRows between(model, catalogue);
   const auto is_closed = [](const PreparedRecording& one) {
     return one.inputs().axis() && one.inputs().closed_loop;
   };
   for (const PreparedRecording& one : checked.train)
-    if (is_closed(one)) between.add(one.inputs(), one.inputs().servo_A);
-  const auto share = between.steady_target(plant::servo_gains(model));
+    if (is_closed(one)) between.add(one.inputs());
+  const auto share = between.steady();
   if (!share) return;
   for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
     findings.push_back({FindingKind::sampled_command,
@@ -241,7 +242,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   if (!options.as_recorded) {
     mend_what_lags(model, result, others);
     read_between_rows(model, result, options.horizon_s, others);
-    read_targets_between_rows(model, result, others);
+    read_targets_between_rows(model, result, catalogue, others);
     read_current_noise(model, result, others);
     read_when_switched(model, result, catalogue, others);
   }
