@@ -29,7 +29,9 @@ struct FrameThresholds {
   std::size_t slower_speeds =
       2;  ///< thirds of a doubling by which rows may be slower that tell how often chance repeats
   double least_moving = 100;  ///< such rows; else all tell
-  double caught_up = 0.6;     ///< of what was missed while a frame was repeated: the step after it
+  double small_step =
+      8.0;  ///< finest steps that are as likely as none, either way, where no one step is often
+  double caught_up = 0.6;  ///< of what was missed while a frame was repeated: the step after it
 };
 
 /// Whether a column shows that a frame is repeated: it hardly ever reads the same twice in a row, over all rows or over those
@@ -49,6 +51,19 @@ inline bool shows_frames(const Eigen::VectorXd& values, const std::vector<RunSpa
       equal += values[i] == values[i - 1] ? 1.0 : 0.0;
     }
   return moving >= frames.least_moving && equal < hardly_equal * moving;
+}
+
+/// The smallest step between neighbours that occurs twice: what one digit of a fine column is worth. 0 where there is none.
+inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
+  constexpr double same = 1e-3, nothing = 1e-9;
+  std::vector<double> steps = step_sizes(values, runs);
+  const double largest = steps.empty() ? 0.0 : *std::max_element(steps.begin(), steps.end());
+  steps.erase(std::remove_if(steps.begin(), steps.end(), [&](double x) { return !(x > nothing * largest); }),
+              steps.end());
+  std::sort(steps.begin(), steps.end());
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (steps[i] <= steps[i - 1] * (1.0 + same)) return steps[i - 1];
+  return 0.0;
 }
 
 /// Rows that repeat all outputs of the row before them (at most a few in a row), where the outputs change at every
@@ -73,9 +88,12 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       same[static_cast<std::size_t>(i)] = equal == 0 ? 0 : known > 0 && equal == outputs.size() ? 2 : 1;
     }
-  std::vector<double> quanta, scales;
+  // Noise of hundreds of digits repeats a value now and then, too, though no one step is often: as often as it takes any other
+  // small step.
+  std::vector<double> quanta, scales, small_steps;
   for (const Eigen::VectorXd* one : outputs) {
     quanta.push_back(quantum_of(*one));
+    small_steps.push_back(quanta.back() > 0.0 ? 0.0 : frames.small_step * finest_step(*one, runs));
     scales.push_back(std::max(quanta.back(), white_scale(*one, runs)));
   }
   // How fast the fastest output moves around each row, in quanta or noise scales a row, by thirds of a doubling.
@@ -114,24 +132,28 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
   }
   for (std::size_t c = 0; c < outputs.size(); ++c) {
     double all = 0.0, single = 0.0;
-    std::array<double, speeds> steps{}, none{};
+    std::array<double, speeds> steps{}, none{}, small{};
     for (const RunSpan& run : runs)
       for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
         const double step = std::abs((*outputs[c])[i] - (*outputs[c])[i - 1]);
         if (!std::isfinite(step)) continue;
         const auto row = static_cast<std::size_t>(i);
         all += 1.0;
-        single += step > 0.5 * quanta[c] && step < 1.5 * quanta[c] ? 1.0 : 0.0;
+        const bool is_small = step > 0.0 && step <= small_steps[c];
+        if (quanta[c] > 0.0) single += step > 0.5 * quanta[c] && step < 1.5 * quanta[c] ? 1.0 : 0.0;
+        else single += is_small ? 1.0 / frames.small_step : 0.0;
         if (same[row] == 2) continue;
         steps[speed[row]] += 1.0;
         none[speed[row]] += step > 0.0 ? 0.0 : 1.0;
+        small[speed[row]] += is_small ? 0.5 / frames.small_step : 0.0;
       }
     overall.chance *= 0.5 * single / std::max(1.0, all);
-    double faster_steps = 0.0, faster_none = 0.0;
+    double faster_steps = 0.0, faster_none = 0.0, faster_small = 0.0;
     for (std::size_t k = speeds; k-- > 0;) {
       faster_steps += steps[k];
       faster_none += none[k];
-      as_fast_as[k].chance *= (faster_none + 1.0) / (faster_steps + 1.0);
+      faster_small += small[k];
+      as_fast_as[k].chance *= (std::max(faster_none, faster_small) + 1.0) / (faster_steps + 1.0);
     }
   }
   for (std::size_t k = speeds - 1; k-- > 0;) {

@@ -13,7 +13,21 @@ namespace thermopower::gap::engine {
 struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
-  std::size_t bends_around = 5;      ///< second differences before and after
+  std::size_t bends_around = 5;  ///< second differences before and after
+  double worth_a_look =
+      4.0;  ///< noise scales off the motion of four neighbours from which a sample is looked at
+  double often_off = 0.75;          ///< share of the samples that lie nearer to it than often
+  double than_often = 4.0;          ///< times farther off than often: steps and corners are no spikes
+  double motion_scales = 6.0;       ///< noise scales between a sample and the motion of its neighbours
+  double motion_scales_here = 5.0;  ///< the same, of the noise around
+  std::size_t noise_around = 14;    ///< samples before and after that tell the noise around
+  double rests_of_two = 6.0;        ///< of what is left of the neighbours, where one of them is a spike, too
+  double rests_like_noise =
+      1.5;                 ///< noise scales that are left of the neighbours at most where there is no corner
+  double on_a_line = 3.0;  ///< noise scales off what neighbours on one side go on to: a corner
+  double corner = 0.35;    ///< the same, of how far a sample lies
+  double sharp_corner = 0.2;         ///< the same, where no more than noise is left of the neighbours
+  double with_lost_rows = 1.5;       ///< times as long as usual that the neighbours may last
   double as_far_as_another = 0.25;   ///< of how far it lies: what of another one may be a spike, too
   std::size_t least_bends = 4;       ///< of them, where those of other spikes are left out
   std::size_t drawn_along = 3;       ///< rows before and after a spike that seem to lie far because of it
@@ -37,6 +51,8 @@ struct MaskThresholds {
   Eigen::Index least_frozen = 6;   ///< rows of the shortest frozen stretch
   double clip_ratio = 8.0;         ///< times as many samples at the extreme as at the value next to it
   Eigen::Index least_clipped = 5;  ///< samples at the extreme
+  double stays_clipped =
+      0.1;               ///< of the samples at the end of a range, at least: follow on another one there
   double outside = 1.5;  ///< ranges (5th to 95th percentile) beyond the level a burst of a moving axis lies
 };
 

@@ -99,8 +99,9 @@ inline double white_scale(const Eigen::VectorXd& values, const std::vector<RunSp
 /// Quantum of a channel: the smallest step between neighbours that occurs again and again (in at least a
 /// hundredth of all steps), so that a few odd samples do not hide it. 0 where there is none: values that hardly
 /// ever differ by the same amount.
-inline double quantum_of(const Eigen::VectorXd& values) {
-  constexpr double often = 0.01, same = 1e-3, odd = 0.1;
+/// @param same  share by which steps of one quantum differ, because few digits of them were logged
+inline double quantum_of(const Eigen::VectorXd& values, double same = 1e-3) {
+  constexpr double often = 0.01, odd = 0.1;
   constexpr std::size_t enough = 20000;
   std::vector<double> steps;
   double previous = std::nan(""), largest = 0.0;

@@ -6,11 +6,13 @@
 #include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/data/spikes.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,17 +53,11 @@ public:
   /// Takes samples away that are set in a mask.
   void take(const RowMask& mask) { take_away(values_, mask); }
 
-  /// Isolated samples (one, or two of five) far from the median of five around them.
+  /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
-    RowMask mask = empty();
-    confirm();
-    for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
-      RowMask found = empty();
-      for (const RunSpan& run : runs_) spikes_of(run, found);
-      if (std::find(found.begin(), found.end(), 1) == found.end()) break;
-      take(found);
-      for (std::size_t i = 0; i < mask.size(); ++i) mask[i] |= found[i];
-    }
+    if (!spikes_) spikes_.emplace(values_, runs_, traits_, scale_, quantum_);
+    RowMask mask = spikes_->find(values_);
+    take(mask);
     return mask;
   }
 
@@ -176,113 +172,14 @@ private:
     return rows;
   }
 
-  static double median_of_five(double a, double b, double c, double d, double e) {
-    std::array<double, 5> five{a, b, c, d, e};
-    std::sort(five.begin(), five.end());
-    return five[2];
-  }
-
-  void spikes_of(const RunSpan& run, RowMask& mask) const {
-    const std::vector<Eigen::Index> rows = finite_rows(run);
-    const std::size_t count = rows.size();
-    if (count < 7) return;
-    const auto at = [&](std::size_t k) { return values_[rows[k]]; };
-    const double least = std::max(limit_.spike_scales * scale_, limit_.quanta * quantum_);
-    if (!(least > 0.0)) return;
-    std::vector<double> off_median(count), far(count, 0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t from = i < 2 ? 0 : std::min(i - 2, count - 5);
-      off_median[i] =
-          std::abs(at(i) - median_of_five(at(from), at(from + 1), at(from + 2), at(from + 3), at(from + 4)));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      double off = off_median[i];
-      if (!(off > least)) continue;
-      // What continues either side in a straight line is the corner of a motion and no spike.
-      if (i >= 2) off = std::min(off, std::abs(at(i) - 2.0 * at(i - 1) + at(i - 2)));
-      if (i + 2 < count) off = std::min(off, std::abs(at(i) - 2.0 * at(i + 1) + at(i + 2)));
-      // Nothing lies beyond an end, where motions begin, and near it too few bends tell how sharply: there a parabola
-      // counts, too.
-      if (i <= limit_.bends_around && i + 3 < count)
-        off = std::min(off, std::abs(at(i) - 3.0 * at(i + 1) + 3.0 * at(i + 2) - at(i + 3)));
-      if (i + limit_.bends_around + 1 >= count && i >= 3)
-        off = std::min(off, std::abs(at(i) - 3.0 * at(i - 1) + 3.0 * at(i - 2) - at(i - 3)));
-      if (!(off > least) || confirmed_[static_cast<std::size_t>(rows[i])] != 0 ||
-          is_motion(run, rows[i], off))
-        continue;
-      // So many that another spike among them does not move the median. Those of two more, and of what is right between them,
-      // are left out, but of a rate: blows of teeth look like that.
-      std::vector<double> bends, without_spikes;
-      const double another = std::max(least, limit_.as_far_as_another * off);
-      std::size_t others = 0;
-      for (std::size_t k = i < limit_.bends_around + 1 ? 1 : i - limit_.bends_around;
-           k < std::min(count - 1, i + limit_.bends_around + 1); ++k) {
-        if (k != i && off_median[k] > another) ++others;
-        if (k + 1 >= i && k <= i + 1) continue;
-        bends.push_back(std::abs(at(k - 1) - 2.0 * at(k) + at(k + 1)));
-        const double spike = std::max({off_median[k - 1], off_median[k], off_median[k + 1]});
-        if (!(spike > another)) without_spikes.push_back(bends.back());
-      }
-      const bool may_be_three =
-          traits_.integral == nullptr && others <= 3 && without_spikes.size() >= limit_.least_bends;
-      if (off > limit_.spike_bends * median_of(may_be_three ? without_spikes : bends)) far[i] = off;
-    }
-    // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(far[i] > 0.0)) continue;
-      double farthest = 0.0;
-      for (std::size_t k = i < limit_.drawn_along ? 0 : i - limit_.drawn_along;
-           k < std::min(count, i + limit_.drawn_along + 1); ++k)
-        farthest = std::max(farthest, far[k]);
-      if (far[i] >= limit_.as_far * farthest) mask[static_cast<std::size_t>(rows[i])] = 1;
-    }
-  }
-
-  /// Remembers what is confirmed as motion while its neighbours are still there: without them it would look like a spike, too.
-  void confirm() {
-    if (!confirmed_.empty()) return;
-    confirmed_ = empty();
-    for (const RunSpan& run : runs_)
-      for (Eigen::Index i = run.begin; i < run.end; ++i)
-        confirmed_[static_cast<std::size_t>(i)] = is_motion(run, i, limit_.spike_scales * scale_) ? 1 : 0;
-  }
-
-  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a
-  /// run seen from one side.
-  bool is_motion(const RunSpan& run, Eigen::Index row, double off) const {
-    if (traits_.t_s == nullptr || run.size() < 3) return false;
-    const Eigen::VectorXd& t_s = *traits_.t_s;
-    const Eigen::Index from = std::max(run.begin, row - 1), to = std::min(run.end - 1, row + 1);
-    if (traits_.integral != nullptr) {
-      const Eigen::VectorXd& position = *traits_.integral;
-      const double moved = (position[to] - position[from]) / (t_s[to] - t_s[from]);
-      // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
-      const bool is_inside = to - from == 2;
-      const double share = is_inside ? 2.0 / 3.0 : 0.5;
-      const double within = share * (is_inside ? limit_.confirmed : limit_.confirmed_at_end) * off;
-      // An angle whose own noise is a rate of that size confirms nothing; where it does not deny it, a run begins at rest.
-      const double noise = std::sqrt(2.0) * position_step() / (t_s[to] - t_s[from]);
-      const bool may_rest = !is_inside && std::abs(values_[row]) < limit_.spike_scales * scale_;
-      if (noise > within / 3.0 && !may_rest) return false;
-      const double mean = share * values_[row] + (is_inside ? (values_[from] + values_[to]) / 6.0
-                                                            : 0.5 * values_[from == row ? to : from]);
-      return std::abs(mean - moved) < within + (may_rest ? 3.0 * noise : 0.0);
-    }
-    if (traits_.at_rest == nullptr) return false;
-    const Eigen::VectorXd& rate = *traits_.at_rest;
-    for (Eigen::Index k = from; k < to; ++k) {
-      const double step = 0.5 * (rate[k] + rate[k + 1]) * (t_s[k + 1] - t_s[k]);
-      if (!(std::abs(values_[k + 1] - values_[k] - step) < limit_.confirmed * off)) return false;
-    }
-    return true;
-  }
-
   /// Whether the sensor's range ends at an extreme.
   bool is_clipped(const Extreme& one) const {
     if (one.value == 0.0) return false;
     if (one.count > 1 && is_between_steps(one.value, one.next))
       return true;  // no converter reads that: a limit is set
-    if (!piles_up(one)) return false;
+    // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a clock and a
+    // steady motion.
+    if (!piles_up(one) || !stays_at(one)) return false;
     // A slow signal in coarse steps stands still by itself; but not where what drives it moves, nor where another column
     // sees it move.
     const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
@@ -292,6 +189,15 @@ private:
     // many steps shows everywhere else, it would show there, though the axis rests out of range.
     const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still;
     return 2 * denied(one.value) >= one.count || noise_would_show;
+  }
+
+  /// Whether a good part of the samples at an extreme follow on each other.
+  bool stays_at(const Extreme& one) const {
+    std::ptrdiff_t pairs = 0;
+    for_each_in_order<2>(values_, runs_, [&](const Eigen::Index* rows) {
+      pairs += values_[rows[0]] == one.value && values_[rows[1]] == one.value ? 1 : 0;
+    });
+    return limit_.stays_clipped * static_cast<double>(one.count) <= static_cast<double>(pairs);
   }
 
   Eigen::VectorXd others_than(double value) const {
@@ -533,7 +439,7 @@ private:
   Eigen::VectorXd values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
-  RowMask confirmed_;  // rows that a rate and its angle agree about
+  std::optional<Spikes> spikes_;  // which remember what the column was before samples were taken away
   double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
   mutable double rest_rate_ = -1.0, position_quantum_ = -1.0;
 };

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/robust.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// @file neighbour_motion.hpp
+/// Where a sample should lie, judging by the samples before and after it alone. A motion bends: a polynomial through enough
+/// neighbours follows the bend, and what it leaves of them says how far it can be trusted.
+
+namespace thermopower::gap::engine {
+
+/// The value at 0 of the polynomial through points. @param at  where they lie, all different  @param values  there
+template <std::size_t count>
+double polynomial_at_zero(const std::array<double, count>& at, const std::array<double, count>& values) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    double weight = 1.0;
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != k) weight *= at[j] / (at[j] - at[k]);
+    sum += weight * values[k];
+  }
+  return sum;
+}
+
+/// Finite samples of a run, in order.
+struct OrderedSamples {
+  std::vector<Eigen::Index> rows;  ///< of the recording
+  std::vector<double> at;          ///< their stamps in s, or their rows where there are no stamps
+  std::vector<double> values;      ///< themselves
+
+  /// @param t_s  stamps; nullptr: rows
+  OrderedSamples(const Eigen::VectorXd& column, const Eigen::VectorXd* t_s, const RunSpan& run) {
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      if (!std::isfinite(column[i])) continue;
+      rows.push_back(i);
+      at.push_back(t_s != nullptr ? (*t_s)[i] : static_cast<double>(i));
+      values.push_back(column[i]);
+    }
+  }
+
+  /// Number of samples.
+  std::size_t size() const { return rows.size(); }
+
+  /// How far a sample lies from the polynomial through `beside` neighbours on either side, which there must be.
+  template <std::size_t beside>
+  double off_neighbours(std::size_t i) const {
+    std::array<double, 2 * beside> where{}, what{};
+    for (std::size_t k = 0; k < beside; ++k) {
+      where[k] = at[i - k - 1] - at[i];
+      what[k] = values[i - k - 1];
+      where[beside + k] = at[i + k + 1] - at[i];
+      what[beside + k] = values[i + k + 1];
+    }
+    return values[i] - polynomial_at_zero(where, what);
+  }
+};
+
+/// What neighbours say of a sample that takes no part in it.
+struct NeighbourMotion {
+  double off = 0.0;   ///< the sample less what they predict
+  double gain = 1.0;  ///< standard deviation of `off` in white noise of 1
+  double rest = 0.0;  ///< root mean square of what the polynomial leaves of them, per degree of freedom
+};
+
+/// No sample.
+constexpr std::size_t no_sample = static_cast<std::size_t>(-1);
+
+/// The polynomial of least squares of some neighbours on either side, at the sample between them. Fewer coefficients than
+/// neighbours.
+/// @param beside  neighbours on either side (1..5), which there must be
+/// @param degree  of the polynomial (0..7), less than 2 beside - 1, or 2 beside - 2 but for one
+/// @param but     one of them that takes no part, either
+inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size_t i, std::size_t beside,
+                                        std::size_t degree, std::size_t but = no_sample) {
+  constexpr std::size_t most = 10, most_coefficients = 8;
+  std::size_t count = 0;
+  std::array<double, most> left{};
+  // Each power, made orthogonal to those before, over the neighbours; the last of each is its value at the sample.
+  std::array<std::array<double, most + 1>, most_coefficients> basis{};
+  const double width =
+      std::max(samples.at[i] - samples.at[i - beside], samples.at[i + beside] - samples.at[i]);
+  std::array<double, most> at{};
+  for (std::size_t j = i - beside; j <= i + beside; ++j) {
+    if (j == i || j == but) continue;
+    at[count] = (samples.at[j] - samples.at[i]) / width;
+    left[count] = samples.values[j] - samples.values[i];  // so that large values cost no digits
+    ++count;
+  }
+  double predicted = 0.0, variance = 1.0;
+  for (std::size_t power = 0; power <= degree; ++power) {
+    std::array<double, most + 1>& one = basis[power];
+    for (std::size_t k = 0; k < count; ++k) one[k] = power == 0 ? 1.0 : at[k] * basis[power - 1][k];
+    one[most] = power == 0 ? 1.0 : 0.0;
+    for (std::size_t before = 0; before < power; ++before) {
+      double along = 0.0;
+      for (std::size_t k = 0; k < count; ++k) along += one[k] * basis[before][k];
+      for (std::size_t k = 0; k <= most; ++k) one[k] -= along * basis[before][k];
+    }
+    double squares = 0.0, part = 0.0;
+    for (std::size_t k = 0; k < count; ++k) squares += one[k] * one[k];
+    for (double& x : one) x /= std::sqrt(squares);
+    for (std::size_t k = 0; k < count; ++k) part += one[k] * left[k];
+    for (std::size_t k = 0; k < count; ++k) left[k] -= part * one[k];
+    predicted += part * one[most];
+    variance += one[most] * one[most];
+  }
+  double squares = 0.0;
+  for (std::size_t k = 0; k < count; ++k) squares += left[k] * left[k];
+  return {-predicted, std::sqrt(variance), std::sqrt(squares / static_cast<double>(count - degree - 1))};
+}
+
+/// How far the samples of a run lie from the polynomials through two, four and six neighbours: what is least of them, over many
+/// samples, is noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
+class OffNeighbours {
+public:
+  explicit OffNeighbours(const OrderedSamples& samples) {
+    for (auto& one : off_) one.assign(samples.size(), missing);
+    for (std::size_t i = 3; i + 3 < samples.size(); ++i) {
+      off_[0][i] = std::abs(samples.off_neighbours<1>(i));
+      off_[1][i] = std::abs(samples.off_neighbours<2>(i));
+      off_[2][i] = std::abs(samples.off_neighbours<3>(i));
+    }
+  }
+
+  /// Adds them to lists.
+  void add_to(std::array<std::vector<double>, 3>& lists) const {
+    for (std::size_t k = 0; k < off_.size(); ++k)
+      for (const double one : off_[k])
+        if (std::isfinite(one)) lists[k].push_back(one);
+  }
+
+  /// Scale of the noise around a sample, as a standard deviation; 0 where nothing tells.
+  /// @param around  samples before and after that tell  @param but  samples beside it that do not
+  double noise_around(std::size_t i, std::size_t around, std::size_t but) const {
+    std::array<std::vector<double>, 3> lists;
+    for (std::size_t k = i < around ? 0 : i - around; k < std::min(off_[0].size(), i + around + 1); ++k) {
+      if (k + but >= i && k <= i + but) continue;
+      for (std::size_t order = 0; order < off_.size(); ++order)
+        if (std::isfinite(off_[order][k])) lists[order].push_back(off_[order][k]);
+    }
+    return noise_of(lists);
+  }
+
+  /// The noise that lists of such differences have, as a standard deviation.
+  static double noise_of(std::array<std::vector<double>, 3>& lists) {
+    constexpr double normal_median = 0.6745;
+    // Of the weights of evenly spaced neighbours and of the sample itself.
+    constexpr std::array<double, 3> gains{1.2247448713915890, 1.3944333775567927, 1.5198684153570665};
+    double least = median_of(lists[0]) / gains[0];
+    for (std::size_t k = 1; k < lists.size(); ++k) least = std::min(least, median_of(lists[k]) / gains[k]);
+    return least / normal_median;
+  }
+
+private:
+  std::array<std::vector<double>, 3> off_;  // NaN at the ends
+};
+
+/// Scale of the noise on a motion, as a standard deviation.
+/// @param t_s  stamps; nullptr: rows
+inline double noise_on_motion(const Eigen::VectorXd& values, const Eigen::VectorXd* t_s,
+                              const std::vector<RunSpan>& runs) {
+  std::array<std::vector<double>, 3> lists;
+  for (const RunSpan& run : runs) OffNeighbours(OrderedSamples(values, t_s, run)).add_to(lists);
+  return OffNeighbours::noise_of(lists);
+}
+
+}  // namespace thermopower::gap::engine
