@@ -144,6 +144,19 @@ TEST_CASE("two spikes beside each other in a bent motion do not hide each other"
   nine_in_ten(bad, masked(r, "angle_deg"));
 }
 
+TEST_CASE("two equal spikes beside each other on a slow motion are masked") {
+  Recording r = record(swings(), 0.002, 0.1, 0.0, false);
+  std::set<Eigen::Index> bad;
+  Eigen::VectorXd angle = r.column("angle_deg");
+  for (Eigen::Index i = 50; i + 50 < rows; i += 97) {
+    angle[i] += 1.7;
+    angle[i + 1] += 1.7;
+    bad.insert({i, i + 1});
+  }
+  r.set("angle_deg", angle);
+  nine_in_ten(bad, masked(r, "angle_deg"));
+}
+
 TEST_CASE(
     "where a motion has a corner every few rows, the rate shows which samples of its angle are spikes") {
   Recording r = record(pushed_there_and_back(), 0.05, 0.03, 0.3, true);

@@ -62,6 +62,23 @@ struct OrderedSamples {
   }
 };
 
+/// How far a sample lies from the polynomial through four neighbours, should one of the two beside it be far off itself: the
+/// farthest that any of three choices of them tells.
+inline double off_good_neighbours(const OrderedSamples& samples, std::size_t i) {
+  double farthest = std::abs(samples.off_neighbours<2>(i));
+  if (i < 3 || i + 3 >= samples.size()) return farthest;
+  const auto off = [&](const std::array<std::ptrdiff_t, 4>& steps) {
+    std::array<double, 4> where{}, what{};
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const auto j = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + steps[k]);
+      where[k] = samples.at[j] - samples.at[i];
+      what[k] = samples.values[j];
+    }
+    return std::abs(samples.values[i] - polynomial_at_zero(where, what));
+  };
+  return std::max({farthest, off({-2, -1, 2, 3}), off({-3, -2, 1, 2})});
+}
+
 /// What neighbours say of a sample that takes no part in it.
 struct NeighbourMotion {
   double off = 0.0;   ///< the sample less what they predict

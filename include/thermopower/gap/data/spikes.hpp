@@ -125,7 +125,7 @@ private:
       if (i >= 2) off = std::min(off, std::abs(at[i] - 2.0 * at[i - 1] + at[i - 2]));
       if (i + 2 < count) off = std::min(off, std::abs(at[i] - 2.0 * at[i + 1] + at[i + 2]));
       // The top of a fast swing lies far from the median, too, and where rows are lost a straight line does not continue.
-      if (i >= 2 && i + 2 < count) off = std::min(off, std::abs(samples.off_neighbours<2>(i)));
+      if (i >= 2 && i + 2 < count) off = std::min(off, off_good_neighbours(samples, i));
       // Nothing lies beyond an end, where motions begin, and near it too few bends tell how sharply: there a parabola
       // counts, too.
       if (i <= limit_.bends_around && i + 3 < count)
