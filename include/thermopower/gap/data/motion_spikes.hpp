@@ -32,9 +32,10 @@ public:
                double quantum)
       : noise_(noise_on_motion(values, t_s, runs)) {
     std::vector<double> off;
+    const std::size_t each = each_of_many(runs);
     for (const RunSpan& run : runs) {
       const OrderedSamples samples(values, t_s, run);
-      for (std::size_t i = 2; i + 2 < samples.size(); ++i)
+      for (std::size_t i = 2; i + 2 < samples.size(); i += each)
         off.push_back(std::abs(samples.off_neighbours<2>(i)));
     }
     least_ = std::max({limit_.quanta * quantum, limit_.worth_a_look * noise_,
@@ -52,14 +53,13 @@ public:
     std::vector<double> between;
     for (std::size_t i = 1; i < count; ++i) between.push_back(samples.at[i] - samples.at[i - 1]);
     const double usually_between = median_of(between);
-    const OffNeighbours off_neighbours(samples);
     for (std::size_t i = 2; i + 2 < count; ++i) {
       // Most samples need no closer look. Stamps may stray though the readings were taken evenly.
       const double off_four =
           std::min(std::abs(samples.off_neighbours<2>(i)), std::abs(off_evenly_spaced(samples.values, i)));
       if (!(off_four > least_)) continue;
       // An axis that rests for most of the time, or is loud where it is fast, has another noise here.
-      const double noise_here = off_neighbours.noise_around(i, limit_.noise_around, limit_.drawn_along);
+      const double noise_here = noise_around(samples, i, limit_.noise_around, limit_.drawn_along);
       for (const Stencil& stencil : stencils_)
         if (has(samples, i, stencil, usually_between))
           result[i] = std::max(result[i], off_alone(samples, i, stencil, noise_here));

@@ -133,59 +133,61 @@ inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size
   return {-predicted, std::sqrt(variance), std::sqrt(squares / static_cast<double>(count - degree - 1))};
 }
 
-/// How far the samples of a run lie from the polynomials through two, four and six neighbours: what is least of them, over many
-/// samples, is noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
+/// How far samples lie from the polynomials through two, four and six neighbours: what is least of them, over many samples, is
+/// noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
 class OffNeighbours {
 public:
-  explicit OffNeighbours(const OrderedSamples& samples) {
-    for (auto& one : off_) one.assign(samples.size(), missing);
-    for (std::size_t i = 3; i + 3 < samples.size(); ++i) {
-      off_[0][i] = std::abs(samples.off_neighbours<1>(i));
-      off_[1][i] = std::abs(samples.off_neighbours<2>(i));
-      off_[2][i] = std::abs(samples.off_neighbours<3>(i));
-    }
+  /// Adds a sample, where it has so many neighbours.
+  void add(const OrderedSamples& samples, std::size_t i) {
+    if (i < 3 || i + 3 >= samples.size()) return;
+    off_[0].push_back(std::abs(samples.off_neighbours<1>(i)));
+    off_[1].push_back(std::abs(samples.off_neighbours<2>(i)));
+    off_[2].push_back(std::abs(samples.off_neighbours<3>(i)));
   }
 
-  /// Adds them to lists.
-  void add_to(std::array<std::vector<double>, 3>& lists) const {
-    for (std::size_t k = 0; k < off_.size(); ++k)
-      for (const double one : off_[k])
-        if (std::isfinite(one)) lists[k].push_back(one);
-  }
-
-  /// Scale of the noise around a sample, as a standard deviation; 0 where nothing tells.
-  /// @param around  samples before and after that tell  @param but  samples beside it that do not
-  double noise_around(std::size_t i, std::size_t around, std::size_t but) const {
-    std::array<std::vector<double>, 3> lists;
-    for (std::size_t k = i < around ? 0 : i - around; k < std::min(off_[0].size(), i + around + 1); ++k) {
-      if (k + but >= i && k <= i + but) continue;
-      for (std::size_t order = 0; order < off_.size(); ++order)
-        if (std::isfinite(off_[order][k])) lists[order].push_back(off_[order][k]);
-    }
-    return noise_of(lists);
-  }
-
-  /// The noise that lists of such differences have, as a standard deviation.
-  static double noise_of(std::array<std::vector<double>, 3>& lists) {
+  /// The noise that the samples have, as a standard deviation; 0 where nothing tells. Reorders them.
+  double noise() {
     constexpr double normal_median = 0.6745;
     // Of the weights of evenly spaced neighbours and of the sample itself.
     constexpr std::array<double, 3> gains{1.2247448713915890, 1.3944333775567927, 1.5198684153570665};
-    double least = median_of(lists[0]) / gains[0];
-    for (std::size_t k = 1; k < lists.size(); ++k) least = std::min(least, median_of(lists[k]) / gains[k]);
+    double least = median_of(off_[0]) / gains[0];
+    for (std::size_t k = 1; k < off_.size(); ++k) least = std::min(least, median_of(off_[k]) / gains[k]);
     return least / normal_median;
   }
 
 private:
-  std::array<std::vector<double>, 3> off_;  // NaN at the ends
+  std::array<std::vector<double>, 3> off_;
 };
+
+/// Scale of the noise around a sample, as a standard deviation; 0 where nothing tells.
+/// @param around  samples before and after that tell  @param but  samples beside it that do not
+inline double noise_around(const OrderedSamples& samples, std::size_t i, std::size_t around,
+                           std::size_t but) {
+  OffNeighbours off;
+  for (std::size_t k = i < around ? 0 : i - around; k < std::min(samples.size(), i + around + 1); ++k)
+    if (k + but < i || k > i + but) off.add(samples, k);
+  return off.noise();
+}
+
+/// So many samples of a long recording that their quantiles are known to a hundredth: each so many-th.
+inline std::size_t each_of_many(const std::vector<RunSpan>& runs) {
+  constexpr Eigen::Index enough = 20000;
+  Eigen::Index rows = 0;
+  for (const RunSpan& run : runs) rows += run.size();
+  return static_cast<std::size_t>(std::max<Eigen::Index>(1, rows / enough));
+}
 
 /// Scale of the noise on a motion, as a standard deviation.
 /// @param t_s  stamps; nullptr: rows
 inline double noise_on_motion(const Eigen::VectorXd& values, const Eigen::VectorXd* t_s,
                               const std::vector<RunSpan>& runs) {
-  std::array<std::vector<double>, 3> lists;
-  for (const RunSpan& run : runs) OffNeighbours(OrderedSamples(values, t_s, run)).add_to(lists);
-  return OffNeighbours::noise_of(lists);
+  OffNeighbours off;
+  const std::size_t each = each_of_many(runs);
+  for (const RunSpan& run : runs) {
+    const OrderedSamples samples(values, t_s, run);
+    for (std::size_t i = 0; i < samples.size(); i += each) off.add(samples, i);
+  }
+  return off.noise();
 }
 
 }  // namespace thermopower::gap::engine
