@@ -310,7 +310,9 @@ TEST_CASE("an angle tells the noise of the rate beside it that lasts, whatever m
     const auto lasting = [&](const std::vector<double>& noise) {
       const WindowedErrors one(windows, 3.0, noise, 0.01, random);
       REQUIRE(one.errors.rms(Signal::rate_dps) > 10.0 * sd);
-      return lasting_rate_noise(one.errors, one.segments);
+      const auto told = lasting_rate_noise(one.errors, one.segments);
+      REQUIRE(told);
+      return *told;
     };
     of_lasting.push_back(lasting(scaled(coloured(rows, 0.95, random))));
     of_white.push_back(lasting(scaled(coloured(rows, 0.0, random))));
@@ -320,4 +322,7 @@ TEST_CASE("an angle tells the noise of the rate beside it that lasts, whatever m
   CHECK(quantile_of(of_lasting, 0.0) > 0.6 * sd);
   CHECK(quantile_of(of_white, 1.0) < 0.25 * sd);
   CHECK(quantile_of(of_none, 1.0) < 0.25 * sd);
+  Random random(1);
+  const WindowedErrors few(2, 3.0, std::vector<double>(100, 0.0), 0.01, random);
+  CHECK_FALSE(lasting_rate_noise(few.errors, few.segments));
 }

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,11 +27,11 @@ inline double coarsest_quantum(const std::vector<Inputs>& inputs, Signal signal)
   return quantum;
 }
 
-/// Noise of a rate that lasts over more than a few rows, as the angle beside it tells it: standard deviation, 0 where there is
-/// none or too little to tell. Whatever a model lacks moves both, and what the rate's errors say in the mean of a few rows beyond
+/// Noise of a rate that lasts over more than a few rows, as the angle beside it tells it: standard deviation, nothing where there
+/// is too little to tell. Whatever a model lacks moves both, and what the rate's errors say in the mean of a few rows beyond
 /// the slope of the angle's is noise of the sensors'. What lasts is what neighbouring means, which share no reading, have in common;
 /// it was larger at the first of them by what it loses from one to the next.
-inline double lasting_rate_noise(const Errors& errors, const std::vector<Segment>& segments) {
+inline std::optional<double> lasting_rate_noise(const Errors& errors, const std::vector<Segment>& segments) {
   constexpr auto angle = static_cast<std::size_t>(Signal::angle_deg),
                  rate = static_cast<std::size_t>(Signal::rate_dps);
   constexpr std::size_t together = 5;
@@ -63,18 +64,20 @@ inline double lasting_rate_noise(const Errors& errors, const std::vector<Segment
     beyond[i] = (went - (last.angle - first.angle)) / (t_s[last.row] - t_s[first.row]);
     sum += beyond[i], count += 1.0;
   }
-  const auto in_common = [&](std::size_t apart) {
+  const auto in_common = [&](std::size_t apart) -> std::optional<double> {
     double product = 0.0, pairs = 0.0;
     for (std::size_t i = 0; i + apart < rows.size(); ++i) {
       const double both = (beyond[i] - sum / count) * (beyond[i + apart] - sum / count);
       if (std::isfinite(both) && rows[i].segment == rows[i + apart].segment) product += both, pairs += 1.0;
     }
-    return pairs < enough ? 0.0 : product / pairs;
+    if (pairs < enough) return std::nullopt;
+    return product / pairs;
   };
-  const double next = in_common(together), after = in_common(2 * together);
-  if (!(next > 0.0)) return 0.0;
+  const std::optional<double> next = in_common(together), after = in_common(2 * together);
+  if (!next) return std::nullopt;
+  if (!(*next > 0.0)) return 0.0;
   constexpr double loses = 1.7;  // what an AR(1) of 0.9 does
-  return std::sqrt(next * (after > 0.0 ? std::clamp(next / after, 1.0, loses) : 1.0));
+  return std::sqrt(*next * (after && *after > 0.0 ? std::clamp(*next / *after, 1.0, loses) : 1.0));
 }
 
 /// Noise of every signal in a simulation's errors. The error of a wrong model jumps where the power does: a current's errors
@@ -104,7 +107,11 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
                                  measured);
   }
   NoiseEstimate& of_rate = noise[static_cast<std::size_t>(Signal::rate_dps)];
-  of_rate.sd = std::max(of_rate.sd, std::min(lasting_rate_noise(errors, segments), of_rate.by_chance));
+  if (const std::optional<double> lasting = lasting_rate_noise(errors, segments)) {
+    constexpr double at_most = 2.0;  // times what the angle tells: some hundred rows know it to a third
+    of_rate.sd = std::max(of_rate.sd, std::min(*lasting, of_rate.by_chance));
+    of_rate.by_chance = std::max(of_rate.sd, std::min(of_rate.by_chance, at_most * *lasting));
+  }
   return noise;
 }
 
