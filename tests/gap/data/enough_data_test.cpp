@@ -74,6 +74,18 @@ TEST_CASE("some ten readings tell that there is a gap, and name no cause") {
   CHECK(more.cause.front().effect == "current_sensor_offset");
 }
 
+TEST_CASE("a handful of readings of one signal is no gap beside another one that has none") {
+  Recording held_out = bench(900, 2);
+  Eigen::VectorXd motor_C = held_out.column("motor_C");
+  for (Eigen::Index i = 0; i < motor_C.size(); ++i)
+    if (i % 90 != 0) motor_C[i] = missing;
+  held_out.set("motor_C", motor_C);
+  const Diagnosis diagnosis =
+      diagnose(test::bench_model(), {named(bench(1500, 1), "a.csv")}, {named(held_out, "b.csv")});
+  CHECK(diagnosis.verdict == Verdict::no_gap);
+  for (const GapScore& gap : diagnosis.gap) CHECK(gap.noise_floor > 0.0);
+}
+
 TEST_CASE("an axis that is recorded for less than two windows is too short, however many rows there are") {
   refused(test::axis_model(), axis(3000, 2), axis(80, 1),
           "the held-out rows of b.csv last 0.79 s, less than two windows of 0.5 s", "several seconds");

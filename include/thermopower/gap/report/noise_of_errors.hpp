@@ -105,6 +105,9 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
     if (measured.size() < count) measured.clear();
     noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels,
                                  measured);
+    // A handful of readings tells no noise from an error: all of it may be noise.
+    const double all = errors.rms(static_cast<Signal>(i));
+    if (count < NoiseThresholds().least_pairs) noise[i] = {all, all};
   }
   NoiseEstimate& of_rate = noise[static_cast<std::size_t>(Signal::rate_dps)];
   if (const std::optional<double> lasting = lasting_rate_noise(errors, segments)) {
