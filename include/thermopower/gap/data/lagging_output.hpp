@@ -86,11 +86,10 @@ public:
   /// nobody can tell.
   std::optional<double> lag_s() const { return lag_and_others().lag_s; }
 
-  /// The same, and whether rate and angle differ by more than that: by a factor, or over the turn. What those differences
-  /// make is then larger than what the lag does.
+  /// The same, and whether rate and angle differ by more than that.
   struct Found {
     std::optional<double> lag_s;  ///< as lag_s() has it
-    bool differ_by_more = false;
+    bool differ_by_more = false;  ///< whether a factor, or an eccentric encoder, makes more than the lag does
   };
   /// Asks for both.
   Found lag_and_others() const {

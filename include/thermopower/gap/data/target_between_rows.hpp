@@ -41,7 +41,7 @@ struct TargetThresholds {
 /// Asks the motion of axes behind a servo what its target did.
 class TargetBetweenRows {
 public:
-  using Share = CommandBetweenRows::Share;
+  using Share = CommandBetweenRows::Share;  ///< part of the way to the next row's value, with its error
 
   /// Keeps references to both: they must outlive this object.
   TargetBetweenRows(const Model& model, const Catalogue& catalogue)
