@@ -177,6 +177,10 @@ TEST_CASE("a large gap is no wrong unit") {
     std::get<LumpedThermalModel>(model.thermal).heat_capacity_J_per_K *= factor;
     CHECK(errors(model, {bench()}).empty());
   }
+  // A drive that passes a fifth of its command is near a sixth, but a rate in turns per minute would not be its angle's.
+  Recording limited = axis();
+  change(limited, "drive_A", times(5.0));
+  CHECK(decision(axis_model(), limited).find("rpm") == std::string::npos);
 }
 
 TEST_CASE("each unit of an axis is told where friction takes half of the drive") {

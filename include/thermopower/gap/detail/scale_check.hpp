@@ -239,8 +239,10 @@ private:
       return best;
     };
     const AxisMistake* best = ratio_.is_told() ? nearest(true) : nullptr;
-    // An angle that is off by a factor besides hides none of the other mistakes.
-    if (best == nullptr) best = nearest(false);
+    // An angle that is off by a factor besides hides none of the other mistakes; a rate that is its angle's has none of its own.
+    const bool belong_together =
+        ratio_.is_told() && times_off(ratio_.value, 1.0) < ScaleThresholds().same_ratio;
+    if (best == nullptr && !belong_together) best = nearest(false);
     const std::string moves = short_number(std::abs(drive()));
     if (best != nullptr)
       list.add(
