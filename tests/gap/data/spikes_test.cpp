@@ -14,6 +14,7 @@
 #include <functional>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 using namespace thermopower::gap;
@@ -116,6 +117,21 @@ void nine_in_ten(const std::set<Eigen::Index>& bad, const std::set<Eigen::Index>
   CHECK(1000 * (out.size() - seen) <= static_cast<std::size_t>(rows));
 }
 
+/// Moves two samples beside each other, every 97 rows. @param by  of a row: how far it is moved, and the next one
+std::set<Eigen::Index> spoil_pairs(Recording& r, const char* column,
+                                   const std::function<std::pair<double, double>(Eigen::Index)>& by) {
+  std::set<Eigen::Index> bad;
+  Eigen::VectorXd values = r.column(column);
+  for (Eigen::Index i = 50; i + 50 < rows; i += 97) {
+    const auto [first, second] = by(i);
+    values[i] += first;
+    values[i + 1] += second;
+    bad.insert({i, i + 1});
+  }
+  r.set(column, values);
+  return bad;
+}
+
 }  // namespace
 
 TEST_CASE("spikes of an angle are masked though its motion bends by more than they are high") {
@@ -132,28 +148,17 @@ TEST_CASE("spikes of a rate are masked though it bends") {
 
 TEST_CASE("two spikes beside each other in a bent motion do not hide each other") {
   Recording r = record(swings(), 0.02, 0.1, 0.0, false);
-  std::set<Eigen::Index> bad;
-  Eigen::VectorXd angle = r.column("angle_deg");
-  for (Eigen::Index i = 50; i + 50 < rows; i += 97) {
+  const std::set<Eigen::Index> bad = spoil_pairs(r, "angle_deg", [](Eigen::Index i) {
     const double side = i % 2 == 0 ? 1.0 : -1.0;
-    angle[i] += 2.0 * side;
-    angle[i + 1] += (i % 3 == 0 ? 1.6 : -1.6) * side;
-    bad.insert({i, i + 1});
-  }
-  r.set("angle_deg", angle);
+    return std::make_pair(2.0 * side, (i % 3 == 0 ? 1.6 : -1.6) * side);
+  });
   nine_in_ten(bad, masked(r, "angle_deg"));
 }
 
 TEST_CASE("two equal spikes beside each other on a slow motion are masked") {
   Recording r = record(swings(), 0.002, 0.1, 0.0, false);
-  std::set<Eigen::Index> bad;
-  Eigen::VectorXd angle = r.column("angle_deg");
-  for (Eigen::Index i = 50; i + 50 < rows; i += 97) {
-    angle[i] += 1.7;
-    angle[i + 1] += 1.7;
-    bad.insert({i, i + 1});
-  }
-  r.set("angle_deg", angle);
+  const std::set<Eigen::Index> bad =
+      spoil_pairs(r, "angle_deg", [](Eigen::Index) { return std::make_pair(1.7, 1.7); });
   nine_in_ten(bad, masked(r, "angle_deg"));
 }
 

@@ -68,6 +68,18 @@ public:
     return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
   }
 
+  /// A share and its standard error: none where it may be none, nothing where it is not known well enough.
+  static std::optional<Share> sure_of(const std::pair<double, double>& share) {
+    constexpr CommandThresholds limit;
+    if (!(share.second < limit.precise)) return std::nullopt;
+    return Share{std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first, share.second};
+  }
+
+  /// Whether the motion follows the first term of a fit by enough to tell of the next. @param noise_dps  of the rate
+  static bool is_followed(const MotionFit& fit, double noise_dps) {
+    return fit.value[0] != 0.0 && !(0.5 * fit.first_dps < CommandThresholds().matters * noise_dps);
+  }
+
   /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
   bool bends() const {
     constexpr CommandThresholds limit;
@@ -181,16 +193,8 @@ private:
 
   /// Of the next step of what the first term is.
   std::optional<Share> share_of(const MotionFit& fit) const {
-    constexpr CommandThresholds limit;
-    if (fit.value[0] == 0.0 || 0.5 * fit.first_dps < limit.matters * motion_.noise(Signal::rate_dps))
-      return std::nullopt;
+    if (!is_followed(fit, motion_.noise(Signal::rate_dps))) return std::nullopt;
     return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
-  }
-
-  static std::optional<Share> sure_of(const std::pair<double, double>& share) {
-    constexpr CommandThresholds limit;
-    if (!(share.second < limit.precise)) return std::nullopt;
-    return Share{std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first, share.second};
   }
 
   /// What of the command around each row the motion follows.

@@ -112,14 +112,14 @@ public:
       rest.add(one, -1.0);
       without.push_back(rest.solve()[0]);
     }
-    const double lag = all.solve()[0], standard_error = jackknife_error(without);
+    const Eigen::VectorXd coefficients = all.solve();
+    const double lag = coefficients[0], standard_error = jackknife_error(without);
     const bool sure =
         std::abs(lag) > limit.sure * standard_error && standard_error < limit.precise * std::abs(lag);
     const double made_by_lag = std::abs(lag) * std::sqrt(squares);
     if (!sure || made_by_lag < limit.matters * noise_dps_) return {};
     // A factor, or an eccentric encoder: the last three of the others, by as much as each makes.
     double made_by_others = 0.0;
-    const Eigen::VectorXd coefficients = all.solve();
     for (const Row& row : rows_) {
       double more = 0.0;
       for (int k = 2; k < terms; ++k) more += coefficients[k] * row.others[static_cast<std::size_t>(k)];

@@ -55,7 +55,9 @@ public:
 
   /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
-    if (!spikes_) spikes_.emplace(values_, runs_, traits_, scale_, quantum_);
+    if (!spikes_)
+      spikes_.emplace(values_, runs_, traits_, scale_, quantum_,
+                      traits_.integral != nullptr ? position_step() : 0.0);
     RowMask mask = spikes_->find(values_);
     take(mask);
     return mask;

@@ -129,28 +129,32 @@ inline std::vector<double> intervals_of(const Eigen::VectorXd& t_s, const std::v
   return steps;
 }
 
+/// The interval from which more than a row or two are missing, of such intervals. Reorders them.
+inline double long_pause(std::vector<double>& steps) {
+  return SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
+}
+
 /// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing row would tell,
 /// the log has no interval of its own, and only far longer ones count.
 inline double shortest_pause(std::vector<double> steps) {
   constexpr SegmentThresholds limit;
   constexpr double normal_median = 0.6745;
-  const double usual = median_of(steps), longest = quantile_of(steps, 0.95);
+  const double usual = median_of(steps), is_long = long_pause(steps);
   std::vector<double> off;
   for (const double step : steps) off.push_back(std::abs(step - usual));
   const double of_a_row =
       std::max(limit.regular_gap * usual, usual + limit.beyond_jitter / normal_median * median_of(off));
-  if (quantile_of(steps, limit.rare) < of_a_row) return std::min(of_a_row, limit.irregular_gap * longest);
-  return limit.irregular_gap * longest;
+  return quantile_of(steps, limit.rare) < of_a_row ? std::min(of_a_row, is_long) : is_long;
 }
 
-/// Runs cut where more than a row or two are missing: over such a pause a clock may have started anew.
+/// Runs cut at long pauses: over such a one a clock may have started anew.
 inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
   std::vector<double> steps = intervals_of(t_s, runs);
-  const double longest = SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
+  const double is_long = long_pause(steps);
   RowMask starts(static_cast<std::size_t>(t_s.size()), 0);
   for (const RunSpan& run : runs)
     for (Eigen::Index i = run.begin + 1; i < run.end; ++i)
-      starts[static_cast<std::size_t>(i)] = t_s[i] - t_s[i - 1] > longest ? 1 : 0;
+      starts[static_cast<std::size_t>(i)] = t_s[i] - t_s[i - 1] > is_long ? 1 : 0;
   return cut_at(runs, starts, true);
 }
 

@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// @file spikes.hpp
@@ -27,9 +26,10 @@ public:
   /// @param runs    inside which rows follow on each other; they outlive this
   /// @param scale   noise scale of the column (white_scale())
   /// @param quantum of the column
+  /// @param position_step  quantum and noise of the column that this one is the rate of, where there is one
   Spikes(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs, const ColumnTraits& traits,
-         double scale, double quantum)
-      : runs_(runs), traits_(traits), quantum_(quantum), scale_(scale) {
+         double scale, double quantum, double position_step)
+      : runs_(runs), traits_(traits), quantum_(quantum), scale_(scale), position_step_(position_step) {
     constexpr double few_digits = 0.01;  // 360/16384 deg with four decimals comes as 0.0219 and 0.0220
     const double coarsest = std::max(quantum, quantum_of(values, few_digits));
     motion_ = MotionSpikes(values, traits.t_s, runs, coarsest);
@@ -37,8 +37,6 @@ public:
       ways_ = ways_of(*traits.at_rest, *traits.t_s, runs);
       besides_ways_ = MotionSpikes(values - ways_, traits.t_s, runs, coarsest);
     }
-    if (traits.integral != nullptr)
-      position_step_ = quantum_of(*traits.integral) + white_scale(*traits.integral, runs);
     median_confirmed_ = confirmed(values, limit_.spike_scales * scale_);
     motion_confirmed_ = confirmed(values, limit_.spike_scales * motion_.noise());
   }
@@ -49,7 +47,8 @@ public:
     RowMask mask(static_cast<std::size_t>(values.size()), 0);
     for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
       RowMask found(mask.size(), 0);
-      for (const RunSpan& run : runs_) spikes_of(values, run, found);
+      const Eigen::VectorXd besides = ways_.size() > 0 ? Eigen::VectorXd(values - ways_) : Eigen::VectorXd();
+      for (const RunSpan& run : runs_) spikes_of(values, besides, run, found);
       if (std::find(found.begin(), found.end(), 1) == found.end()) break;
       for (std::size_t i = 0; i < mask.size(); ++i) {
         if (found[i] == 0) continue;
@@ -67,17 +66,17 @@ private:
     return five[2];
   }
 
-  void spikes_of(const Eigen::VectorXd& values, const RunSpan& run, RowMask& mask) const {
+  /// @param besides  an angle less the way of its rate; empty where there is none
+  void spikes_of(const Eigen::VectorXd& values, const Eigen::VectorXd& besides, const RunSpan& run,
+                 RowMask& mask) const {
     const OrderedSamples samples(values, traits_.t_s, run);
     const std::size_t count = samples.size();
     if (count < 7) return;
     std::vector<double> far(count, 0.0);
     far_from_the_median(values, run, samples, far);
     far_from_the_motion(values, run, samples, motion_, far);
-    if (ways_.size() > 0) {
-      const OrderedSamples besides(values - ways_, traits_.t_s, run);
-      far_from_the_motion(values, run, besides, besides_ways_, far, true);
-    }
+    if (besides.size() > 0)
+      far_from_the_motion(values, run, OrderedSamples(besides, traits_.t_s, run), besides_ways_, far, true);
     // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
     for (std::size_t i = 0; i < count; ++i) {
       if (!(far[i] > 0.0)) continue;
@@ -222,7 +221,7 @@ private:
   static constexpr MaskThresholds limit_{};
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
-  double quantum_ = 0.0, scale_ = 0.0, position_step_ = 0.0;
+  double quantum_, scale_, position_step_;
   MotionSpikes motion_;
   // Less the way that its rate says an angle went, which has no bend: a rate may show what a coarse row hides.
   Eigen::VectorXd ways_;

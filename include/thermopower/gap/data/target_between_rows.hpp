@@ -56,7 +56,9 @@ public:
   std::optional<Share> steady() const {
     constexpr TargetThresholds limit;
     const std::optional<Seen> seen = seen_in(recordings_);
-    if (!seen || !(sure(seen->share).value > 0.0)) return std::nullopt;
+    if (!seen) return std::nullopt;
+    const std::optional<Share> told = CommandBetweenRows::sure_of({seen->share.value, seen->share.error});
+    if (!told || !(told->value > 0.0)) return std::nullopt;
     // What slopes are off by goes with the loop's gain, and constants are known roughly: what a regression tells of them is
     // torque by inertia.
     Model like = model_;
@@ -82,16 +84,14 @@ private:
   };
 
   std::optional<Seen> seen_in(const std::vector<const Inputs*>& recordings) const {
-    constexpr CommandThresholds limit;
     MotionRegression motion;
     for (const Inputs* one : recordings) motion.add(*one, one->servo_A);
     const std::optional<MotionFit> fit =
         motion.fit([&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run,
                        Eigen::Index k) { return terms(inputs, servo_A, run, k); });
-    if (!fit || fit->value[0] == 0.0 || 0.5 * fit->first_dps < limit.matters * motion.noise(Signal::rate_dps))
-      return std::nullopt;
+    if (!fit || !CommandBetweenRows::is_followed(*fit, motion.noise(Signal::rate_dps))) return std::nullopt;
     const auto [value, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; });
-    if (!(error < limit.precise)) return std::nullopt;
+    if (!(error < CommandThresholds().precise)) return std::nullopt;
     return Seen{fit->value[0], {value, error}};
   }
 
@@ -173,16 +173,10 @@ private:
     const double apart = moving.value - holding.value;
     if (!(apart > 0.0)) return std::nullopt;
     const double scale = moves / apart;
-    const Share share = sure({scale * (seen.value - holding.value),
-                              scale * std::hypot(seen.error, std::max(holding.error, moving.error))});
-    const bool is_precise = share.error < CommandThresholds().precise;
-    return is_precise ? CommandBetweenRows::steady_share(share, TargetThresholds().least_share)
-                      : std::nullopt;
-  }
-
-  /// None where it may be none.
-  static Share sure(const Share& share) {
-    return {std::abs(share.value) < CommandThresholds().sure * share.error ? 0.0 : share.value, share.error};
+    const double error = scale * std::hypot(seen.error, std::max(holding.error, moving.error));
+    return CommandBetweenRows::steady_share(
+        CommandBetweenRows::sure_of({scale * (seen.value - holding.value), error}),
+        TargetThresholds().least_share);
   }
 
   const Model& model_;

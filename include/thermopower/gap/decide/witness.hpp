@@ -56,9 +56,9 @@ inline bool is_of_an_instrument(const CatalogueEntry& entry) {
 }
 
 /// Whether the rows bear witness to what a set of causes has beyond a part of it, or need not: a set that leaves only noise,
-/// or hardly anything of what the part leaves, has the data themselves for a witness. What is missing beside the part may follow nothing recorded because an instrument
-/// bends the readings that it is drawn from; then that is over with the readings put right, and the rows are a witness of
-/// that instrument though they blame nothing.
+/// or hardly anything of what the part leaves, has the data themselves for a witness. What is missing beside the part may follow
+/// nothing recorded because an instrument bends the readings that it is drawn from; then that is over with the readings put
+/// right, and the rows are a witness of that instrument though they blame nothing.
 inline bool is_localised(const Candidate& set, const Candidate& part, const Witness& rows) {
   if (!rows.blames || largest_noise_multiple(set.held_out) <= decision.near_floor ||
       excess(set) < decision.speaks_for_itself * excess(part))

@@ -103,11 +103,10 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
     }
     if (levels.size() < count) levels.clear();
     if (measured.size() < count) measured.clear();
-    noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, static_cast<Signal>(i)), levels,
-                                 measured);
+    const auto signal = static_cast<Signal>(i);
+    noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, signal), levels, measured);
     // A handful of readings tells no noise from an error: all of it may be noise.
-    const double all = errors.rms(static_cast<Signal>(i));
-    if (count < NoiseThresholds().least_pairs) noise[i] = {all, all};
+    if (count < NoiseThresholds().least_pairs) noise[i].sd = noise[i].by_chance = errors.rms(signal);
   }
   NoiseEstimate& of_rate = noise[static_cast<std::size_t>(Signal::rate_dps)];
   if (const std::optional<double> lasting = lasting_rate_noise(errors, segments)) {

@@ -8,6 +8,7 @@
 #include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/report/noise_at_a_row.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
