@@ -24,6 +24,8 @@ struct Joint {
   double coulomb_Nm = 0.0, rise_Nm = 0.0, knee_rad_per_s = 1.0, exponent = 2.0;
   double far_share = 0.0, gap_rad = 0.0;  ///< of the inertia, behind a gap between teeth
   double lag_s = 0.0;                     ///< of the torque behind its command, from no torque on
+  double weight_Nm = 0.0;                 ///< of a load off the axis
+  double cogs_Nm = 0.0;                   ///< 14 times a turn
 };
 
 constexpr double inertia = 1e-3, viscous = 1e-3, torque_constant = 0.2;
@@ -48,7 +50,8 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
       const double h = 0.01 / steps;
       const double asked_Nm = torque_constant * drive[i];
       late_Nm += joint.lag_s > 0.0 ? h / joint.lag_s * (asked_Nm - late_Nm) : asked_Nm - late_Nm;
-      double push = late_Nm - viscous * omega;
+      double push = late_Nm - viscous * omega - joint.weight_Nm * std::sin(theta + 0.4) -
+                    joint.cogs_Nm * std::sin(14.0 * theta);
       if (joint.bristle_Nm > 0.0) {
         bent += h * (omega - std::fabs(omega) * bent / joint.bend_rad);
         push -= joint.bristle_Nm * bent / joint.bend_rad;
@@ -76,12 +79,12 @@ Recording record(const Joint& joint, int rows, std::uint64_t seed) {
   return r;
 }
 
-Diagnosis diagnosed(const Joint& joint) {
+Diagnosis diagnosed(const Joint& joint, int effects_at_once = 1) {
   Model model;
   model.name = "joint";
   model.axis = RigidAxisModel{inertia, viscous, torque_constant};
   Options options;
-  options.effects_at_once = 1;
+  options.effects_at_once = effects_at_once;
   return diagnose(model, {record(joint, 2000, 3)}, {record(joint, 1200, 8)}, options);
 }
 
@@ -309,12 +312,43 @@ TEST_CASE("friction that bends before it slides is told from friction that does 
   CHECK(test::parameter_of(bent, "Nm") == Approx(0.006).epsilon(0.03));
   CHECK(test::parameter_of(bent, "bend_rad") == Approx(0.05).epsilon(0.05));
 
+  Joint stiff;  // as a direct drive's on a good encoder: a tenth of a degree
+  stiff.bristle_Nm = 0.006;
+  stiff.bend_rad = 0.002;
+  const Diagnosis crept = diagnosed(stiff);
+  INFO(crept.reason);
+  REQUIRE(crept.cause.size() == 1);
+  CHECK(crept.cause.front().effect == "presliding_friction");
+  CHECK(test::parameter_of(crept, "bend_rad") == Approx(0.002).epsilon(0.1));
+
   Joint dry;
   dry.coulomb_Nm = 0.006;
   const Diagnosis rubbed = diagnosed(dry);
   INFO(rubbed.reason);
   REQUIRE(rubbed.cause.size() == 1);
   CHECK(rubbed.cause.front().effect == "coulomb_friction");
+}
+
+TEST_CASE(
+    "weight, friction and cogs of one joint are all named, and a third cause is none where there are two") {
+  Joint joint;
+  joint.weight_Nm = 0.012;
+  joint.coulomb_Nm = 0.005;
+  const auto named = [](const Diagnosis& diagnosis) {
+    std::vector<std::string> ids;
+    for (const Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  };
+  const int as_a_user_gets_it = Options().effects_at_once;
+  CHECK(named(diagnosed(joint, as_a_user_gets_it)) ==
+        std::vector<std::string>{"coulomb_friction", "imbalance"});
+  joint.cogs_Nm = 0.006;
+  const Diagnosis all = diagnosed(joint, as_a_user_gets_it);
+  INFO(all.reason);
+  CHECK(named(all) == std::vector<std::string>{"cogging", "coulomb_friction", "imbalance"});
+  CHECK(all.verdict == Verdict::explained);
+  CHECK(all.gap.front().after < 1.5 * all.gap.front().noise_floor);
 }
 
 TEST_CASE("the rise of friction near standstill is found with its exponent") {

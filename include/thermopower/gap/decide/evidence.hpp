@@ -240,17 +240,32 @@ inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t 
 struct SpecialCase {
   std::string cause;           ///< id; empty: the effect itself
   bool but_for_a_bit = false;  ///< what else it has is too small to be what it fits better by
+  bool the_same = false;  ///< there is nothing else: what it fits better by is where its fit happened to end
 };
+
+/// Whether a candidate scores on held-out data what another one does, but for what every model is wrong by.
+inline bool held_out_nearly(const Candidate& candidate, const Candidate& other) {
+  constexpr double most = 1.0 + decision.alike_far_from_noise;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (candidate.held_out.samples[i] > 0.0 &&
+        candidate.held_out.mean(i) > most * most * other.held_out.mean(i))
+      return false;
+  return true;
+}
 
 /// What an effect of a candidate is in fact, by where its parameters ended.
 /// @param at  place of its first parameter among the candidate's coordinates
 inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& info, std::size_t at) {
   const auto place = [&](int i) { return at + static_cast<std::size_t>(i); };
   const auto& equal = info.where_equal;
-  if (equal && are_equal(candidate, place(equal->one), place(equal->other)))
-    return {equal->cause, are_equal(candidate, place(equal->one), place(equal->other), decision.the_same)};
+  const auto differ_by_no_more_than = [&](double share) {
+    return equal && are_equal(candidate, place(equal->one), place(equal->other), share);
+  };
+  if (differ_by_no_more_than(decision.the_same)) return {equal->cause, true, true};
+  if (differ_by_no_more_than(decision.equal)) return {equal->cause, false, false};
   const auto& small = info.where_small;
-  if (small && is_small(candidate, place(small->small), place(small->beside))) return {small->cause, true};
+  if (small && is_small(candidate, place(small->small), place(small->beside)))
+    return {small->cause, true, false};
   return {};
 }
 
@@ -274,7 +289,8 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
     std::sort(simpler_ids.begin(), simpler_ids.end());
     if (ids == simpler_ids)
       return in_the_running(simpler) &&
-             (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)));
+             (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)) ||
+              (in_fact.the_same && held_out_nearly(simpler, candidate)));
   }
   return false;
 }
@@ -289,15 +305,33 @@ inline void mark_idle(std::vector<Candidate>& candidates) {
       for (Candidate& one : candidates) one.idle = one.idle || does_nothing_more(one, constants);
 }
 
+/// Whether a set has a cause among others that is another one to the last: its two parameters are the same.
+/// @param alone  an explanation by that one cause
+inline bool has_the_same(const Candidate& set, const Explanation& alone, const Model& model) {
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : set.explanation.effects) {
+    if (entry == alone.effects.front() && special_case(set, entry->info, at).the_same) return true;
+    at += entry->info.parameters.size();
+  }
+  return false;
+}
+
 /// Marks candidates that another one says with less (is_in_fact()): all at once, so that a simpler one that is itself marked
-/// still counts.
+/// still counts. A cause that is so alone and has nothing of its own beside others either is none of a set.
 inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
   std::vector<Candidate*> twins;
   for (Candidate& one : candidates)
     if (std::any_of(candidates.begin(), candidates.end(),
                     [&](const Candidate& simpler) { return is_in_fact(simpler, one, model); }))
       twins.push_back(&one);
-  for (Candidate* one : twins) one->idle = true;
+  std::vector<const Explanation*> alone;
+  for (Candidate* one : twins) {
+    one->idle = true;
+    if (one->explanation.effects.size() == 1) alone.push_back(&one->explanation);
+  }
+  for (Candidate& one : candidates)
+    for (const Explanation* twin : alone)
+      one.idle = one.idle || (one.explanation.effects.size() > 1 && has_the_same(one, *twin, model));
 }
 
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not

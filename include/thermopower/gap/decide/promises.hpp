@@ -68,26 +68,45 @@ public:
                 std::vector<plant::SubmodelName> suspects)
       : glimpse_(glimpse), coarse_(coarse), threads_(threads), suspects_(std::move(suspects)) {}
 
-  /// The sets of `size` causes that promise most, the best first: the best candidates of one cause fewer with every single
-  /// one, ranked by one linear step. They refer to the candidates by their places.
-  /// @param known  where given, sets that were found before: of the others only those with one of `late` are looked at
+  /// The pairs of causes that promise most, the best first: the best single ones with every other one, ranked by one linear
+  /// step. They refer to the candidates by their places.
+  /// @param known  where given, pairs that were found before: of the others only those with one of `late` are looked at
   /// @param late   single causes that came later
-  std::vector<Promise> of_size(const std::vector<Candidate>& candidates,
-                               const std::vector<Explanation>& singles, int size,
-                               std::vector<Promise> known = {},
-                               const std::vector<Explanation>& late = {}) const {
+  std::vector<Promise> pairs(const std::vector<Candidate>& candidates,
+                             const std::vector<Explanation>& singles, std::vector<Promise> known = {},
+                             const std::vector<Explanation>& late = {}) const {
     const auto is_new = [&](const Explanation& one) {
       return late.empty() ||
              std::any_of(late.begin(), late.end(), [&](const Explanation& of) { return one.includes(of); });
     };
     std::vector<Promise> promises = std::move(known);
-    for (const std::size_t near : seeds_of(candidates, size - 1))
-      for (const Explanation& single : singles) {
-        if (candidates[near].explanation.includes(single)) continue;
-        Explanation together = candidates[near].explanation.with(single);
-        if (is_new(together)) promises.push_back({{}, near, std::move(together)});
-      }
-    constexpr std::size_t fitted = 14, looked_at = 3 * fitted;
+    for (const std::size_t near : seeds_of(candidates))
+      for (Promise& one : with_each(candidates, near, singles))
+        if (is_new(one.together)) promises.push_back(std::move(one));
+    return most_promising(std::move(promises), candidates, 14);
+  }
+
+  /// A pair with every further cause, as pairs() has them.
+  /// @param pair  its place among the candidates
+  std::vector<Promise> with_a_third(const std::vector<Candidate>& candidates, std::size_t pair,
+                                    const std::vector<Explanation>& singles) const {
+    return most_promising(with_each(candidates, pair, singles), candidates, 6);
+  }
+
+private:
+  static std::vector<Promise> with_each(const std::vector<Candidate>& candidates, std::size_t near,
+                                        const std::vector<Explanation>& singles) {
+    std::vector<Promise> promises;
+    const Explanation& part = candidates[near].explanation;
+    for (const Explanation& single : singles)
+      if (!part.includes(single)) promises.push_back({{}, near, part.with(single)});
+    return promises;
+  }
+
+  /// @param fitted  so many are kept at most, each set once
+  std::vector<Promise> most_promising(std::vector<Promise> promises, const std::vector<Candidate>& candidates,
+                                      std::size_t fitted) const {
+    const std::size_t looked_at = 3 * fitted;
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
     const Attribution glimpse(look.few), coarse(look.some, look.few);
     const auto rank = [&](const Attribution& on) {
@@ -113,17 +132,15 @@ public:
     return kept;
   }
 
-private:
-  /// Places of the best candidates of `size` effects, and the best single ones of every submodel that is under suspicion: of two
-  /// causes of one size neither does well alone, and what does is another effect that makes up for some of both.
-  std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates, int size) const {
+  /// Places of the best single causes, and the best ones of every submodel that is under suspicion: of two causes of one size
+  /// neither does well alone, and what does is another effect that makes up for some of both.
+  std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates) const {
     constexpr std::size_t best_of_all = 5;
     constexpr int best_of_submodel = 2;
     std::vector<std::size_t> seeds, others;
     for (std::size_t index : by_fitness(candidates, 0))
-      if (static_cast<int>(candidates[index].explanation.effects.size()) == size)
+      if (candidates[index].explanation.effects.size() == 1)
         (seeds.size() < best_of_all ? seeds : others).push_back(index);
-    if (size != 1) return seeds;
     for (const plant::SubmodelName& suspect : suspects_) {
       int found = 0;
       for (const std::size_t one : others)

@@ -57,6 +57,14 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
   return chosen;
 }
 
+/// The likeliest candidate.
+inline std::size_t likeliest(const std::vector<Candidate>& candidates) {
+  std::size_t chosen = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (candidates[i].probability > candidates[chosen].probability) chosen = i;
+  return chosen;
+}
+
 /// The largest probability among explanations that are no larger than one: what its rivals are measured
 /// against.
 inline double likeliest_of(const std::vector<Candidate>& candidates, const Candidate& chosen) {
@@ -126,9 +134,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
                            const Witness& rows = {}) {
   Conclusion result;
   const Candidate& empty = candidates.front();
-  for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (candidates[i].probability > candidates[result.chosen].probability) result.chosen = i;
-  if (result.chosen != 0) result.chosen = parsimonious(candidates, result.chosen, rows);
+  result.chosen = parsimonious(candidates, likeliest(candidates), rows);
   const Candidate& best = candidates[result.chosen];
   const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
   // Several constants, each within what is known of it, can stand for one that is further off: where that one is the
@@ -171,7 +177,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
       return nothing_known(cancel_each_other);
     result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);
   }
-  if (best.explanation.effects.size() > 1)
+  for (std::size_t further = 1; further < best.explanation.effects.size(); ++further)
     result.none_of_these = 1.0 - (1.0 - result.none_of_these) * (1.0 - decision.pair_for_unknown);
   std::vector<std::size_t> order;
   double together = best.probability;

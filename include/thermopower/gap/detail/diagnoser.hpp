@@ -64,6 +64,10 @@ public:
                        }};
     Conclusion conclusion =
         conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
+    if (attempt.in_pairs != nullptr && !names_three(attempt, conclusion)) {
+      attempt = Attempt(*attempt.in_pairs);
+      conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
+    }
     if (conclusion.second_is_open) {
       // What is left looks a little like several effects: it is named as a rest.
       std::vector<Candidate>& all = attempt.candidates;
@@ -81,6 +85,13 @@ public:
   }
 
 private:
+  /// Whether three causes are named, and not just in place of two others. What is said of less does not depend on whether a
+  /// third one was looked for.
+  static bool names_three(const Attempt& attempt, const Conclusion& conclusion) {
+    return conclusion.verdict != Verdict::unexplained && !conclusion.second_is_open &&
+           attempt.candidates[conclusion.chosen].explanation.effects.size() > 2;
+  }
+
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
   /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
   /// training data over a narrow range leave constants open that the held-out data ask for: what fits both

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/gap/detail/as_judged.hpp>
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -97,15 +99,16 @@ public:
     if (options_.effects_at_once < 2) return;
     if (may_be_shorter() && attempt_.is_far() && !sets_come_near()) shorten();
     if (!has_room()) renew();  // once more: what is weighed in the end has seen the noise of the best one
-    const auto promising = [&](int size, const std::vector<Explanation>& late) {
-      return search_->promising().of_size(attempt_.candidates, effects(), size, {}, late);
+    const auto promising = [&](const std::vector<Explanation>& late) {
+      return search_->promising().pairs(attempt_.candidates, effects(), {}, late);
     };
-    for (int size = 2; size <= options_.effects_at_once && has_room(); ++size) {
-      add_sets(size == 2 && !pairs_.empty() ? pairs_ : promising(size, {}));
-      if (costly_.empty() || does_for_now(attempt_.best())) continue;
-      const std::vector<Explanation> late = costly_;
-      add_costly();
-      if (has_room()) add_sets(promising(size, late));
+    if (has_room()) {
+      add_sets(!pairs_.empty() ? pairs_ : promising({}));
+      if (!costly_.empty() && !does_for_now(attempt_.best())) {
+        const std::vector<Explanation> late = costly_;
+        add_costly();
+        if (has_room()) add_sets(promising(late));
+      }
     }
     if (search_->refine_shapes(attempt_.candidates)) renew();
     look_at_rows();
@@ -120,6 +123,21 @@ public:
       add_costly();
       weigh_all();
     }
+  }
+
+  /// Where a pair is the likeliest explanation, does what a second cause has to, and leaves room for a third one: it with
+  /// each further cause. A joint has its weight, its friction and its cogs at once.
+  void try_third_causes() {
+    if (options_.effects_at_once < 3) return;
+    const std::size_t place = parsimonious(attempt_.candidates, likeliest(attempt_.candidates));
+    const Candidate& pair = attempt_.candidates[place];
+    if (pair.explanation.effects.size() != 2 || !has_room() ||
+        largest_noise_multiple(pair.held_out) < decision.room_for_second)
+      return;
+    const auto before = std::make_shared<const Attempt>(attempt_);
+    add_sets(search_->promising().with_a_third(attempt_.candidates, place, effects()));
+    weigh_all();
+    attempt_.in_pairs = before;
   }
 
 private:
@@ -141,7 +159,7 @@ private:
   bool sets_come_near() {
     if (!may_be_shorter() || !attempt_.is_far()) return false;
     if (pairs_.empty() || !late_.empty()) {
-      pairs_ = search_->promising().of_size(attempt_.candidates, effects(), 2, std::move(pairs_), late_);
+      pairs_ = search_->promising().pairs(attempt_.candidates, effects(), std::move(pairs_), late_);
       late_.clear();
       pairs_come_near_ = search_->come_near(pairs_, decision.far_for_long_windows);
     }

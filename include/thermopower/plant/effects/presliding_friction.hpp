@@ -32,7 +32,7 @@ struct PreslidingFriction {
          // Bristles that hardly bend are Coulomb's friction, and such that bend very far are a spring.
          parameter(bend_rad, "bend_rad")
              .unit("rad")
-             .within(2e-3, 1.0)
+             .within(5e-4, 1.0)
              .logarithmic()
              .starts({0.01, 0.06})
              .degenerate_at_bounds(),
