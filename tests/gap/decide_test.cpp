@@ -498,6 +498,7 @@ TEST_CASE("a second cause beside a rest is named only where the rows blame its s
     one.explanation.effects = std::move(effects);
     one.held_out = sums_of(blocks(mean_square, mean_square));
     one.deviance = deviance;
+    one.fit.point = Eigen::VectorXd::Zero(8);
     return one;
   };
   const Witness all{[](const Candidate&, const thermopower::plant::SubmodelName&) { return true; }, {}};
@@ -507,14 +508,14 @@ TEST_CASE("a second cause beside a rest is named only where the rows blame its s
   };
   std::vector<Candidate> candidates{candidate({}, 900.0, 3000.0), candidate({friction}, 100.0, 2000.0),
                                     candidate({friction, spring}, 25.0, 1000.0)};
-  CHECK(parsimonious(candidates, 2, all) == 2);
-  CHECK(parsimonious(candidates, 2, only_friction) == 1);
+  CHECK(parsimonious(candidates, 2, axis_model(), all) == 2);
+  CHECK(parsimonious(candidates, 2, axis_model(), only_friction) == 1);
   // What leaves hardly anything of the rest needs no other witness,
   candidates[2].held_out = sums_of(blocks(15.0, 15.0));
-  CHECK(parsimonious(candidates, 2, only_friction) == 2);
+  CHECK(parsimonious(candidates, 2, axis_model(), only_friction) == 2);
   // nor does what leaves nothing but noise.
   candidates[2].held_out = sums_of(blocks(1.1, 1.1));
-  CHECK(parsimonious(candidates, 2, only_friction) == 2);
+  CHECK(parsimonious(candidates, 2, axis_model(), only_friction) == 2);
 }
 
 TEST_CASE("an instrument beside a rest is named where what followed nothing recorded is over with it") {

@@ -8,12 +8,12 @@
 namespace thermopower::plant {
 
 /// The parameter that every dry friction has: the rate in rad/s within which it turns over, 0.0005 (where the
-/// axis sticks) to 0.3; 0.01 where a model leaves it out.
+/// axis sticks) to 1; 0.01 where a model leaves it out.
 /// @param index  by which the effect reads it
 inline Parameter friction_transition(int index) {
   return parameter(index, "transition_rad_per_s")
       .unit("rad/s")
-      .within(friction_sticks_below_rad_per_s, 0.3)
+      .within(friction_sticks_below_rad_per_s, 1.0)
       .logarithmic()
       .starts({0.01, 0.06})
       .standard(0.01);

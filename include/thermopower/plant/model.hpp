@@ -134,6 +134,10 @@ struct CalibratedConstant {
   std::string effect() const { return block.rfind("effects.", 0) == 0 ? block.substr(8) : std::string(); }
 };
 
+/// Whether a parameter of an effect is the rate within which a friction turns over: no data sheet has it, and where an axis
+/// sticks it is as small as it may be.
+inline bool names_a_transition(std::string_view parameter) { return parameter == "transition_rad_per_s"; }
+
 /// Whether a parameter of an effect is a place and no size: a name says so that ends in `phase_rad` or `centre_rad`.
 inline bool names_a_place(std::string_view parameter) {
   for (const std::string_view ending : {std::string_view("phase_rad"), std::string_view("centre_rad")})
@@ -217,6 +221,8 @@ struct Model {
   double uncertainty_of(const CalibratedConstant& constant, double otherwise = 0.05) const;
   /// The same of a place where nothing is stated, rad: the zero of an angle is read from a log at rest, to a degree.
   static constexpr double place_known_to_rad = 0.02;
+  /// The same of the transition of a friction: whoever wrote it down meant small.
+  static constexpr double transition_known_to = 1.0;
 
   /// What is wrong with it, naming the field and what was expected, or nothing. Effects are not looked into:
   /// the catalogue knows them.

@@ -219,8 +219,8 @@ inline void PreparedRecording::read_the_clock(FindingList& list) {
 
 inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingList& list) {
   for (Column& column : believed_.columns) {
-    // A current holds because the power does.
-    if (!is_output(column.name) || (column.name == "current_A" && electrical_)) continue;
+    // A current holds because the power does; or, as what heats, because it is held.
+    if (!is_output(column.name) || (column.name == "current_A" && own_ == nullptr)) continue;
     const std::optional<SlowColumn> held = held_between_updates(column.values, believed_.runs);
     const std::optional<SlowColumn> straight =
         held ? std::nullopt : straight_between_updates(believed_.t_s, column.values, believed_.runs);
@@ -369,7 +369,10 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     take_away(values, clipped);
     list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
                   "stand at the end of the sensor's range", "use a sensor with a wider range");
-    const RowMask frozen = still.frozen();
+    // A current that stands more often than it moves is what somebody set: as what heats, it is held.
+    constexpr double mostly = 0.5;
+    const bool is_set = name == "current_A" && !electrical_ && still.equal_share() > mostly;
+    const RowMask frozen = is_set ? RowMask(unknown_.size(), 0) : still.frozen();
     take_away(values, frozen);
     list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
                   "repeat the value before them where noise or motion would show",

@@ -80,7 +80,8 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
 /// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
 /// friction does not count: at its bound friction sticks.)
 ///
-/// Nor is one beside which a constant went as far as it may: then the equation is another one.
+/// Nor is one beside which a constant went as far as it may: then the equation is another one. (The transition of a friction that
+/// the model has does not count either.)
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
 /// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than half a run, a
@@ -95,7 +96,8 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
   constexpr double nearly = 0.999;
   const std::vector<CalibratedConstant> constants = model.calibrated();
   for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
-    if (std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) > nearly * farthest(constants[i]))
+    if (!plant::names_a_transition(constants[i].fields.front()) &&
+        std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) > nearly * farthest(constants[i]))
       return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;

@@ -81,21 +81,21 @@ public:
     };
     std::vector<Promise> promises = std::move(known);
     for (const std::size_t near : seeds_of(candidates))
-      for (Promise& one : with_each(candidates, near, singles))
+      for (Promise& one : all_with(candidates, near, singles))
         if (is_new(one.together)) promises.push_back(std::move(one));
     return most_promising(std::move(promises), candidates, 14);
   }
 
-  /// A pair with every further cause, as pairs() has them.
-  /// @param pair  its place among the candidates
-  std::vector<Promise> with_a_third(const std::vector<Candidate>& candidates, std::size_t pair,
-                                    const std::vector<Explanation>& singles) const {
-    return most_promising(with_each(candidates, pair, singles), candidates, 6);
+  /// A candidate with every further cause, as pairs() has them.
+  /// @param near  its place
+  std::vector<Promise> with_each(const std::vector<Candidate>& candidates, std::size_t near,
+                                 const std::vector<Explanation>& singles) const {
+    return most_promising(all_with(candidates, near, singles), candidates, 6);
   }
 
 private:
-  static std::vector<Promise> with_each(const std::vector<Candidate>& candidates, std::size_t near,
-                                        const std::vector<Explanation>& singles) {
+  static std::vector<Promise> all_with(const std::vector<Candidate>& candidates, std::size_t near,
+                                       const std::vector<Explanation>& singles) {
     std::vector<Promise> promises;
     const Explanation& part = candidates[near].explanation;
     for (const Explanation& single : singles)

@@ -16,6 +16,13 @@
 
 namespace thermopower::gap::engine {
 
+/// Whether a set of causes is among candidates.
+inline bool is_known(const std::vector<Candidate>& candidates, const Explanation& set) {
+  return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& one) {
+    return one.explanation.size() == set.size() && one.explanation.includes(set);
+  });
+}
+
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
 /// Everything is first tried on a small part of the data (`coarse`), of a moving axis in windows so short that even
@@ -120,6 +127,21 @@ public:
     exchange(candidates, singles);
   }
 
+  /// Adds the best set without one member after another, from where the whole ended: it may have been reached by a way on which
+  /// one of them stood in for another.
+  void add_parts(std::vector<Candidate>& candidates) const {
+    const Candidate& whole = fittest(candidates);
+    std::vector<Promise> parts;
+    if (whole.explanation.effects.size() < 2) return;
+    for (std::size_t member = 0; member < whole.explanation.effects.size(); ++member) {
+      Explanation part = whole.explanation;
+      part.effects.erase(part.effects.begin() + static_cast<std::ptrdiff_t>(member));
+      if (!is_known(candidates, part)) parts.push_back({{}, place_of(candidates, whole), std::move(part)});
+    }
+    const FirstLook look(whole, glimpse_, coarse_);
+    add_fitted(candidates, parts, Attribution(look.some, look.few));
+  }
+
   /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the
   /// very best. A smaller explanation loses to a larger one that contains it only after it has been there: often the
   /// larger one has only found better constants.
@@ -148,6 +170,28 @@ public:
         fine_.refit_from(candidates[rivals[i]], leader, finish, decision.second_takes);
       });
     }
+  }
+
+  /// Brings the constants of the best candidates back that are far off for nothing: where a cause and they do the same to the data
+  /// the cost lies in a long flat valley, along which only what is known of them pulls, and a fit ends anywhere in it.
+  void settle_constants(std::vector<Candidate>& candidates, const Model& model) const {
+    constexpr std::size_t looked_at = 8;
+    FitOptions finest;
+    finest.iterations = 15;
+    finest.relative_decrease = 1e-7;
+    const double farthest = Attribution::out_of_sight * fittest(candidates).train.total();
+    std::vector<std::size_t> far_off;
+    for (const std::size_t index : by_fitness(candidates, 0)) {
+      const Candidate& one = candidates[index];
+      if (!one.explanation.effects.empty() && price_of_constants(one, model) > decision.rarity &&
+          !(one.train.total() > farthest))
+        far_off.push_back(index);
+      if (far_off.size() == looked_at) break;
+    }
+    in_parallel(far_off.size(), threads_, [&](std::size_t i) {
+      fine_.polish(candidates[far_off[i]], finest);
+      fine_.settle_the_scale(candidates[far_off[i]], finest);
+    });
   }
 
   /// Fits the best candidates, and looks at all others, anew: the noise has changed.
@@ -296,6 +340,10 @@ private:
     refine(candidates, first, 5, options.hopeless);
   }
 
+  static std::size_t place_of(const std::vector<Candidate>& candidates, const Candidate& one) {
+    return static_cast<std::size_t>(&one - candidates.data());
+  }
+
   /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
   /// stood in for only one is found at a time.
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
@@ -312,7 +360,7 @@ private:
   /// same submodel: of two that do the same beside a third, only one may have been tried.
   void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = fittest(candidates);
-    const auto place = static_cast<std::size_t>(&near - candidates.data());
+    const std::size_t place = place_of(candidates, near);
     const Explanation& leader = near.explanation;
     if (leader.size() < 2) return;
     std::vector<Promise> tries;
@@ -323,10 +371,7 @@ private:
           continue;
         Explanation other = leader;
         other.effects[member] = single.effects.front();
-        bool known = false;
-        for (const Candidate& one : candidates)
-          known = known || (one.explanation.size() == other.size() && one.explanation.includes(other));
-        if (!known) tries.push_back({{}, place, std::move(other)});
+        if (!is_known(candidates, other)) tries.push_back({{}, place, std::move(other)});
       }
     const FirstLook look(near, glimpse_, coarse_);
     add_fitted(candidates, tries, Attribution(look.some, look.few));

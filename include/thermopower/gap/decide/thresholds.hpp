@@ -104,6 +104,8 @@ struct DecisionThresholds {
   double lowered_without_costly = 0.8;
   /// Multiple of the noise above which a second cause is looked for.
   double room_for_second = 1.4;
+  /// The same where the first cause comes so near with constants far off: what is no gap by itself.
+  double room_beside_dear_constants = 1.25;
   /// Share of what one cause leaves that a second one must take away.
   double second_takes = 0.5;
   /// Share of the blocks of held-out data in which the second cause must help.

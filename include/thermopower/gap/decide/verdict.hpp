@@ -29,12 +29,33 @@ struct Conclusion {
   bool second_is_open = false;              ///< sets disagree about a further cause: look at single ones
 };
 
+/// Whether an explanation needs its constants further off than another one does, by more than chance: then that it comes as near
+/// the noise speaks for what the other has besides, which constants can imitate, and not for them.
+inline bool are_dearer(const Candidate& constants, const Candidate& cause, const Model& model) {
+  return price_of_constants(constants, model) - price_of_constants(cause, model) > decision.dear_constants;
+}
+
+/// Multiple of the noise above which a part of a set leaves room for a further cause: less is needed where it comes so near with
+/// constants far off alone.
+inline double least_room_beside(const Candidate& part, const Model& model) {
+  return price_of_constants(part, model) > decision.rarity + decision.dear_constants
+             ? decision.room_beside_dear_constants
+             : decision.room_for_second;
+}
+
+/// Whether a set keeps the constants where they are known to be, at the noise, while a part of it reaches that with constants
+/// far off alone: a current sensor's gain is a re-scaling of resistance, heat capacity and conductance.
+inline bool spares_the_constants(const Candidate& set, const Candidate& part, const Model& model) {
+  return largest_noise_multiple(set.held_out) <= decision.near_floor && are_dearer(part, set, model);
+}
+
 /// The smallest part of a set of causes that does its work: a further cause is only named where the set without it
 /// stays clearly above the noise and the further one takes away at least half of what is left, in nearly every part of
 /// the held-out data, and where the rows blame its submodel, too, or nothing but noise is left. Otherwise it mends
 /// small errors of the others' equations.
+/// What spares the constants does its work, too.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
-                                const Witness& rows = {}) {
+                                const Model& model, const Witness& rows = {}) {
   for (bool smaller = true; smaller;) {
     smaller = false;
     std::size_t part = 0;
@@ -46,7 +67,8 @@ inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::s
         part = i;
     }
     if (part != 0 && !candidates[chosen].explanation.effects.empty() &&
-        (largest_noise_multiple(candidates[part].held_out) < decision.room_for_second ||
+        !spares_the_constants(candidates[chosen], candidates[part], model) &&
+        (largest_noise_multiple(candidates[part].held_out) < least_room_beside(candidates[part], model) ||
          excess(candidates[chosen]) > decision.second_takes * excess(candidates[part]) ||
          share_of_blocks(candidates[chosen], candidates[part]) < decision.second_holds ||
          !is_localised(candidates[chosen], candidates[part], rows))) {
@@ -63,6 +85,14 @@ inline std::size_t likeliest(const std::vector<Candidate>& candidates) {
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (candidates[i].probability > candidates[chosen].probability) chosen = i;
   return chosen;
+}
+
+/// Indices of the candidates, those of the least deviance first.
+inline std::vector<std::size_t> by_deviance(const std::vector<Candidate>& candidates) {
+  std::vector<std::size_t> order(candidates.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  sort_by(order, [&](std::size_t i) { return candidates[i].deviance; });
+  return order;
 }
 
 /// The largest probability among explanations that are no larger than one: what its rivals are measured
@@ -113,12 +143,6 @@ inline bool has_readings_enough(const Candidate& candidate, const Model& model) 
   return readings >= decision.readings_per_parameter * free && most >= decision.least_readings;
 }
 
-/// Whether an explanation by constants alone needs them further off than a cause does, by more than chance: then that they
-/// come as near the noise speaks for the cause, which they can imitate, and not for them.
-inline bool are_dearer(const Candidate& constants, const Candidate& cause, const Model& model) {
-  return price_of_constants(constants, model) - price_of_constants(cause, model) > decision.dear_constants;
-}
-
 /// Whether constants within what is known of them bring held-out data as near the noise as an explanation has to, and a cause
 /// takes less of that away than one at the limit of no gap would: noise that remembers, or a first reading that is off, is lowered
 /// as much by whatever is free to follow it.
@@ -134,7 +158,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
                            const Witness& rows = {}) {
   Conclusion result;
   const Candidate& empty = candidates.front();
-  result.chosen = parsimonious(candidates, likeliest(candidates), rows);
+  result.chosen = parsimonious(candidates, likeliest(candidates), model, rows);
   const Candidate& best = candidates[result.chosen];
   const bool only_constants = result.chosen != 0 && best.explanation.effects.empty();
   // Several constants, each within what is known of it, can stand for one that is further off: where that one is the
@@ -184,7 +208,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (i != result.chosen &&
         candidates[i].probability > decision.alternative * likeliest_of(candidates, best) &&
-        candidates[i].explanation.size() <= best.explanation.size()) {
+        (candidates[i].explanation.size() <= best.explanation.size() ||
+         spares_the_constants(candidates[i], best, model))) {
       order.push_back(i);
       together += candidates[i].probability;
     }

@@ -66,6 +66,7 @@ private:
     search.look_at_rows();
     search.try_sets();
     search.decide();
+    search.try_beside_dear_constants();
     search.try_third_causes();
     return search.take();
   }

@@ -64,7 +64,7 @@ public:
                        }};
     Conclusion conclusion =
         conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
-    if (attempt.in_pairs != nullptr && !names_three(attempt, conclusion)) {
+    if (attempt.in_pairs != nullptr && !is_found_by_a_third(attempt, conclusion)) {
       attempt = Attempt(*attempt.in_pairs);
       conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
     }
@@ -85,11 +85,12 @@ public:
   }
 
 private:
-  /// Whether three causes are named, and not just in place of two others. What is said of less does not depend on whether a
-  /// third one was looked for.
-  static bool names_three(const Attempt& attempt, const Conclusion& conclusion) {
-    return conclusion.verdict != Verdict::unexplained && !conclusion.second_is_open &&
-           attempt.candidates[conclusion.chosen].explanation.effects.size() > 2;
+  /// Whether causes are named that only the look for a third one has found: three of them, or a pair that was passed over. What
+  /// is said of others does not depend on that look.
+  static bool is_found_by_a_third(const Attempt& attempt, const Conclusion& conclusion) {
+    const Explanation& found = attempt.candidates[conclusion.chosen].explanation;
+    const bool is_named = conclusion.verdict != Verdict::unexplained && !conclusion.second_is_open;
+    return is_named && !is_known(attempt.in_pairs->candidates, found);
   }
 
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.

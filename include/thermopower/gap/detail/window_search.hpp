@@ -125,17 +125,43 @@ public:
     }
   }
 
+  /// Where single causes reach the noise with constants so far off that a second one could stand in their place: the likeliest of
+  /// them with each further cause.
+  void try_beside_dear_constants() {
+    constexpr std::size_t tried = 3;
+    if (options_.effects_at_once < 2 ||
+        attempt_.candidates[likeliest(attempt_.candidates)].explanation.size() != 1)
+      return;
+    std::vector<Promise> sets;
+    std::size_t found = 0;
+    for (const std::size_t place : by_deviance(attempt_.candidates)) {
+      const Candidate& one = attempt_.candidates[place];
+      if (one.explanation.effects.size() != 1 || !in_the_running(one) ||
+          largest_noise_multiple(one.held_out) > decision.near_floor ||
+          price_of_constants(one, posing_.model()) < decision.rarity + decision.dear_constants)
+        continue;
+      if (++found > tried) break;
+      for (Promise& set : search_->promising().with_each(attempt_.candidates, place, effects()))
+        sets.push_back(std::move(set));
+    }
+    if (sets.empty()) return;
+    add_sets(sets);
+    weigh_all();
+  }
+
   /// Where a pair is the likeliest explanation, does what a second cause has to, and leaves room for a third one: it with
   /// each further cause. A joint has its weight, its friction and its cogs at once.
   void try_third_causes() {
     if (options_.effects_at_once < 3) return;
-    const std::size_t place = parsimonious(attempt_.candidates, likeliest(attempt_.candidates));
+    const std::size_t place =
+        parsimonious(attempt_.candidates, likeliest(attempt_.candidates), posing_.model());
     const Candidate& pair = attempt_.candidates[place];
     if (pair.explanation.effects.size() != 2 || !has_room() ||
         largest_noise_multiple(pair.held_out) < decision.room_for_second)
       return;
     const auto before = std::make_shared<const Attempt>(attempt_);
-    add_sets(search_->promising().with_a_third(attempt_.candidates, place, effects()));
+    add_sets(search_->promising().with_each(attempt_.candidates, place, effects()));
+    search_->add_parts(attempt_.candidates);
     weigh_all();
     attempt_.in_pairs = before;
   }
@@ -242,6 +268,7 @@ private:
   }
 
   void weigh_all() {
+    search_->settle_constants(attempt_.candidates, posing_.model());
     search_->refit_rivals(attempt_.candidates);
     name_moved_constants(attempt_.candidates, posing_.model());
     attempt_.weight = correlation_of(attempt_.best(), attempt_.problem);

@@ -84,6 +84,24 @@ public:
     candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
+  /// Moves a candidate's torques, its inertia and its frictions by one factor, to where what is known of the constants wants them, and
+  /// fits on from there: where no torque is known by itself, motion says nothing of that factor, and a step along it in single
+  /// coordinates leaves the valley that it goes along. The candidate stays as it was where that costs less.
+  void settle_the_scale(Candidate& candidate, const FitOptions& options) const {
+    const std::vector<bool> scales = are_torques(candidate);
+    const double by = scale_wanted(candidate, scales);
+    constexpr double hardly = 0.02;
+    if (std::abs(by) < hardly) return;
+    Candidate other = candidate;
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      const Coordinate& one = candidate.list[i];
+      double& at = other.fit.point[static_cast<Eigen::Index>(i)];
+      if (scales[i]) at = std::clamp(one.logarithmic ? at + by : at * std::exp(by), one.lower, one.upper);
+    }
+    polish(other, options);
+    if (other.fit.cost < candidate.fit.cost) candidate = std::move(other);
+  }
+
   /// Frees the details of a candidate's effects and fits once more from where it ended. Details are of the effects where
   /// they take away at least `share` of what is left above the noise; else the candidate stays as it was.
   void refine(Candidate& candidate, double share, const FitOptions& options) const {
@@ -302,6 +320,38 @@ private:
         wider.push_back(one);
       }
     return wider;
+  }
+
+  /// Which coordinates of a candidate are torques, or what makes torques of motions and currents: all of one unit, in which
+  /// motion by itself is not measured.
+  std::vector<bool> are_torques(const Candidate& candidate) const {
+    const auto has_unit = [](const std::string& name) {
+      return name.find("Nm") != std::string::npos || name.find("kgm2") != std::string::npos;
+    };
+    std::vector<bool> list;
+    for (const CalibratedConstant& constant : problem_.model->calibrated())
+      list.push_back(has_unit(constant.fields.front()));
+    for (std::size_t i = list.size(); i < candidate.list.size(); ++i)
+      list.push_back(has_unit(candidate.list[i].name));
+    return list;
+  }
+
+  /// The common factor's logarithm that brings the constants among some coordinates to where they cost least: to its place one of
+  /// them, for all of them cost less and less the further they are.
+  static double scale_wanted(const Candidate& candidate, const std::vector<bool>& scales) {
+    const auto cost = [&](double by) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < scales.size(); ++i)
+        if (scales[i])
+          sum += candidate.list[i].prior.cost(candidate.fit.point[static_cast<Eigen::Index>(i)] + by);
+      return sum;
+    };
+    double best = 0.0;
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      const double back = -candidate.fit.point[static_cast<Eigen::Index>(i)];
+      if (scales[i] && candidate.list[i].prior.sd > 0.0 && cost(back) < cost(best)) best = back;
+    }
+    return best;
   }
 
   /// Largest magnitude of an input over the data of the fit.

@@ -232,7 +232,9 @@ THERMOPOWER_GAP_INLINE double Model::uncertainty_of(const CalibratedConstant& co
     const auto found = uncertainty.find(constant.block + "." + field);
     if (found != uncertainty.end() && found->second > worst) worst = found->second;
   }
-  return worst > 0.0 ? worst : constant.is_place ? place_known_to_rad : otherwise;
+  if (worst > 0.0) return worst;
+  if (names_a_transition(constant.fields.front())) return transition_known_to;
+  return constant.is_place ? place_known_to_rad : otherwise;
 }
 
 }  // namespace thermopower::plant
