@@ -3,6 +3,7 @@
 
 // A smaller explanation loses to a larger one only after it has been where that one is.
 #include "../../catch.hpp"
+#include "../plants.hpp"
 #include "joint_in_fine_steps.hpp"
 
 #include <thermopower/gap/fit/attribution.hpp>
@@ -111,4 +112,28 @@ TEST_CASE("a spring whose frequency a fit ended beside is found from there") {
   attribution.look_beside(found, {});
   CHECK(frequency_Hz() == Approx(6.0).epsilon(0.01));
   CHECK(found.train.mean(3) < 1.3);
+}
+
+TEST_CASE("torques, inertia and frictions come back together to where their constants are known to be") {
+  Model model;
+  model.name = "axis";
+  model.axis = RigidAxisModel{1e-3, 1e-3, 0.2};
+  test::AxisFault rubs;
+  rubs.coulomb_Nm = 0.006;
+  const std::vector<Inputs> inputs{prepare(model, test::axis_recording(rubs, 1200, 13))};
+  const FitProblem problem = problem_of(model, inputs);
+  const Attribution attribution(problem);
+  Candidate candidate = attribution.fit({{standard_catalogue().find("coulomb_friction")}, {}}, {});
+  const auto friction = static_cast<Eigen::Index>(model.calibrated().size());
+  REQUIRE(candidate.list[static_cast<std::size_t>(friction)].name == "coulomb_friction.Nm");
+  // Half of all of them moves the same: the data say nothing of it.
+  for (Eigen::Index i = 0; i < friction; ++i) candidate.fit.point[i] += std::log(0.5);
+  candidate.fit.point[friction] *= 0.5;
+  FitOptions none;
+  none.iterations = 0;
+  attribution.polish(candidate, none);
+  REQUIRE(candidate.train.mean(2) < 2.0);
+  attribution.settle_the_scale(candidate, {});
+  CHECK(candidate.fit.point[friction] == Approx(0.006).epsilon(0.05));
+  CHECK(candidate.fit.point[0] == Approx(0.0).margin(0.05));
 }

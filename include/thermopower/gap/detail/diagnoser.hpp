@@ -104,7 +104,7 @@ private:
     const FitProblem* witness = conclusion.verdict == Verdict::unexplained ? nullptr : &attempt.problem;
     // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it, where
     // both parts say so: a few readings alone may be anything by chance.
-    const bool chance = witness == nullptr;
+    const bool chance = witness == nullptr && !follows_the_motion();
     const auto fit_both_parts = [&](const Model& model) {
       return is_within_noise_of_both_parts(model, witness, chance);
     };
@@ -139,6 +139,15 @@ private:
     return is_within(held_out_inputs_) && is_within(train_inputs_);
   }
 
+  /// Whether what is missing is mostly a torque that goes with rate or angle on rows it was not fitted to. Noise that remembers is
+  /// taken for a drive or a structure, that have an acceleration of their own, and knows of no rate.
+  bool follows_the_motion() const {
+    constexpr double mostly = 0.5;
+    if (result_.where.empty() || result_.where.front().share < mostly) return false;
+    const plant::SubmodelName& place = result_.where.front().submodel;
+    return place == plant::Submodel::mechanical_friction || place == plant::Submodel::mechanical_load;
+  }
+
   /// Whether noise that remembers may be all that some constants within their slack leave of both parts: where no cause is
   /// believed, and a few readings may be anything by chance.
   bool suffice_by_chance(const Attempt& attempt) {
@@ -146,7 +155,7 @@ private:
       return is_within_noise_of_both_parts(model, nullptr, true);
     };
     const Candidate& empty = attempt.candidates.front();
-    if (largest_noise_multiple(empty) > decision.far_from_noise) return false;
+    if (largest_noise_multiple(empty) > decision.far_from_noise || follows_the_motion()) return false;
     return may_be_noise(model_) ||
            may_be_noise(augmented(model_, empty.explanation, empty.list, empty.fit.point)) ||
            may_be_noise(refitted_to(held_out_inputs_, attempt));
