@@ -38,28 +38,31 @@ inline bool is_there_at_once(const Eigen::VectorXd& values, const RunSpan& run, 
 
 /// Whether the command at the beginning of a run was in force before it: the motion follows it from the very first row on. A run
 /// that begins with its command follows it later, by the drive's delay, or cannot tell a delay of none.
-/// @param rate     deg/s by row, NaN where missing
-/// @param command  of the drive by row
+/// @param rate       deg/s by row, NaN where missing
+/// @param command    of the drive by row
+/// @param of_slopes  the rate is the slope of an angle from each row to the next
 inline bool was_driven_before(const Eigen::VectorXd& rate, const Eigen::VectorXd& command,
-                              const Eigen::VectorXd& t_s, const RunSpan& run) {
+                              const Eigen::VectorXd& t_s, const RunSpan& run, bool of_slopes = false) {
   constexpr UnderWayThresholds limit;
   if (!is_there_at_once(command, run, 1)) return false;
   const double first = command[run.begin];
-  double count = 0.0, mean_s = 0.0, mean_dps = 0.0, moment = 0.0, spread = 0.0;
-  for (Eigen::Index row = run.begin; row < run.begin + limit.followed; ++row) {
+  // Seconds that the first command would have had to be in force for, to push as much as those until a row did.
+  Eigen::VectorXd pushed_s = Eigen::VectorXd::Zero(limit.followed);
+  double at_row_s = 0.0;
+  for (Eigen::Index i = 0; i < limit.followed; ++i) {
+    const Eigen::Index row = run.begin + i;
     if (!std::isfinite(rate[row]) || !(std::abs(command[row] - first) < limit.steady * std::abs(first)))
       return false;
-    count += 1.0;
-    mean_s += (t_s[row] - t_s[run.begin] - mean_s) / count;
-    mean_dps += (rate[row] - mean_dps) / count;
+    const double push_s = (t_s[row + 1] - t_s[row]) * command[row] / first;
+    pushed_s[i] = at_row_s + (of_slopes ? 0.5 * push_s : 0.0);
+    at_row_s += push_s;
   }
-  for (Eigen::Index row = run.begin; row < run.begin + limit.followed; ++row) {
-    const double at_s = t_s[row] - t_s[run.begin] - mean_s;
-    moment += at_s * (rate[row] - mean_dps);
-    spread += at_s * at_s;
-  }
-  const double slope = moment / spread, begins_s = mean_s - mean_dps / slope;
-  const double rise = std::abs(slope) * (t_s[run.begin + limit.followed - 1] - t_s[run.begin]);
+  // The first row stands still in either case: it would draw the line to itself.
+  const Eigen::Index fitted = limit.followed - 1;
+  const Eigen::VectorXd at_s = pushed_s.tail(fitted), dps = rate.segment(run.begin + 1, fitted);
+  const Eigen::VectorXd away_s = at_s.array() - at_s.mean();
+  const double slope = away_s.dot(dps) / away_s.squaredNorm(), begins_s = at_s.mean() - dps.mean() / slope;
+  const double rise = std::abs(slope) * (pushed_s[fitted] - pushed_s[0]);
   return rise > limit.seen * white_scale(rate, {run}) &&
          begins_s < 0.5 * (t_s[run.begin + 1] - t_s[run.begin]);
 }
@@ -87,7 +90,7 @@ inline void mark_under_way(Recording& recording) {
     run.goes_on = is_there_at_once(*rate, run, limit.rows);
     for (const char* column : {"drive_A", "voltage_V"})
       if (const Eigen::VectorXd* command = recording.find(column))
-        run.was_driven = was_driven_before(*rate, *command, recording.t_s, run);
+        run.was_driven = was_driven_before(*rate, *command, recording.t_s, run, rate == &slope);
   }
 }
 
