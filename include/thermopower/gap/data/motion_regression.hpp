@@ -64,6 +64,7 @@ struct MotionFit {
   Eigen::VectorXd value;                 ///< deg/s^2 for each unit of a term
   std::vector<Eigen::VectorXd> without;  ///< the same without a block each
   double first_dps = 0.0;  ///< root mean square of what the first term changes the rate by between two rows
+  double left_dps2 = 0.0;  ///< root mean square of the acceleration that the fit leaves
   Eigen::VectorXd beside_value = {};  ///< coefficients of what turns the axis beside the command
   std::vector<int> cogs = {};         ///< periods a turn among that
 
@@ -110,6 +111,12 @@ public:
     return scale;
   }
 
+  /// The rate below which an axis may be stuck, deg/s: slower rows are left out.
+  double slowest_dps() const {
+    std::vector<double> all = speeds();
+    return MotionThresholds().moving * quantile_of(all, 0.95);
+  }
+
   /// What turns the axis beside its command, by a fit: friction, a spring, an imbalance, a constant and cogs, in deg/s^2.
   /// @param dps  the rate
   /// @param rad  the angle
@@ -148,12 +155,15 @@ public:
       rest.add(one, -1.0);
       fit.without.push_back(rest.solve().head(terms));
     }
-    double squares = 0.0;
+    double squares = 0.0, left_squares = 0.0;
     for (const Row& row : rows) {
       const double by_dps = fit.value[0] * row.terms[0] * row.step_s;
       squares += by_dps * by_dps / static_cast<double>(rows.size());
+      const double left = row.response - all.regressors(row).dot(solved);
+      left_squares += left * left / static_cast<double>(rows.size());
     }
     fit.first_dps = std::sqrt(squares);
+    fit.left_dps2 = std::sqrt(left_squares);
     return fit;
   }
 
@@ -253,16 +263,21 @@ private:
     }
   }
 
+  /// What each row with a motion turns by, deg/s, without its sign.
+  std::vector<double> speeds() const {
+    std::vector<double> all;
+    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, const MeasuredMotion& motion) {
+      if (std::isfinite(motion.rate_dps)) all.push_back(std::abs(motion.rate_dps));
+    });
+    return all;
+  }
+
   /// Rows that move, at most as many as are needed.
   std::vector<Row> moving_rows(const TermsOf& terms_of, Eigen::Index together) const {
     constexpr MotionThresholds limit;
-    std::vector<double> speeds;
-    for_each_row([&](const Driven&, const RunSpan&, Eigen::Index, const MeasuredMotion& motion) {
-      if (std::isfinite(motion.rate_dps)) speeds.push_back(std::abs(motion.rate_dps));
-    });
-    const double slowest = limit.moving * quantile_of(speeds, 0.95);
-    const auto fast =
-        std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > slowest; });
+    std::vector<double> all = speeds();
+    const double slowest = limit.moving * quantile_of(all, 0.95);
+    const auto fast = std::count_if(all.begin(), all.end(), [&](double speed) { return speed > slowest; });
     const std::size_t stride =
         together > 1 ? 1 : static_cast<std::size_t>(fast) / limit.most_rows + 1;  // means need neighbours
     std::vector<Row> moving;

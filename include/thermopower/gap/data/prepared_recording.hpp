@@ -93,6 +93,11 @@ public:
     for (plant::NotJudged& note : inputs_.not_judged)
       if (note.what == column) note.sentence = sentence;
   }
+  /// Says whether the first command of a run was in force before that already. @param run  place among the runs
+  void set_driven_before(std::size_t run, bool was) {
+    believed_.runs = believed_.spans();
+    believed_.runs[run].was_driven = inputs_.runs[run].was_driven = was;
+  }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
 

@@ -5,6 +5,7 @@
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/current_noise.hpp>
+#include <thermopower/gap/data/driven_before.hpp>
 #include <thermopower/gap/data/experiment.hpp>
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
@@ -92,19 +93,38 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
   });
 }
 
+/// Whether a recording is of an axis whose command was logged.
+inline bool is_commanded(const PreparedRecording& one) {
+  return one.inputs().axis() && !one.inputs().closed_loop;
+}
+
+/// The command of the model's axis in a recording.
+inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecording& one) {
+  return plant::command(one.inputs(), model.axis->voltage_driven());
+}
+
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
+/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
+inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
+  if (!model.has_axis()) return;
+  DrivenBefore before;
+  for (const PreparedRecording& one : checked.train)
+    if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
+  for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
+    const std::vector<RunSpan>& runs = one.inputs().runs;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (const auto was = before.was(one.inputs(), command_of(model, one), runs[i]); was && !runs[i].goes_on)
+        one.set_driven_before(i, *was);
+  });
+}
+
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
 inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
   CommandBetweenRows between(horizon_s);
-  const auto is_commanded = [](const PreparedRecording& one) {
-    return one.inputs().axis() && !one.inputs().closed_loop;
-  };
-  const auto command_of = [&](const PreparedRecording& one) -> const Eigen::VectorXd& {
-    return plant::command(one.inputs(), model.axis->voltage_driven());
-  };
   for (const PreparedRecording& one : checked.train)
-    if (is_commanded(one)) between.add(one.inputs(), command_of(one));
+    if (is_commanded(one)) between.add(one.inputs(), command_of(model, one));
   const double noise = between.noise();
   const auto share = between.steady();
   if (!share && !(noise > 0.0)) return;
@@ -121,7 +141,7 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
            "went on between the rows, as the motion shows: its mean until the next row is taken, " +
                short_number(100.0 * share->value) + " % of the way to that one's",
            "log the command at the rate it is set, or the mean of it between the rows");
-      const Eigen::VectorXd& command = command_of(one);
+      const Eigen::VectorXd& command = command_of(model, one);
       const std::vector<RunSpan> runs = one.recording().spans();
       const Eigen::VectorXd steps = steps_of(command, runs);
       UnknownCommand unknown;
@@ -241,6 +261,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   together.settle(others);
   if (!options.as_recorded) {
     mend_what_lags(model, result, others);
+    read_what_drove_before(model, result);
     read_between_rows(model, result, options.horizon_s, others);
     read_targets_between_rows(model, result, catalogue, others);
     read_current_noise(model, result, others);
