@@ -95,6 +95,9 @@ public:
     return false;
   }
 
+  /// How the motor warms by heat and loss.
+  const WarmingTold& warming() const { return warming_; }
+
   /// Adds wrong units and signs, each mistake once.
   void find(FindingList& list) const {
     if (find_supply(list) || find_current(list) || find_time(list)) return;

@@ -13,6 +13,7 @@
 #include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/detail/recordings_together.hpp>
+#include <thermopower/gap/detail/run_units.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
@@ -64,6 +65,19 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
     if (kept) one.read_earlier_by(model, late, lag_s);
     else one.leave_out(model, late, plant::the_variable(late) + " is not judged: it " + words);
   });
+}
+
+/// Looks for runs that are in another unit than the others.
+/// @param spans  given_spans() of the recordings in training, then of those held out
+inline void check_runs(const Model& model, const CheckedRecordings& checked,
+                       const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
+                       std::vector<Finding>& findings) {
+  if (model.own) return;
+  RunUnits runs(model, catalogue);
+  std::size_t at = 0;
+  for (const auto* all : {&checked.train, &checked.held_out})
+    for (const PreparedRecording& one : *all) runs.add(one, spans[at++]);
+  runs.find(findings);
 }
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
@@ -242,10 +256,12 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
         for (const double power : one.column("power_param"))
           if (power > most_power) most_power = power;
   RecordingsTogether together;
+  std::vector<std::vector<RunSpan>> spans;
   const auto take = [&](std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
     to.reserve(recordings.size());
     for (Recording& one : recordings) {
       if (!model.own) together.add(one);
+      spans.push_back(given_spans(one));
       to.emplace_back(model, one, options.as_recorded);
       const std::vector<Finding>& own = to.back().findings();
       others.insert(others.end(), own.begin(), own.end());
@@ -256,6 +272,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   };
   take(train, result.train);
   take(held_out, result.held_out);
+  check_runs(model, result, spans, catalogue, others);
   leave_out_what_is_dead(model, result, options.as_recorded, others);
   together.find_air(others);
   together.settle(others);

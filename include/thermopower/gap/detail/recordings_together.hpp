@@ -119,11 +119,14 @@ private:
     double coldest;  // of the motor
   };
 
-  static bool is_unit(const Finding& one) {
+  static bool is_decided(const Finding& one) {
     return one.severity == Severity::error &&
            (one.kind == FindingKind::wrong_unit || one.kind == FindingKind::wrong_sign ||
             one.kind == FindingKind::swapped_columns);
   }
+
+  /// Whether it is about the unit of a whole column: what is said of some runs names them itself.
+  static bool is_unit(const Finding& one) { return is_decided(one) && one.rows.empty(); }
 
   /// How many recordings show what a finding says; one that names no option counts for nothing.
   static std::ptrdiff_t weight_of(const Finding& one, const std::vector<Finding>& findings) {
@@ -135,7 +138,7 @@ private:
 
   static bool is_found(const std::vector<Finding>& findings, const std::string& recording) {
     return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) {
-      return is_unit(one) && one.recording == recording &&
+      return is_decided(one) && one.recording == recording &&
              (one.column == "ambient_C" || one.column == "motor_C");
     });
   }
