@@ -22,7 +22,7 @@ namespace thermopower::gap::engine {
 /// Thresholds of the check of runs against each other.
 /// Held by tests/gap/data/run_units_test.cpp.
 struct RunUnitThresholds {
-  std::size_t asked = 5;  ///< odd runs, the oddest first; all of them once one is in another unit
+  std::size_t asked = 4;  ///< odd runs, the oddest first; all of them once one is in another unit
   std::size_t named = 8;  ///< runs that a sentence names
   double fahrenheit_heat =
       1.35;                 ///< by which a heat warms a motor more in degrees Fahrenheit than in other runs
@@ -106,23 +106,18 @@ private:
     std::stable_sort(odd.begin(), odd.end(), is_odder);
     if (others.empty()) others.push_back(odd.back()), odd.pop_back();
     if (odd.empty()) return;
-    const PreparedRecording usual = on_its_own(*others.front());
-    for (std::size_t i = 0; i < odd.size() && (i < RunUnitThresholds().asked || any_wrong(odd)); ++i)
+    const PreparedRecording usual = on_its_own(*others.front()), oddest = on_its_own(*odd.front());
+    ask(*odd.front(), oddest, odd.front()->odd, usual);
+    for (std::size_t i = 1; i < odd.size() && (i < RunUnitThresholds().asked || any_wrong(odd)); ++i)
       ask(*odd[i], on_its_own(*odd[i]), odd[i]->odd, usual);
-    ask_the_others(odd, others, usual);
-  }
-
-  /// Most runs may be those that are in another unit.
-  void ask_the_others(const std::vector<Asked*>& odd, const std::vector<Asked*>& others,
-                      const PreparedRecording& usual) {
     OddSizes all;
     for (const Asked* one : odd)
       all.columns.insert(all.columns.end(), one->odd.columns.begin(), one->odd.columns.end());
-    const PreparedRecording oddest = on_its_own(*odd.front());
     ask(*others.front(), usual, all, oddest);
     if (!is_wrong(*others.front())) return;
     for (const Asked* one : odd)
       if (is_wrong(*one) && one->unit->mend == others.front()->unit->mend) return forget_all();
+    // Most runs are those that are in another unit.
     for (std::size_t i = 1; i < others.size(); ++i) ask(*others[i], on_its_own(*others[i]), all, oddest);
   }
 
