@@ -207,16 +207,26 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   joint.ripple_share = 0.15;
   Model model = test::axis_model();
   model.axis->viscous_Nms_per_rad *= 8.0;
-  const Diagnosis diagnosis =
-      diagnose(model, {test::axis_recording(joint, 4000, 1)}, {test::axis_recording(joint, 4000, 2)});
+  const std::vector<Recording> train{test::axis_recording(joint, 4000, 1)},
+      held_out{test::axis_recording(joint, 4000, 2)};
+  const auto named = [](const Diagnosis& diagnosis) {
+    std::vector<std::string> ids;
+    for (const Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
+    return ids;
+  };
+  Options in_pairs;
+  in_pairs.effects_at_once = 2;
+  const Diagnosis diagnosis = diagnose(model, train, held_out, in_pairs);
   INFO(diagnosis.reason);
   CHECK(diagnosis.verdict == Verdict::partial);
-  std::vector<std::string> named;
-  for (const Cause& cause : diagnosis.cause) named.push_back(cause.effect);
-  CHECK(named == std::vector<std::string>{"cable_spring", "coulomb_friction"});
+  CHECK(named(diagnosis) == std::vector<std::string>{"cable_spring", "coulomb_friction"});
   CHECK(test::parameter_of(diagnosis, "Nm_per_rad") == Approx(0.02).epsilon(0.1));
   const auto moved = std::find_if(diagnosis.constants.begin(), diagnosis.constants.end(),
                                   [](const MovedConstant& one) { return one.name == "viscous"; });
   REQUIRE(moved != diagnosis.constants.end());
   CHECK(moved->fitted < 2e-3);  // 1e-3 in truth
+  const Diagnosis all = diagnose(model, train, held_out);
+  INFO(all.reason);
+  CHECK(all.verdict == Verdict::explained);
+  CHECK(named(all) == std::vector<std::string>{"cable_spring", "coulomb_friction", "torque_ripple"});
 }

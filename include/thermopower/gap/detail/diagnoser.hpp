@@ -90,7 +90,17 @@ private:
   static bool is_found_by_a_third(const Attempt& attempt, const Conclusion& conclusion) {
     const Explanation& found = attempt.candidates[conclusion.chosen].explanation;
     const bool is_named = conclusion.verdict != Verdict::unexplained && !conclusion.second_is_open;
-    return is_named && !is_known(attempt.in_pairs->candidates, found);
+    return is_named && !is_known(attempt.in_pairs->candidates, found) &&
+           !(conclusion.leaves_a_rest && are_of_one_place(found));
+  }
+
+  /// Whether there are three causes or more and all of one submodel: spring, weight and cogs are together nearly any load that goes
+  /// with the angle, such as an end stop.
+  static bool are_of_one_place(const Explanation& found) {
+    const auto same = [&](const CatalogueEntry* one) {
+      return one->info.submodel == found.effects.front()->info.submodel;
+    };
+    return found.effects.size() > 2 && std::all_of(found.effects.begin(), found.effects.end(), same);
   }
 
   /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
