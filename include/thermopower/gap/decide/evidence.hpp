@@ -76,12 +76,19 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
   return !has_another || !(largest > 0.0) || candidate.fit.information(row, row) * largest * largest > 1.0;
 }
 
+/// Whether a constant went as far as it may. @param at  its coordinate
+inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
+  constexpr double nearly = 0.999;
+  return at > nearly * farthest(constant) ||
+         (at < -nearly * farthest_down(constant) && !may_vanish(constant));
+}
+
 /// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
 /// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
 /// friction does not count: at its bound friction sticks.)
 ///
 /// Nor is one beside which a constant went as far as it may: then the equation is another one. (The transition of a friction that
-/// the model has does not count either.)
+/// the model has does not count either, nor what may vanish and does.)
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
 /// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than half a run, a
@@ -93,11 +100,10 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
   for (int index : candidate.explanation.released)
     if (at_bound[static_cast<std::size_t>(index)]) return true;
   std::size_t at = model.calibrated().size();
-  constexpr double nearly = 0.999;
   const std::vector<CalibratedConstant> constants = model.calibrated();
   for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
     if (!plant::names_a_transition(constants[i].fields.front()) &&
-        std::abs(candidate.fit.point[static_cast<Eigen::Index>(i)]) > nearly * farthest(constants[i]))
+        is_as_far_as_it_may(constants[i], candidate.fit.point[static_cast<Eigen::Index>(i)]))
       return true;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;

@@ -125,6 +125,16 @@ inline double farthest(const CalibratedConstant& constant) {
   return constant.is_place ? known_constants.farthest_place_rad : std::log(known_constants.farthest_factor);
 }
 
+/// Whether a constant may nearly vanish: a viscous friction that was fitted without the dry one has taken that in, and may be next
+/// to nothing beside it.
+inline bool may_vanish(const CalibratedConstant& constant) { return constant.id == "viscous"; }
+
+/// How far a constant may be moved down, as farthest() has it.
+inline double farthest_down(const CalibratedConstant& constant) {
+  constexpr double to_next_to_nothing = 2.0;  // a hundredth
+  return may_vanish(constant) ? to_next_to_nothing * farthest(constant) : farthest(constant);
+}
+
 /// The coordinates of an explanation: first one per constant (logarithm of its factor, of a place what is added), then its effects'
 /// parameters. A constant that is a cause has no prior; the others have that of what is known of them, and in
 /// the empty explanation they also stay within it: further away, the constant is the cause.
@@ -137,13 +147,13 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
     const bool free = std::find(explanation.released.begin(), explanation.released.end(), index) !=
                       explanation.released.end();
     const double sd = model.uncertainty_of(constant);
-    const double reach = explanation.size() > 0 ? farthest(constant)
-                         : constant.has_slack   ? known_constants.within * sd
-                                                : 0.0;
+    const double slack = constant.has_slack ? known_constants.within * sd : 0.0,
+                 down = explanation.size() > 0 ? farthest_down(constant) : slack,
+                 up = explanation.size() > 0 ? farthest(constant) : slack;
     list.push_back({plant::calibration_id(constant.id),
                     constant.is_place ? "rad" : "1",
-                    -reach,
-                    reach,
+                    -down,
+                    up,
                     0.0,
                     {},
                     !constant.is_place,
