@@ -118,7 +118,7 @@ struct DecisionThresholds {
   /// that is another device.
   double bent_by = 2.5;
   /// Share of the gap up to which a cause may take such a constant along: a viscous friction that was fitted without the dry one
-  /// is three to fifteen times too large, and goes back with it. What takes four fifths is no stand-in: of 136 draws of unknown
+  /// is three to thirty times too large, and goes back with it. What takes four fifths is no stand-in: of 136 draws of unknown
   /// causes (the benchmark's, seed 20270220) those that bent a constant left 0.31 and more.
   double may_leave_bent = 0.2;
   /// The same, up to which one cause may leave a course of its own in time, and two its square: a further effect, smaller by an
