@@ -35,12 +35,15 @@ inline bool are_dearer(const Candidate& constants, const Candidate& cause, const
   return price_of_constants(constants, model) - price_of_constants(cause, model) > decision.dear_constants;
 }
 
+/// Whether the constants of a candidate are so far off that a second cause could stand in their place.
+inline bool may_hide_a_cause(const Candidate& candidate, const Model& model) {
+  return price_of_constants(candidate, model) > decision.rarity + decision.dear_constants;
+}
+
 /// Multiple of the noise above which a part of a set leaves room for a further cause: less is needed where it comes so near with
 /// constants far off alone.
 inline double least_room_beside(const Candidate& part, const Model& model) {
-  return price_of_constants(part, model) > decision.rarity + decision.dear_constants
-             ? decision.room_beside_dear_constants
-             : decision.room_for_second;
+  return may_hide_a_cause(part, model) ? decision.room_beside_dear_constants : decision.room_for_second;
 }
 
 /// Whether a set keeps the constants where they are known to be, at the noise, while a part of it reaches that with constants
