@@ -17,13 +17,6 @@ using namespace thermopower::gap;
 
 namespace {
 
-std::vector<std::string> named(const Diagnosis& diagnosis) {
-  std::vector<std::string> ids;
-  for (const Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 /// A thermometer shows a part of the rise above the air, and late.
 Recording shown_in_part(double share, int rows, std::uint64_t seed) {
   test::BenchFault fault;
@@ -70,65 +63,13 @@ Recording set_and_held(double coupled_share, double length_s, std::uint64_t seed
   return r;
 }
 
-/// A weight on an axis whose friction sticks at rest.
-struct Turned {
-  double friction_Nm = 0.0, weight_Nm = 0.0;
-  double soft_within_rad_per_s = 0.0;  ///< of the friction; 0: it sticks
-};
-
-Recording turned(const Turned& axis, int rows, std::uint64_t seed) {
-  constexpr double interval_s = 0.01, J = 1e-3, degrees = 57.29577951308232;
-  constexpr int steps = 200;
-  test::Noise noise(seed);
-  Recording r;
-  r.name = "axis";
-  r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double theta = 0.0, omega = 0.0;
-  for (int i = 0; i < rows; ++i) {
-    const double t_s = interval_s * i, phase = static_cast<double>(seed);
-    r.t_s[i] = t_s;
-    drive[i] = 0.10 * std::sin(2.1 * t_s + phase) + 0.08 * std::sin(5.3 * t_s + 1.0 + phase) +
-               0.05 * std::sin(11.0 * t_s) + 0.03 * std::sin(0.7 * t_s + 2.0 * phase);
-    angle[i] = degrees * theta + 0.02 * noise();
-    rate[i] = degrees * omega + 0.15 * noise();
-    for (int k = 0; k < steps; ++k) {
-      const double h = interval_s / steps;
-      double push_Nm = 0.2 * drive[i] - 1e-3 * omega - axis.weight_Nm * std::sin(theta + 0.4);
-      if (axis.soft_within_rad_per_s > 0.0) {
-        push_Nm -= axis.friction_Nm * std::fmax(-1.0, std::fmin(1.0, omega / axis.soft_within_rad_per_s));
-        omega += h * push_Nm / J;
-      } else {
-        const double next = omega + h * push_Nm / J, brake = h * axis.friction_Nm / J;
-        omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
-      }
-      theta += h * omega;
-    }
-  }
-  r.set("drive_A", drive);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
-  return r;
-}
-
-Model axis() {
-  Model model;
-  model.name = "axis";
-  model.axis = RigidAxisModel{1e-3, 1e-3, 0.2};
-  return model;
-}
-
 }  // namespace
 
 TEST_CASE("a thermometer's gain beside its lag is not a re-scaling of every constant") {
-  Model model;
-  model.name = "motor";
-  model.supply = SupplyModel{12.0};
-  model.current = OhmicCurrentModel{8.0, 0.00393, 25.0};
-  model.thermal = LumpedThermalModel{60.0, 0.15};
-  const Diagnosis diagnosis = diagnose(model, {shown_in_part(0.8, 1200, 3)}, {shown_in_part(0.8, 800, 4)});
+  const Diagnosis diagnosis =
+      diagnose(test::bench_model(), {shown_in_part(0.8, 1200, 3)}, {shown_in_part(0.8, 800, 4)});
   INFO(diagnosis.reason);
-  std::vector<std::vector<std::string>> said{named(diagnosis)};
+  std::vector<std::vector<std::string>> said{test::causes_of(diagnosis)};
   for (std::vector<std::string> one : diagnosis.alternatives) {
     std::sort(one.begin(), one.end());
     said.push_back(one);
@@ -149,28 +90,30 @@ TEST_CASE("a current that is set and held heats as it stands: it is no slow sens
     CHECK((finding.column != "current_A" || finding.action == FindingAction::none));
   const Diagnosis split = diagnose(coil, {set_and_held(0.6, 2400.0, 7)}, {set_and_held(0.6, 1600.0, 8)});
   INFO(split.reason);
-  CHECK(named(split) == std::vector<std::string>{"second_thermal_mass"});
+  CHECK(test::causes_of(split) == std::vector<std::string>{"second_thermal_mass"});
 }
 
 TEST_CASE("a friction that the model has may stick, and hides nothing beside it") {
-  Turned weighed;
-  weighed.friction_Nm = 0.006;
+  test::AxisFault weighed;
+  weighed.coulomb_Nm = 0.006;
   weighed.weight_Nm = 0.010;
-  Model model = axis();
+  Model model = test::axis_model();
   model.effects["coulomb_friction"] = {{"Nm", 0.006}, {"transition_rad_per_s", 0.01}};
-  const Diagnosis diagnosis = diagnose(model, {turned(weighed, 2000, 3)}, {turned(weighed, 1200, 8)});
+  const Diagnosis diagnosis =
+      diagnose(model, {test::axis_recording(weighed, 2000, 3)}, {test::axis_recording(weighed, 1200, 8)});
   INFO(diagnosis.reason);
-  CHECK(named(diagnosis) == std::vector<std::string>{"imbalance"});
+  CHECK(test::causes_of(diagnosis) == std::vector<std::string>{"imbalance"});
   CHECK(diagnosis.verdict == Verdict::explained);
 }
 
 TEST_CASE("friction that softens within two thirds of a radian a second is dry friction") {
-  Turned soft;
-  soft.friction_Nm = 0.008;
+  test::AxisFault soft;
+  soft.coulomb_Nm = 0.008;
   soft.soft_within_rad_per_s = 0.7;
-  const Diagnosis diagnosis = diagnose(axis(), {turned(soft, 2000, 3)}, {turned(soft, 1200, 8)});
+  const Diagnosis diagnosis = diagnose(test::axis_model(), {test::axis_recording(soft, 2000, 3)},
+                                       {test::axis_recording(soft, 1200, 8)});
   INFO(diagnosis.reason);
-  CHECK(named(diagnosis) == std::vector<std::string>{"coulomb_friction"});
+  CHECK(test::causes_of(diagnosis) == std::vector<std::string>{"coulomb_friction"});
 }
 
 TEST_CASE("a drag that goes with the rate is no noise that remembers, however rough the rate is") {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #include "../catch.hpp"
 #include "fixture.hpp"
+#include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
 
@@ -248,10 +249,7 @@ TEST_CASE("two effects at once are both named") {
   measure(train, truth, 5);
   measure(held_out, truth, 6);
   const Diagnosis diagnosis = diagnose(axis_model(), {train}, {held_out});
-  std::vector<std::string> named;
-  for (const Cause& cause : diagnosis.cause) named.push_back(cause.effect);
-  std::sort(named.begin(), named.end());
-  CHECK(named == std::vector<std::string>{"coulomb_friction", "imbalance"});
+  CHECK(test::causes_of(diagnosis) == std::vector<std::string>{"coulomb_friction", "imbalance"});
 }
 
 TEST_CASE("a gap that no effect explains is called unexplained") {

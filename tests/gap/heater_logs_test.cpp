@@ -4,6 +4,7 @@
 // Heaters as people log them: more than one thing that their simulation lacks, at once. What is missing then follows
 // nothing recorded, as a heat would that no column shows; only with the causes in the model it is seen to be none.
 #include "../catch.hpp"
+#include "plants.hpp"
 
 #include <thermopower/gap/diagnose.hpp>
 
@@ -112,13 +113,6 @@ Recording hotend(double air_C, unsigned seed, const std::vector<Hold>& holds) {
   return r;
 }
 
-std::vector<std::string> causes_of(const Diagnosis& found) {
-  std::vector<std::string> ids;
-  for (const Cause& one : found.cause) ids.push_back(one.effect);
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 // The constants are a least-squares fit of one body to such a recording.
 TEST_CASE("two causes whose sum follows nothing recorded are named where the course is over with them") {
   for (const unsigned seed : {3u, 4u, 5u, 6u}) {
@@ -126,7 +120,7 @@ TEST_CASE("two causes whose sum follows nothing recorded are named where the cou
     const Diagnosis found =
         diagnose(lumped(2.4, 0.0243), {two_heaters(23.5, seed)}, {two_heaters(22.0, seed + 100)});
     CHECK((found.verdict == Verdict::partial || found.verdict == Verdict::explained));
-    CHECK(causes_of(found) == std::vector<std::string>{"neighbour_heating", "thermometer_lag"});
+    CHECK(test::causes_of(found) == std::vector<std::string>{"neighbour_heating", "thermometer_lag"});
   }
 }
 
@@ -153,7 +147,7 @@ TEST_CASE("what a hotend loses is named beside its thermistor's lag") {
                 {{300, 200}, {700, 230}, {1000, 150}, {1500, 245}, {2000, 100}, {2600, 210}, {3000, 0}})},
         {hotend(21.0, seed + 1, {{400, 215}, {900, 120}, {1300, 240}, {1700, 180}, {2200, 0}})});
     // The loss is of both kinds, so that either is right.
-    const std::vector<std::string> causes = causes_of(found), losses{"natural_convection", "radiation"};
+    const std::vector<std::string> causes = test::causes_of(found), losses{"natural_convection", "radiation"};
     CHECK(std::find_first_of(causes.begin(), causes.end(), losses.begin(), losses.end()) != causes.end());
   }
 }

@@ -335,19 +335,13 @@ TEST_CASE(
   Joint joint;
   joint.weight_Nm = 0.012;
   joint.coulomb_Nm = 0.005;
-  const auto named = [](const Diagnosis& diagnosis) {
-    std::vector<std::string> ids;
-    for (const Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
-    std::sort(ids.begin(), ids.end());
-    return ids;
-  };
   const int as_a_user_gets_it = Options().effects_at_once;
-  CHECK(named(diagnosed(joint, as_a_user_gets_it)) ==
+  CHECK(test::causes_of(diagnosed(joint, as_a_user_gets_it)) ==
         std::vector<std::string>{"coulomb_friction", "imbalance"});
   joint.cogs_Nm = 0.006;
   const Diagnosis all = diagnosed(joint, as_a_user_gets_it);
   INFO(all.reason);
-  CHECK(named(all) == std::vector<std::string>{"cogging", "coulomb_friction", "imbalance"});
+  CHECK(test::causes_of(all) == std::vector<std::string>{"cogging", "coulomb_friction", "imbalance"});
   CHECK(all.verdict == Verdict::explained);
   CHECK(all.gap.front().after < 1.5 * all.gap.front().noise_floor);
 }

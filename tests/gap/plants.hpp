@@ -6,10 +6,12 @@
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace test {
 
@@ -37,6 +39,20 @@ inline double parameter_of(const thermopower::gap::Diagnosis& diagnosis, const s
     for (const thermopower::gap::ParameterEstimate& one : cause.parameters)
       if (one.name == name) return one.value;
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The effects that a diagnosis names, in its order.
+inline std::vector<std::string> causes_in_order(const thermopower::gap::Diagnosis& diagnosis) {
+  std::vector<std::string> ids;
+  for (const thermopower::gap::Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
+  return ids;
+}
+
+/// The same in alphabetical order.
+inline std::vector<std::string> causes_of(const thermopower::gap::Diagnosis& diagnosis) {
+  std::vector<std::string> ids = causes_in_order(diagnosis);
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
 inline thermopower::gap::Model bench_model() {
@@ -110,6 +126,8 @@ struct AxisFault {
   int delay_rows = 0;
   double ripple_share = 0.0;    ///< of the torque, six times a turn
   double thinning_per_K = 0.0;  ///< of viscous friction with the motor's temperature, which is recorded then
+  double weight_Nm = 0.0;       ///< of a load off the axis
+  double soft_within_rad_per_s = 0.0;  ///< of the friction; 0: it sticks
 };
 
 /// An axis driven by a sum of sines.
@@ -135,10 +153,12 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
       const double h = 5e-5;
       const double thin = std::exp(-fault.thinning_per_K * (motor_C[i] - 25.0));
       const double push = torque * (1.0 + fault.ripple_share * std::sin(6.0 * theta)) - 1e-3 * thin * omega -
-                          fault.spring_Nm_per_rad * theta;
+                          fault.spring_Nm_per_rad * theta - fault.weight_Nm * std::sin(theta + 0.4);
       const double next = omega + h * push / 1e-3;
       const double brake = h * fault.coulomb_Nm * (1.0 + fault.run_out_share * std::sin(theta)) / 1e-3;
-      omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
+      if (fault.soft_within_rad_per_s > 0.0)
+        omega = next - brake * std::fmax(-1.0, std::fmin(1.0, omega / fault.soft_within_rad_per_s));
+      else omega = next > brake ? next - brake : next < -brake ? next + brake : 0.0;
       theta += h * omega;
     }
   }

@@ -209,17 +209,12 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   model.axis->viscous_Nms_per_rad *= 8.0;
   const std::vector<Recording> train{test::axis_recording(joint, 4000, 1)},
       held_out{test::axis_recording(joint, 4000, 2)};
-  const auto named = [](const Diagnosis& diagnosis) {
-    std::vector<std::string> ids;
-    for (const Cause& cause : diagnosis.cause) ids.push_back(cause.effect);
-    return ids;
-  };
   Options in_pairs;
   in_pairs.effects_at_once = 2;
   const Diagnosis diagnosis = diagnose(model, train, held_out, in_pairs);
   INFO(diagnosis.reason);
   CHECK(diagnosis.verdict == Verdict::partial);
-  CHECK(named(diagnosis) == std::vector<std::string>{"cable_spring", "coulomb_friction"});
+  CHECK(test::causes_in_order(diagnosis) == std::vector<std::string>{"cable_spring", "coulomb_friction"});
   CHECK(test::parameter_of(diagnosis, "Nm_per_rad") == Approx(0.02).epsilon(0.1));
   const auto moved = std::find_if(diagnosis.constants.begin(), diagnosis.constants.end(),
                                   [](const MovedConstant& one) { return one.name == "viscous"; });
@@ -228,5 +223,6 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   const Diagnosis all = diagnose(model, train, held_out);
   INFO(all.reason);
   CHECK(all.verdict == Verdict::explained);
-  CHECK(named(all) == std::vector<std::string>{"cable_spring", "coulomb_friction", "torque_ripple"});
+  CHECK(test::causes_in_order(all) ==
+        std::vector<std::string>{"cable_spring", "coulomb_friction", "torque_ripple"});
 }

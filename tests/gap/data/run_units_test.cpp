@@ -4,6 +4,7 @@
 // Units that differ between the runs of a recording, of a joint whose friction takes a third of the drive and of a motor whose
 // case hides most of its heat; and runs that differ for another reason.
 #include "../../catch.hpp"
+#include "rough_recordings.hpp"
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -17,10 +18,15 @@
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
+using test::cased_model;
+using test::change;
+using test::deg;
+using test::fahrenheit;
+using test::kelvin;
+using test::rubbing_model;
+using test::times;
 
 namespace {
-
-constexpr double deg = 57.29577951308232;
 
 /// What a run of the axis differs by from others.
 struct AxisRun {
@@ -29,43 +35,8 @@ struct AxisRun {
   double friction = 1.0;  ///< times the usual one
 };
 
-Model axis_model(bool voltage = false) {
-  Model model;
-  model.axis = RigidAxisModel{2e-3, 1e-3, 0.1};
-  if (voltage) model.axis->resistance_ohm = 2.0;
-  return model;
-}
-
-/// An axis of that model with dry friction, every 10 ms. @param voltage  it is driven by one, through 2 ohm
 Recording axis(AxisRun run, bool voltage = false) {
-  constexpr int rows = 1000, parts = 50;
-  constexpr double step_s = 0.01, h = step_s / parts, friction_Nm = 0.02;
-  std::mt19937 numbers(run.seed);
-  std::normal_distribution<double> noise;
-  std::uniform_real_distribution<double> phase(0.0, 6.28);
-  const double a = phase(numbers), b = phase(numbers), c = phase(numbers);
-  Recording r;
-  r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double theta = 0.0, omega = 0.0;
-  for (int i = 0; i < rows; ++i) {
-    const double t = r.t_s[i] = step_s * i;
-    drive[i] = run.drive *
-               (0.3 * std::sin(2.0 * t + a) + 0.2 * std::sin(5.3 * t + b) + 0.1 * std::sin(13.7 * t + c));
-    angle[i] = theta * deg + 0.02 * noise(numbers);
-    rate[i] = omega * deg + 0.15 * noise(numbers);
-    for (int k = 0; k < parts; ++k) {
-      const double friction = run.friction * friction_Nm * std::tanh(omega / 0.01);
-      const double ampere = voltage ? (2.0 * drive[i] - 0.1 * omega) / 2.0 : drive[i];
-      omega += h * (0.1 * ampere - 1e-3 * omega - friction) / 2e-3;
-      theta += h * omega;
-    }
-  }
-  if (voltage) r.set("voltage_V", 2.0 * drive);
-  else r.set("drive_A", drive);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
-  return r;
+  return test::recorded(test::RubbingAxis{run.seed, run.drive, 0.02 * run.friction, 1000, 0.01, voltage});
 }
 
 /// What a run of the bench differs by from others.
@@ -76,65 +47,9 @@ struct BenchRun {
   double supply_V = 12.0;
 };
 
-Model bench_model() {
-  Model model;
-  model.supply = SupplyModel{12.0};
-  model.current = OhmicCurrentModel{10.0, 0.00393, 25.0};
-  model.thermal = LumpedThermalModel{80.0, 0.15};
-  return model;
-}
-
-/// A motor of that model's constants, but with a winding of a quarter of its heat capacity in a case, every 2 s.
 Recording bench(BenchRun run) {
-  constexpr int rows = 900, parts = 20;
-  constexpr double step_s = 2.0, h = step_s / parts;
-  std::mt19937 numbers(run.seed);
-  std::normal_distribution<double> noise;
-  std::uniform_int_distribution<int> level(0, 250), length(20, 120);
-  Recording r;
-  r.t_s.resize(rows);
-  Eigen::VectorXd power(rows), current(rows), motor(rows), air(rows), supply(rows);
-  double winding = run.start_C, housing = run.start_C;
-  int left = 0, now = 0;
-  for (int i = 0; i < rows; ++i) {
-    if (left-- == 0) now = level(numbers) < 60 ? 0 : level(numbers), left = length(numbers);
-    r.t_s[i] = step_s * i;
-    power[i] = now;
-    const auto ohm = [&] { return 10.0 * (1.0 + 0.00393 * (winding - 25.0)); };
-    const double volts = run.supply_V * std::sqrt(now / 255.0);
-    current[i] = volts / ohm() + 0.003 * noise(numbers);
-    motor[i] = std::round(10.0 * (winding + 0.1 * noise(numbers))) / 10.0;
-    air[i] = run.air_C + 0.05 * noise(numbers);
-    supply[i] = run.supply_V + 0.01 * noise(numbers);
-    for (int k = 0; k < parts; ++k) {
-      const double inward_W = 0.5 * (winding - housing);
-      winding += h * (volts * volts / ohm() - inward_W) / 20.0;
-      housing += h * (inward_W - 0.15 * (housing - run.air_C)) / 60.0;
-    }
-  }
-  r.set("power_param", power);
-  r.set("current_A", current);
-  r.set("motor_C", motor);
-  r.set("ambient_C", air);
-  r.set("supply_V", supply);
-  return r;
+  return test::recorded(test::CasedMotor{run.seed, run.air_C, run.start_C, run.supply_V, 900});
 }
-
-void change(Recording& r, const std::string& column, const std::function<double(double)>& f) {
-  if (column == "t_s") {
-    for (double& value : r.t_s) value = f(value);
-    return;
-  }
-  Eigen::VectorXd values = r.column(column);
-  for (double& value : values) value = f(value);
-  r.set(column, values);
-}
-
-std::function<double(double)> times(double factor) {
-  return [factor](double x) { return factor * x; };
-}
-double fahrenheit(double x) { return 1.8 * x + 32.0; }
-double kelvin(double x) { return x + 273.15; }
 
 /// The runs "a", "b", ... as one recording.
 Recording joined(const std::string& name, const std::vector<Recording>& runs) {
@@ -212,7 +127,7 @@ void check_cases(const Model& model, const std::vector<Recording>& sound, const 
 }  // namespace
 
 TEST_CASE("a run of an axis in another unit than the others is named") {
-  check_cases(axis_model(), {axis({1}), axis({2, 0.7}), axis({3})},
+  check_cases(rubbing_model(), {axis({1}), axis({2, 0.7}), axis({3})},
               {{{{"drive_A", times(1e3)}}, "drive_A", "--column drive_A=drive_A:mA"},
                {{{"rate_dps", times(1.0 / deg)}, {"angle_deg", times(1.0 / deg)}},
                 "rate_dps",
@@ -221,19 +136,19 @@ TEST_CASE("a run of an axis in another unit than the others is named") {
                {{{"rate_dps", times(1.0 / 6.0)}}, "rate_dps", "--column rate_dps=rate_dps:rpm"},
                {{{"angle_deg", times(1.0 / deg)}}, "angle_deg", "--column angle_deg=angle_deg:rad"},
                {{{"t_s", times(1e3)}}, "t_s", "--column t_s=t_s:ms"}});
-  check_cases(axis_model(true), {axis({1}, true), axis({2}, true), axis({3}, true)},
+  check_cases(rubbing_model(true), {axis({1}, true), axis({2}, true), axis({3}, true)},
               {{{{"voltage_V", times(1e3)}}, "voltage_V", "--column voltage_V=voltage_V:mV"}});
   std::vector<Recording> angles;
   for (const unsigned seed : {1U, 2U, 3U}) {
     angles.push_back(axis({seed}));
     angles.back().remove("rate_dps");
   }
-  check_cases(axis_model(), angles,
+  check_cases(rubbing_model(), angles,
               {{{{"angle_deg", times(1.0 / deg)}}, "angle_deg", "--column angle_deg=angle_deg:rad"}});
 }
 
 TEST_CASE("a run of a bench in another unit than the others is named") {
-  check_cases(bench_model(), {bench({1}), bench({2}), bench({3})},
+  check_cases(cased_model(), {bench({1}), bench({2}), bench({3})},
               {{{{"motor_C", fahrenheit}, {"ambient_C", fahrenheit}},
                 "motor_C",
                 "--column motor_C=motor_C:degF --column ambient_C=ambient_C:degF"},
@@ -249,37 +164,37 @@ TEST_CASE("most runs, or all of a file, may be those in another unit") {
   std::vector<Recording> runs{axis({1}), axis({2}), axis({3})};
   change(runs[0], "drive_A", times(1e3));
   change(runs[2], "drive_A", times(1e3));
-  const std::vector<Finding> most = errors(axis_model(), {joined("log", runs)});
+  const std::vector<Finding> most = errors(rubbing_model(), {joined("log", runs)});
   CHECK(decision(most) == "drive_A of log [0, 1000) [2000, 3000) --column drive_A=drive_A:mA");
   CHECK_THAT(most.front().message,
              ContainsSubstring(" in 2 runs: 'a', rows 0 to 999; 'c', rows 2000 to 2999"));
   change(runs[1], "drive_A", times(1e3));
-  const std::vector<Finding> all = errors(axis_model(), {joined("log", runs)});
+  const std::vector<Finding> all = errors(rubbing_model(), {joined("log", runs)});
   CHECK(decision(all) == "drive_A of log --column drive_A=drive_A:mA");
   const std::vector<Finding> file =
-      errors(axis_model(), {joined("log", runs), joined("other", {axis({4}), axis({5})})});
+      errors(rubbing_model(), {joined("log", runs), joined("other", {axis({4}), axis({5})})});
   CHECK(decision(file) == "drive_A of log --column drive_A=drive_A:mA");
   CHECK_THAT(file.front().message, ContainsSubstring("this file alone"));
 }
 
 TEST_CASE("runs that differ for another reason are in no other unit") {
   for (const double drive : {0.5, 5.0, 60.0})
-    CHECK(errors(axis_model(), {joined("log", {axis({1}), axis({2, drive}), axis({3})})}).empty());
+    CHECK(errors(rubbing_model(), {joined("log", {axis({1}), axis({2, drive}), axis({3})})}).empty());
   // Dry friction holds it, or nothing drives it.
   for (const double drive : {0.0, 0.1, 0.3, 0.36})
-    CHECK(errors(axis_model(), {joined("log", {axis({1}), axis({2, drive}), axis({3})})}).empty());
-  CHECK(errors(axis_model(), {joined("log", {axis({1, 1.0, 0.1}), axis({2, 1.0, 2.5})})}).empty());
+    CHECK(errors(rubbing_model(), {joined("log", {axis({1}), axis({2, drive}), axis({3})})}).empty());
+  CHECK(errors(rubbing_model(), {joined("log", {axis({1, 1.0, 0.1}), axis({2, 1.0, 2.5})})}).empty());
   for (const double air_C : {-10.0, 45.0, 60.0, 72.0, 85.0})
-    CHECK(errors(bench_model(), {joined("log", {bench({1}), bench({2, air_C, air_C}), bench({3})})}).empty());
+    CHECK(errors(cased_model(), {joined("log", {bench({1}), bench({2, air_C, air_C}), bench({3})})}).empty());
   for (const double start_C : {45.0, 73.0, 100.0})
     CHECK(
-        errors(bench_model(), {joined("log", {bench({1}), bench({2, 22.0, start_C}), bench({3})})}).empty());
+        errors(cased_model(), {joined("log", {bench({1}), bench({2, 22.0, start_C}), bench({3})})}).empty());
   for (const double supply_V : {5.0, 24.0, 36.0})
     for (const bool logged : {true, false}) {
       INFO(supply_V << (logged ? " V" : " V, not logged"));
       std::vector<Recording> runs{bench({1}), bench({2, 22.0, 22.0, supply_V}), bench({3})};
       for (Recording& one : runs)
         if (!logged) one.remove("supply_V");
-      CHECK(errors(bench_model(), {joined("log", runs)}).empty());
+      CHECK(errors(cased_model(), {joined("log", runs)}).empty());
     }
 }

@@ -4,6 +4,7 @@
 // Units, signs and exchanged columns of recordings that the simulation does not follow whatever their units: a joint whose
 // friction takes half of the drive, and a motor whose case hides most of its heat.
 #include "../../catch.hpp"
+#include "rough_recordings.hpp"
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
@@ -17,107 +18,28 @@
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
+using test::cased_model;
+using test::change;
+using test::deg;
+using test::fahrenheit;
+using test::kelvin;
+using test::rubbing_model;
+using test::times;
 
 namespace {
 
-constexpr double deg = 57.29577951308232;
-
-Model axis_model() {
-  Model model;
-  model.axis = RigidAxisModel{2e-3, 1e-3, 0.1};
-  return model;
-}
-
-/// The axis of that model with dry friction of half its largest torque, every 5 ms.
+/// Friction of half its largest torque, every 5 ms.
 Recording axis(unsigned seed = 1) {
-  constexpr int rows = 3000, parts = 50;
-  constexpr double step_s = 5e-3, h = step_s / parts, friction_Nm = 0.03;
-  std::mt19937 numbers(seed);
-  std::normal_distribution<double> noise;
-  std::uniform_real_distribution<double> phase(0.0, 6.28);
-  const double a = phase(numbers), b = phase(numbers), c = phase(numbers);
-  Recording r;
+  Recording r = test::recorded(test::RubbingAxis{seed});
   r.name = "axis " + std::to_string(seed);
-  r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double theta = 0.0, omega = 0.0;
-  for (int i = 0; i < rows; ++i) {
-    const double t = r.t_s[i] = step_s * i;
-    drive[i] = 0.3 * std::sin(2.0 * t + a) + 0.2 * std::sin(5.3 * t + b) + 0.1 * std::sin(13.7 * t + c);
-    angle[i] = theta * deg + 0.02 * noise(numbers);
-    rate[i] = omega * deg + 0.15 * noise(numbers);
-    for (int k = 0; k < parts; ++k) {
-      const double friction = friction_Nm * std::tanh(omega / 0.01);
-      omega += h * (0.1 * drive[i] - 1e-3 * omega - friction) / 2e-3;
-      theta += h * omega;
-    }
-  }
-  r.set("drive_A", drive);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
   return r;
 }
 
-Model bench_model() {
-  Model model;
-  model.supply = SupplyModel{12.0};
-  model.current = OhmicCurrentModel{10.0, 0.00393, 25.0};
-  model.thermal = LumpedThermalModel{80.0, 0.15};
-  return model;
-}
-
-/// A motor of that model's constants, but with a winding of a quarter of its heat capacity in a case, every 2 s.
 Recording bench(unsigned seed = 1) {
-  constexpr int rows = 1500, parts = 20;
-  constexpr double step_s = 2.0, h = step_s / parts, air_C = 22.0;
-  std::mt19937 numbers(seed);
-  std::normal_distribution<double> noise;
-  std::uniform_int_distribution<int> level(0, 250), length(20, 120);
-  Recording r;
+  Recording r = test::recorded(test::CasedMotor{seed});
   r.name = "bench " + std::to_string(seed);
-  r.t_s.resize(rows);
-  Eigen::VectorXd power(rows), current(rows), motor(rows), air(rows), supply(rows);
-  double winding = 23.0, housing = 23.0;
-  int left = 0, now = 0;
-  for (int i = 0; i < rows; ++i) {
-    if (left-- == 0) now = level(numbers) < 60 ? 0 : level(numbers), left = length(numbers);
-    r.t_s[i] = step_s * i;
-    power[i] = now;
-    const auto ohm = [&] { return 10.0 * (1.0 + 0.00393 * (winding - 25.0)); };
-    const double volts = 12.0 * std::sqrt(now / 255.0);
-    current[i] = volts / ohm() + 0.003 * noise(numbers);
-    motor[i] = std::round(10.0 * (winding + 0.1 * noise(numbers))) / 10.0;
-    air[i] = air_C + 0.05 * noise(numbers);
-    supply[i] = 12.0 + 0.01 * noise(numbers);
-    for (int k = 0; k < parts; ++k) {
-      const double inward_W = 0.5 * (winding - housing);
-      winding += h * (volts * volts / ohm() - inward_W) / 20.0;
-      housing += h * (inward_W - 0.15 * (housing - air_C)) / 60.0;
-    }
-  }
-  r.set("power_param", power);
-  r.set("current_A", current);
-  r.set("motor_C", motor);
-  r.set("ambient_C", air);
-  r.set("supply_V", supply);
   return r;
 }
-
-void change(Recording& r, const std::string& column, const std::function<double(double)>& f) {
-  if (column == "t_s") {
-    for (double& value : r.t_s) value = f(value);
-    return;
-  }
-  Eigen::VectorXd values = r.column(column);
-  for (double& value : values) value = f(value);
-  r.set(column, values);
-}
-
-std::function<double(double)> times(double factor) {
-  return [factor](double x) { return factor * x; };
-}
-double fahrenheit(double x) { return 1.8 * x + 32.0; }
-double kelvin(double x) { return x + 273.15; }
 
 Recording exchanged(Recording r, const char* a, const char* b) {
   const Eigen::VectorXd kept = r.column(a);
@@ -165,29 +87,29 @@ void check_cases(const Model& model, const Recording& sound, const std::vector<C
 
 TEST_CASE("a large gap is no wrong unit") {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    CHECK(errors(axis_model(), {axis(seed)}).empty());
-    CHECK(errors(bench_model(), {bench(seed)}).empty());
+    CHECK(errors(rubbing_model(), {axis(seed)}).empty());
+    CHECK(errors(cased_model(), {bench(seed)}).empty());
   }
   // Nor are constants that are off by two, either way.
   for (const double factor : {0.5, 2.0}) {
-    Model model = axis_model();
+    Model model = rubbing_model();
     model.axis->inertia_kgm2 *= factor;
     CHECK(errors(model, {axis()}).empty());
-    model = bench_model();
+    model = cased_model();
     std::get<LumpedThermalModel>(model.thermal).heat_capacity_J_per_K *= factor;
     CHECK(errors(model, {bench()}).empty());
   }
   // A drive that passes a fifth of its command is near a sixth, but a rate in turns per minute would not be its angle's.
   Recording limited = axis();
   change(limited, "drive_A", times(5.0));
-  CHECK(decision(axis_model(), limited).find("rpm") == std::string::npos);
+  CHECK(decision(rubbing_model(), limited).find("rpm") == std::string::npos);
 }
 
 TEST_CASE("each unit of an axis is told where friction takes half of the drive") {
   const char* const drive = "drive_A";
   const char* const angle = "angle_deg";
   const char* const rate = "rate_dps";
-  check_cases(axis_model(), axis(),
+  check_cases(rubbing_model(), axis(),
               {{{{drive, times(1e3)}}, "wrong_unit(drive_A) --column drive_A=drive_A:mA"},
                {{{drive, times(1e6)}}, "wrong_unit(drive_A) --column drive_A=drive_A:uA"},
                {{{drive, times(-1.0)}}, "wrong_sign(drive_A) --column drive_A=drive_A:-A"},
@@ -212,17 +134,17 @@ TEST_CASE("each unit of an axis is told where friction takes half of the drive")
 TEST_CASE("an axis with an angle alone, and one with a rate alone") {
   Recording alone = axis();
   alone.remove("rate_dps");
-  CHECK(decision(axis_model(), alone).empty());
+  CHECK(decision(rubbing_model(), alone).empty());
   check_cases(
-      axis_model(), alone,
+      rubbing_model(), alone,
       {{{{"angle_deg", times(1.0 / deg)}}, "wrong_unit(angle_deg) --column angle_deg=angle_deg:rad"},
        {{{"angle_deg", times(1.0 / 360.0)}}, "wrong_unit(angle_deg) --column angle_deg=angle_deg:rev"},
        {{{"drive_A", times(1e3)}}, "wrong_unit(drive_A) --column drive_A=drive_A:mA"},
        {{{"t_s", times(1e3)}}, "wrong_unit(t_s) --column t_s=t_s:ms"}});
   alone = axis();
   alone.remove("angle_deg");
-  CHECK(decision(axis_model(), alone).empty());
-  check_cases(axis_model(), alone,
+  CHECK(decision(rubbing_model(), alone).empty());
+  check_cases(rubbing_model(), alone,
               {{{{"rate_dps", times(1.0 / deg)}}, "wrong_unit(rate_dps) --column rate_dps=rate_dps:rad/s"},
                {{{"rate_dps", times(1.0 / 6.0)}}, "wrong_unit(rate_dps) --column rate_dps=rate_dps:rpm"},
                {{{"drive_A", times(1e3)}}, "wrong_unit(drive_A) --column drive_A=drive_A:mA"},
@@ -234,33 +156,33 @@ TEST_CASE(
   for (const double factor : {1.0 / deg, 1.0 / 360.0, 18.0, 0.4}) {
     Recording r = axis();
     change(r, "angle_deg", times(factor));
-    CHECK(decision(axis_model(), r).empty());
+    CHECK(decision(rubbing_model(), r).empty());
     change(r, "drive_A", times(1e3));
-    CHECK(decision(axis_model(), r) == "wrong_unit(drive_A) --column drive_A=drive_A:mA");
+    CHECK(decision(rubbing_model(), r) == "wrong_unit(drive_A) --column drive_A=drive_A:mA");
   }
 }
 
 TEST_CASE("a factor of the drive that is no unit is said, with the model's constants") {
   Recording r = axis();
   change(r, "drive_A", times(100.0));
-  const std::vector<Finding> all = errors(axis_model(), {r});
+  const std::vector<Finding> all = errors(rubbing_model(), {r});
   REQUIRE(all.size() == 1);
   CHECK_THAT(all.front().message, ContainsSubstring("inertia_kgm2"));
   CHECK(all.front().mend.find("--column") == std::string::npos);
 }
 
 TEST_CASE("exchanged columns of an axis are told by slopes") {
-  CHECK(decision(axis_model(), exchanged(axis(), "angle_deg", "rate_dps")) ==
+  CHECK(decision(rubbing_model(), exchanged(axis(), "angle_deg", "rate_dps")) ==
         "swapped_columns(angle_deg) --column angle_deg=rate_dps --column rate_dps=angle_deg");
-  CHECK(decision(axis_model(), exchanged(axis(), "drive_A", "angle_deg")) ==
+  CHECK(decision(rubbing_model(), exchanged(axis(), "drive_A", "angle_deg")) ==
         "swapped_columns(drive_A) --column drive_A=angle_deg --column angle_deg=drive_A");
-  CHECK(decision(axis_model(), exchanged(axis(), "drive_A", "rate_dps")) ==
+  CHECK(decision(rubbing_model(), exchanged(axis(), "drive_A", "rate_dps")) ==
         "swapped_columns(drive_A) --column drive_A=rate_dps --column rate_dps=drive_A");
 }
 
 TEST_CASE("each unit of a bench is told where its case hides heat") {
   check_cases(
-      bench_model(), bench(),
+      cased_model(), bench(),
       {{{{"current_A", times(1e3)}}, "wrong_unit(current_A) --column current_A=current_A:mA"},
        {{{"current_A", times(1e6)}}, "wrong_unit(current_A) --column current_A=current_A:uA"},
        {{{"current_A", times(-1.0)}}, "wrong_sign(current_A) --column current_A=current_A:-A"},
@@ -288,7 +210,7 @@ TEST_CASE("exchanged columns of a bench are told by the current") {
     // A power is no smaller than 0: the noise of a current without any goes with it.
     Recording r = bench();
     change(r, "current_A", [](double x) { return std::abs(x); });
-    return decision(bench_model(), exchanged(r, a, b));
+    return decision(cased_model(), exchanged(r, a, b));
   };
   const auto expected = [](const std::string& a, const std::string& b) {
     return "swapped_columns(" + a + ") --column " + a + "=" + b + " --column " + b + "=" + a;
@@ -302,7 +224,7 @@ TEST_CASE("exchanged columns of a bench are told by the current") {
 
 TEST_CASE("a heat capacity that is off by a thousand is no unit of time that no logger has") {
   // Every 2 s as milliseconds would be 500 rows a second, and as microseconds more.
-  Model model = bench_model();
+  Model model = cased_model();
   auto& body = std::get<LumpedThermalModel>(model.thermal);
   body.heat_capacity_J_per_K /= 1e3;
   const std::vector<Finding> all = errors(model, {bench()});
@@ -315,21 +237,21 @@ TEST_CASE("tenths of a degree are told from kelvin by the air, and without it by
   // A motor that has been driven all along: 408 is 41 degC, and no 135.
   Recording hot = bench();
   change(hot, "motor_C", [](double x) { return std::round(10.0 * (40.8 + 0.1 * (x - 23.0))); });
-  CHECK(decision(bench_model(), hot) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
+  CHECK(decision(cased_model(), hot) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
   Recording whole = bench();
   change(whole, "motor_C", [](double x) { return std::round(kelvin(x)); });
-  CHECK(decision(bench_model(), whole) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
+  CHECK(decision(cased_model(), whole) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
   Recording joint = axis();
   joint.set("motor_C", Eigen::VectorXd::Constant(joint.rows(), 286.0));
-  CHECK(decision(axis_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
+  CHECK(decision(rubbing_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:ddegC");
   joint.set("motor_C", Eigen::VectorXd::Constant(joint.rows(), kelvin(28.6)));
-  CHECK(decision(axis_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
+  CHECK(decision(rubbing_model(), joint) == "wrong_unit(motor_C) --column motor_C=motor_C:K");
 }
 
 TEST_CASE("a temperature that none can be decides, as after a mend that was none") {
   Recording r = bench();
   change(r, "motor_C", [](double x) { return x - 273.15; });
-  const std::vector<Finding> all = errors(bench_model(), {r});
+  const std::vector<Finding> all = errors(cased_model(), {r});
   REQUIRE_FALSE(all.empty());
   CHECK(all.front().kind == FindingKind::impossible_samples);
   CHECK(all.front().column == "motor_C");
@@ -340,7 +262,7 @@ TEST_CASE("recordings that are given together tell which one is in another unit"
   change(wrong, "ambient_C", fahrenheit);
   for (const bool held : {false, true}) {
     const std::vector<Finding> all =
-        held ? errors(bench_model(), {bench(1)}, {wrong}) : errors(bench_model(), {wrong}, {bench(1)});
+        held ? errors(cased_model(), {bench(1)}, {wrong}) : errors(cased_model(), {wrong}, {bench(1)});
     REQUIRE_FALSE(all.empty());
     CHECK(all.front().recording == "bench 2");
     CHECK(all.front().mend == "--column ambient_C=ambient_C:degF");
@@ -352,7 +274,7 @@ TEST_CASE("recordings that are given together tell which one is in another unit"
   change(idle, "motor_C", [](double) { return 22.0; });
   idle.remove("current_A");
   for (const char* column : {"motor_C", "ambient_C"}) change(idle, column, fahrenheit);
-  const std::vector<Finding> all = errors(bench_model(), {bench(1), idle});
+  const std::vector<Finding> all = errors(cased_model(), {bench(1), idle});
   REQUIRE_FALSE(all.empty());
   CHECK(all.front().recording == "bench 3");
   CHECK_THAT(all.front().mend, ContainsSubstring("ambient_C=ambient_C:degF"));

@@ -115,9 +115,7 @@ TEST_CASE("a spring whose frequency a fit ended beside is found from there") {
 }
 
 TEST_CASE("torques, inertia and frictions come back together to where their constants are known to be") {
-  Model model;
-  model.name = "axis";
-  model.axis = RigidAxisModel{1e-3, 1e-3, 0.2};
+  const Model model = test::axis_model();
   test::AxisFault rubs;
   rubs.coulomb_Nm = 0.006;
   const std::vector<Inputs> inputs{prepare(model, test::axis_recording(rubs, 1200, 13))};

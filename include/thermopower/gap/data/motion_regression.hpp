@@ -114,7 +114,7 @@ public:
   /// The rate below which an axis may be stuck, deg/s: slower rows are left out.
   double slowest_dps() const {
     std::vector<double> all = speeds();
-    return MotionThresholds().moving * quantile_of(all, 0.95);
+    return slowest_of(all);
   }
 
   /// What turns the axis beside its command, by a fit: friction, a spring, an imbalance, a constant and cogs, in deg/s^2.
@@ -272,11 +272,16 @@ private:
     return all;
   }
 
+  /// The speed below which an axis may be stuck, of such speeds. Reorders them.
+  static double slowest_of(std::vector<double>& speeds) {
+    return MotionThresholds().moving * quantile_of(speeds, 0.95);
+  }
+
   /// Rows that move, at most as many as are needed.
   std::vector<Row> moving_rows(const TermsOf& terms_of, Eigen::Index together) const {
     constexpr MotionThresholds limit;
     std::vector<double> all = speeds();
-    const double slowest = limit.moving * quantile_of(all, 0.95);
+    const double slowest = slowest_of(all);
     const auto fast = std::count_if(all.begin(), all.end(), [&](double speed) { return speed > slowest; });
     const std::size_t stride =
         together > 1 ? 1 : static_cast<std::size_t>(fast) / limit.most_rows + 1;  // means need neighbours

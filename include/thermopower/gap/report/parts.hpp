@@ -62,9 +62,7 @@ inline void describe_fit(RankedExplanation& entry, const Candidate& one, const M
 /// Every explanation weighed, likeliest first.
 inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
                  const FitProblem& problem, const Weight& weight) {
-  std::vector<std::size_t> order(candidates.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  sort_by(order, [&](std::size_t i) { return candidates[i].deviance; });
+  std::vector<std::size_t> order = by_deviance(candidates);
   sort_by(order, [&](std::size_t i) { return candidates[i].held_out.any() ? 0 : 1; });
   const double least = candidates[order.front()].deviance;
   std::vector<Eigen::VectorXd> signatures(order.size());
