@@ -29,9 +29,18 @@ pause() {
   sleep "$(awk -v seed="$$$drawn" -v part="$1" -v took="$took" 'BEGIN { srand(seed); printf "%.2f\n", 0.3 + (1 + rand()) * took / part }')"
 }
 killed=0
+# A log whose worker is killed twice by one run of the program is given up, as it should be: none is hit twice here, however
+# long it takes. What a worker has in hand is the log whose lock it holds.
+hit=""
 kill_one_child() {
-  child=$(ps -o pid= --ppid "$1" 2>/dev/null | shuf -n 1)
-  if [ -n "$child" ] && kill -9 $child 2>/dev/null; then killed=$((killed + 1)); fi
+  for child in $(ps -o pid= --ppid "$1" 2>/dev/null | shuf); do
+    lock=$(find "/proc/$child/fd" -lname '*.lock' -printf '%l' -quit 2>/dev/null || true)
+    case " $hit " in *" $lock "*) continue ;; esac
+    if [ -n "$lock" ] && kill -9 "$child" 2>/dev/null; then
+      hit="$hit $lock" killed=$((killed + 1))
+      return
+    fi
+  done
 }
 
 echo "--- workers killed, and the program with them"
@@ -39,14 +48,14 @@ round=0 ended=0
 while [ "$round" -lt 4 ]; do
   round=$((round + 1))
   "$program" fleet "$manifest" --out "$directory/killed" --workers 2 >"$directory/killed.txt" 2>&1 &
-  pid=$!
+  pid=$! hit=""
   pause 16
   kill_one_child "$pid"
   pause 16
   if [ "$round" -lt 4 ]; then
     if kill -9 "$pid" 2>/dev/null; then ended=$((ended + 1)); fi
   else
-    for _ in 1 2 3; do  # apart, as a log whose worker is killed twice is given up
+    for _ in 1 2 3; do
       kill_one_child "$pid"
       pause 16
     done
@@ -62,7 +71,7 @@ if [ -n "${MPIRUN:-}" ] && "$MPIRUN" --version 2>/dev/null | grep -q "Open MPI";
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
   "$MPIRUN" --oversubscribe --enable-recovery -n 3 "$program" fleet "$manifest" --out "$directory/ranks" --workers 1 \
     >"$directory/ranks.txt" 2>&1 &
-  pid=$! ranks="" patience=0 killed=0
+  pid=$! ranks="" patience=0 killed=0 hit=""
   while [ "$(echo $ranks | wc -w)" -lt 3 ] && [ "$patience" -lt 100 ]; do
     sleep 0.1
     patience=$((patience + 1))
