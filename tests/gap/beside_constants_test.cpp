@@ -116,6 +116,21 @@ TEST_CASE("friction that softens within two thirds of a radian a second is dry f
   CHECK(test::causes_of(diagnosis) == std::vector<std::string>{"coulomb_friction"});
 }
 
+TEST_CASE("a drag of the air beside dry friction is no friction that vanishes in motion") {
+  for (const double drag_Nms2 : {1e-4, 3e-4}) {
+    CAPTURE(drag_Nms2);
+    test::AxisFault rough;
+    rough.coulomb_Nm = 0.004;
+    rough.drag_Nms2 = drag_Nms2;
+    const Diagnosis diagnosis = diagnose(test::axis_model(), {test::axis_recording(rough, 2500, 3)},
+                                         {test::axis_recording(rough, 1500, 8)});
+    INFO(diagnosis.reason);
+    const std::vector<std::string> causes = test::causes_of(diagnosis);
+    CHECK(std::count(causes.begin(), causes.end(), "stribeck_friction") == 0);
+    CHECK(diagnosis.verdict != Verdict::no_gap);
+  }
+}
+
 TEST_CASE("a drag that goes with the rate is no noise that remembers, however rough the rate is") {
   // A propeller that a voltage turns, told by its controller's telemetry: its drag grows with the square of the rate.
   const auto record = [](int rows, std::uint64_t seed) {

@@ -350,6 +350,29 @@ TEST_CASE("a ripple that takes nearly all of the torque away at some angles is n
   }
 }
 
+TEST_CASE("a friction near standstill that vanishes in motion is none, but beside another one") {
+  Model model = axis_model();
+  const auto ends_so = [&](double in_motion_Nm) {
+    Candidate one;
+    one.explanation.effects.push_back(standard_catalogue().find("stribeck_friction"));
+    one.list = coordinates(model, one.explanation, standard_catalogue());
+    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+    one.fit.at_bound.assign(one.list.size(), false);
+    const auto at = static_cast<Eigen::Index>(model.calibrated().size());
+    one.fit.point[at] = in_motion_Nm;
+    one.fit.point[at + 1] = 0.01;  // the rise
+    one.fit.point[at + 3] = -2.0;  // the transition, below the knee
+    one.fit.point[at + 5] = 2.0;
+    return ends_on_bounds(one, model);
+  };
+  CHECK_FALSE(ends_so(0.004));
+  CHECK_FALSE(ends_so(0.001));
+  CHECK(ends_so(0.0002));
+  CHECK(ends_so(0.0));
+  model.effects["coulomb_friction"] = {{"Nm", 0.004}, {"transition_rad_per_s", 0.01}};
+  CHECK_FALSE(ends_so(0.0));
+}
+
 TEST_CASE("a gear that passes less than a tenth of the torque is none") {
   const Model model = axis_model();
   for (const auto& [id, lossy, blocked] :
@@ -410,6 +433,7 @@ TEST_CASE("a rise of friction whose knee no motion reaches is not told from a dr
   std::vector<Candidate> candidates = nothing_friction_and(model, "stribeck_friction");
   Candidate& one = candidates[2];
   const auto constants = static_cast<Eigen::Index>(candidates[0].list.size());
+  one.fit.point[constants] = 0.02;      // what stays in motion
   one.fit.point[constants + 1] = 0.02;  // the rise
   one.fit.point[constants + 2] = std::log(2.0);
   one.fit.point[constants + 3] = std::log(0.01);

@@ -128,6 +128,7 @@ struct AxisFault {
   double thinning_per_K = 0.0;  ///< of viscous friction with the motor's temperature, which is recorded then
   double weight_Nm = 0.0;       ///< of a load off the axis
   double soft_within_rad_per_s = 0.0;  ///< of the friction; 0: it sticks
+  double drag_Nms2 = 0.0;              ///< of the air, with the square of the rate
 };
 
 /// An axis driven by a sum of sines.
@@ -153,7 +154,8 @@ inline thermopower::gap::Recording axis_recording(const AxisFault& fault, int ro
       const double h = 5e-5;
       const double thin = std::exp(-fault.thinning_per_K * (motor_C[i] - 25.0));
       const double push = torque * (1.0 + fault.ripple_share * std::sin(6.0 * theta)) - 1e-3 * thin * omega -
-                          fault.spring_Nm_per_rad * theta - fault.weight_Nm * std::sin(theta + 0.4);
+                          fault.spring_Nm_per_rad * theta - fault.weight_Nm * std::sin(theta + 0.4) -
+                          fault.drag_Nms2 * omega * std::fabs(omega);
       const double next = omega + h * push / 1e-3;
       const double brake = h * fault.coulomb_Nm * (1.0 + fault.run_out_share * std::sin(theta)) / 1e-3;
       if (fault.soft_within_rad_per_s > 0.0)

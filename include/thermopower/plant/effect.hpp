@@ -213,6 +213,8 @@ struct EffectInfo {
   /// Whether it is what it is called with these parameters; a fit that ends where it is not stands for something else. None:
   /// always.
   bool (*is_itself)(const double* parameters) = nullptr;
+  /// The same of a friction where the model has no dry friction already, to which it may add. None: always.
+  bool (*is_itself_alone)(const double* parameters) = nullptr;
   /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
   std::optional<WhereEqual> where_equal = {};
   /// The same where one of its parameters is small beside another.

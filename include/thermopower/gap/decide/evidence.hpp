@@ -76,6 +76,14 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
   return !has_another || !(largest > 0.0) || candidate.fit.information(row, row) * largest * largest > 1.0;
 }
 
+/// Whether a model has dry friction of its own.
+inline bool has_dry_friction(const Model& model) {
+  const std::vector<CalibratedConstant> constants = model.calibrated();
+  return std::any_of(constants.begin(), constants.end(), [](const CalibratedConstant& one) {
+    return plant::names_a_transition(one.fields.front());
+  });
+}
+
 /// Whether a constant went as far as it may. @param at  its coordinate
 inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
   constexpr double nearly = 0.999;
@@ -125,6 +133,9 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
         entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s)
       return true;
     if (entry->info.is_itself != nullptr && !entry->info.is_itself(values.data())) return true;
+    if (entry->info.is_itself_alone != nullptr && !has_dry_friction(model) &&
+        !entry->info.is_itself_alone(values.data()))
+      return true;
   }
   return false;
 }

@@ -7,7 +7,29 @@
 #include <thermopower/plant/friction_transition.hpp>
 #include <thermopower/plant/terms.hpp>
 
+#include <cmath>
+
 namespace thermopower::plant {
+
+/// The share of the rise that is left at a rate: exp(-x^n).
+/// @param x         rate over the knee, >= 0; below a billionth it counts as that: a power of 0 has no derivative
+/// @param exponent  n, > 0
+template <class Scalar>
+Scalar stribeck_share(const Scalar& x, const Scalar& exponent) {
+  using std::exp;
+  using std::log;
+  return exp(-exp(exponent * log(at_least(x, 1e-9))));
+}
+
+/// The same, its derivatives worked out in plain numbers: an axis with such a friction asks for them at every step.
+inline Dual stribeck_share(const Dual& x, const Dual& exponent) {
+  const bool moves = x.value() > 1e-9;
+  const double at = moves ? x.value() : 1e-9, of_rate = std::log(at);
+  const double power = std::exp(exponent.value() * of_rate), share = std::exp(-power);
+  const double by_power = -share * power;
+  return Dual::composed(share, x, moves ? by_power * exponent.value() / at : 0.0, exponent,
+                        by_power * of_rate);
+}
 
 /// Dry friction with a Stribeck rise near standstill.
 ///
@@ -49,8 +71,16 @@ struct StribeckFriction {
                       {Need::axis_model},
                       "very slow motion through standstill in both directions"};
     one.where_small = WhereSmall{rise_Nm, size_Nm, "coulomb_friction"};
+    one.is_itself_alone = stays_in_motion;
     one.in_a_joint = in_a_joint;
     return one;
+  }
+
+  /// Whether a twentieth of the friction at standstill is left in motion at least. One that vanishes, with a viscous friction that
+  /// has doubled beside it, is the bend of a drag that grows faster than the rate.
+  static bool stays_in_motion(const double* p) {
+    constexpr double least = 0.05;
+    return p[size_Nm] > least * (p[size_Nm] + p[rise_Nm]);
   }
 
   /// As simulators of bodies have it.
