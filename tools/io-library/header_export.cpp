@@ -284,7 +284,7 @@ private:
       effects[i].act(terms);
     }
     const Expression load = terms.load_Nm, delivered = terms.delivered_Nm;
-    plant::FrictionTerms<Expression> dry{t_s, motor_C, angle, rate, delivered, load, 0.0, 0.0, 0.0, 1.0, 0.0};
+    plant::FrictionTerms<Expression> dry(t_s, motor_C, angle, rate, delivered, load);
     for (std::size_t i = 0; i < effects.size(); ++i) {
       dry.own = own.data() + first[i];
       effects[i].act(dry);

@@ -8,6 +8,7 @@
 #include <thermopower/plant/columns.hpp>
 #include <thermopower/plant/piecewise_linear.hpp>
 #include <thermopower/plant/samples.hpp>
+#include <thermopower/plant/sine_cosine.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
@@ -69,9 +70,9 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
 inline Eigen::MatrixXd waves(const Eigen::VectorXd& angle, double count) {
   Eigen::MatrixXd both(angle.size(), 2);
   for (Eigen::Index i = 0; i < angle.size(); ++i) {
-    const double phase = count * angle[i];  // one reduction of the phase serves both
-    both(i, 0) = std::sin(phase);
-    both(i, 1) = std::cos(phase);
+    const SineCosine at(count * angle[i]);
+    both(i, 0) = at.sine;
+    both(i, 1) = at.cosine;
   }
   return both;
 }

@@ -171,17 +171,8 @@ public:
       torque_Nm -= viscous_Nm;
       return {torque_Nm, zero, zero, zero, zero, false};
     }
-    FrictionTerms<Scalar> dry{t_s,
-                              drive.motor_C,
-                              state.angle_rad,
-                              state.rate_rad_per_s,
-                              terms.delivered_Nm,
-                              terms.load_Nm,
-                              zero,
-                              zero,
-                              zero,
-                              constant<Scalar>(1.0),
-                              zero};
+    FrictionTerms<Scalar> dry(t_s, drive.motor_C, state.angle_rad, state.rate_rad_per_s, terms.delivered_Nm,
+                              terms.load_Nm);
     for (const auto& effect : instance_.friction) {
       dry.own = own + effect.own_states;
       effect(dry);
@@ -221,8 +212,10 @@ private:
       if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
       return size_Nm * share;
     }
-    if (stiffness != nullptr) *stiffness = size_Nm * film_slope(x, now.tail) / now.transition_rad_per_s;
-    return size_Nm * film_share(x, now.tail);
+    if (stiffness == nullptr) return size_Nm * film_share(x, now.tail);
+    const FilmWithSlope<Scalar> film(x, now.tail);
+    *stiffness = size_Nm * film.slope / now.transition_rad_per_s;
+    return size_Nm * film.share;
   }
 
   Scalar spring(const AxisState<Scalar>& state) const {

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/sine_cosine.hpp>
+
 #include <cmath>
 
 namespace thermopower::plant {
@@ -104,8 +106,14 @@ public:
 
   friend Dual exp(const Dual& x) { return scaled(x, std::exp(x.value_)); }
   friend Dual log(const Dual& x) { return chain(x, std::log(x.value_), 1.0 / x.value_); }
-  friend Dual sin(const Dual& x) { return chain(x, std::sin(x.value_), std::cos(x.value_)); }
-  friend Dual cos(const Dual& x) { return chain(x, std::cos(x.value_), -std::sin(x.value_)); }
+  friend Dual sin(const Dual& x) {
+    const SineCosine at(x.value_);
+    return chain(x, at.sine, at.cosine);
+  }
+  friend Dual cos(const Dual& x) {
+    const SineCosine at(x.value_);
+    return chain(x, at.cosine, -at.sine);
+  }
   friend Dual tanh(const Dual& x) {
     const double value = std::tanh(x.value_);
     return chain(x, value, 1.0 - value * value);

@@ -54,13 +54,21 @@ inline Dual film_share(const Dual& x, const Dual& tail) {
   return Dual::composed(at.share, x, at.slope, tail, at.by_tail);
 }
 
-/// Its derivative by x.
-inline double film_slope(double x, double tail) { return FilmAt(x, tail).slope; }
+/// The share and its derivative by x.
+template <class Scalar>
+struct FilmWithSlope {
+  Scalar share, slope;
 
-/// The same.
-inline Dual film_slope(const Dual& x, const Dual& tail) {
-  const FilmAt at(x.value(), tail.value());
-  return Dual::composed(at.slope, x, at.slope_by_x, tail, at.slope_by_tail);
-}
+  /// @param x     rate over the transition
+  /// @param tail  -1..1
+  FilmWithSlope(const Scalar& x, const Scalar& tail)
+      : FilmWithSlope(FilmAt(value_of(x), value_of(tail)), x, tail) {}
+
+private:
+  FilmWithSlope(const FilmAt& at, double, double) : share(at.share), slope(at.slope) {}
+  FilmWithSlope(const FilmAt& at, const Dual& x, const Dual& tail)
+      : share(Dual::composed(at.share, x, at.slope, tail, at.by_tail)),
+        slope(Dual::composed(at.slope, x, at.slope_by_x, tail, at.slope_by_tail)) {}
+};
 
 }  // namespace thermopower::plant

@@ -153,14 +153,24 @@ struct FrictionTerms {
   const Scalar& drive_Nm;        ///< torque that arrives of the drive
   const Scalar& load_Nm;         ///< all that the effects add to it, such as gravity and springs
   // to change
-  Scalar forward_Nm;                ///< magnitude while the rate is positive, >= 0
-  Scalar backward_Nm;               ///< magnitude while the rate is negative, >= 0
-  Scalar transition_rad_per_s;      ///< rate within which it turns over, by `film_share`; 0: sticks at rest
-  Scalar factor;                    ///< multiplies all friction, the viscous one too, >= 0
-  Scalar torque_Nm;                 ///< friction of other kinds than the dry one, taken off the other torques
+  Scalar forward_Nm = 0.0;            ///< magnitude while the rate is positive, >= 0
+  Scalar backward_Nm = 0.0;           ///< magnitude while the rate is negative, >= 0
+  Scalar transition_rad_per_s = 0.0;  ///< rate within which it turns over, by `film_share`; 0: sticks at rest
+  Scalar factor = 1.0;                ///< multiplies all friction, the viscous one too, >= 0
+  Scalar torque_Nm = 0.0;           ///< friction of other kinds than the dry one, taken off the other torques
   bool dry = false;                 ///< some effect has dry friction
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
   Scalar tail = 0.0;  ///< how slowly it becomes full beyond the transition, -1..1, by `film_share`
+
+  /// No friction yet. What it is given must outlive it.
+  FrictionTerms(Given<Scalar> at_s, Given<Scalar> recorded_C, const Scalar& angle, const Scalar& rate,
+                const Scalar& drive, const Scalar& load)
+      : t_s(at_s),
+        motor_C(recorded_C),
+        angle_rad(angle),
+        rate_rad_per_s(rate),
+        drive_Nm(drive),
+        load_Nm(load) {}
 
   /// Torque that the gears transmit, N m: |drive - load|. A drive that holds a load against it passes both.
   Scalar transmitted_Nm() const { return magnitude(Scalar(drive_Nm - load_Nm)); }

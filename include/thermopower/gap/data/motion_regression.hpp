@@ -6,6 +6,7 @@
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/plant/rows.hpp>
+#include <thermopower/plant/sine_cosine.hpp>
 
 #include <Eigen/Core>
 
@@ -219,11 +220,13 @@ private:
 
   static Eigen::VectorXd beside_terms(double dps, double rad, const std::vector<int>& cogs_a_turn) {
     Eigen::VectorXd x(others + 2 * static_cast<Eigen::Index>(cogs_a_turn.size()));
-    x.head(others) << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, std::sin(rad), std::cos(rad), 1.0;
+    const plant::SineCosine once(rad);
+    x.head(others) << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0;
     Eigen::Index at = others;
     for (const int cogs : cogs_a_turn) {
-      x[at++] = std::sin(cogs * rad);
-      x[at++] = std::cos(cogs * rad);
+      const plant::SineCosine often(cogs * rad);
+      x[at++] = often.sine;
+      x[at++] = often.cosine;
     }
     return x;
   }
@@ -326,7 +329,8 @@ private:
       std::vector<std::complex<double>> sums(static_cast<std::size_t>(limit.most_cogs) + 1);
       for (const Row& row : rows) {
         const double left = row.response - all.regressors(row).dot(fitted);
-        const std::complex<double> turn = std::polar(1.0, row.rad);
+        const plant::SineCosine once(row.rad);
+        const std::complex<double> turn(once.cosine, once.sine);
         std::complex<double> at = left * turn;
         for (std::complex<double>& sum : sums) sum += at *= turn;  // from two cogs on: one is an imbalance
       }

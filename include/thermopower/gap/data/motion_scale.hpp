@@ -183,8 +183,9 @@ private:
     if (angle.size() == 0) return;
     const double deg = 0.5 * (angle[part.row] + angle[part.next]);
     window.terms[4] += weight_s * deg;
-    window.terms[5] += weight_s * std::sin(deg * rad_per_deg);
-    window.terms[6] += weight_s * std::cos(deg * rad_per_deg);
+    const plant::SineCosine at(deg * rad_per_deg);
+    window.terms[5] += weight_s * at.sine;
+    window.terms[6] += weight_s * at.cosine;
   }
 
   Window empty_window(const Eigen::VectorXd& angle) const {
