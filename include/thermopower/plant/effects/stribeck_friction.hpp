@@ -80,7 +80,7 @@ struct StribeckFriction {
   /// has doubled beside it, is the bend of a drag that grows faster than the rate.
   static bool stays_in_motion(const double* p) {
     constexpr double least = 0.05;
-    return p[size_Nm] > least * (p[size_Nm] + p[rise_Nm]);
+    return p[size_Nm] >= least * (p[size_Nm] + p[rise_Nm]);
   }
 
   /// As simulators of bodies have it.
