@@ -13,9 +13,9 @@ using namespace thermopower::gap;
 namespace {
 
 /// Whether the first command is taken to have been there before the first row.
-bool was_driven(const test::LateAxis& axis) {
-  const engine::CheckedRecordings checked = engine::check(test::LateAxis::model(), {axis.recording(1)},
-                                                          {axis.recording(2)}, {}, standard_catalogue());
+bool was_driven(const test::LateAxis& axis, std::uint64_t seed = 1) {
+  const engine::CheckedRecordings checked = engine::check(
+      test::LateAxis::model(), {axis.recording(seed)}, {axis.recording(seed + 1)}, {}, standard_catalogue());
   const bool train = checked.train.front().inputs().runs.front().was_driven,
              held_out = checked.held_out.front().inputs().runs.front().was_driven;
   CHECK(train == held_out);
@@ -47,6 +47,17 @@ TEST_CASE("a late drive under dry friction that was idle is not taken for one th
   CHECK_FALSE(was_driven(axis));
   axis.commanded_before = true;
   CHECK(was_driven(axis));
+}
+
+TEST_CASE("a smooth command, of which no row is told from the next, does not say that it was there before") {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    test::LateAxis axis;
+    axis.row_s = 0.004;
+    axis.delay_s = 0.008;
+    axis.smooth = true;
+    CHECK_FALSE(was_driven(axis, seed));
+  }
 }
 
 TEST_CASE(

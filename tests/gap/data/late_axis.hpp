@@ -19,6 +19,7 @@ struct LateAxis {
   double coulomb_Nm = 0.0;        ///< of dry friction
   bool commanded_before = false;  ///< the first command is in force before the first row, else none
   bool with_rate = true;          ///< whether the rate is logged
+  bool smooth = false;            ///< the command is a sum of slow sines, else it jumps
 
   /// The simulation of it, whose drive is not late, 2 % off.
   static thermopower::gap::Model model() {
@@ -53,7 +54,10 @@ struct LateAxis {
         dither = 0.2 * uniform(random) - 0.1;
         dither_until_s = now_s + 0.04 + 0.26 * uniform(random);
       }
-      drive[row] = std::clamp(0.8 * (target - rad) - 0.05 * radps + dither, -0.8, 0.8);
+      drive[row] = smooth ? 0.2 * std::sin(2.6 * now_s + static_cast<double>(seed)) +
+                                0.1 * std::sin(6.2 * now_s + 1.0) + 0.05 * std::sin(10.6 * now_s + 2.0)
+                          : std::clamp(0.8 * (target - rad) - 0.05 * radps + dither, -0.8, 0.8);
+      if (smooth) drive[row] = 1e-5 * std::round(1e5 * drive[row]);  // as a log has it
       r.t_s[row] = now_s;
       angle[row] = rad * deg + 0.02 * noise();
       rate[row] = radps * deg + 0.15 * noise();

@@ -30,6 +30,8 @@ struct DrivenBeforeThresholds {
   double sure = 4.0;   ///< standard errors of it that the other answer is away by at least
   double left =
       0.1;  ///< of the squared difference of the answers: the right one leaves no more, beyond the noise
+  double back =
+      0.3;  ///< of the way that a lasting command pushes: what earlier rows' push back by is no more
 };
 
 /// Asks what axes did in their first rows, by what they make of later and earlier commands in all others.
@@ -43,7 +45,7 @@ public:
   /// @param command  of the axis by row
   std::optional<bool> was(const Inputs& inputs, const Eigen::VectorXd& command, const RunSpan& run) const {
     constexpr DrivenBeforeThresholds limit;
-    if (!memory()) return std::nullopt;
+    if (!memory() || !is_of_a_drive(memory()->value)) return std::nullopt;
     const Beginning first = beginning_of(inputs, command, run);
     const Answer all = answer_of(first, memory()->value);
     if (!(all.apart > 0.0)) return std::nullopt;
@@ -86,6 +88,18 @@ private:
   const std::optional<MotionFit>& memory() const {
     if (!memory_) memory_ = motion_.fit(remembered);
     return *memory_;
+  }
+
+  /// Whether a response to earlier commands is a drive's that is late. Where a command changes so slowly that one row's cannot be told
+  /// from the next one's, what comes out follows the log, pushes forth and back by turns, and says nothing of a step.
+  static bool is_of_a_drive(const Eigen::VectorXd& response) {
+    double forth = 0.0, back = 0.0;
+    for (std::size_t i = 0; i < lags; ++i) {
+      const double push =
+          response[static_cast<Eigen::Index>(i)] * static_cast<double>(older[i + 1] - older[i]);
+      (push > 0.0 ? forth : back) += std::abs(push);
+    }
+    return std::min(forth, back) < DrivenBeforeThresholds().back * std::max(forth, back);
   }
 
   /// The first rows of a run: their accelerations, less what turns the axis beside its command, and the terms of either answer.
