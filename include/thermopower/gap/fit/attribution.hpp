@@ -212,7 +212,9 @@ public:
     in_sight.hopeless = out_of_sight * other.train.total();
     // What is lost, where it ended and by the first derivatives there, has lost whatever its constants are.
     const double lost = lost_from * other.train.total();
-    if (candidate.train.total() > lost && fitter.scan(from, starts_of(other)) > lost) return;
+    if (candidate.train.total() > lost &&
+        (runs_away(candidate, from, starts_of(other)) || !(fitter.scan(from, starts_of(other)) <= lost)))
+      return;
     FitResult again = fitter.minimise(from, in_sight, starts_of(other));
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
     candidate.fit = std::move(again);
@@ -224,6 +226,15 @@ private:
   /// The starts that a fit ended with, where it was of as many segments; else null: a fit then begins at the measured ones.
   const std::vector<Start>* starts_of(const Candidate& candidate) const {
     return candidate.fit.starts.size() == problem_.segments.size() ? &candidate.fit.starts : nullptr;
+  }
+
+  /// Whether a simulation leaves what a candidate leaves by orders of magnitude at other coordinates: it grows without an end there, in
+  /// ever smaller steps, and its derivatives would take minutes to say nothing.
+  bool runs_away(const Candidate& candidate, const Eigen::VectorXd& at,
+                 const std::vector<Start>* starts) const {
+    const double far = 1e6 * candidate.train.total();
+    return problem_.squares(candidate.explanation, candidate.list, at,
+                            starts != nullptr ? *starts : problem_.measured_starts(), far) > far;
   }
 
   /// A candidate with the details of its effects free, where its fit ended without them.
