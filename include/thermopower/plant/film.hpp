@@ -57,7 +57,8 @@ inline Dual film_share(const Dual& x, const Dual& tail) {
 /// The share and its derivative by x.
 template <class Scalar>
 struct FilmWithSlope {
-  Scalar share, slope;
+  Scalar share;  ///< as `film_share`
+  Scalar slope;  ///< derivative of the share by the rate over the transition
 
   /// @param x     rate over the transition
   /// @param tail  -1..1

@@ -14,8 +14,8 @@ namespace thermopower::plant {
 /// call. The angle is brought into -pi/4..pi/4 by quarter turns in three parts (Cody and Waite 1980), where both are
 /// polynomials, those of the Sun Microsystems fdlibm (k_sin.c, k_cos.c, 1993).
 struct SineCosine {
-  double sine;
-  double cosine;
+  double sine;    ///< -1..1; not a number where the angle is none
+  double cosine;  ///< the same
 
   /// @param angle_rad  any; beyond a million rad, and where it is no number, the C library is asked
   explicit SineCosine(double angle_rad) {
