@@ -31,17 +31,24 @@ std::vector<double> blocks(double even, double odd) {
   return list;
 }
 
+/// An explanation whose fit ended at 0 in every coordinate, away from all bounds.
+/// @param id  of its effect; null: it has none
+Candidate at_zero(const Model& model, const char* id) {
+  Candidate one;
+  if (id != nullptr) one.explanation.effects.push_back(standard_catalogue().find(id));
+  one.list = coordinates(model, one.explanation, standard_catalogue());
+  one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
+  one.fit.at_bound.assign(one.list.size(), false);
+  return one;
+}
+
 /// No cause, dry friction, and another cause, known to 1e-4 of their units; the data are far above the noise without one.
 std::vector<Candidate> nothing_friction_and(const Model& model, const char* other) {
-  std::vector<Candidate> candidates(3);
-  candidates[1].explanation.effects.push_back(standard_catalogue().find("coulomb_friction"));
-  candidates[2].explanation.effects.push_back(standard_catalogue().find(other));
+  std::vector<Candidate> candidates{at_zero(model, nullptr), at_zero(model, "coulomb_friction"),
+                                    at_zero(model, other)};
   for (Candidate& one : candidates) {
-    one.list = coordinates(model, one.explanation, standard_catalogue());
     const auto count = static_cast<Eigen::Index>(one.list.size());
-    one.fit.point = Eigen::VectorXd::Zero(count);
     one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
-    one.fit.at_bound.assign(one.list.size(), false);
     one.train = one.held_out = sums_of(blocks(30.0, 30.0));
   }
   return candidates;
@@ -299,15 +306,11 @@ TEST_CASE("friction that hardly rises near standstill is friction where that lea
 
 TEST_CASE("a friction backward that no motion tells is no friction that differs by direction") {
   const Model model = axis_model();
-  Candidate one;
-  one.explanation.effects.push_back(standard_catalogue().find("asymmetric_friction"));
-  one.list = coordinates(model, one.explanation, standard_catalogue());
+  Candidate one = at_zero(model, "asymmetric_friction");
   const auto count = static_cast<Eigen::Index>(one.list.size());
   const Eigen::Index forward = count - 4, backward = count - 3;
   REQUIRE(one.list[static_cast<std::size_t>(backward)].name == "asymmetric_friction.backward_Nm");
-  one.fit.point = Eigen::VectorXd::Zero(count);
   one.fit.point[forward] = 0.02;
-  one.fit.at_bound.assign(one.list.size(), false);
   one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e8;
   CHECK_FALSE(ends_on_bounds(one, model));
   one.fit.information(backward, backward) = 100.0;  // 0.02 N m change the sum of squares by 0.04
@@ -316,16 +319,12 @@ TEST_CASE("a friction backward that no motion tells is no friction that differs 
 
 TEST_CASE("what is damped too much to ring is no part on a spring, and what rings without an end is one") {
   const Model model = axis_model();
-  Candidate one;
-  one.explanation.effects.push_back(standard_catalogue().find("compliance"));
-  one.list = coordinates(model, one.explanation, standard_catalogue());
+  Candidate one = at_zero(model, "compliance");
   const std::size_t damping = one.list.size() - 1;
   REQUIRE(one.list[damping].name == "compliance.damping");
   const auto at = static_cast<Eigen::Index>(damping);
-  one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
   for (const auto& [damped, is_at_bound] : {std::pair(0.05, false), std::pair(1e-4, true)}) {
     one.fit.point[at] = std::log(damped);
-    one.fit.at_bound.assign(one.list.size(), false);
     one.fit.at_bound[damping] = is_at_bound;
     CHECK_FALSE(ends_on_bounds(one, model));
   }
@@ -335,11 +334,7 @@ TEST_CASE("what is damped too much to ring is no part on a spring, and what ring
 
 TEST_CASE("a ripple that takes nearly all of the torque away at some angles is none") {
   const Model model = axis_model();
-  Candidate one;
-  one.explanation.effects.push_back(standard_catalogue().find("torque_ripple"));
-  one.list = coordinates(model, one.explanation, standard_catalogue());
-  one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
-  one.fit.at_bound.assign(one.list.size(), false);
+  Candidate one = at_zero(model, "torque_ripple");
   const auto at = static_cast<Eigen::Index>(model.calibrated().size());
   one.fit.point[at + 2] = 6.0;
   for (const auto& [sine, cosine, is_none] :
@@ -353,11 +348,7 @@ TEST_CASE("a ripple that takes nearly all of the torque away at some angles is n
 TEST_CASE("a friction near standstill that vanishes in motion is none, but beside another one") {
   Model model = axis_model();
   const auto ends_so = [&](double in_motion_Nm) {
-    Candidate one;
-    one.explanation.effects.push_back(standard_catalogue().find("stribeck_friction"));
-    one.list = coordinates(model, one.explanation, standard_catalogue());
-    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
-    one.fit.at_bound.assign(one.list.size(), false);
+    Candidate one = at_zero(model, "stribeck_friction");
     const auto at = static_cast<Eigen::Index>(model.calibrated().size());
     one.fit.point[at] = in_motion_Nm;
     one.fit.point[at + 1] = 0.01;  // the rise
@@ -378,13 +369,9 @@ TEST_CASE("a gear that passes less than a tenth of the torque is none") {
   for (const auto& [id, lossy, blocked] :
        {std::tuple("drive_efficiency", 0.15, 0.06), {"load_friction", 0.85, 0.94}}) {
     CAPTURE(id);
-    Candidate one;
-    one.explanation.effects.push_back(standard_catalogue().find(id));
-    one.list = coordinates(model, one.explanation, standard_catalogue());
+    Candidate one = at_zero(model, id);
     const auto constants = static_cast<Eigen::Index>(model.calibrated().size());
-    one.fit.point = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(one.list.size()));
     one.fit.point.tail(one.fit.point.size() - constants).setConstant(0.5);
-    one.fit.at_bound.assign(one.list.size(), false);
     one.fit.point[constants] = lossy;
     CHECK_FALSE(ends_on_bounds(one, model));
     one.fit.point[constants] = blocked;
@@ -412,15 +399,11 @@ TEST_CASE("a sink that does not change in a run is no sink, but air of another t
     return shown;
   };
   const Model model = bench_model();
-  Candidate one;
-  one.explanation.effects.push_back(standard_catalogue().find("contact_resistance"));
-  one.list = coordinates(model, one.explanation, standard_catalogue());
+  Candidate one = at_zero(model, "contact_resistance");
   const auto count = static_cast<Eigen::Index>(one.list.size());
   REQUIRE(one.list[static_cast<std::size_t>(count - 3)].name == "contact_resistance.J_per_K");
-  one.fit.point = Eigen::VectorXd::Zero(count);
   one.fit.point[count - 3] = std::log(100.0);
   one.fit.point[count - 2] = std::log(10.0);  // 1000 s
-  one.fit.at_bound.assign(one.list.size(), false);
   CHECK_FALSE(ends_on_bounds(one, model));
   CHECK_FALSE(ends_on_bounds(one, model, lasts(2500.0)));
   CHECK(ends_on_bounds(one, model, lasts(1500.0)));

@@ -8,7 +8,7 @@
 
 namespace thermopower::plant {
 
-/// Sine and cosine of an angle at once, to three units in the last place.
+/// Sine and cosine of an angle at once, each to 4e-16 up to a million rad.
 ///
 /// A search for causes turns an angle into both some ten million times, and a C library's functions set the rounding mode at each
 /// call. The angle is brought into -pi/4..pi/4 by quarter turns in three parts (Cody and Waite 1980), where both are

@@ -45,7 +45,7 @@ public:
   /// @param command  of the axis by row
   std::optional<bool> was(const Inputs& inputs, const Eigen::VectorXd& command, const RunSpan& run) const {
     constexpr DrivenBeforeThresholds limit;
-    if (!memory() || !is_of_a_drive(memory()->value)) return std::nullopt;
+    if (!memory()) return std::nullopt;
     const Beginning first = beginning_of(inputs, command, run);
     const Answer all = answer_of(first, memory()->value);
     if (!(all.apart > 0.0)) return std::nullopt;
@@ -86,7 +86,10 @@ private:
 
   /// What the motion makes of the commands around a row; nothing where the recordings do not tell.
   const std::optional<MotionFit>& memory() const {
-    if (!memory_) memory_ = motion_.fit(remembered);
+    if (!memory_) {
+      memory_ = motion_.fit(remembered);
+      if (*memory_ && !is_of_a_drive((*memory_)->value)) memory_->reset();
+    }
     return *memory_;
   }
 

@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/bell_regression.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/plant/sine_cosine.hpp>
 
 #include <Eigen/Core>
 

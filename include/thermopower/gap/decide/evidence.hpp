@@ -76,9 +76,8 @@ inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std
   return !has_another || !(largest > 0.0) || candidate.fit.information(row, row) * largest * largest > 1.0;
 }
 
-/// Whether a model has dry friction of its own.
-inline bool has_dry_friction(const Model& model) {
-  const std::vector<CalibratedConstant> constants = model.calibrated();
+/// Whether a model has dry friction of its own. @param constants  the model's
+inline bool has_dry_friction(const std::vector<CalibratedConstant>& constants) {
   return std::any_of(constants.begin(), constants.end(), [](const CalibratedConstant& one) {
     return plant::names_a_transition(one.fields.front());
   });
@@ -107,8 +106,8 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
   if (at_bound.size() < candidate.list.size()) return false;
   for (int index : candidate.explanation.released)
     if (at_bound[static_cast<std::size_t>(index)]) return true;
-  std::size_t at = model.calibrated().size();
   const std::vector<CalibratedConstant> constants = model.calibrated();
+  std::size_t at = constants.size();
   for (std::size_t i = 0; i < at && candidate.explanation.size() > 0; ++i)
     if (!plant::names_a_transition(constants[i].fields.front()) &&
         is_as_far_as_it_may(constants[i], candidate.fit.point[static_cast<Eigen::Index>(i)]))
@@ -133,7 +132,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
         entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s)
       return true;
     if (entry->info.is_itself != nullptr && !entry->info.is_itself(values.data())) return true;
-    if (entry->info.is_itself_alone != nullptr && !has_dry_friction(model) &&
+    if (entry->info.is_itself_alone != nullptr && !has_dry_friction(constants) &&
         !entry->info.is_itself_alone(values.data()))
       return true;
   }

@@ -11,20 +11,23 @@
 
 namespace thermopower::plant {
 
+/// Share of the knee below which a rate counts as that: a power of 0 has no derivative.
+inline constexpr double stribeck_still = 1e-9;
+
 /// The share of the rise that is left at a rate: exp(-x^n).
-/// @param x         rate over the knee, >= 0; below a billionth it counts as that: a power of 0 has no derivative
+/// @param x         rate over the knee, >= 0; at least `stribeck_still` counts
 /// @param exponent  n, > 0
 template <class Scalar>
 Scalar stribeck_share(const Scalar& x, const Scalar& exponent) {
   using std::exp;
   using std::log;
-  return exp(-exp(exponent * log(at_least(x, 1e-9))));
+  return exp(-exp(exponent * log(at_least(x, stribeck_still))));
 }
 
 /// The same, its derivatives worked out in plain numbers: an axis with such a friction asks for them at every step.
 inline Dual stribeck_share(const Dual& x, const Dual& exponent) {
-  const bool moves = x.value() > 1e-9;
-  const double at = moves ? x.value() : 1e-9, of_rate = std::log(at);
+  const bool moves = x.value() > stribeck_still;
+  const double at = moves ? x.value() : stribeck_still, of_rate = std::log(at);
   const double power = std::exp(exponent.value() * of_rate), share = std::exp(-power);
   const double by_power = -share * power;
   return Dual::composed(share, x, moves ? by_power * exponent.value() / at : 0.0, exponent,
