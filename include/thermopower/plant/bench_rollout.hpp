@@ -426,7 +426,7 @@ private:
       const Slope last = slope(row, t_s + done_s + h_s, moved(state, slope_of(at, one, first.charge), h_s));
       typename Network::Nodes two = nodes_of(at, last);
       for (std::size_t i = 0; i < at.count; ++i) two[i] -= 2.0 * one[i];
-      two = linear.solved(two);
+      linear.solve(two);
       double moved_K = 0.0;
       typename Network::Nodes all = one;
       for (std::size_t i = 0; i < at.count; ++i) {

@@ -58,28 +58,36 @@ public:
         eliminated_[i][k] = matrix_[i][k] * (-gamma * h_s);
         if (i == k) eliminated_[i][k] += 1.0;
       }
-    for (std::size_t pivot = 0; pivot < count_; ++pivot)
+    for (std::size_t pivot = 0; pivot < count_; ++pivot) {
+      per_pivot_[pivot] = 1.0 / eliminated_[pivot][pivot];
       for (std::size_t i = pivot + 1; i < count_; ++i) {
-        eliminated_[i][pivot] /= eliminated_[pivot][pivot];
+        eliminated_[i][pivot] *= per_pivot_[pivot];
         for (std::size_t k = pivot + 1; k < count_; ++k)
           eliminated_[i][k] -= eliminated_[i][pivot] * eliminated_[pivot][k];
       }
+    }
   }
 
-  /// Solves (1 - gamma h J) k = `right`.
-  Nodes solved(Nodes right) const {
+  /// Solves (1 - gamma h J) k = `right`, in whose place k is.
+  void solve(Nodes& right) const {
     for (std::size_t i = 1; i < count_; ++i)
       for (std::size_t k = 0; k < i; ++k) right[i] -= eliminated_[i][k] * right[k];
     for (std::size_t i = count_; i-- > 0;) {
       for (std::size_t k = i + 1; k < count_; ++k) right[i] -= eliminated_[i][k] * right[k];
-      right[i] /= eliminated_[i][i];
+      right[i] *= per_pivot_[i];
     }
+  }
+
+  /// The same for who keeps `right`.
+  Nodes solved(Nodes right) const {
+    solve(right);
     return right;
   }
 
 private:
   std::size_t count_;
   std::array<std::array<Scalar, most>, most> matrix_, eliminated_;
+  Nodes per_pivot_;  ///< inverse pivots
 };
 
 }  // namespace thermopower::plant

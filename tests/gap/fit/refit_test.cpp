@@ -42,6 +42,43 @@ TEST_CASE(
   CHECK(stale.train.mean(3) < 1.3);
 }
 
+TEST_CASE("the squares that a fit says it leaves are those of its residuals where it ended") {
+  const Model model = axis_model();
+  const std::vector<Inputs> inputs{prepare(model, swinging(1.4e-3, 13))};
+  const FitProblem problem = problem_of(model, inputs);
+  const Attribution attribution(problem);
+  FitOptions options;
+  options.iterations = GENERATE(1, 2, 5, 25);
+  options.relative_decrease = GENERATE(1e-1, 1e-5);
+  options.curvature = GENERATE(false, true);
+  for (const char* const id : {"coulomb_friction", "stribeck_friction", "compliance"}) {
+    Candidate one = attribution.fit({{standard_catalogue().find(id)}, {}}, options);
+    for (int times = 0; times < 2; ++times) {
+      const SignalSums sums = Attribution::sums(one, problem, one.fit.starts);
+      INFO(id << ", " << options.iterations << " steps");
+      for (std::size_t i = 0; i < signal_count; ++i) {
+        CHECK(one.train.samples[i] == sums.samples[i]);
+        CHECK(one.train.squares[i] == Approx(sums.squares[i]).epsilon(1e-9));
+        for (std::size_t k = 0; k < SignalSums::block_count; ++k)
+          CHECK(one.train.block_squares[i][k] == Approx(sums.block_squares[i][k]).epsilon(1e-9));
+      }
+      attribution.polish(one, options);
+    }
+  }
+}
+
+TEST_CASE("a sum of squares in another unit is that of residuals in that unit") {
+  const std::vector<double> residuals{1.0, -2.0, 0.5, 3.0}, doubled{2.0, -4.0, 1.0, 6.0};
+  SignalSums one, other;
+  one.set(2, residuals, 1.0);
+  one.scale(2, 2.0);
+  other.set(2, doubled, 1.0);
+  CHECK(one.squares == other.squares);
+  CHECK(one.samples == other.samples);
+  CHECK(one.block_squares == other.block_squares);
+  CHECK(one.block_samples == other.block_samples);
+}
+
 TEST_CASE("a fit that is better where it stands is kept") {
   const Model model = axis_model();
   const std::vector<Inputs> inputs{prepare(model, swinging(1e-3, 12))};

@@ -10,6 +10,8 @@
 #include <thermopower/gap/fit/short_windows.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -194,12 +196,13 @@ public:
     });
   }
 
-  /// Fits the best candidates, and looks at all others, anew: the noise has changed.
-  void renew(std::vector<Candidate>& candidates) const {
-    in_parallel(candidates.size(), threads_, [&](std::size_t i) {
-      candidates[i].settled = false;
-      candidates[i].train = Attribution::sums(candidates[i], fine_.problem(), candidates[i].fit.starts);
-    });
+  /// Fits the best candidates anew: the noise has changed.
+  /// @param by  what residuals in units of the noise are multiplied with for that, by signal
+  void renew(std::vector<Candidate>& candidates, const std::array<double, signal_count>& by) const {
+    for (Candidate& one : candidates) {
+      one.settled = false;
+      for (std::size_t i = 0; i < signal_count; ++i) one.train.scale(i, by[i]);
+    }
     refine(candidates, candidates.size(), 4);
   }
 

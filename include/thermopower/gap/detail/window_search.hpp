@@ -232,10 +232,13 @@ private:
 
   /// The noise is what the best explanation leaves; then all are looked at anew.
   void renew() {
+    const std::array<double, signal_count> before = attempt_.problem.sigma;
     measure_noise(attempt_.problem, attempt_.best(), train_);
+    std::array<double, signal_count> by;
+    for (std::size_t i = 0; i < signal_count; ++i) by[i] = before[i] / attempt_.problem.sigma[i];
     set_noise(attempt_.problem.sigma);
     attempt_.problem.correlation = mean_correlation(correlation_of(attempt_.best(), attempt_.problem));
-    search_->renew(attempt_.candidates);
+    search_->renew(attempt_.candidates, by);
   }
 
   void add_costly() {

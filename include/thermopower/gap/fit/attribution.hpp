@@ -66,7 +66,7 @@ public:
       candidate.fit = fitter.minimise(starts.front(), options);
     }
     free_from_traps(fitter, candidate, options);
-    candidate.train = sums(candidate, problem_, candidate.fit.starts);
+    candidate.train = candidate.fit.sums;
     return candidate;
   }
 
@@ -81,7 +81,7 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
     if (options.iterations > 2) free_from_traps(fitter, candidate, options);
-    candidate.train = sums(candidate, problem_, candidate.fit.starts);
+    candidate.train = candidate.fit.sums;
   }
 
   /// Moves a candidate's torques, its inertia and its frictions by one factor, to where what is known of the constants wants them, and
@@ -109,7 +109,7 @@ public:
     Candidate finer = with_details_free(candidate);
     finer.fit = Fitter(problem_, finer.explanation, finer.list)
                     .minimise(candidate.fit.point, options, starts_of(candidate));
-    finer.train = sums(finer, problem_, finer.fit.starts);
+    finer.train = finer.fit.sums;
     finer.settled = false;
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
@@ -133,9 +133,9 @@ public:
         if (!(found.cost < soon.hopeless)) continue;
         candidate.fit = std::move(found);
         candidate.settled = false;
+        candidate.train = candidate.fit.sums;
       }
     }
-    candidate.train = sums(candidate, problem_, candidate.fit.starts);
   }
 
   /// Looks at the curvature where a fit ended: what the intervals of its parameters are made of.
@@ -171,10 +171,10 @@ public:
   }
 
   /// Residuals of a candidate by signal, in units of the noise; starts as fitted.
-  static std::array<std::vector<double>, signal_count> residuals(
-      const Candidate& candidate, const FitProblem& problem, const std::vector<Start>& starts,
-      std::array<std::vector<bool>, signal_count>* gaps) {
-    std::array<std::vector<double>, signal_count> result;
+  static ResidualsBySignal residuals(const Candidate& candidate, const FitProblem& problem,
+                                     const std::vector<Start>& starts,
+                                     std::array<std::vector<bool>, signal_count>* gaps) {
+    ResidualsBySignal result;
     problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, starts, false,
                      [&](std::size_t, const FitProblem::Residuals& one) {
                        std::array<bool, signal_count> first = plant::for_each_signal(true);
@@ -219,7 +219,7 @@ public:
     if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
     candidate.fit = std::move(again);
     candidate.settled = false;
-    candidate.train = sums(candidate, problem_, candidate.fit.starts);
+    candidate.train = candidate.fit.sums;
   }
 
 private:

@@ -20,6 +20,9 @@
 
 namespace thermopower::gap::engine {
 
+/// Residuals in units of the noise, one after another, indexed by Signal.
+typedef std::array<std::vector<double>, signal_count> ResidualsBySignal;
+
 /// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
 /// segment, over the coordinates of an explanation.
 struct FitProblem {
@@ -118,8 +121,12 @@ struct FitProblem {
 
   /// Sum of the squares of all residuals. Ends early, with a sum above the limit, as soon as it is: whoever compares needs no
   /// more.
+  /// @param kept  where given, the residuals; fewer of them where it ended early
   double squares(const Explanation& explanation, const std::vector<Coordinate>& list,
-                 const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit) const {
+                 const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit,
+                 ResidualsBySignal* kept = nullptr) const {
+    if (kept != nullptr)
+      for (std::vector<double>& one : *kept) one.clear();
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
     const Plant& plant = this->plant();
     const auto rollout = plant.rollout(*model, *catalogue, point_of(*model, explanation, list, at), {},
@@ -140,6 +147,7 @@ struct FitProblem {
           const double residual = bounded((readings.value(row, static_cast<int>(k)) - measured[row]) *
                                           weight_of(*segment.inputs, signals[k], row));
           of_segment += residual * residual;
+          if (kept != nullptr) (*kept)[static_cast<std::size_t>(signals[k])].push_back(residual);
         }
       }
       sum += of_segment;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
+#include <thermopower/gap/fit/signal_sums.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,7 @@ struct FitResult {
   Eigen::MatrixXd pulls;     ///< gradients of contiguous blocks of the data, one column each, in their order
   Eigen::VectorXd priors;    ///< what the priors have in the diagonal of `information`
   double per_prior = 1.0;    ///< samples that a prior counts for
+  SignalSums sums;           ///< of the squares of the residuals there; empty where no step was allowed
   Eigen::Index samples = 0;  ///< residuals that counted
   int iterations = 0;        ///< steps taken; fewer than allowed: converged
   std::vector<bool> at_bound;  ///< by coordinate
@@ -70,7 +72,10 @@ public:
     double damping = 1e-4;
     bool seen = false;  // the view is of `best`
     for (best.iterations = 0; best.iterations < options.iterations; ++best.iterations) {
-      if (!seen) linearise(best.point, best.starts, view_);
+      if (!seen) {
+        linearise(best.point, best.starts, view_);
+        kept_.swap(view_.residuals);
+      }
       seen = false;
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
@@ -98,6 +103,7 @@ public:
             std::swap(view_, ahead_);
             seen = true;
           }
+          kept_.swap(look_ahead ? view_.residuals : plain_);
           // As long a step as has just failed would most likely fail again.
           if (attempt == 0) damping = std::max(damping * 0.2, 1e-9);
           goes_on = !(decrease < options.relative_decrease);
@@ -112,6 +118,7 @@ public:
       pulls_.clear();
       wants_pulls_ = true;
       linearise(best.point, best.starts, view_);
+      kept_.swap(view_.residuals);
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
       wants_pulls_ = false;
@@ -129,11 +136,12 @@ public:
                               best.point[i] >= one.upper - std::min(margin, 1e-9));
     }
     best.samples = view_.samples;
+    for (std::size_t i = 0; i < signal_count; ++i) best.sums.set(i, kept_[i], 1.0);
     return best;
   }
 
   /// What a fit that ended elsewhere costs by what the last one found priors to count for.
-  double cost(const FitResult& other) const {
+  double cost(const FitResult& other) {
     double chi2 = 0.0;
     return cost(other.point, other.starts, 1e300, chi2);
   }
@@ -160,6 +168,7 @@ private:
     Eigen::VectorXd gradient;
     Eigen::VectorXd priors;  ///< their part of the information's diagonal
     std::vector<Eliminated> eliminated;
+    ResidualsBySignal residuals;
     Eigen::Index samples = 0;
     double chi2 = 0.0;       ///< data only
     double of_starts = 0.0;  ///< what the starts cost
@@ -185,6 +194,7 @@ private:
     view.chi2 = 0.0;
     view.of_starts = 0.0;
     view.projected = 0.0;
+    for (std::vector<double>& one : view.residuals) one.clear();
     problem_.evaluate_while(explanation_, list_, at, starts, true,
                             [&](std::size_t i, const FitProblem::Residuals& residuals) {
                               view.samples += residuals.value.size();
@@ -226,6 +236,9 @@ private:
     view.gradient += transposed_times(own, residuals.value);
     view.gradient -= transposed_times(part.coupling, transposed_times(part.inverse, part.gradient));
     view.chi2 += residuals.value.squaredNorm();
+    for (std::size_t row = 0; row < residuals.signal.size(); ++row)
+      view.residuals[static_cast<std::size_t>(residuals.signal[row])].push_back(
+          residuals.value[static_cast<Eigen::Index>(row)]);
     view.projected -= quadratic_form(part.inverse, part.gradient);
     if (wants_pulls_) add_pulls(residuals, part);
   }
@@ -321,7 +334,7 @@ private:
   }
 
   /// Data and priors, those by what they count for at the present point; where that is above the limit, something above it.
-  double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit, double& chi2) const {
+  double cost(const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit, double& chi2) {
     double priors = view_.per_prior * cost_of_priors(at);
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
@@ -330,7 +343,7 @@ private:
         priors += off * off;
       }
     }
-    chi2 = problem_.squares(explanation_, list_, at, starts, limit - priors);
+    chi2 = problem_.squares(explanation_, list_, at, starts, limit - priors, &plain_);
     return priors + chi2;
   }
 
@@ -349,6 +362,8 @@ private:
   const std::vector<Coordinate>& list_;
   View view_;                                     ///< of the present point
   View ahead_;                                    ///< of a step that was tried
+  ResidualsBySignal kept_;                        ///< at the present point
+  ResidualsBySignal plain_;                       ///< where no view was asked for
   std::vector<std::vector<HiddenStart>> hidden_;  ///< of every segment
   bool wants_pulls_ = false;                      ///< whether the next pass adds to `pulls_`
   std::vector<Eigen::VectorXd> pulls_;            ///< gradients of blocks, in order

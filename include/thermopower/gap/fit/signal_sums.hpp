@@ -49,6 +49,12 @@ struct SignalSums {
     return true;
   }
 
+  /// Residuals of a signal become so many times as large. @param by  0 or more
+  void scale(std::size_t signal, double by) {
+    squares[signal] *= by * by;
+    for (double& of_block : block_squares[signal]) of_block *= by * by;
+  }
+
   /// Sets a signal's sums. @param unit  residuals are divided by it, > 0
   void set(std::size_t signal, const std::vector<double>& residuals, double unit) {
     squares[signal] = samples[signal] = 0.0;
