@@ -345,6 +345,59 @@ TEST_CASE("a ripple that takes nearly all of the torque away at some angles is n
   }
 }
 
+TEST_CASE(
+    "a cog that is longer than the travel is one where it reaches the noise, but not where it is as long as it may be") {
+  const Model model = axis_model();
+  Candidate one = at_zero(model, "cogging");
+  const auto count = static_cast<Eigen::Index>(model.calibrated().size()) + 2;
+  REQUIRE(one.list[static_cast<std::size_t>(count)].name == "cogging.cycles_per_turn");
+  Shown shown;
+  shown.travel_rad = 2.0;  // a third of a turn
+  for (const auto& [cycles, reaches_the_noise, is_none] : {std::tuple(9.0, false, false),
+                                                           {3.0, false, true},
+                                                           {3.0, true, false},
+                                                           {1.6, true, true},
+                                                           {1.6, false, true}}) {
+    one.fit.point[count] = cycles;
+    shown.by_reaching_the_noise = reaches_the_noise;
+    CAPTURE(cycles, reaches_the_noise);
+    CHECK(ends_on_bounds(one, model, shown) == is_none);
+  }
+}
+
+TEST_CASE("a loss that grows faster than that of rising air is not rising air's") {
+  const Model model = bench_model();
+  Candidate one = at_zero(model, "natural_convection");
+  const auto at = static_cast<Eigen::Index>(model.calibrated().size());
+  one.fit.point[at + 1] = std::log(30.0);
+  for (const auto& [exponent, is_none] : {std::pair(0.25, false), {0.4, false}, {0.75, true}}) {
+    one.fit.point[at] = exponent;
+    CHECK(ends_on_bounds(one, model) == is_none);
+  }
+}
+
+TEST_CASE("a cause of which the data tell no parameter may be anything") {
+  const Model model = bench_model();
+  Candidate one = at_zero(model, "second_thermal_mass");
+  one.train = sums_of(blocks(1.0, 1.0));
+  const auto count = static_cast<Eigen::Index>(one.list.size()),
+             at = static_cast<Eigen::Index>(model.calibrated().size());
+  REQUIRE(count == at + 2);
+  one.fit.point[at] = 0.3;
+  one.fit.information = Eigen::MatrixXd::Identity(count, count) * 1e6;
+  const auto may_be = [&](double of_share, double of_coupling) {
+    one.fit.information(at, at) = of_share;
+    one.fit.information(at + 1, at + 1) = of_coupling;
+    return may_be_anything(one, model, Weight());
+  };
+  CHECK_FALSE(may_be(1e6, 1e6));
+  CHECK_FALSE(may_be(1e6, 1e-6));
+  CHECK_FALSE(may_be(1e-6, 1e6));
+  CHECK(may_be(1e-6, 1e-6));
+  one.fit.information.resize(0, 0);  // nobody looked
+  CHECK_FALSE(may_be_anything(one, model, Weight()));
+}
+
 TEST_CASE("a friction near standstill that vanishes in motion is none, but beside another one") {
   Model model = axis_model();
   const auto ends_so = [&](double in_motion_Nm) {
@@ -613,22 +666,24 @@ TEST_CASE("constants alone explain only what the printed table shows near the no
 
 TEST_CASE("a part is named only where the printed table proves it, beyond what other constants take away") {
   Diagnosis result;
-  result.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 9.0, 9.0, 7.0, 1.0, 0.22, {0.1, 0.3}});
+  result.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 9.0, 9.0, 7.0, 1.0, 0.22, {0.1, 0.3}, {}});
   CHECK(is_proven_by_the_table(result));
   result.gap.back().ci95 = {-0.02, 0.3};
   CHECK_FALSE(is_proven_by_the_table(result));
-  // Other constants would take a fifth away, without any cause.
+  // Other constants would take a fifth away, without any cause: beyond that it counts, in the same blocks.
   result.gap.back().ci95 = {0.1, 0.3};
   result.gap.back().recalibrated = 7.2;
+  result.gap.back().beyond_constants = {-0.01, 0.06};
   CHECK_FALSE(is_proven_by_the_table(result));
-  result.gap.back().ci95 = {0.21, 0.3};
+  result.gap.back().beyond_constants = {0.01, 0.05};
   CHECK(is_proven_by_the_table(result));
   // Constants that make it worse are no excuse.
   result.gap.back().recalibrated = 12.0;
+  result.gap.back().beyond_constants = {0.3, 0.6};
   result.gap.back().ci95 = {-0.1, 0.3};
   CHECK_FALSE(is_proven_by_the_table(result));
   // One signal is enough.
-  result.gap.push_back({Signal::angle_deg, "deg", 0.5, 9.0, 9.0, 4.0, 1.0, 0.55, {0.5, 0.6}});
+  result.gap.push_back({Signal::angle_deg, "deg", 0.5, 9.0, 9.0, 4.0, 1.0, 0.55, {0.5, 0.6}, {}});
   CHECK(is_proven_by_the_table(result));
 }
 

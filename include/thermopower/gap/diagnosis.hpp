@@ -86,6 +86,7 @@ struct GapScore {
   double noise_floor = 0.0;         ///< what a perfect model would score
   double shrunk_by = 0.0;           ///< 1 - after / before
   Interval ci95;                    ///< of shrunk_by, by a paired block bootstrap
+  Interval beyond_constants = {};   ///< the same of 1 - after / recalibrated
 };
 
 /// What an explanation that was not chosen makes of a signal.

@@ -88,6 +88,37 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   return covariance;
 }
 
+/// How far to either side of where a fit ended the 95 % interval of a coordinate reaches: over all of its range where moving it
+/// that far changes nothing there, as of a friction's transition that no sample fell into.
+inline double reach_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
+  const Coordinate& one = candidate.list[place];
+  const double range = one.upper - one.lower;
+  const auto at = static_cast<Eigen::Index>(place);
+  if (covariance.of.size() == 0 || candidate.fit.information(at, at) * range * range < 1.0) return range;
+  return covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+}
+
+/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all of its
+/// range. Then the data show that something is missing, and nothing of what.
+inline bool may_be_anything(const Candidate& candidate, const Model& model, const Weight& weight) {
+  const Covariance covariance = covariance_of(candidate, weight);
+  if (covariance.of.size() == 0) return false;
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    bool is_told = entry->info.parameters.empty();
+    for (const Parameter& parameter : entry->info.parameters) {
+      const std::size_t place = at++;
+      const Coordinate& one = candidate.list[place];
+      if (parameter.standard || one.still) continue;
+      const double value = candidate.fit.point[static_cast<Eigen::Index>(place)],
+                   reach = reach_of(candidate, place, covariance);
+      is_told = is_told || value - reach > one.lower || value + reach < one.upper;
+    }
+    if (!is_told) return true;
+  }
+  return false;
+}
+
 /// Whether the blocks of the training data agree about what the effects of a candidate are like: the standard deviation of
 /// each parameter that was looked for, by how much the blocks differ, is a small share of how far it is from where the effect
 /// would not be there (of the factor that it may be off by, where it is known by its order of magnitude). A parameter on a

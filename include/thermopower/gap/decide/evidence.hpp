@@ -43,11 +43,17 @@ inline double mean_correlation(const Weight& weight) {
   return signals > 0.0 ? std::pow(product, 1.0 / signals) : 1.0;
 }
 
-/// Whether a parameter ended where a recording can show it.
+/// Whether a parameter ended where a recording can show it. What brings everything to the noise was shown, however little of a
+/// period the travel holds; but not a period as long as it may be, which is the first terms of a series and no period: beside a
+/// cable's spring it makes one that grows stiffer outwards.
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
                   std::size_t at, const Shown& shown) {
-  if (parameter.periods_in_travel > 0.0 &&
+  constexpr double nearly = 1.01;
+  const bool is_a_period =
+      shown.by_reaching_the_noise &&
+      candidate.value(at) > nearly * candidate.list[at].value_of(candidate.list[at].lower);
+  if (parameter.periods_in_travel > 0.0 && !is_a_period &&
       candidate.value(at) * shown.travel_rad < parameter.periods_in_travel * rad_per_turn)
     return false;
   if (parameter.within_the_motion && candidate.value(at) > shown.fastest_rad_per_s) return false;
@@ -394,8 +400,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.held_out_deviance = part(one.held_out, weight.held_out);
     one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
     Shown shown = weight.shown;
-    // What brings everything to the noise was shown, however little of a period the travel holds.
-    if (is_at_the_noise(one)) shown.travel_rad = Shown().travel_rad;
+    shown.by_reaching_the_noise = is_at_the_noise(one);
     one.on_bounds = ends_on_bounds(one, model, shown);
   }
   mark_twins(candidates, model);

@@ -30,6 +30,11 @@ inline constexpr const char* stands_in_for_another =
     "there is a gap, and the cause that lowers it most leaves most of it and is of another size in each part of the data: "
     "it stands in for one that the catalogue lacks";
 
+/// What is said where the data tell no parameter of a cause.
+inline constexpr const char* may_be_of_any_size =
+    "there is a gap, and of the cause that lowers it most the data tell nothing: each of its parameters may be anything in its "
+    "range";
+
 /// What is said where a cause that leaves a rest takes a constant along that nothing else asks to move.
 inline constexpr const char* bends_a_constant =
     "there is a gap, and the cause that lowers it most leaves a rest and needs a constant further off than a constant can be "

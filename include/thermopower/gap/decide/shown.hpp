@@ -16,9 +16,10 @@ namespace thermopower::gap::engine {
 
 /// What recordings can show; anything where nothing is known.
 struct Shown {
-  double travel_rad = 1e300;         ///< range of the angle
-  double longest_run_s = 1e300;      ///< length of the longest run
-  double fastest_rad_per_s = 1e300;  ///< of the motion
+  double travel_rad = 1e300;           ///< range of the angle
+  double longest_run_s = 1e300;        ///< length of the longest run
+  double fastest_rad_per_s = 1e300;    ///< of the motion
+  bool by_reaching_the_noise = false;  ///< whether what is asked about leaves nothing but noise
 };
 
 /// Range of the angle in rad; without an angle any.
@@ -62,7 +63,7 @@ inline double fastest_rad_per_s(const std::vector<Inputs>& inputs) {
 
 /// What recordings can show.
 inline Shown shown_by(const std::vector<Inputs>& inputs) {
-  return {travel_rad(inputs), longest_run_s(inputs), fastest_rad_per_s(inputs)};
+  return {travel_rad(inputs), longest_run_s(inputs), fastest_rad_per_s(inputs), false};
 }
 
 }  // namespace thermopower::gap::engine

@@ -176,6 +176,7 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     return nothing_known(
         "there is a gap, and the explanation that lowers it most has more free parameters and moved constants than so "
         "few readings can decide");
+  if (may_be_anything(best, model, weight)) return nothing_known(may_be_of_any_size);
   const double multiple_left = largest_noise_multiple(best.held_out);
   const double share_left = left_over(best.held_out, reference.as_configured);
   const bool near = multiple_left <= decision.near_floor;

@@ -23,16 +23,6 @@ inline std::string name_of_move(const Coordinate& constant) {
   return constant.name + (constant.logarithmic ? ".scale" : ".shift");
 }
 
-/// How far to either side of where a fit ended the 95 % interval of a coordinate reaches: over all of its range where moving it
-/// that far changes nothing there, as of a friction's transition that no sample fell into.
-inline double reach_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
-  const Coordinate& one = candidate.list[place];
-  const double range = one.upper - one.lower;
-  const auto at = static_cast<Eigen::Index>(place);
-  if (covariance.of.size() == 0 || candidate.fit.information(at, at) * range * range < 1.0) return range;
-  return covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
-}
-
 /// Values and intervals of an explanation's own parameters. The intervals are those of the fit's coordinate
 /// carried over.
 inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, const Model& model,

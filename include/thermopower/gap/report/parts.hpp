@@ -195,11 +195,10 @@ inline bool constants_fall_short(const Diagnosis& result) {
 }
 
 /// Whether the printed table proves that the causes take a part of some signal's gap away: the lower end of its interval is
-/// above nothing, and above what other constants take away without any cause.
+/// above nothing, and so is that of what they take away beyond what other constants do without any cause, in the same blocks.
 inline bool is_proven_by_the_table(const Diagnosis& result) {
   return std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
-    const double by_constants = gap.before > 0.0 ? 1.0 - gap.recalibrated / gap.before : 0.0;
-    return gap.ci95.low > std::max(by_constants, 0.0);
+    return gap.ci95.low > 0.0 && (gap.recalibrated >= gap.before || gap.beyond_constants.low > 0.0);
   });
 }
 
@@ -257,7 +256,7 @@ inline void take_causes_back(Diagnosis& result, const Model& model, const Conclu
   for (GapScore& gap : result.gap) {
     gap.after = gap.before;
     gap.shrunk_by = 0.0;
-    gap.ci95 = {};
+    gap.ci95 = gap.beyond_constants = {};
   }
   for (SignalSeries& series : result.series) series.augmented = series.baseline;
 }
@@ -418,6 +417,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
     gap.noise_floor = floor[i];
     gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
     gap.ci95 = shrinkage_interval(before.of[i], after.of[i], options.seed);
+    gap.beyond_constants = shrinkage_interval(recalibrated.of[i], after.of[i], options.seed);
     result.gap.push_back(gap);
     std::size_t at = 0;
     for (const Inputs& one : inputs) {

@@ -22,18 +22,27 @@ struct NaturalConvectionEffect {
 
   /// What it is.
   static EffectInfo info() {
-    return {"natural_convection",
-            Submodel::thermal_loss,
-            "loss = G (T - Ta) (|T - Ta| / reference)^n",
-            "Warm air rises faster the warmer it is: the loss grows faster than the temperature rise.",
-            {parameter(exponent, "exponent").unit("1").within(0.0, 1.0).starts({0.2}),
-             parameter(reference_K, "reference_K")
-                 .unit("K")
-                 .within(1.0, 300.0)
-                 .logarithmic()
-                 .starts({15.0, 40.0})},
-            {Need::thermal_model, Need::motor_C},
-            "holds at several powers and a long cooling curve in still air"};
+    EffectInfo one{"natural_convection",
+                   Submodel::thermal_loss,
+                   "loss = G (T - Ta) (|T - Ta| / reference)^n",
+                   "Warm air rises faster the warmer it is: the loss grows faster than the temperature rise.",
+                   {parameter(exponent, "exponent").unit("1").within(0.0, 1.0).starts({0.2}),
+                    parameter(reference_K, "reference_K")
+                        .unit("K")
+                        .within(1.0, 300.0)
+                        .logarithmic()
+                        .starts({15.0, 40.0})},
+                   {Need::thermal_model, Need::motor_C},
+                   "holds at several powers and a long cooling curve in still air"};
+    one.is_itself = rises_by_itself;
+    return one;
+  }
+
+  /// Whether the loss grows no faster than that of air that rises by itself, which is turbulent at most (n = 1/3; Churchill & Chu
+  /// 1975), and of a hot surface's radiation in it. What grows faster sets in somewhere: a fan, or a liquid that boils.
+  static bool rises_by_itself(const double* p) {
+    constexpr double most = 0.6;
+    return p[exponent] <= most;
   }
 
   /// Scales the baseline's conductance.
