@@ -893,7 +893,9 @@ TEST_CASE("of a parameter that the data say nothing of, any value in its range i
     one.list[0].upper = 1.0;
     one.fit.at_bound = {false};
     one.fit.information(0, 0) = known;
-    const Interval interval = estimates(one, Model{}, Weight()).front().ci95;
+    const ParameterEstimate estimate = estimates(one, Model{}, Weight()).front();
+    const Interval interval = estimate.ci95;
+    CHECK(estimate.told == (known > 0.0));
     if (known > 0.0)
       CHECK(interval.high - interval.low == Approx(2.0 * 1.96 / std::sqrt(information)).epsilon(0.1));
     else CHECK((interval.low == -0.5 && interval.high == 1.0));

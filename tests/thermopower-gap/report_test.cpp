@@ -557,6 +557,21 @@ TEST_CASE("a place that takes none of the gap away says so instead of 0 %") {
   CHECK_THAT(io::report_html(d, "motor", {}), !ContainsSubstring("no one place"));
 }
 
+TEST_CASE(
+    "summary and page say of a parameter that the data do not tell it, and give no interval that is all of its range") {
+  Diagnosis d = example();
+  d.cause[0].parameters = {{"emissive_area_m2", 0.3, {0.25, 0.35}, "m^2"}, {"shape", 0.7, {0.0, 1.0}, "1"}};
+  d.cause[0].parameters[1].told = false;
+  d.ranking[0].parameters = d.cause[0].parameters;
+  const std::string summary = std::regex_replace(io::summary(d), std::regex("\n +"), " "),
+                    page = io::report_html(d, "motor", {});
+  CHECK_THAT(summary, ContainsSubstring("0.300 m^2 [0.250, 0.350]"));
+  for (const std::string& text : {summary, page}) {
+    CHECK_THAT(text, ContainsSubstring("not told by these data"));
+    CHECK_THAT(text, !ContainsSubstring("[0, 1.00]"));
+  }
+}
+
 TEST_CASE("the summary says that a parameter ended on a bound, as its interval tells nothing there") {
   Diagnosis d = example();
   CHECK_THAT(io::summary(d), !ContainsSubstring("on its bound"));

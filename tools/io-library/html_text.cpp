@@ -76,6 +76,12 @@ std::string readable(double value, int digits) {
   return text;
 }
 
+std::string known_to(const gap::ParameterEstimate& parameter) {
+  if (!parameter.told) return "(not told by these data)";
+  return "[" + readable(parameter.ci95.low) + ", " + readable(parameter.ci95.high) + "]" +
+         (parameter.at_bound ? ", on its bound" : "");
+}
+
 std::string percent_html(double share) {
   if (!std::isfinite(share)) return "\u2013";
   if (share > 0.99 && share < 1.0) return "&gt;\u200a99\u00a0%";

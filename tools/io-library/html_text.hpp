@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/plant/signal.hpp>
 #include <thermopower/io/names.hpp>
 
@@ -19,6 +20,9 @@ std::string breakable(const std::string& id);
 /// @brief A number for people: `digits` significant digits, no exponent between 0.001 and 99999, a dash for
 /// NaN.
 std::string readable(double value, int digits = 3);
+
+/// @brief What the data say of a parameter beside its value: its interval, in brackets, or that they tell nothing.
+std::string known_to(const gap::ParameterEstimate& parameter);
 
 /// @brief A share for people, such as "83 %", "> 99 %".
 std::string percent_html(double share);

@@ -184,8 +184,7 @@ private:
       std::string more;
       for (const auto& parameter : cause.parameters) {
         more += (more.empty() ? "" : "<br>") + breakable(parameter.name) + " " +
-                with_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
-                ", " + readable(parameter.ci95.high) + "]" + (parameter.at_bound ? ", on its bound" : "");
+                with_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
       }
       fact("Which \u00b7 probability " + percent_html(cause.probability), breakable(cause.effect), more);
     }
@@ -608,8 +607,8 @@ private:
     }
     if (chosen) {
       for (const auto& parameter : one.parameters)
-        add(breakable(parameter.name) + " = " + with_unit(readable(parameter.value), parameter.unit) + " [" +
-            readable(parameter.ci95.low) + ", " + readable(parameter.ci95.high) + "]");
+        add(breakable(parameter.name) + " = " + with_unit(readable(parameter.value), parameter.unit) + " " +
+            known_to(parameter));
     }
     if (one.absorbed) add("re-calibration imitates it: this recording cannot show it");
     if (one.at_bound) add("a parameter ended on its bound");

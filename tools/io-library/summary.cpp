@@ -135,8 +135,7 @@ std::string summary(const Diagnosis& diagnosis) {
     std::string text = cause.effect + " (" + percent(cause.probability) + ")";
     for (const auto& parameter : cause.parameters) {
       text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
-              plain_unit(readable(parameter.value), parameter.unit) + " [" + readable(parameter.ci95.low) +
-              ", " + readable(parameter.ci95.high) + "]" + (parameter.at_bound ? ", on its bound" : "");
+              plain_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
     }
     out += line(first ? "which" : "", text);
     first = false;

@@ -66,6 +66,7 @@ struct ParameterEstimate {
   Interval ci95;  ///< accounts for autocorrelated residuals; its whole range where the data say nothing of it
   std::string unit;       ///< "1" for a pure number
   bool at_bound = false;  ///< ended on a bound of its range: then it is no explanation
+  bool told = true;       ///< the data narrow its range
 };
 
 /// One effect of the chosen explanation.

@@ -98,6 +98,14 @@ inline double reach_of(const Candidate& candidate, std::size_t place, const Cova
   return covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
 }
 
+/// Whether the data narrow the range of a coordinate: its 95 % interval is not all of it.
+inline bool is_narrowed(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
+  const Coordinate& one = candidate.list[place];
+  const double value = candidate.fit.point[static_cast<Eigen::Index>(place)],
+               reach = reach_of(candidate, place, covariance);
+  return value - reach > one.lower || value + reach < one.upper;
+}
+
 /// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all of its
 /// range. Then the data show that something is missing, and nothing of what.
 inline bool may_be_anything(const Candidate& candidate, const Model& model, const Weight& weight) {
@@ -105,16 +113,14 @@ inline bool may_be_anything(const Candidate& candidate, const Model& model, cons
   if (covariance.of.size() == 0) return false;
   std::size_t at = model.calibrated().size();
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
-    bool is_told = entry->info.parameters.empty();
+    bool was_looked_for = false, is_told = false;
     for (const Parameter& parameter : entry->info.parameters) {
       const std::size_t place = at++;
-      const Coordinate& one = candidate.list[place];
-      if (parameter.standard || one.still) continue;
-      const double value = candidate.fit.point[static_cast<Eigen::Index>(place)],
-                   reach = reach_of(candidate, place, covariance);
-      is_told = is_told || value - reach > one.lower || value + reach < one.upper;
+      if (parameter.standard || candidate.list[place].still) continue;
+      was_looked_for = true;
+      is_told = is_told || is_narrowed(candidate, place, covariance);
     }
-    if (!is_told) return true;
+    if (was_looked_for && !is_told) return true;
   }
   return false;
 }

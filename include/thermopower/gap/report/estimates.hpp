@@ -45,6 +45,7 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
                      one.value_of(std::min(value + reach, one.upper))};
     estimate.unit = one.unit;
     estimate.at_bound = candidate.fit.at_bound[i];
+    estimate.told = is_narrowed(candidate, i, covariance);
     list.push_back(std::move(estimate));
   }
   return list;
