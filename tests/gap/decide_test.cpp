@@ -670,12 +670,15 @@ TEST_CASE("a part is named only where the printed table proves it, beyond what o
   CHECK(is_proven_by_the_table(result));
   result.gap.back().ci95 = {-0.02, 0.3};
   CHECK_FALSE(is_proven_by_the_table(result));
-  // Other constants would take a fifth away, without any cause: beyond that it counts, in the same blocks.
+  // Other constants would take a fifth away, without any cause: beyond that it counts, or in the same blocks.
   result.gap.back().ci95 = {0.1, 0.3};
   result.gap.back().recalibrated = 7.2;
-  result.gap.back().beyond_constants = {-0.01, 0.06};
+  result.gap.back().beyond_constants = {0.01, 0.2};
   CHECK_FALSE(is_proven_by_the_table(result));
-  result.gap.back().beyond_constants = {0.01, 0.05};
+  result.gap.back().beyond_constants = {0.06, 0.2};
+  CHECK(is_proven_by_the_table(result));
+  result.gap.back().beyond_constants = {-0.1, 0.2};
+  result.gap.back().ci95 = {0.21, 0.3};
   CHECK(is_proven_by_the_table(result));
   // Constants that make it worse are no excuse.
   result.gap.back().recalibrated = 12.0;

@@ -195,10 +195,13 @@ inline bool constants_fall_short(const Diagnosis& result) {
 }
 
 /// Whether the printed table proves that the causes take a part of some signal's gap away: the lower end of its interval is
-/// above nothing, and so is that of what they take away beyond what other constants do without any cause, in the same blocks.
+/// above nothing, and above what other constants take away without any cause; or what they take away beyond those, in the same
+/// blocks, is material at the lower end of its own. The first is the narrower where constants do better here and worse there, the
+/// second where both do.
 inline bool is_proven_by_the_table(const Diagnosis& result) {
   return std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
-    return gap.ci95.low > 0.0 && (gap.recalibrated >= gap.before || gap.beyond_constants.low > 0.0);
+    const double by_constants = gap.before > 0.0 ? 1.0 - gap.recalibrated / gap.before : 0.0;
+    return gap.ci95.low > 0.0 && (gap.ci95.low > by_constants || gap.beyond_constants.low > decision.proven);
   });
 }
 
