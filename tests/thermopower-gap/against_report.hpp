@@ -105,13 +105,18 @@ protected:
 
   void parameters(Sentence& sentence, const Json& list, const std::string& assigned) {
     for (const auto& [name, one] : list.items()) {
+      const std::string begin = "(?:^|[ ,:\n])" + literal(name) + assigned + number;
+      const auto is_nothing = [&](const std::smatch& m) {
+        need(is(m[1], one["value"]), "another parameter", m[0]);
+      };
+      const auto is_interval = [&](const std::smatch& m) {
+        need(is(m[1], one["value"]) && is(m[2], one["ci95"][0]) && is(m[3], one["ci95"][1]),
+             "another parameter", m[0]);
+      };
       const int said =
-          sentence.take("(?:^|[ ,:\n])" + literal(name) + assigned + number + "(?: [^\\[,]+)? \\[" + number +
-                            ", " + number + "\\]",
-                        [&](const std::smatch& m) {
-                          need(is(m[1], one["value"]) && is(m[2], one["ci95"][0]) && is(m[3], one["ci95"][1]),
-                               "another parameter", m[0]);
-                        });
+          one.contains("told")
+              ? sentence.take(begin + "(?: [^\\[(,]+)? \\(not told by these data\\)", is_nothing)
+              : sentence.take(begin + "(?: [^\\[,]+)? \\[" + number + ", " + number + "\\]", is_interval);
       need(said == 1, "a parameter that is not told once", name);
     }
   }

@@ -27,6 +27,7 @@ Json parameters(const std::vector<ParameterEstimate>& list) {
   for (const auto& one : list) {
     object[one.name] = {{"value", number(one.value)}, {"ci95", interval(one.ci95)}, {"unit", one.unit}};
     if (one.at_bound) object[one.name]["at_bound"] = true;
+    if (!one.told) object[one.name]["told"] = false;
   }
   return object;
 }
