@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
+#include <thermopower/gap/diagnosis.hpp>
 
 #include <Eigen/Core>
 
@@ -88,22 +89,23 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   return covariance;
 }
 
-/// How far to either side of where a fit ended the 95 % interval of a coordinate reaches: over all of its range where moving it
-/// that far changes nothing there, as of a friction's transition that no sample fell into.
-inline double reach_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
+/// The 95 % interval of a coordinate, in its own numbers and within its range: all of that where moving it so far changes nothing,
+/// as of a friction's transition that no sample fell into.
+inline Interval interval_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
   const Coordinate& one = candidate.list[place];
   const double range = one.upper - one.lower;
   const auto at = static_cast<Eigen::Index>(place);
-  if (covariance.of.size() == 0 || candidate.fit.information(at, at) * range * range < 1.0) return range;
-  return covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+  const bool says_nothing =
+      covariance.of.size() == 0 || candidate.fit.information(at, at) * range * range < 1.0;
+  const double value = candidate.fit.point[at],
+               reach = says_nothing ? range
+                                    : covariance.quantile * std::sqrt(std::max(covariance.of(at, at), 0.0));
+  return {std::max(value - reach, one.lower), std::min(value + reach, one.upper)};
 }
 
-/// Whether the data narrow the range of a coordinate: its 95 % interval is not all of it.
-inline bool is_narrowed(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
-  const Coordinate& one = candidate.list[place];
-  const double value = candidate.fit.point[static_cast<Eigen::Index>(place)],
-               reach = reach_of(candidate, place, covariance);
-  return value - reach > one.lower || value + reach < one.upper;
+/// Whether the data narrow the range of a coordinate. @param interval  its interval_of()
+inline bool is_narrower(const Interval& interval, const Coordinate& one) {
+  return interval.low > one.lower || interval.high < one.upper;
 }
 
 /// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all of its
@@ -118,7 +120,7 @@ inline bool may_be_anything(const Candidate& candidate, const Model& model, cons
       const std::size_t place = at++;
       if (parameter.standard || candidate.list[place].still) continue;
       was_looked_for = true;
-      is_told = is_told || is_narrowed(candidate, place, covariance);
+      is_told = is_told || is_narrower(interval_of(candidate, place, covariance), candidate.list[place]);
     }
     if (was_looked_for && !is_told) return true;
   }

@@ -49,13 +49,13 @@ inline double mean_correlation(const Weight& weight) {
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
                   std::size_t at, const Shown& shown) {
-  constexpr double nearly = 1.01;
-  const bool is_a_period =
-      shown.by_reaching_the_noise &&
-      candidate.value(at) > nearly * candidate.list[at].value_of(candidate.list[at].lower);
-  if (parameter.periods_in_travel > 0.0 && !is_a_period &&
-      candidate.value(at) * shown.travel_rad < parameter.periods_in_travel * rad_per_turn)
-    return false;
+  if (parameter.periods_in_travel > 0.0 &&
+      candidate.value(at) * shown.travel_rad < parameter.periods_in_travel * rad_per_turn) {
+    constexpr double nearly = 1.01;
+    const Coordinate& count = candidate.list[at];
+    if (!shown.by_reaching_the_noise || candidate.value(at) <= nearly * count.value_of(count.lower))
+      return false;
+  }
   if (parameter.within_the_motion && candidate.value(at) > shown.fastest_rad_per_s) return false;
   if (parameter.exceeds.empty()) return true;
   const std::size_t other = candidate.place_of(entry, parameter.exceeds);

@@ -36,16 +36,14 @@ inline std::vector<ParameterEstimate> estimates(const Candidate& candidate, cons
         std::find(candidate.explanation.released.begin(), candidate.explanation.released.end(),
                   static_cast<int>(i)) != candidate.explanation.released.end();
     if ((i < constants && !released) || one.still) continue;
-    const double value = candidate.fit.point[static_cast<Eigen::Index>(i)],
-                 reach = reach_of(candidate, i, covariance);
+    const Interval interval = interval_of(candidate, i, covariance);
     ParameterEstimate estimate;
     estimate.name = i < constants ? name_of_move(one) : one.name;
-    estimate.value = one.value_of(value);
-    estimate.ci95 = {one.value_of(std::max(value - reach, one.lower)),
-                     one.value_of(std::min(value + reach, one.upper))};
+    estimate.value = candidate.value(i);
+    estimate.ci95 = {one.value_of(interval.low), one.value_of(interval.high)};
     estimate.unit = one.unit;
     estimate.at_bound = candidate.fit.at_bound[i];
-    estimate.told = is_narrowed(candidate, i, covariance);
+    estimate.told = is_narrower(interval, one);
     list.push_back(std::move(estimate));
   }
   return list;
