@@ -3,6 +3,8 @@
 #pragma once
 
 #include <thermopower/gap/fit/fit_problem.hpp>
+#include <thermopower/plant/axis_rollout.hpp>
+#include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <cmath>

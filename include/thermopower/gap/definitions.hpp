@@ -10,7 +10,9 @@
 #include <thermopower/gap/detail/check_data.hpp>
 #include <thermopower/gap/detail/diagnose.hpp>
 #include <thermopower/gap/detail/simulate.hpp>
+#include <thermopower/plant/detail/actuator_plant.hpp>
 #include <thermopower/plant/detail/catalogue.hpp>
 #include <thermopower/plant/detail/expression.hpp>
 #include <thermopower/plant/detail/model.hpp>
+#include <thermopower/plant/detail/network_plant.hpp>
 #include <thermopower/plant/detail/standard_catalogue.hpp>
