@@ -275,6 +275,38 @@ TEST_CASE("friction that is alike in both directions is friction, and no rival o
   CHECK(candidates[2].probability > 0.05);
 }
 
+TEST_CASE(
+    "two efficiencies say what a load friction says beside another torque constant, which is known to some error only") {
+  Model model = axis_model();
+  const auto judged = [&](double moved) {  // by what the torque constant moved beside the load friction alone
+    std::vector<Candidate> candidates{at_zero(model, nullptr), at_zero(model, "load_friction"),
+                                      at_zero(model, "drive_efficiency")};
+    candidates[0].train = candidates[0].held_out = sums_of(blocks(30.0, 30.0));
+    for (std::size_t i : {1u, 2u}) {
+      candidates[i].train = candidates[i].held_out = sums_of(blocks(1.0, 1.0));
+      const auto first = static_cast<Eigen::Index>(candidates[0].list.size());
+      candidates[i].fit.point[first] = i == 1 ? 0.13 : 0.81;
+      if (i == 2) candidates[i].fit.point[first + 1] = 0.96;
+    }
+    const std::vector<CalibratedConstant> constants = model.calibrated();
+    std::size_t torque_constant = 0;
+    while (constants[torque_constant].id != "torque_constant") ++torque_constant;
+    candidates[1].fit.point[static_cast<Eigen::Index>(torque_constant)] = moved;
+    weigh(candidates, Weight(), model);
+    return std::pair(candidates[1].probability, candidates[2].probability);
+  };
+  // The one says where the torque constant is, to 5 %, by Cauchy's density; the other one where an efficiency is, between 0.05 and 1.
+  const double odds = 0.95 / (3.14159265 * 0.05);
+  const auto [unmoved, beside_unmoved] = judged(0.0);
+  CHECK(unmoved / beside_unmoved == Approx(odds).epsilon(1e-3));
+  const auto [moved, beside_moved] = judged(-0.2);
+  CHECK(moved / beside_moved == Approx(odds / (1.0 + 16.0)).epsilon(1e-3));
+  // Whoever has measured it gets an answer.
+  model.uncertainty["axis.torque_constant_Nm_per_A"] = 0.005;
+  CHECK(judged(0.0).first > 0.95);
+  CHECK(judged(-0.2).second > 0.95);
+}
+
 TEST_CASE("friction that hardly rises near standstill is friction where that leaves what the noise allows") {
   const Model model = axis_model();
   std::vector<Candidate> candidates = nothing_friction_and(model, "stribeck_friction");

@@ -16,14 +16,19 @@ using Log = test::SwitchedBench::Log;
 
 namespace {
 
-/// Part of an interval in which the next row's heat is in force; -1 where nothing is found.
-double share_of(const test::SwitchedBench& bench, double lasts_s, unsigned seed) {
+/// What a recording of a bench tells.
+HeatBetweenRows told_by(const test::SwitchedBench& bench, double lasts_s, unsigned seed) {
   const Model model = test::SwitchedBench::model();
   const Inputs inputs = prepare(model, bench.recording(lasts_s, seed));
   const thermopower::plant::BenchAtRows laws(model, thermopower::plant::standard_catalogue(), inputs, {});
   HeatBetweenRows between;
   between.add(inputs, laws.evaluate(thermopower::plant::HeatTold::by_law).heat_W);
-  return between.share().value_or(-1.0);
+  return between;
+}
+
+/// Part of an interval in which the next row's heat is in force; -1 where nothing is found.
+double share_of(const test::SwitchedBench& bench, double lasts_s, unsigned seed) {
+  return told_by(bench, lasts_s, seed).share().value_or(-1.0);
 }
 
 TEST_CASE("a power that is switched at any time is half an interval ahead, for one body and for two") {
@@ -59,6 +64,17 @@ TEST_CASE("a power that holds from row to row is not ahead, however the body sto
         bench.rows_s = rows_s;
         CHECK(share_of(bench, 28800.0, seed) == -1.0);
       }
+}
+
+TEST_CASE("one logger writes all recordings: what others deny is no way of writing them") {
+  test::SwitchedBench at_rows, anytime;
+  at_rows.log = Log::at_rows;
+  anytime.log = Log::anytime;
+  const HeatBetweenRows ahead = told_by(anytime, 28800.0, 8);
+  CHECK(ahead.differs_from(told_by(at_rows, 28800.0, 9)));
+  CHECK_FALSE(ahead.differs_from(told_by(anytime, 28800.0, 9)));
+  // A minute tells nothing, and denies nothing.
+  CHECK_FALSE(ahead.differs_from(told_by(at_rows, 60.0, 9)));
 }
 
 }  // namespace

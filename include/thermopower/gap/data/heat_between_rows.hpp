@@ -36,7 +36,7 @@ struct HeatThresholds {
   double most_share = 1.25;      ///< of the interval that is over is one
   double whole = 0.8;            ///< from here on it is the interval that is over
   double sure = 5.0;      ///< standard errors that the share differs from 0 by: one in 25 000, of 20 parts
-  double agree = 2.5;     ///< standard errors that few and all bodies may differ by
+  double agree = 2.5;     ///< standard errors that few and all bodies, and recordings, may differ by
   double precise = 0.12;  ///< largest standard error of the share
 };
 
@@ -68,13 +68,18 @@ public:
   /// rows are written after their interval; nothing where it holds or where nobody knows.
   std::optional<double> share() const {
     constexpr HeatThresholds limit;
-    // One body tells more where it suffices (Hausman 1978, Econometrica 46).
-    const Estimate few = estimate(terms - 2), all = estimate(terms);
-    const bool suffices = std::abs(few.value - all.value) < limit.agree * all.error;
-    const Estimate& best = suffices && few.error < all.error ? few : all;
+    const Estimate best = told();
     if (!(best.error < limit.precise) || !(best.value > limit.sure * best.error)) return std::nullopt;
     if (!(best.value > limit.least_share) || !(best.value < limit.most_share)) return std::nullopt;
     return best.value > limit.whole ? 1.0 : best.value;
+  }
+
+  /// Whether what other recordings tell is another share by more than chance has it: one logger writes all of them.
+  bool differs_from(const HeatBetweenRows& others) const {
+    constexpr HeatThresholds limit;
+    const Estimate here = told(), there = others.told();
+    return there.error < limit.precise &&
+           std::abs(here.value - there.value) > limit.agree * std::hypot(here.error, there.error);
   }
 
 private:
@@ -92,6 +97,14 @@ private:
   struct Estimate {
     double value = plant::missing, error = 1e9;
   };
+
+  /// The share as it is told best: one body tells more where it suffices (Hausman 1978, Econometrica 46).
+  Estimate told() const {
+    constexpr HeatThresholds limit;
+    const Estimate few = estimate(terms - 2), all = estimate(terms);
+    const bool suffices = std::abs(few.value - all.value) < limit.agree * all.error;
+    return suffices && few.error < all.error ? few : all;
+  }
 
   Estimate estimate(Eigen::Index used) const {
     constexpr HeatThresholds limit;

@@ -210,7 +210,8 @@ inline void read_current_noise(const Model& model, CheckedRecordings& checked,
   });
 }
 
-/// Lets the power of a bench be switched when the training recordings say that it was, in all recordings.
+/// Lets the power of a bench be switched when the training recordings say that it was and the held-out ones do not say otherwise, in
+/// all recordings.
 inline void read_when_switched(const Model& model, CheckedRecordings& checked, const Catalogue& catalogue,
                                std::vector<Finding>& findings) {
   if (model.own || !model.has_thermal()) return;
@@ -219,11 +220,15 @@ inline void read_when_switched(const Model& model, CheckedRecordings& checked, c
     return plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).heat_W;
   };
   const auto is_heated = [](const PreparedRecording& one) { return one.inputs().judged(Signal::motor_C); };
-  HeatBetweenRows between;
-  for (const PreparedRecording& one : checked.train)
-    if (is_heated(one)) between.add(one.inputs(), heat_of(one));
+  const auto seen_in = [&](const std::vector<PreparedRecording>& recordings) {
+    HeatBetweenRows between;
+    for (const PreparedRecording& one : recordings)
+      if (is_heated(one)) between.add(one.inputs(), heat_of(one));
+    return between;
+  };
+  const HeatBetweenRows between = seen_in(checked.train);
   const std::optional<double> share = between.share();
-  if (!share) return;
+  if (!share || between.differs_from(seen_in(checked.held_out))) return;
   const bool late = *share == 1.0;
   for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
     findings.push_back(

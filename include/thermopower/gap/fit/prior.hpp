@@ -51,6 +51,15 @@ struct Prior {
     return (degrees + 1.0) * std::log1p(at * at / (degrees * sd * sd));
   }
 
+  /// How dense it is at its centre where explanations are compared, per unit of the coordinate: Cauchy's, of one degree of freedom.
+  /// Infinite where it is exact.
+  double density_at_centre() const {
+    static_assert(known_constants.degrees_of_freedom_of_price == 1.0,
+                  "another density goes with another price");
+    constexpr double pi = 3.14159265358979323846;
+    return 1.0 / (pi * sd);
+  }
+
   /// The weight w for which w at^2 / 2 has the gradient of half the cost: what a normal distribution of the same
   /// pull would have for an inverse variance.
   double weight(double at) const {
