@@ -119,6 +119,51 @@ TEST_CASE("a constant that moves far only beside a cause and a rest gives the ca
   CHECK(concluded(all, 850.0).verdict == Verdict::explained);
 }
 
+TEST_CASE(
+    "a cause that leaves a rest of what began in the middle of runs stands in for what happened there") {
+  const Model model = test::axis_model();
+  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 50.0)};
+  Witness rows;
+  rows.where.push_back({Signal::rate_dps, plant::SubmodelName(Submodel::mechanical_friction), 0.9, {}, ""});
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, 7.0}};
+  CHECK(concluded(all, 850.0, rows).reason == was_not_there_before);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
+  // It began in one recording, and shows throughout the other one, which asks more of it.
+  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, {}}};
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  // What brings everything to the noise needs no such witness: a bias that drifts shows late.
+  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, 7.0}};
+  all[1].train = all[1].held_out = level(1.1);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::explained);
+}
+
+TEST_CASE("a cause of a joint that leaves a rest acts in a place that the rows find at fault") {
+  const Model model = test::axis_model();
+  const plant::SubmodelName friction(Submodel::mechanical_friction), drive(Submodel::mechanical_drive);
+  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 50.0)};
+  Witness rows;
+  rows.where = {{Signal::rate_dps, drive, 0.9, {}, ""}, {Signal::rate_dps, friction, 0.02, {}, ""}};
+  CHECK(concluded(all, 850.0, rows).reason == acts_where_nothing_is_wrong);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
+  rows.where.back().share = 0.3;
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  // One of two causes is enough; of a state that nobody measures, and of readings that are bent, balances say little.
+  rows.where.back().share = 0.02;
+  for (const char* beside : {"presliding_friction", "rate_bias"}) {
+    all[1] = candidate(model, {beside}, 50.0);
+    CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  }
+  // Where they blame nothing of the joint, nobody knows.
+  all[1] = candidate(model, {"coulomb_friction"}, 50.0);
+  rows.where = {{Signal::angle_deg, plant::SubmodelName(Submodel::sensing_angle), 0.9, {}, ""}};
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
+  // And what brings everything to the noise needs no such witness.
+  rows.where = {{Signal::rate_dps, drive, 0.9, {}, ""}};
+  all[1].train = all[1].held_out = level(1.1);
+  CHECK(concluded(all, 850.0, rows).verdict == Verdict::explained);
+}
+
 TEST_CASE("a cause that leaves a good part of the gap in the place that it should mend is a stand-in") {
   const Model model = test::axis_model();
   const plant::SubmodelName friction(Submodel::mechanical_friction), drive(Submodel::mechanical_drive);

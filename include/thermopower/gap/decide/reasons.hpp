@@ -45,6 +45,16 @@ inline constexpr const char* does_not_mend_its_place =
     "there is a gap, and the cause that lowers it most leaves a good part of it and its place at fault: it stands in for one "
     "that the catalogue lacks";
 
+/// What is said where a cause leaves a rest and acts in no place that the rows blame.
+inline constexpr const char* acts_where_nothing_is_wrong =
+    "there is a gap, and the cause that lowers it most leaves a rest and acts in no place that the measured rows find at "
+    "fault: it stands in for one that the catalogue lacks";
+
+/// What is said where the fault began in the middle of runs and a cause leaves a rest.
+inline constexpr const char* was_not_there_before =
+    "there is a gap that began in the middle of runs and would have shown before; the cause that lowers it most leaves a rest, "
+    "and would have been there all along: it stands in for one that the catalogue lacks";
+
 /// What is said of causes that are large and of opposite sign.
 inline constexpr const char* cancel_each_other =
     "there is a gap, and the causes that lower it most leave a rest and nearly cancel each other, each of them larger than "

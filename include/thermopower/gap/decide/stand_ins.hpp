@@ -6,6 +6,7 @@
 #include <thermopower/gap/decide/witness.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -33,6 +34,43 @@ inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<
   return std::any_of(where.begin(), where.end(), [&](const Location& one) {
     return one.signal != where.front().signal && takes_gap_away(one) && !acts_in(candidate, one.submodel);
   });
+}
+
+/// Whether what the rows blame most began in the middle of a training run and of a held-out one, where it would have shown before:
+/// what the catalogue knows is there all along.
+inline bool began_in_mid_run(const std::vector<Location>& where) {
+  for (const Location& one : where) {
+    if (!takes_gap_away(one)) continue;
+    bool began[2] = {false, false};
+    for (const Occurrence& run : one.only_in)
+      began[run.held_out ? 1 : 0] = began[run.held_out ? 1 : 0] || run.from_s.has_value();
+    return began[0] && began[1];
+  }
+  return false;
+}
+
+/// Whether the rows blame places of a joint, and no cause of a candidate acts in one of them: friction beside a rest where a drive
+/// and a structure are at fault. Not asked where a cause brings a state that nobody measures, which a balance takes for
+/// another place, or bends the readings; nor of a body, whose loss, heating and storage the rows tell apart less well.
+inline bool acts_elsewhere(const Candidate& candidate, const std::vector<Location>& where) {
+  constexpr std::array<Submodel, 4> joint{Submodel::mechanical_drive, Submodel::mechanical_friction,
+                                          Submodel::mechanical_load, Submodel::mechanical_structure};
+  const auto is_of_a_joint = [&](const plant::SubmodelName& name) {
+    return std::any_of(joint.begin(), joint.end(),
+                       [&](Submodel one) { return plant::SubmodelName(one) == name; });
+  };
+  const std::vector<const CatalogueEntry*>& effects = candidate.explanation.effects;
+  if (has_hidden_states(candidate) || !std::all_of(effects.begin(), effects.end(), [&](const auto* entry) {
+        return is_of_a_joint(entry->info.submodel);
+      }))
+    return false;
+  bool blamed = false;
+  for (const Location& one : where) {
+    if (!is_of_a_joint(one.submodel) || !(one.share >= decision.blamed)) continue;
+    if (acts_in(candidate, one.submodel)) return false;
+    blamed = true;
+  }
+  return blamed;
 }
 
 /// Whether causes that leave a good part of the gap leave the place at fault that they should mend: with the causes in the

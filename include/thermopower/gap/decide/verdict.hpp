@@ -199,6 +199,8 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
       return nothing_known(stands_in_for_another);
     if (rest > decision.may_leave_bent && needs_a_bent_constant(best, reference, model))
       return nothing_known(bends_a_constant);
+    if (began_in_mid_run(rows.where)) return nothing_known(was_not_there_before);
+    if (acts_elsewhere(best, rows.where)) return nothing_known(acts_where_nothing_is_wrong);
     if (leaves_its_place_at_fault(best, rest_above_noise(best.held_out, reference), rows))
       return nothing_known(does_not_mend_its_place);
     if (best.explanation.effects.size() > 1 && rows.cancels && rows.cancels(best))
