@@ -200,9 +200,9 @@ inline Conclusion conclude(const std::vector<Candidate>& candidates, const Refer
     if (rest > decision.may_leave_bent && needs_a_bent_constant(best, reference, model))
       return nothing_known(bends_a_constant);
     if (began_in_mid_run(rows.where)) return nothing_known(was_not_there_before);
-    if (acts_elsewhere(best, rows.where)) return nothing_known(acts_where_nothing_is_wrong);
     if (leaves_its_place_at_fault(best, rest_above_noise(best.held_out, reference), rows))
       return nothing_known(does_not_mend_its_place);
+    if (acts_elsewhere(best, rows.where)) return nothing_known(acts_where_nothing_is_wrong);
     if (best.explanation.effects.size() > 1 && rows.cancels && rows.cancels(best))
       return nothing_known(cancel_each_other);
     result.none_of_these = std::min(decision.doubt_by_rest * rest, 1.0);
