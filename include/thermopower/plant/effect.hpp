@@ -110,7 +110,7 @@ struct Parameter {
   /// A rate that the motion must reach: beyond its fastest nothing shows it, and a fit that ends there explains nothing.
   bool within_the_motion = false;
   /// Id of a constant of the model (`torque_constant`) that does the same where it moves: beside the effect's other parameters
-  /// the data tell this one only as well as that constant is known. Empty: none.
+  /// the data tell this one only as well as that constant is known. Empty, or an id that a model has not: none.
   std::string told_by_constant = {};
   int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
 };

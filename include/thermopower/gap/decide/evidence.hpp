@@ -358,37 +358,6 @@ inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
       one.idle = one.idle || (one.explanation.effects.size() > 1 && has_the_same(one, *twin, model));
 }
 
-/// What a parameter costs that a constant of the model does the work of (Parameter::told_by_constant): the data tell both together
-/// only, and the one as well as the other is known before them. Twice the log odds, at the centre of what is known, of a constant
-/// that is known so well against a parameter that may be anywhere in its range; nothing if it is known no better. The logarithm of
-/// the samples where the model has no such constant.
-inline double cost_of_parameter(const Coordinate& parameter, const std::string& told_by_constant,
-                                const Model& model, double log_samples) {
-  if (told_by_constant.empty()) return log_samples;
-  for (const CalibratedConstant& constant : model.calibrated()) {
-    if (constant.id != told_by_constant) continue;
-    const double range = parameter.upper - parameter.lower;
-    const double known_better = range * Prior{model.uncertainty_of(constant)}.density_at_centre();
-    return std::min(2.0 * std::log(std::max(known_better, 1.0)), log_samples);
-  }
-  return log_samples;
-}
-
-/// What the parameters of a candidate's effects and their own states cost, and the starts that nobody measures.
-inline double cost_of_parameters(const Candidate& candidate, const Model& model, double log_samples) {
-  double cost = candidate.hidden_starts * log_samples;
-  std::size_t at = model.calibrated().size();
-  for (const CatalogueEntry* entry : candidate.explanation.effects) {
-    cost += static_cast<double>(entry->info.states.size()) * log_samples;
-    for (const Parameter& parameter : entry->info.parameters) {
-      const Coordinate& coordinate = candidate.list[at++];
-      if (candidate.explanation.refined || !parameter.refines)
-        cost += cost_of_parameter(coordinate, parameter.told_by_constant, model, log_samples);
-    }
-  }
-  return cost;
-}
-
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
 /// judged on held-out data.
 ///

@@ -6,7 +6,6 @@
 #include <thermopower/gap/decide/witness.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -39,28 +38,22 @@ inline bool misses_a_second_fault(const Candidate& candidate, const std::vector<
 /// Whether what the rows blame most began in the middle of a training run and of a held-out one, where it would have shown before:
 /// what the catalogue knows is there all along.
 inline bool began_in_mid_run(const std::vector<Location>& where) {
-  for (const Location& one : where) {
-    if (!takes_gap_away(one)) continue;
-    bool began[2] = {false, false};
-    for (const Occurrence& run : one.only_in)
-      began[run.held_out ? 1 : 0] = began[run.held_out ? 1 : 0] || run.from_s.has_value();
-    return began[0] && began[1];
-  }
-  return false;
+  const Location* fault = most_blamed(where);
+  if (fault == nullptr) return false;
+  const auto began = [&](bool held_out) {
+    return std::any_of(fault->only_in.begin(), fault->only_in.end(), [&](const Occurrence& run) {
+      return run.held_out == held_out && run.from_s.has_value();
+    });
+  };
+  return began(false) && began(true);
 }
 
 /// Whether the rows blame places of a joint, and no cause of a candidate acts in one of them: friction beside a rest where a drive
 /// and a structure are at fault. Not asked where a cause brings a state that nobody measures, which a balance takes for
 /// another place, or bends the readings; nor of a body, whose loss, heating and storage the rows tell apart less well.
 inline bool acts_elsewhere(const Candidate& candidate, const std::vector<Location>& where) {
-  constexpr std::array<Submodel, 4> joint{Submodel::mechanical_drive, Submodel::mechanical_friction,
-                                          Submodel::mechanical_load, Submodel::mechanical_structure};
-  const auto is_of_a_joint = [&](const plant::SubmodelName& name) {
-    return std::any_of(joint.begin(), joint.end(),
-                       [&](Submodel one) { return plant::SubmodelName(one) == name; });
-  };
   const std::vector<const CatalogueEntry*>& effects = candidate.explanation.effects;
-  if (has_hidden_states(candidate) || !std::all_of(effects.begin(), effects.end(), [&](const auto* entry) {
+  if (has_hidden_states(candidate) || !std::all_of(effects.begin(), effects.end(), [](const auto* entry) {
         return is_of_a_joint(entry->info.submodel);
       }))
     return false;
@@ -90,7 +83,8 @@ inline bool leaves_its_place_at_fault(const Candidate& candidate, double rest, c
   const bool mends_another = std::any_of(rows.where.begin(), rows.where.end(), [&](const Location& one) {
     return takes_gap_away(one) && acts_in(candidate, one.submodel);
   });
-  return blamed == most_blamed(rows.where) && !mends_another && !has_an_instrument(candidate);
+  const Location* before = most_blamed(rows.where);
+  return before != nullptr && before->submodel == blamed && !mends_another && !has_an_instrument(candidate);
 }
 
 }  // namespace thermopower::gap::engine

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
+#include <initializer_list>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -34,11 +34,10 @@ inline double own_course_in(const std::vector<Location>& where) {
   return most;
 }
 
-/// The submodel that is blamed most, of those that take anything of the gap away; none where nobody is blamed.
-inline std::optional<plant::SubmodelName> most_blamed(const std::vector<Location>& where) {
-  for (const Location& one : where)
-    if (takes_gap_away(one)) return one.submodel;
-  return std::nullopt;
+/// The place that is blamed most, of those that take anything of the gap away; null where nobody is blamed.
+inline const Location* most_blamed(const std::vector<Location>& where) {
+  const auto found = std::find_if(where.begin(), where.end(), takes_gap_away);
+  return found != where.end() ? &*found : nullptr;
 }
 
 /// Whether little of a course that followed nothing recorded is left once causes are in the model. A balance remembers
@@ -47,12 +46,24 @@ inline bool ends_the_course(double beside, double before) {
   return before > 0.0 && beside < decision.course_left * before;
 }
 
+/// Whether a submodel is one of several.
+inline bool is_one_of(std::initializer_list<Submodel> several, const plant::SubmodelName& submodel) {
+  return std::any_of(several.begin(), several.end(),
+                     [&](Submodel one) { return submodel == plant::SubmodelName(one); });
+}
+
 /// Whether a cause is one of an instrument: it changes what is read, and not what is there.
 inline bool is_of_an_instrument(const CatalogueEntry& entry) {
-  for (const Submodel instrument : {Submodel::sensing_current, Submodel::sensing_temperature,
-                                    Submodel::sensing_angle, Submodel::sensing_rate})
-    if (entry.info.submodel == plant::SubmodelName(instrument)) return true;
-  return false;
+  return is_one_of({Submodel::sensing_current, Submodel::sensing_temperature, Submodel::sensing_angle,
+                    Submodel::sensing_rate},
+                   entry.info.submodel);
+}
+
+/// Whether a submodel is a place of a joint.
+inline bool is_of_a_joint(const plant::SubmodelName& submodel) {
+  return is_one_of({Submodel::mechanical_drive, Submodel::mechanical_friction, Submodel::mechanical_load,
+                    Submodel::mechanical_structure},
+                   submodel);
 }
 
 /// Whether the rows bear witness to what a set of causes has beyond a part of it, or need not: a set that leaves only noise,

@@ -65,4 +65,37 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   return price;
 }
 
+/// What a parameter costs where explanations are compared: the logarithm of the samples, twice a log odds.
+///
+/// Where a constant of the model does its work (Parameter::told_by_constant) the data tell both together only, and the one as well
+/// as the other is known before them: twice the log odds, at the centre of what is known, of a constant that is known so well
+/// against a parameter that may be anywhere in its range; nothing if it is known no better.
+/// @param coordinate  the parameter's
+inline double cost_of_parameter(const plant::Parameter& parameter, const Coordinate& coordinate,
+                                const Model& model, double log_samples) {
+  if (parameter.told_by_constant.empty()) return log_samples;
+  for (const CalibratedConstant& constant : model.calibrated()) {
+    if (constant.id != parameter.told_by_constant) continue;
+    const double known_better =
+        (coordinate.upper - coordinate.lower) * Prior{model.uncertainty_of(constant)}.density_at_centre();
+    return std::min(2.0 * std::log(std::max(known_better, 1.0)), log_samples);
+  }
+  return log_samples;
+}
+
+/// What the free parameters of a candidate's effects and their own states cost, and the starts that nobody measures.
+inline double cost_of_parameters(const Candidate& candidate, const Model& model, double log_samples) {
+  double cost = candidate.hidden_starts * log_samples;
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    cost += static_cast<double>(entry->info.states.size()) * log_samples;
+    for (const plant::Parameter& parameter : entry->info.parameters) {
+      const Coordinate& coordinate = candidate.list[at++];
+      if (candidate.explanation.counts(parameter))
+        cost += cost_of_parameter(parameter, coordinate, model, log_samples);
+    }
+  }
+  return cost;
+}
+
 }  // namespace thermopower::gap::engine

@@ -78,11 +78,14 @@ struct Explanation {
     return both;
   }
 
+  /// Whether a parameter of one of its effects counts as free: details of a shape do once they are looked at.
+  bool counts(const Parameter& parameter) const { return refined || !parameter.refines; }
+
   /// Number of parameters of its own, the other constants not counted.
   int parameter_count() const {
     std::size_t count = released.size();
     for (const CatalogueEntry* entry : effects)
-      for (const Parameter& parameter : entry->info.parameters) count += refined || !parameter.refines;
+      for (const Parameter& parameter : entry->info.parameters) count += counts(parameter);
     return static_cast<int>(count);
   }
 

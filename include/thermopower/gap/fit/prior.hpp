@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/radians.hpp>
+
 #include <cmath>
 
 namespace thermopower::gap::engine {
@@ -56,8 +58,7 @@ struct Prior {
   double density_at_centre() const {
     static_assert(known_constants.degrees_of_freedom_of_price == 1.0,
                   "another density goes with another price");
-    constexpr double pi = 3.14159265358979323846;
-    return 1.0 / (pi * sd);
+    return 2.0 / (plant::rad_per_turn * sd);
   }
 
   /// The weight w for which w at^2 / 2 has the gradient of half the cost: what a normal distribution of the same
