@@ -103,9 +103,19 @@ TEST_CASE("a constant that moves far only beside a cause and a rest gives the ca
   const Model model = test::axis_model();
   std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"drive_deadband"}, 50.0)};
   CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  all[1].fit.point[0] = -std::log(2.2);  // what a fit without the cause was bent by, and is put right
+  const auto moved = [&](const char* constant, double by) {
+    all[1].fit.point.head(static_cast<Eigen::Index>(model.calibrated().size())).setZero();
+    for (std::size_t i = 0; i < model.calibrated().size(); ++i)
+      if (model.calibrated()[i].id == constant) all[1].fit.point[static_cast<Eigen::Index>(i)] = std::log(by);
+  };
+  moved("torque_constant", 2.2);  // what a fit without the cause was bent by, and is put right
   CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  all[1].fit.point[0] = -std::log(3.0);
+  moved("torque_constant", 3.0);
+  CHECK(concluded(all, 850.0).reason == bends_a_constant);
+  // An inertia is told by each acceleration, whatever a joint loses.
+  moved("inertia", 1.0 / 1.8);
+  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
+  moved("inertia", 1.0 / 2.2);
   const Conclusion stood_in = concluded(all, 850.0);
   CHECK(stood_in.verdict == Verdict::unexplained);
   CHECK(stood_in.reason == bends_a_constant);

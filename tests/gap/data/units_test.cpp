@@ -10,6 +10,7 @@
 #include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
+#include <cmath>
 #include <functional>
 
 using namespace thermopower::gap;
@@ -163,6 +164,18 @@ TEST_CASE("stamps in other units decide") {
     CHECK(decision(test::bench_model(), motor) == answer);
     CHECK(decision(test::axis_model(), moving) == answer);
   }
+}
+
+TEST_CASE("a temperature that something holds is no clock's fault") {
+  // A motor embedded in wax that melts at 50 degC: in milliseconds the simulation would stand still, as the wax does.
+  Recording r = bench();
+  Eigen::VectorXd motor_C = r.column("motor_C");
+  for (Eigen::Index i = 0; i < motor_C.size(); ++i) {
+    const double row = static_cast<double>(i);
+    motor_C[i] = 50.0 + 0.3 * std::sin(0.013 * row) + 0.05 * std::sin(2.1 * row * row);
+  }
+  r.set("motor_C", motor_C);
+  CHECK(decision(test::bench_model(), r).empty());
 }
 
 TEST_CASE("a part in which the power is 0 or 1 is no duty where the other part goes further") {

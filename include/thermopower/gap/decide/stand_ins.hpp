@@ -11,16 +11,18 @@
 
 namespace thermopower::gap::engine {
 
-/// Whether some constant moved beside causes by more than a constant can be off by (DecisionThresholds::bent_by) and by more
-/// than is known of it. A constant that is that far off in fact takes most of the gap away by itself; one that moves that far
+/// Whether some constant moved beside causes by more than a constant can be off by (DecisionThresholds::bent_by, of an inertia
+/// bent_inertia_by) and by more than is known of it. A constant that is that far off in fact takes most of the gap away by itself; one that moves that far
 /// only beside a cause bends the equation towards another one. What may vanish beside a cause (may_vanish()) does so.
 inline bool needs_a_bent_constant(const Candidate& candidate, const Reference& reference,
                                   const Model& model) {
   if (left_over(reference.recalibrated, reference.as_configured) < decision.may_leave) return false;
+  const double inertia_by = has_hidden_states(candidate) ? decision.bent_by : decision.bent_inertia_by;
   Eigen::Index at = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
+    const double farthest_by = constant.id == "inertia" ? inertia_by : decision.bent_by;
     const double by = candidate.fit.point[at++], moved = may_vanish(constant) ? by : std::abs(by);
-    if (!constant.is_place && moved > std::log(decision.bent_by) &&
+    if (!constant.is_place && moved > std::log(farthest_by) &&
         moved > known_constants.within * model.uncertainty_of(constant))
       return true;
   }

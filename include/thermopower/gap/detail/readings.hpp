@@ -123,6 +123,8 @@ private:
     const auto add = [&](const char* unit, double factor, const char* words) {
       list_.push_back({FindingKind::wrong_unit, "t_s", words, column_option("t_s", unit),
                        [factor](Recording& r) { r.t_s *= factor; }});
+      if (factor < 1.0)
+        list_.back().without = [](Recording& r) { r.t_s *= 1e-9; };  // everything stands still
     };
     add("ms", 1e-3, "is in milliseconds where seconds are expected");
     add("us", 1e-6, "is in microseconds where seconds are expected");

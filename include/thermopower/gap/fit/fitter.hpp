@@ -81,6 +81,7 @@ public:
       best.chi2 = view_.chi2;
       bool goes_on = false;
       double failed = std::numeric_limits<double>::infinity();  // squared length of the last step that did
+      Failure failure;
       for (int attempt = 0; attempt < 8; ++attempt, damping = std::min(damping * 8.0, 1e12)) {
         FitResult trial = stepped(best, damping);
         const double length = view_.information.diagonal().dot((trial.point - best.point).cwiseAbs2());
@@ -109,6 +110,9 @@ public:
           goes_on = !(decrease < options.relative_decrease);
           break;
         }
+        const bool to_the_end = samples_in(look_ahead ? ahead_.residuals : plain_) == view_.samples;
+        const double above = trial.cost - promised_cost(trial.point - best.point);
+        if (to_the_end && failure.is_of_the_ground({length, above})) break;
       }
       if (!goes_on) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
@@ -161,6 +165,28 @@ private:
     Eigen::MatrixXd coupling;  ///< starts by coordinates
     Eigen::VectorXd gradient;
   };
+
+  /// A step that made the fit worse, simulated to the end.
+  struct Failure {
+    double length = 0.0;  ///< squared; 0: there was none yet
+    double above = 0.0;   ///< what it cost above what was promised
+
+    /// Whether a further failure shows that the cost is rough here, as where friction holds or lets go in a window: what a linear
+    /// view overlooks shrinks with the square of a step, and a step of half the length went wrong by over half as much. Keeps the
+    /// failure that the next one is compared with.
+    bool is_of_the_ground(const Failure& further) {
+      const bool as_false = further.above > 0.5 * above;
+      if (length > 0.0 && as_false) return further.length < 0.25 * length;
+      *this = further;
+      return false;
+    }
+  };
+
+  static Eigen::Index samples_in(const ResidualsBySignal& residuals) {
+    std::size_t count = 0;
+    for (const std::vector<double>& one : residuals) count += one.size();
+    return static_cast<Eigen::Index>(count);
+  }
 
   /// The cost about a point as its first derivatives have it, starts eliminated.
   struct View {
