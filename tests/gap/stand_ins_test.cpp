@@ -3,6 +3,7 @@
 #include "../catch.hpp"
 #include "plants.hpp"
 
+#include <thermopower/gap/decide/covariance.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/gap/report/opposites.hpp>
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -127,6 +129,37 @@ TEST_CASE("a constant that moves far only beside a cause and a rest gives the ca
   // Nothing above the noise is left: the constant was that far off, and the cause explains the rest.
   all[1].train = all[1].held_out = level(1.1);
   CHECK(concluded(all, 850.0).verdict == Verdict::explained);
+}
+
+TEST_CASE("a set of causes is not named where one of them may as well not be there") {
+  // Friction that differs by direction and a constant torque do the same to an axis in motion: of f+ - f- + 2 c alone the data
+  // tell something.
+  const Model model = test::axis_model();
+  std::vector<Candidate> all{candidate(model, {}, 850.0),
+                             candidate(model, {"asymmetric_friction", "constant_torque"}, 1.1)};
+  Candidate& set = all[1];
+  const auto at = [&](const char* name) {
+    for (std::size_t i = 0; i < set.list.size(); ++i)
+      if (set.list[i].name == name) return static_cast<Eigen::Index>(i);
+    throw std::logic_error(name);
+  };
+  Eigen::VectorXd told = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.list.size()));
+  told[at("asymmetric_friction.forward_Nm")] = 1.0;
+  told[at("asymmetric_friction.backward_Nm")] = -1.0;
+  told[at("constant_torque.Nm")] = 2.0;
+  Eigen::MatrixXd& information = set.fit.information;
+  for (const char* one :
+       {"asymmetric_friction.forward_Nm", "asymmetric_friction.backward_Nm", "constant_torque.Nm"})
+    information(at(one), at(one)) = 0.01;  // to 10 N m, where the sizes are 1 N m
+  information += 1e6 * told * told.transpose();
+  mark_doubtful(all, model, Weight());
+  CHECK(set.doubtful);
+  CHECK_FALSE(in_the_running(set));
+  // With each told by itself the set is one.
+  set.fit.information = 1e6 * Eigen::MatrixXd::Identity(information.rows(), information.cols());
+  mark_doubtful(all, model, Weight());
+  CHECK_FALSE(set.doubtful);
+  CHECK(in_the_running(set));
 }
 
 TEST_CASE(

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 /// @file covariance.hpp
 /// What the data leave open of a fit's parameters, and whether their parts agree about them.
@@ -106,6 +107,30 @@ inline Interval interval_of(const Candidate& candidate, std::size_t place, const
 /// Whether the data narrow the range of a coordinate. @param interval  its interval_of()
 inline bool is_narrower(const Interval& interval, const Coordinate& one) {
   return interval.low > one.lower || interval.high < one.upper;
+}
+
+/// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it. Two
+/// that do the same from opposite sides (a friction that differs by direction, and a constant torque) are told by their sum alone.
+/// What is known by its order of magnitude only is not asked, nor is a detail of a shape.
+inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
+  for (Candidate& one : candidates) {
+    one.doubtful = false;
+    if (one.explanation.effects.size() < 2 || !one.held_out.any()) continue;
+    const Covariance covariance = covariance_of(one, weight);
+    if (covariance.of.size() == 0) continue;
+    std::size_t at = model.calibrated().size();
+    for (const CatalogueEntry* entry : one.explanation.effects) {
+      bool has_a_size = false, is_there = false;
+      for (const Parameter& parameter : entry->info.parameters) {
+        const std::size_t place = at++;
+        if (parameter.standard || parameter.logarithmic || one.list[place].still) continue;
+        const Interval interval = interval_of(one, place, covariance);
+        has_a_size = true;
+        is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
+      }
+      one.doubtful = one.doubtful || (has_a_size && !is_there);
+    }
+  }
 }
 
 /// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all of its

@@ -222,9 +222,9 @@ inline bool is_at_the_noise(const Candidate& candidate) {
          largest_noise_multiple(candidate.held_out) <= decision.no_gap;
 }
 
-/// Whether a candidate may be named: it was judged on held-out data, and is no stand-in for another one.
+/// Whether a candidate may be named: it was judged on held-out data, is no stand-in for another one, and all of it is there.
 inline bool in_the_running(const Candidate& candidate) {
-  return !candidate.on_bounds && !candidate.idle && candidate.held_out.any();
+  return !candidate.on_bounds && !candidate.idle && !candidate.doubtful && candidate.held_out.any();
 }
 
 /// Whether two parameters of a candidate are equal as far as it matters, with what the data leave open.

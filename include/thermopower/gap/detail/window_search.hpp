@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/decide/covariance.hpp>
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/decide/verdict.hpp>
@@ -278,6 +279,7 @@ private:
     attempt_.weight.shown = shown_by(train_);
     attempt_.recalibrated = as_judged_.recalibrate(attempt_.candidates, *fine_);
     as_judged_.judge(attempt_, *fine_);
+    mark_doubtful(attempt_.candidates, posing_.model(), attempt_.weight);
     weigh(attempt_.candidates, attempt_.weight, posing_.model());
   }
 

@@ -27,7 +27,8 @@ struct Candidate {
   double probability = 0.0;  ///< among the candidates weighed together, 0..1
   bool on_bounds = false;    ///< a cause ended on the bounds of its range, and is none
   bool settled = false;      ///< a fit goes nowhere from where it ended, as long as data and noise stay
-  bool idle = false;  ///< another one says the same with less: moved constants alone, or a simpler cause
+  bool idle = false;      ///< another one says the same with less: moved constants alone, or a simpler cause
+  bool doubtful = false;  ///< a cause of a set may as well not be there: the others do what it does
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
   double value(std::size_t place) const {
