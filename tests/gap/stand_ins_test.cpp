@@ -162,6 +162,40 @@ TEST_CASE("a set of causes is not named where one of them may as well not be the
   CHECK(in_the_running(set));
 }
 
+TEST_CASE("a set is not named one of whose causes is no more than a constant that moved") {
+  const Model model = test::axis_model();
+  std::vector<Candidate> all{candidate(model, {}, 850.0),
+                             candidate(model, {"coulomb_friction", "asymmetric_viscous"}, 1.1)};
+  mark_doubtful(all, model, Weight());
+  CHECK(all[1].doubtful);  // a drag that is the same forwards and backwards is the model's viscous friction
+  all[1].fit.point[all[1].fit.point.size() - 1] = 2.0;
+  mark_doubtful(all, model, Weight());
+  CHECK_FALSE(all[1].doubtful);
+}
+
+TEST_CASE(
+    "friction that is alike in both directions is dry friction, whatever its transition does elsewhere") {
+  const Model model = test::axis_model();
+  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 4.0),
+                             candidate(model, {"asymmetric_friction"}, 4.0)};
+  all[1].held_out =
+      level(40.0);  // the same equation, with a transition that the training motion does not tell
+  weigh(all, Weight(), model);
+  CHECK(all[2].idle);
+  CHECK(all[1].probability > 0.9);
+  // What does not fit the training data either is another matter: that fit has failed.
+  all[1].train = level(8.0);
+  weigh(all, Weight(), model);
+  CHECK_FALSE(all[2].idle);
+  // Nor is it where the directions differ.
+  all[1].train = level(4.0);
+  for (std::size_t i = 0; i < all[2].list.size(); ++i)
+    if (all[2].list[i].name == "asymmetric_friction.forward_Nm")
+      all[2].fit.point[static_cast<Eigen::Index>(i)] = 1.2;
+  weigh(all, Weight(), model);
+  CHECK_FALSE(all[2].idle);
+}
+
 TEST_CASE(
     "a cause that leaves a rest of what began in the middle of runs stands in for what happened there") {
   const Model model = test::axis_model();

@@ -109,9 +109,10 @@ inline bool is_narrower(const Interval& interval, const Coordinate& one) {
   return interval.low > one.lower || interval.high < one.upper;
 }
 
-/// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it. Two
-/// that do the same from opposite sides (a friction that differs by direction, and a constant torque) are told by their sum alone.
-/// What is known by its order of magnitude only is not asked, nor is a detail of a shape.
+/// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it, or it
+/// is no more than a constant that moved, as each explanation's may. Two that do the same from opposite sides (a friction that
+/// differs by direction, and a constant torque) are told by their sum alone. What is known by its order of magnitude only is
+/// not asked, nor is a detail of a shape.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
   for (Candidate& one : candidates) {
     one.doubtful = false;
@@ -120,6 +121,7 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
     if (covariance.of.size() == 0) continue;
     std::size_t at = model.calibrated().size();
     for (const CatalogueEntry* entry : one.explanation.effects) {
+      const SpecialCase in_fact = special_case(one, entry->info, at);
       bool has_a_size = false, is_there = false;
       for (const Parameter& parameter : entry->info.parameters) {
         const std::size_t place = at++;
@@ -128,7 +130,8 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
         has_a_size = true;
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
-      one.doubtful = one.doubtful || (has_a_size && !is_there);
+      const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
+      one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there);
     }
   }
 }

@@ -267,13 +267,11 @@ struct SpecialCase {
   bool the_same = false;  ///< there is nothing else: what it fits better by is where its fit happened to end
 };
 
-/// Whether a candidate scores on held-out data what another one does, but for what every model is wrong by.
-inline bool held_out_nearly(const Candidate& candidate, const Candidate& other) {
+/// Whether no signal's error is larger than another one's by more than what every model is wrong by.
+inline bool is_nearly(const SignalSums& sums, const SignalSums& others) {
   constexpr double most = 1.0 + decision.alike_far_from_noise;
   for (std::size_t i = 0; i < signal_count; ++i)
-    if (candidate.held_out.samples[i] > 0.0 &&
-        candidate.held_out.mean(i) > most * most * other.held_out.mean(i))
-      return false;
+    if (sums.samples[i] > 0.0 && sums.mean(i) > most * most * others.mean(i)) return false;
   return true;
 }
 
@@ -294,7 +292,8 @@ inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& in
 }
 
 /// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like it:
-/// both say the same, and the other says it with fewer parameters. What has something small besides bends to the last of
+/// both say the same, and the other says it with fewer parameters. Where two parameters are the same to the last, it is enough that
+/// it fits the training data as well: on others they differ in what both have. What has something small besides bends to the last of
 /// what others leave: there it is enough that these leave what the noise allows.
 inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, const Model& model) {
   std::size_t first = model.calibrated().size();
@@ -314,7 +313,8 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
     if (ids == simpler_ids)
       return in_the_running(simpler) &&
              (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)) ||
-              (in_fact.the_same && held_out_nearly(simpler, candidate)));
+              (in_fact.the_same && (is_nearly(simpler.held_out, candidate.held_out) ||
+                                    is_nearly(simpler.train, candidate.train))));
   }
   return false;
 }

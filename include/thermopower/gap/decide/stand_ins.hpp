@@ -12,8 +12,9 @@
 namespace thermopower::gap::engine {
 
 /// Whether some constant moved beside causes by more than a constant can be off by (DecisionThresholds::bent_by, of an inertia
-/// bent_inertia_by) and by more than is known of it. A constant that is that far off in fact takes most of the gap away by itself; one that moves that far
-/// only beside a cause bends the equation towards another one. What may vanish beside a cause (may_vanish()) does so.
+/// bent_inertia_by) and by more than is known of it. A constant that is that far off in fact takes most of the gap away by itself;
+/// one that moves that far only beside a cause bends the equation towards another one. What may vanish beside a cause
+/// (may_vanish()) does so.
 inline bool needs_a_bent_constant(const Candidate& candidate, const Reference& reference,
                                   const Model& model) {
   if (left_over(reference.recalibrated, reference.as_configured) < decision.may_leave) return false;

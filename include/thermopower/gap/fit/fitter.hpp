@@ -111,8 +111,9 @@ public:
           break;
         }
         const bool to_the_end = samples_in(look_ahead ? ahead_.residuals : plain_) == view_.samples;
-        const double above = trial.cost - promised_cost(trial.point - best.point);
-        if (to_the_end && failure.is_of_the_ground({length, above})) break;
+        const double promised = promised_cost(trial.point - best.point);
+        const bool hardly_promised = best.cost - promised < hardly_any * best.cost;
+        if (to_the_end && hardly_promised && failure.is_of_the_ground({length, trial.cost - promised})) break;
       }
       if (!goes_on) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
@@ -381,6 +382,8 @@ private:
     return priors + ahead_.of_starts + chi2;
   }
 
+  static constexpr double hardly_any =
+      1e-3;  ///< of the cost: for so little a fit does not go on over rough ground
   static constexpr double shorter = 0.9;  ///< than a step that failed is one worth trying, by its length
 
   const FitProblem& problem_;
