@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -44,6 +43,10 @@ Candidate candidate(const Model& model, const std::vector<const char*>& ids, dou
   one.train = one.held_out = level(mean_square);
   one.probability = ids.empty() ? 0.0 : 1.0;
   return one;
+}
+
+Eigen::Index place_of(const Candidate& candidate, const char* id, const char* parameter) {
+  return static_cast<Eigen::Index>(candidate.place_of(*standard_catalogue().find(id), parameter));
 }
 
 Conclusion concluded(const std::vector<Candidate>& candidates, double recalibrated,
@@ -138,19 +141,15 @@ TEST_CASE("a set of causes is not named where one of them may as well not be the
   std::vector<Candidate> all{candidate(model, {}, 850.0),
                              candidate(model, {"asymmetric_friction", "constant_torque"}, 1.1)};
   Candidate& set = all[1];
-  const auto at = [&](const char* name) {
-    for (std::size_t i = 0; i < set.list.size(); ++i)
-      if (set.list[i].name == name) return static_cast<Eigen::Index>(i);
-    throw std::logic_error(name);
-  };
+  const Eigen::Index sizes[] = {place_of(set, "asymmetric_friction", "forward_Nm"),
+                                place_of(set, "asymmetric_friction", "backward_Nm"),
+                                place_of(set, "constant_torque", "Nm")};
   Eigen::VectorXd told = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.list.size()));
-  told[at("asymmetric_friction.forward_Nm")] = 1.0;
-  told[at("asymmetric_friction.backward_Nm")] = -1.0;
-  told[at("constant_torque.Nm")] = 2.0;
+  told[sizes[0]] = 1.0;
+  told[sizes[1]] = -1.0;
+  told[sizes[2]] = 2.0;
   Eigen::MatrixXd& information = set.fit.information;
-  for (const char* one :
-       {"asymmetric_friction.forward_Nm", "asymmetric_friction.backward_Nm", "constant_torque.Nm"})
-    information(at(one), at(one)) = 0.01;  // to 10 N m, where the sizes are 1 N m
+  for (const Eigen::Index one : sizes) information(one, one) = 0.01;  // to 10 N m, where the sizes are 1 N m
   information += 1e6 * told * told.transpose();
   mark_doubtful(all, model, Weight());
   CHECK(set.doubtful);
@@ -189,9 +188,7 @@ TEST_CASE(
   CHECK_FALSE(all[2].idle);
   // Nor is it where the directions differ.
   all[1].train = level(4.0);
-  for (std::size_t i = 0; i < all[2].list.size(); ++i)
-    if (all[2].list[i].name == "asymmetric_friction.forward_Nm")
-      all[2].fit.point[static_cast<Eigen::Index>(i)] = 1.2;
+  all[2].fit.point[place_of(all[2], "asymmetric_friction", "forward_Nm")] = 1.2;
   weigh(all, Weight(), model);
   CHECK_FALSE(all[2].idle);
 }

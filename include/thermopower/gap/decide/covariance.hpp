@@ -109,6 +109,11 @@ inline bool is_narrower(const Interval& interval, const Coordinate& one) {
   return interval.low > one.lower || interval.high < one.upper;
 }
 
+/// Whether a fit looked for a parameter as an effect's own: it is no detail of a shape, and moved.
+inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
+  return !parameter.standard && !one.still;
+}
+
 /// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it, or it
 /// is no more than a constant that moved, as each explanation's may. Two that do the same from opposite sides (a friction that
 /// differs by direction, and a constant torque) are told by their sum alone. What is known by its order of magnitude only is
@@ -125,7 +130,7 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
       bool has_a_size = false, is_there = false;
       for (const Parameter& parameter : entry->info.parameters) {
         const std::size_t place = at++;
-        if (parameter.standard || parameter.logarithmic || one.list[place].still) continue;
+        if (!was_looked_for(parameter, one.list[place]) || parameter.logarithmic) continue;
         const Interval interval = interval_of(one, place, covariance);
         has_a_size = true;
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
@@ -143,14 +148,14 @@ inline bool may_be_anything(const Candidate& candidate, const Model& model, cons
   if (covariance.of.size() == 0) return false;
   std::size_t at = model.calibrated().size();
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
-    bool was_looked_for = false, is_told = false;
+    bool was_asked = false, is_told = false;
     for (const Parameter& parameter : entry->info.parameters) {
       const std::size_t place = at++;
-      if (parameter.standard || candidate.list[place].still) continue;
-      was_looked_for = true;
+      if (!was_looked_for(parameter, candidate.list[place])) continue;
+      was_asked = true;
       is_told = is_told || is_narrower(interval_of(candidate, place, covariance), candidate.list[place]);
     }
-    if (was_looked_for && !is_told) return true;
+    if (was_asked && !is_told) return true;
   }
   return false;
 }
@@ -166,7 +171,7 @@ inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const
   for (const CatalogueEntry* entry : candidate.explanation.effects)
     for (const Parameter& parameter : entry->info.parameters) {
       const std::size_t place = at++;
-      if (parameter.standard || candidate.list[place].still || candidate.fit.at_bound[place]) continue;
+      if (!was_looked_for(parameter, candidate.list[place]) || candidate.fit.at_bound[place]) continue;
       const auto i = static_cast<Eigen::Index>(place);
       const double sd = std::sqrt(std::max(covariance.of(i, i), 0.0));
       const double value =
