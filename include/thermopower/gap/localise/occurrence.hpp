@@ -48,7 +48,7 @@ struct Holding {
   plant::QuantityName quantity;  ///< of the balance
   plant::SignalName signal;      ///< of the balance
   double level = 0.0;            ///< floors that the constants within their slack leave
-  std::optional<double> from_s;  ///< it holds before and not after; none: no such time
+  std::size_t source = 0;        ///< which of the run's balances it is
 };
 
 /// The rows of a problem on one side of a stretch.
@@ -66,56 +66,105 @@ inline Problem part_of(const Problem& whole, const Eigen::VectorXi& stretch, int
   return part;
 }
 
-/// Whether the rows before a stretch would have shown what those from it on show: where nothing is asked of a fault,
-/// its absence says nothing. What they show is told by the freedom that leaves least of it.
-inline bool could_show(const plant::Balance& balance, const Projection& projection, const Problem& whole,
-                       const Eigen::VectorXi& stretch, int held, double floor_per_row,
-                       const OccurrenceThresholds& limit) {
-  const Problem later = part_of(whole, stretch, held, limit.stretches);
-  Problem before = part_of(whole, stretch, 0, held);
-  double least = std::numeric_limits<double>::infinity();
-  for (const plant::Freedom& freedom : balance.freedoms) {
-    const Block all = block_of(freedom, projection, whole);
-    Block block = all, shown = all;
-    std::vector<Eigen::Index> after, first;
-    for (Eigen::Index i = 0; i < whole.y.size(); ++i) (stretch[i] < held ? first : after).push_back(i);
-    block.columns = all.columns(after, Eigen::all);
-    shown.columns = all.columns(first, Eigen::all);
-    const std::vector<Block> blocks{block};
-    const BlockFit fit = BlockFitter(later, blocks).fit({0});
-    if (!(fit.seen_total < least)) continue;
-    least = fit.seen_total;
-    before.y = shown.columns * fit.coefficients.tail(block.columns.cols());
-  }
-  return std::isfinite(least) && sum_of_squares_left(before, Eigen::MatrixXd(before.y.size(), 0)) >
-                                     limit.clearly * floor_per_row * static_cast<double>(before.y.size());
-}
+/// A balance of a run and what its constants, moving within their slack, leave of it.
+class HeldBalance {
+public:
+  /// @param slack  how far a constant may be off, as a fraction
+  HeldBalance(plant::Balance balance, double slack)
+      : balance_(std::move(balance)),
+        projection_(projection_of(balance_, stage_)),
+        whole_(problem_of(balance_, *projection_, slack)),
+        floor_per_row_(projection_->floor() / static_cast<double>(whole_.y.size())),
+        stretch_(projection_->stretches(limit_.stretches)) {}
 
-/// How a balance does in the rows of a run, its constants moving within their slack.
-inline Holding holding_of(plant::Balance balance, double slack, const OccurrenceThresholds& limit) {
-  Holding result{balance.quantity, balance.signal, 0.0, {}};
-  const LocalisationThresholds stage;
-  const std::unique_ptr<Projection> projection = projection_of(balance, stage);
-  const Problem whole = problem_of(balance, *projection, slack);
-  if (whole.y.size() < stage.least_rows) return result;
-  const double floor_per_row = projection->floor() / static_cast<double>(whole.y.size());
-  const Eigen::VectorXi stretch = projection->stretches(limit.stretches);
-  const auto left = [&](int end) {
-    const Problem part = part_of(whole, stretch, 0, end);
-    if (part.y.size() < stage.least_rows) return 0.0;
-    return sum_of_squares_left(part, Eigen::MatrixXd(part.y.size(), 0)) /
-           (floor_per_row * static_cast<double>(part.y.size()));
-  };
-  result.level = left(limit.stretches);
-  if (result.level < limit.clearly) return result;
-  int held = 0;
-  for (int end = 1; end < limit.stretches && left(end) <= limit.holds; ++end) held = end;
-  if (held >= limit.first && could_show(balance, *projection, whole, stretch, held, floor_per_row, limit)) {
-    const Eigen::Index row = balance.rows->size() * held / limit.stretches;
-    result.from_s = balance.rows->t_s[std::min(row, balance.rows->size() - 1)];
+  HeldBalance(const HeldBalance&) = delete;  // the projection refers to the balance
+  HeldBalance& operator=(const HeldBalance&) = delete;
+
+  /// Which quantity it is of, and what it says of it.
+  const plant::Balance& balance() const { return balance_; }
+
+  /// Floors that the constants leave of the run; 0 where it has too few rows to tell.
+  double left() const { return left_before(limit_.stretches); }
+
+  /// Up to when it holds, of one that does not hold to the end; none: there is no such time.
+  std::optional<double> holds_until_s() const {
+    int held = 0;
+    for (int end = 1; end < limit_.stretches && left_before(end) <= limit_.holds; ++end) held = end;
+    if (held < limit_.first || !could_show_before(held)) return {};
+    const Eigen::Index row = balance_.rows->size() * held / limit_.stretches;
+    return balance_.rows->t_s[std::min(row, balance_.rows->size() - 1)];
   }
-  return result;
-}
+
+private:
+  double left_before(int stretch) const {
+    const Problem part = part_of(whole_, stretch_, 0, stretch);
+    if (part.y.size() < stage_.least_rows) return 0.0;
+    return sum_of_squares_left(part, Eigen::MatrixXd(part.y.size(), 0)) /
+           (floor_per_row_ * static_cast<double>(part.y.size()));
+  }
+
+  /// Whether the rows before a stretch would have shown what those from it on show: where nothing is asked of a fault,
+  /// its absence says nothing. What they show is told by the freedom that leaves least of it.
+  bool could_show_before(int held) const {
+    const Problem later = part_of(whole_, stretch_, held, limit_.stretches);
+    Problem before = part_of(whole_, stretch_, 0, held);
+    std::vector<Eigen::Index> after, first;
+    for (Eigen::Index i = 0; i < whole_.y.size(); ++i) (stretch_[i] < held ? first : after).push_back(i);
+    double least = std::numeric_limits<double>::infinity();
+    for (const plant::Freedom& freedom : balance_.freedoms) {
+      const Block all = block_of(freedom, *projection_, whole_);
+      Block block = all;
+      block.columns = all.columns(after, Eigen::all);
+      const std::vector<Block> blocks{block};
+      const BlockFit fit = BlockFitter(later, blocks).fit({0});
+      if (!(fit.seen_total < least)) continue;
+      least = fit.seen_total;
+      before.y = all.columns(first, Eigen::all) * fit.coefficients.tail(block.columns.cols());
+    }
+    return std::isfinite(least) && sum_of_squares_left(before, Eigen::MatrixXd(before.y.size(), 0)) >
+                                       limit_.clearly * floor_per_row_ * static_cast<double>(before.y.size());
+  }
+
+  static constexpr OccurrenceThresholds limit_{};
+  static constexpr LocalisationThresholds stage_{};
+  plant::Balance balance_;
+  std::unique_ptr<Projection> projection_;
+  Problem whole_;
+  double floor_per_row_;
+  Eigen::VectorXi stretch_;
+};
+
+/// The balances of a run.
+class RunBalances {
+public:
+  /// Keeps references to model and catalogue: they must outlive it. @param slack  as for HeldBalance
+  RunBalances(const Model& model, const RunPart& part, double slack, const Catalogue& catalogue)
+      : balances_(model, {part.recording}, catalogue), slack_(slack) {}
+
+  /// One of them.
+  HeldBalance at(std::size_t source) const {
+    return HeldBalance(
+        balances_.sources()[source].make(plant::ReadingOffsets(plant::actuator_signal_count, 0.0)), slack_);
+  }
+
+  /// How each quantity's does; of alternatives the one that holds best.
+  std::vector<Holding> holdings() const {
+    std::vector<Holding> list;
+    for (std::size_t i = 0; i < balances_.sources().size(); ++i) {
+      const HeldBalance held = at(i);
+      Holding one{held.balance().quantity, held.balance().signal, held.left(), i};
+      const auto same = std::find_if(list.begin(), list.end(),
+                                     [&](const Holding& other) { return other.quantity == one.quantity; });
+      if (same == list.end()) list.push_back(std::move(one));
+      else if (one.level < same->level) *same = std::move(one);
+    }
+    return list;
+  }
+
+private:
+  RecordedBalances balances_;
+  double slack_;
+};
 
 /// The runs of recordings that are long enough, evenly spread where there are many.
 inline std::vector<RunPart> runs_of(const std::vector<Recording>& recordings, bool held_out,
@@ -145,20 +194,8 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
   std::vector<RunPart> parts = detail::runs_of(train, false, limit);
   for (RunPart& one : detail::runs_of(held_out, true, limit)) parts.push_back(std::move(one));
   std::vector<std::vector<detail::Holding>> holdings;
-  for (const RunPart& part : parts) {
-    const RecordedBalances balances(model, {part.recording}, catalogue);
-    std::vector<detail::Holding> list;
-    for (const plant::BalanceSource& source : balances.sources()) {
-      detail::Holding one = detail::holding_of(
-          source.make(plant::ReadingOffsets(plant::actuator_signal_count, 0.0)), options.slack, limit);
-      const auto same = std::find_if(list.begin(), list.end(), [&](const detail::Holding& other) {
-        return other.quantity == one.quantity;
-      });
-      if (same == list.end()) list.push_back(std::move(one));
-      else if (one.level < same->level) *same = std::move(one);  // of alternatives the one that holds best
-    }
-    holdings.push_back(std::move(list));
-  }
+  for (const RunPart& part : parts)
+    holdings.push_back(detail::RunBalances(model, part, options.slack, catalogue).holdings());
   const auto of_one_run = [](const auto& a, const auto& b) {
     return a.recording == b.recording && a.run == b.run && a.held_out == b.held_out;
   };
@@ -169,16 +206,23 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
   }
   const auto occurrences = [&](const plant::SignalName& signal) {
     std::vector<Occurrence> list;
+    std::vector<std::pair<std::size_t, std::size_t>> of;  // part and balance of each
     for (std::size_t i = 0; i < parts.size(); ++i)
       for (const detail::Holding& one : holdings[i]) {
         if (one.signal != signal || one.level < limit.clearly) continue;
-        const Occurrence here{parts[i].name, parts[i].run, parts[i].held_out, one.from_s};
-        if (list.empty() || !of_one_run(list.back(), here)) list.push_back(here);
+        const Occurrence here{parts[i].name, parts[i].run, parts[i].held_out, {}};
+        if (!list.empty() && of_one_run(list.back(), here)) break;
+        list.push_back(here);
+        of.push_back({i, one.source});
         break;
       }
-    // What shows throughout the first run did not begin in a later one.
-    const bool everywhere = list.size() == runs.size() && !list.front().from_s;
-    if (everywhere) list.clear();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const auto [part, source] = of[i];
+      list[i].from_s =
+          detail::RunBalances(model, parts[part], options.slack, catalogue).at(source).holds_until_s();
+      // What shows throughout the first run did not begin in a later one: of the others nobody asks.
+      if (list.size() == runs.size() && !list.front().from_s) return std::vector<Occurrence>();
+    }
     return list;
   };
   const auto held_anywhere = [&](const plant::SignalName& signal) {

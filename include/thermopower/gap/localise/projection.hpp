@@ -116,7 +116,11 @@ public:
       : b_(balance),
         most_starts_(limit.most_starts),
         average_(balance.rows->runs, balance.measured, limit.rows),
-        capacity_(capacity_of(balance)) {
+        capacity_(capacity_of(balance)),
+        kept_(balance.rows->size()) {
+    for (const RunSpan& run : b_.rows->runs)
+      for (Eigen::Index i = run.begin; i < run.end; ++i)
+        kept_[i] = std::exp(-b_.relaxation_per_s[i] * step_s(i, run));
     // From the measured start on, with everything but the state itself as measured: then what is left is exact
     // however far a constant is off.
     Eigen::VectorXd flow = b_.flow_sampled;
@@ -160,7 +164,7 @@ public:
       const RunSpan& run = runs[static_cast<std::size_t>(r)];
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         out(i, r) = left;
-        left *= kept(i, run);
+        left *= kept_[i];
       }
     }
     return average_(out);
@@ -175,9 +179,6 @@ private:
   double step_s(Eigen::Index i, const RunSpan& run) const {
     return i + 1 < run.end ? b_.rows->t_s[i + 1] - b_.rows->t_s[i] : 0.0;
   }
-  double kept(Eigen::Index i, const RunSpan& run) const {
-    return std::exp(-b_.relaxation_per_s[i] * step_s(i, run));
-  }
 
   /// x' = pace - relaxation x, exactly for a pace that is held over the interval.
   Eigen::VectorXd filtered(const Eigen::VectorXd& pace, bool from_state) const {
@@ -186,7 +187,7 @@ private:
       double x = from_state ? b_.state[run.begin] : 0.0;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         out[i] = x;
-        const double keep = kept(i, run), relax = b_.relaxation_per_s[i];
+        const double keep = kept_[i], relax = b_.relaxation_per_s[i];
         x = keep * x + pace[i] * (relax > 0.0 ? (1.0 - keep) / relax : step_s(i, run));
       }
     }
@@ -201,7 +202,7 @@ private:
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
         out[i] = x;
         if (i + 1 == run.end) break;
-        x = kept(i, run) * x - (weight.size() > 0 ? weight[i] : 1.0) * (content[i + 1] - content[i]);
+        x = kept_[i] * x - (weight.size() > 0 ? weight[i] : 1.0) * (content[i + 1] - content[i]);
       }
     }
     return out;
@@ -210,7 +211,9 @@ private:
   const plant::Balance& b_;
   Eigen::Index most_starts_;
   Thinning average_;
-  Eigen::VectorXd capacity_, simulated_;
+  Eigen::VectorXd capacity_;
+  Eigen::VectorXd kept_;  // of a state after each row's interval, if nothing flows: 0..1
+  Eigen::VectorXd simulated_;
 };
 
 /// Integrals against test functions of one or several widths, each in units of its noise.
@@ -228,7 +231,9 @@ public:
     for (const int half_width : balance.half_widths) {
       Width width{TestFunctions(balance.rows, needed, half_width,
                                 widths_.empty() ? limit.narrow_functions : limit.wide_functions),
+                  {},
                   1.0};
+      width.held = width.functions.held_weights(balance.held_delay_s);
       width.weight =
           1.0 / std::hypot(state * width.functions.derivative_gain(), flow * width.functions.integral_gain());
       rows_ += width.functions.size();
@@ -237,17 +242,19 @@ public:
   }
 
   Eigen::VectorXd residual() const override {
-    return joined([&](const TestFunctions& f) {
+    return joined([&](const Width& width) {
+      const TestFunctions& f = width.functions;
       Eigen::VectorXd left =
           f.integral(capacity_).cwiseProduct(f.derivative(b_.state)) - f.integral(b_.flow_sampled);
-      if (b_.flow_held.size() > 0) left -= f.held_integral(b_.flow_held, b_.held_delay_s);
+      if (b_.flow_held.size() > 0) left -= f.integral(width.held, b_.flow_held);
       return left;
     });
   }
 
   Eigen::VectorXd column(const plant::Direction& direction) const override {
     using Kind = plant::BalancePart::Kind;
-    return joined([&](const TestFunctions& f) {
+    return joined([&](const Width& width) {
+      const TestFunctions& f = width.functions;
       Eigen::VectorXd sum = Eigen::VectorXd::Zero(f.size());
       for (const plant::BalancePart& part : direction) {
         const PartValues values(part);
@@ -256,7 +263,9 @@ public:
             sum += part.factor * f.integral(values());
             break;
           case Kind::flow_held:
-            sum += part.factor * f.held_integral(values(), b_.held_delay_s + part.delay_s);
+            sum += part.factor * (part.delay_s == 0.0
+                                      ? f.integral(width.held, values())
+                                      : f.held_integral(values(), b_.held_delay_s + part.delay_s));
             break;
           case Kind::store: {
             Eigen::VectorXd taken = f.integral(capacity_).cwiseProduct(f.derivative(values()));
@@ -289,6 +298,7 @@ public:
 private:
   struct Width {
     TestFunctions functions;
+    TestFunctions::HeldWeights held;  // at the balance's own delay
     double weight;
   };
 
@@ -297,7 +307,7 @@ private:
     Eigen::VectorXd out(rows_);
     Eigen::Index at = 0;
     for (const Width& width : widths_) {
-      out.segment(at, width.functions.size()) = width.weight * make(width.functions);
+      out.segment(at, width.functions.size()) = width.weight * make(width);
       at += width.functions.size();
     }
     return out;

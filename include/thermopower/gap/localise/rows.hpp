@@ -89,28 +89,31 @@ public:
     stride_ = std::max<Eigen::Index>(1, (rows + most - 1) / most);
     for (const RunSpan& run : runs) {
       for (Eigen::Index i = run.begin; i < run.end; i += stride_) {
-        std::vector<Eigen::Index> list;
+        const std::size_t before = kept_.size();
         for (Eigen::Index k = i; k < std::min(i + stride_, run.end); ++k) {
-          if (std::isfinite(measured[k])) list.push_back(k);
+          if (std::isfinite(measured[k])) kept_.push_back(k);
         }
-        if (!list.empty()) rows_.push_back(std::move(list));
+        if (kept_.size() > before) end_.push_back(kept_.size());
       }
     }
   }
 
   /// How many rows are left.
-  Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(end_.size()); }
   /// How many rows an average is of, at most.
   Eigen::Index stride() const { return stride_; }
 
   /// The averages of columns of the full length: as many columns, rows() rows.
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
     Eigen::MatrixXd out(rows(), full.cols());
-    for (Eigen::Index i = 0; i < rows(); ++i) {
-      const auto& list = rows_[static_cast<std::size_t>(i)];
-      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(full.cols());
-      for (const Eigen::Index k : list) sum += full.row(k);
-      out.row(i) = sum / static_cast<double>(list.size());
+    for (Eigen::Index column = 0; column < full.cols(); ++column) {
+      std::size_t k = 0;
+      for (Eigen::Index i = 0; i < rows(); ++i) {
+        const std::size_t begin = k, end = end_[static_cast<std::size_t>(i)];
+        double sum = 0.0;
+        for (; k < end; ++k) sum += full(kept_[k], column);
+        out(i, column) = sum / static_cast<double>(end - begin);
+      }
     }
     return out;
   }
@@ -125,7 +128,8 @@ public:
 
 private:
   Eigen::Index stride_ = 1;
-  std::vector<std::vector<Eigen::Index>> rows_;
+  std::vector<Eigen::Index> kept_;  // those of the first average, then of the second
+  std::vector<std::size_t> end_;    // of each average in them
 };
 
 }  // namespace thermopower::gap::engine

@@ -73,24 +73,49 @@ public:
   /// Integral of the test function times the derivative of sampled values.
   Eigen::VectorXd derivative(const Eigen::VectorXd& values) const { return sum(slope_, values); }
 
-  /// Integral of the test function times values that are held over the interval that starts at their row, `delay_s`
-  /// later.
-  Eigen::VectorXd held_integral(const Eigen::VectorXd& values, double delay_s = 0.0) const {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(size());
-    for (Eigen::Index r = 0; r < size(); ++r) {
-      const One& one = list_[static_cast<std::size_t>(r)];
+  /// What values that are held count with in the integrals of all the test functions.
+  struct HeldWeights {
+    std::vector<double> weights;     ///< of a function's rows, the last of them first; then of the next one's
+    std::vector<Eigen::Index> last;  ///< row of each function
+    std::vector<std::size_t> end;    ///< of each function's weights
+  };
+
+  /// The weights of values that are held over the interval that starts at their row, `delay_s` later.
+  HeldWeights held_weights(double delay_s) const {
+    HeldWeights held;
+    for (const One& one : list_) {
       const plant::RunSpan& run = run_of(one.begin);
       const Eigen::Index last = one.end - 1;
       double to = (last + 1 < run.end ? a_.t_s[last + 1] : a_.t_s[last] + a_.interval_s) + delay_s;
       double up_to = area(one, to);
       for (Eigen::Index k = last; k >= run.begin && to > one.middle - one.half; --k) {
         const double from = a_.t_s[k] + delay_s, up_to_from = area(one, from);
-        out[r] += values[k] * (up_to - up_to_from);
+        held.weights.push_back(up_to - up_to_from);
         to = from;  // the interval before ends where this one begins
         up_to = up_to_from;
       }
+      held.last.push_back(last);
+      held.end.push_back(held.weights.size());
+    }
+    return held;
+  }
+
+  /// Integral of the test function times held values.
+  static Eigen::VectorXd integral(const HeldWeights& held, const Eigen::VectorXd& values) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(held.last.size()));
+    std::size_t at = 0;
+    for (std::size_t r = 0; r < held.last.size(); ++r) {
+      Eigen::Index row = held.last[r];
+      double sum = 0.0;
+      for (; at < held.end[r]; ++at) sum += values[row--] * held.weights[at];
+      out[static_cast<Eigen::Index>(r)] = sum;
     }
     return out;
+  }
+
+  /// The same of values that are held `delay_s` after their row.
+  Eigen::VectorXd held_integral(const Eigen::VectorXd& values, double delay_s = 0.0) const {
+    return integral(held_weights(delay_s), values);
   }
 
   /// Standard deviation of derivative() per unit of white noise on the samples; 1 where there is none.
