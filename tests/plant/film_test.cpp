@@ -110,3 +110,32 @@ TEST_CASE("sine and cosine are the C library's to some units in the last place, 
   CHECK(std::isnan(SineCosine(std::numeric_limits<double>::quiet_NaN()).sine));
   CHECK(std::isnan(SineCosine(std::numeric_limits<double>::infinity()).cosine));
 }
+
+TEST_CASE("the hyperbolic tangent is the C library's to 1e-15 of itself, at every size") {
+  for (const double step : {1e-9, 1.3e-4, 0.0137, 0.731})
+    for (int i = -4000; i <= 4000; ++i) {
+      const double x = step * i;
+      CAPTURE(x);
+      CHECK(std::abs(hyperbolic_tangent(x) - std::tanh(x)) <= 1e-15 * std::abs(std::tanh(x)));
+    }
+  for (const double beside :
+       {-1e-12, 0.0, 1e-12})  // where one form gives way to the other, and where it is 1
+    for (const double x : {0.55, 20.0})
+      CHECK(std::abs(hyperbolic_tangent(x + beside) - std::tanh(x + beside)) <= 1e-15);
+  CHECK(hyperbolic_tangent(std::numeric_limits<double>::infinity()) == 1.0);
+  CHECK(hyperbolic_tangent(-1e300) == -1.0);
+  CHECK(std::isnan(hyperbolic_tangent(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST_CASE("a tail that is 0 is none only where no direction moves it") {
+  Dual tail(0.0);
+  CHECK(is_constant(tail, 0.0));
+  for (int direction = 0; direction < dual_width; ++direction) {
+    Dual moved(0.0);
+    moved.seed(direction);
+    CHECK_FALSE(is_constant(moved, 0.0));
+    moved.forget(0);
+    CHECK(is_constant(moved, 0.0));
+  }
+  CHECK_FALSE(is_constant(Dual(-0.3), 0.0));
+}

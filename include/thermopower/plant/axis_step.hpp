@@ -196,19 +196,17 @@ private:
 
   /// Friction inside its transition. `stiffness`, where asked for, receives its derivative by the rate.
   static Scalar soft_friction(const Torques& now, const Scalar& rate_rad_per_s, Scalar* stiffness) {
-    using std::tanh;
     const bool forward = value_of(rate_rad_per_s) >= 0.0;
     const Scalar& size_Nm = forward ? now.forward_Nm : now.backward_Nm;
     constexpr double saturated = 18.0;  // tanh is 1 from here on, in double precision
-    // Where there is none, its derivative may still be asked for.
-    const bool has_tail = !std::is_same<Scalar, double>::value || value_of(now.tail) != 0.0;
+    const bool has_tail = !is_constant(now.tail, 0.0);
     if (!has_tail && std::abs(value_of(rate_rad_per_s)) > saturated * value_of(now.transition_rad_per_s)) {
       if (stiffness != nullptr) *stiffness = constant<Scalar>(0.0);
       return forward ? size_Nm : Scalar(-size_Nm);
     }
     const Scalar x = rate_rad_per_s / now.transition_rad_per_s;
     if (!has_tail) {
-      const Scalar share = tanh(x);
+      const Scalar share = hyperbolic_tangent(x);
       if (stiffness != nullptr) *stiffness = size_Nm * (1.0 - share * share) / now.transition_rad_per_s;
       return size_Nm * share;
     }

@@ -2,9 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/hyperbolic_tangent.hpp>
 #include <thermopower/plant/sine_cosine.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace thermopower::plant {
 
@@ -36,6 +39,13 @@ public:
   /// Derivative in a direction, to single precision: six digits after some hundred steps of a simulation; beyond
   /// some 1e38 it is Inf.
   double slope(int direction) const { return static_cast<double>(slope_[direction]); }
+  /// Whether it may vary in some direction.
+  bool varies() const {
+    std::uint32_t bits[dual_width], any = 0;
+    std::memcpy(bits, slope_, sizeof bits);
+    for (const std::uint32_t one : bits) any |= one;
+    return any != 0;
+  }
   /// Makes it vary with a direction at unit speed.
   void seed(int direction) { slope_[direction] = 1.0f; }
   /// Forgets the directions from `first` on.
@@ -115,7 +125,7 @@ public:
     return chain(x, at.cosine, -at.sine);
   }
   friend Dual tanh(const Dual& x) {
-    const double value = std::tanh(x.value_);
+    const double value = hyperbolic_tangent(x.value_);
     return chain(x, value, 1.0 - value * value);
   }
   friend Dual sqrt(const Dual& x) {
@@ -155,6 +165,14 @@ private:
 inline double value_of(double x) { return x; }
 /// Plain value of a scalar.
 inline double value_of(const Dual& x) { return x.value(); }
+
+/// Whether a scalar is a value and varies in no direction.
+inline bool is_constant(double x, double value) { return x == value; }
+/// Whether a scalar is a value and varies in no direction.
+inline bool is_constant(const Dual& x, double value) { return x.value() == value && !x.varies(); }
+
+/// As of a plain number, with derivatives.
+inline Dual hyperbolic_tangent(const Dual& x) { return tanh(x); }
 
 /// A number as a scalar: no derivative in any direction.
 template <class Scalar>

@@ -16,8 +16,7 @@ namespace thermopower::plant {
 /// @param tail  -1..1
 template <class Scalar>
 Scalar film_share(const Scalar& x, const Scalar& tail) {
-  using std::tanh;
-  const Scalar steep = tanh(x), gentle = x / (magnitude(x) + 1.0);
+  const Scalar steep = hyperbolic_tangent(x), gentle = x / (magnitude(x) + 1.0);
   const Scalar abrupt = (magnitude(Scalar(x + 1.0)) - magnitude(Scalar(x - 1.0))) * 0.5;
   const Scalar size = magnitude(tail);
   return steep + (size + tail) * 0.5 * (gentle - steep) + (size - tail) * 0.5 * (abrupt - steep);
@@ -34,7 +33,7 @@ struct FilmAt {
   /// @param x     rate over the transition
   /// @param tail  -1..1
   FilmAt(double x, double tail) {
-    const double steep = std::tanh(x), steep_slope = 1.0 - steep * steep;
+    const double steep = hyperbolic_tangent(x), steep_slope = 1.0 - steep * steep;
     const double within = 1.0 / (std::abs(x) + 1.0), side = tail < 0.0 ? -1.0 : 1.0;
     const double other = tail < 0.0 ? 0.5 * (std::abs(x + 1.0) - std::abs(x - 1.0)) : x * within;
     const double other_slope = tail < 0.0 ? (std::abs(x) < 1.0 ? 1.0 : 0.0) : within * within;

@@ -72,7 +72,7 @@ struct Instance {
   std::vector<Bound<Scalar>> axis_readings;   ///< on AxisReadings
 
   /// @param factors  one per entry of `model.calibrated()`: moves that constant (CalibratedConstant::moved)
-  /// @param added    act besides the model's own effects
+  /// @param added    act besides the model's own effects, one as often as it is given
   /// @throws InvalidInput for an effect or parameter of the model that the catalogue does not know
   Instance(const Model& model, const std::vector<Scalar>& factors,
            const std::vector<AddedEffect<Scalar>>& added, const Catalogue& catalogue) {
@@ -82,11 +82,14 @@ struct Instance {
     axis_structure = {none, none, none, none, none, false, false, false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {
-      const AddedEffect<Scalar>* own = nullptr;
+      const auto act = [&](std::vector<Scalar> parameters) {
+        parameters_.push_back(std::move(parameters));
+        bind(*entry, parameters_.back().data());
+      };
+      bool is_added = false;
       for (const AddedEffect<Scalar>& one : added)
-        if (one.entry == entry) own = &one;
-      parameters_.push_back(own != nullptr ? own->parameters : of_model(model, *entry, factors));
-      bind(*entry, parameters_.back().data());
+        if (one.entry == entry) act(one.parameters), is_added = true;
+      if (!is_added) act(of_model(model, *entry, factors));
     }
     // 1/r = (s1 V + s0) T + o1 V + o0, and with V and T in each other's place (s1 V + o1) T + s0 V + o0.
     if (thermal_structure.heating_exchanged)
