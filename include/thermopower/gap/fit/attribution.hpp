@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/fit/candidate.hpp>
 #include <thermopower/gap/fit/fitter.hpp>
+#include <thermopower/gap/fit/shared_scan.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
 #include <thermopower/gap/fit/traps.hpp>
 #include <thermopower/gap/data/noise.hpp>
@@ -284,9 +285,10 @@ private:
   LinearGuess guess(const FitProblem& problem, const Explanation& explanation,
                     const std::vector<Eigen::VectorXd>& starts) const {
     const Candidate candidate = unfitted(explanation);
+    const std::vector<double> costs =
+        SharedScan(problem, candidate.explanation, candidate.list).costs(starts);
     std::vector<std::pair<double, std::size_t>> order;
-    Fitter scanner(problem, candidate.explanation, candidate.list);
-    for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({scanner.scan(starts[i]), i});
+    for (std::size_t i = 0; i < starts.size(); ++i) order.push_back({costs[i], i});
     std::sort(order.begin(), order.end());
     LinearGuess found{order.front().first, {}};
     order.resize(std::min(tried_, order.size()));

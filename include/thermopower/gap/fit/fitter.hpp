@@ -160,6 +160,17 @@ public:
     return promised_cost(stepped(here, 1e-3).point - at);
   }
 
+  /// The same from measured starts, where the residuals of every segment there are known with their derivatives.
+  double scan(const Eigen::VectorXd& at, const std::vector<FitProblem::Residuals>& known) {
+    FitResult here;
+    here.point = at;
+    here.starts = problem_.measured_starts();
+    clear(view_);
+    for (std::size_t i = 0; i < known.size(); ++i) add_segment(i, known[i], here.starts[i], view_);
+    add_priors(at, view_);
+    return promised_cost(stepped(here, 1e-3).point - at);
+  }
+
 private:
   struct Eliminated {
     Eigen::MatrixXd inverse;   ///< of the starts' own block
@@ -212,6 +223,17 @@ private:
   /// Looks at a point. Ends early as soon as data and starts cost more than the limit: then the view is of no use.
   void linearise(const Eigen::VectorXd& at, const std::vector<Start>& starts, View& view,
                  double limit = std::numeric_limits<double>::infinity()) {
+    clear(view);
+    problem_.evaluate_while(explanation_, list_, at, starts, true,
+                            [&](std::size_t i, const FitProblem::Residuals& residuals) {
+                              add_segment(i, residuals, starts[i], view);
+                              return view.chi2 + view.of_starts <= limit;
+                            });
+    add_priors(at, view);
+  }
+
+  /// An empty view, for segments to be added to.
+  void clear(View& view) const {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     view.information.setZero(n, n);
     view.gradient.setZero(n);
@@ -222,15 +244,13 @@ private:
     view.of_starts = 0.0;
     view.projected = 0.0;
     for (std::vector<double>& one : view.residuals) one.clear();
-    problem_.evaluate_while(explanation_, list_, at, starts, true,
-                            [&](std::size_t i, const FitProblem::Residuals& residuals) {
-                              view.samples += residuals.value.size();
-                              add_segment(i, residuals, starts[i], view);
-                              return view.chi2 + view.of_starts <= limit;
-                            });
+  }
+
+  /// What is known of the constants, to a view of all segments.
+  void add_priors(const Eigen::VectorXd& at, View& view) const {
     const double mean = view.samples > 0 ? view.chi2 / static_cast<double>(view.samples) : 1.0;
     view.per_prior = std::max(mean, 1.0) * problem_.correlation;
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
       const double weight = view.per_prior * list_[static_cast<std::size_t>(i)].prior.weight(at[i]);
       view.information(i, i) += weight;
       view.priors[i] = weight;
@@ -245,6 +265,7 @@ private:
     const MatrixView own = residuals.jacobian.leftCols(n);
     const MatrixView starts = residuals.jacobian.rightCols(start.size());
     const Start inverse_sd = problem_.start_weight(problem_.segments[i]);
+    view.samples += residuals.value.size();
     Eliminated& part = view.eliminated[i];
     part.inverse = gram(starts);
     part.gradient = transposed_times(starts, residuals.value);
