@@ -8,7 +8,6 @@
 #include <thermopower/plant/rows.hpp>
 
 #include <cmath>
-#include <type_traits>
 
 namespace thermopower::plant {
 

@@ -171,9 +171,6 @@ inline bool is_constant(double x, double value) { return x == value; }
 /// Whether a scalar is a value and varies in no direction.
 inline bool is_constant(const Dual& x, double value) { return x.value() == value && !x.varies(); }
 
-/// As of a plain number, with derivatives.
-inline Dual hyperbolic_tangent(const Dual& x) { return tanh(x); }
-
 /// A number as a scalar: no derivative in any direction.
 template <class Scalar>
 Scalar constant(double value) {

@@ -226,7 +226,6 @@ Expression log(const Expression& x);
 Expression sin(const Expression& x);
 Expression cos(const Expression& x);
 Expression tanh(const Expression& x);
-inline Expression hyperbolic_tangent(const Expression& x) { return tanh(x); }
 Expression sqrt(const Expression& x);
 Expression abs(const Expression& x);
 Expression pow(const Expression& x, const Expression& y);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/hyperbolic_tangent.hpp>
 #include <thermopower/plant/rows.hpp>
 #include <thermopower/plant/state_plant.hpp>
 
@@ -437,9 +438,8 @@ struct JointFriction {
   /// Adds dry friction, turned over within a film of 1 deg/s.
   template <class Scalar>
   static void act(const Scalar* p, GimbalJoints::Terms<Scalar>& terms) {
-    using std::tanh;
     constexpr std::size_t at = static_cast<std::size_t>(joint);
-    terms.torque_Nm[at] -= p[size_Nm] * tanh(terms.rate_rad_per_s[at] / rad_per_deg);
+    terms.torque_Nm[at] -= p[size_Nm] * hyperbolic_tangent(terms.rate_rad_per_s[at] / rad_per_deg);
   }
 };
 

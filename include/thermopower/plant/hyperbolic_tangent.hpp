@@ -25,4 +25,10 @@ inline double hyperbolic_tangent(double x) {
   return std::copysign(1.0 - 2.0 / (std::exp(2.0 * size) + 1.0), x);
 }
 
+/// The same of any other scalar of the models, by its own `tanh`.
+template <class Scalar>
+Scalar hyperbolic_tangent(const Scalar& x) {
+  return tanh(x);
+}
+
 }  // namespace thermopower::plant

@@ -4,6 +4,7 @@
 
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
+#include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/data/inputs.hpp>
 #include <thermopower/gap/options.hpp>
 
@@ -74,8 +75,7 @@ struct FitProblem {
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
     const Plant& plant = this->plant();
     const int parameters = static_cast<int>(list.size());
-    int largest = 0;
-    for (const Segment& segment : segments) largest = std::max(largest, plant.start_size(segment));
+    const int largest = largest_start_size(plant, segments);
     std::vector<int> columns;  // of the directions: what stays where it is, is none
     if (with_jacobian) {
       for (int i = 0; i < parameters; ++i)

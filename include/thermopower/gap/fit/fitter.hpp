@@ -157,7 +157,7 @@ public:
     here.point = at;
     here.starts = starts != nullptr ? *starts : problem_.measured_starts();
     linearise(at, here.starts, view_);
-    return promised_cost(stepped(here, 1e-3).point - at);
+    return promised_by_a_step(here);
   }
 
   /// The same from measured starts, where the residuals of every segment there are known with their derivatives.
@@ -168,7 +168,7 @@ public:
     clear(view_);
     for (std::size_t i = 0; i < known.size(); ++i) add_segment(i, known[i], here.starts[i], view_);
     add_priors(at, view_);
-    return promised_cost(stepped(here, 1e-3).point - at);
+    return promised_by_a_step(here);
   }
 
 private:
@@ -218,6 +218,11 @@ private:
   /// What the linear view of the present point promises of a step of the coordinates.
   double promised_cost(const Eigen::VectorXd& change) const {
     return view_.projected + 2.0 * view_.gradient.dot(change) + quadratic_form(view_.information, change);
+  }
+
+  /// What it promises of one step of everything from there.
+  double promised_by_a_step(const FitResult& here) const {
+    return promised_cost(stepped(here, 1e-3).point - here.point);
   }
 
   /// Looks at a point. Ends early as soon as data and starts cost more than the limit: then the view is of no use.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 
 #include <algorithm>
@@ -12,6 +13,13 @@
 #include <vector>
 
 namespace thermopower::gap::engine {
+
+/// How many unknowns the start has of the segment with the most of them.
+inline int largest_start_size(const Plant& plant, const std::vector<Segment>& segments) {
+  int largest = 0;
+  for (const Segment& segment : segments) largest = std::max(largest, plant.start_size(segment));
+  return largest;
+}
 
 /// The step of one coordinate of a start, in multiples of `trial`, that fits the samples of a segment best (linear least
 /// squares about where it is).

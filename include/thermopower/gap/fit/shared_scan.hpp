@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// @file
@@ -63,9 +62,9 @@ private:
       if (one.segment(block.begin, block.size) == next.segment(block.begin, block.size)) continue;
       for (Eigen::Index k = 0; k < block.size; ++k) {
         const Eigen::Index at = block.begin + k;
-        if (list_[static_cast<std::size_t>(at)].still) continue;
-        const Parameter& parameter = info.parameters[static_cast<std::size_t>(k)];
         const Coordinate& coordinate = list_[static_cast<std::size_t>(at)];
+        if (coordinate.still) continue;
+        const Parameter& parameter = info.parameters[static_cast<std::size_t>(k)];
         if (one[at] != next[at] && block.other < 0) block.other = at;
         else if (one[at] == next[at] && coordinate.value_of(one[at]) == parameter.absent_at) ++block.sizes;
         else return {};
@@ -92,15 +91,13 @@ private:
   /// worked out with the first of them.
   void look_at_alike(const std::vector<Eigen::VectorXd>& points, std::size_t begin, std::size_t end,
                      const Block& block, std::vector<double>& costs) {
-    std::size_t starts = 0, others = 0;
-    for (const Segment& segment : problem_.segments)
-      starts = std::max(starts, static_cast<std::size_t>(problem_.plant().start_size(segment)));
+    const int all = problem_.plant().directions_at_once(),
+              starts = largest_start_size(problem_.plant(), problem_.segments);
+    int others = 0;
     for (std::size_t i = 0; i < list_.size(); ++i)
       others += !list_[i].still && !block.holds(static_cast<Eigen::Index>(i));
-    const auto at_once = [&](std::size_t taken) {
-      const std::size_t all = static_cast<std::size_t>(problem_.plant().directions_at_once());
-      return std::max<std::size_t>(1,
-                                   all > taken ? (all - taken) / static_cast<std::size_t>(block.sizes) : 0);
+    const auto at_once = [&](int taken) {
+      return static_cast<std::size_t>(std::max(1, (all - taken) / block.sizes));
     };
     std::vector<FitProblem::Residuals> base;
     for (std::size_t from = begin; from < end;) {
@@ -149,10 +146,7 @@ private:
   /// Residuals without the derivatives by `count` coordinates from `from` on.
   static FitProblem::Residuals without(const FitProblem::Residuals& all, Eigen::Index from,
                                        Eigen::Index count) {
-    FitProblem::Residuals one;
-    one.value = all.value;
-    one.signal = all.signal;
-    one.row = all.row;
+    FitProblem::Residuals one{all.value, {}, all.signal, all.row};
     const Eigen::Index behind = all.jacobian.cols() - count - from;
     one.jacobian.resize(all.jacobian.rows(), from + behind);
     one.jacobian.leftCols(from) = all.jacobian.leftCols(from);

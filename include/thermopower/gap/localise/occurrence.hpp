@@ -231,11 +231,17 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
         if (one.signal == signal && one.level < limit.holds) return true;
     return false;
   };
-  for (Location& one : found.where) {
-    std::vector<Occurrence> list = occurrences(one.signal);
+  for (auto one = found.where.begin(); one != found.where.end(); ++one) {
+    const auto same = std::find_if(found.where.begin(), one,
+                                   [&](const Location& before) { return before.signal == one->signal; });
+    if (same != one) {
+      one->only_in = same->only_in;
+      continue;
+    }
+    std::vector<Occurrence> list = occurrences(one->signal);
     const bool later =
         std::any_of(list.begin(), list.end(), [](const Occurrence& o) { return o.from_s.has_value(); });
-    if (held_anywhere(one.signal) || later) one.only_in = std::move(list);
+    if (held_anywhere(one->signal) || later) one->only_in = std::move(list);
   }
   bool held_out_alone = false;
   for (std::size_t i = 0; i < parts.size(); ++i)

@@ -203,9 +203,8 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   const Plant& plant = plant_of(model);
   std::array<double, signal_count> sum{}, count{};
   Readings readings;
-  int directions = 0;
-  for (const Segment& segment : segments) directions = std::max(directions, plant.start_size(segment));
-  const auto rollout = plant.rollout(model, catalogue, {}, {0, directions}, SimulationMode::free_running);
+  const auto rollout = plant.rollout(model, catalogue, {}, {0, largest_start_size(plant, segments)},
+                                     SimulationMode::free_running);
   NoiseOfStarts starts(sigma);
   for (Segment segment : segments) {
     segment.carries_on = false;
