@@ -18,6 +18,9 @@
 
 #include <CLI/CLI.hpp>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -699,9 +702,20 @@ int run(int count, char** values) {
   return *predicting ? predict(arguments) : diagnose(arguments);
 }
 
+/// Keeps memory once it was asked for: a recording's columns are made and given back many times, and the system would map and clear
+/// them anew each time.
+void keep_memory() {
+#ifdef __GLIBC__
+  constexpr int most = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, most);
+  mallopt(M_TRIM_THRESHOLD, most);
+#endif
+}
+
 }  // namespace
 
 int main(int count, char** values) {
+  keep_memory();
   std::string fault;
   const int status = guarded([&] { return run(count, values); }, fault);
   if (!fault.empty()) {

@@ -39,29 +39,58 @@ struct SpringTwist {
   SpringTwist(const Eigen::VectorXd& rate, const BalanceRows& rows, double w_rad_per_s, double damping,
               double gap_rad = 0.0)
       : angle_rad(rate.size()), rate_rad_per_s(rate.size()), pull_rad_per_s2(rate.size()) {
-    constexpr double longest_rad = 0.15;  // of the oscillation in a step of the midpoint rule
     const double w = w_rad_per_s;
     const FreePlay<double> play{gap_rad, w * w, 2.0 * damping * w};
     const auto pulled = [&](double q, double v) {
       return gap_rad > 0.0 ? play.torque(play.touching(q, v), q, v) : w * w * q + 2.0 * damping * w * v;
     };
+    // Without free play the motion over an interval is linear in where it begins and in what pulls: three of them tell it, for as
+    // many intervals as are alike.
+    constexpr double alike = 1e-9;
+    double step = 0.0;
+    Motion by_angle, by_rate, by_pull;
     for (const RunSpan& run : rows.runs) {
-      double q = 0.0, v = 0.0;
+      Motion at;
       for (Eigen::Index i = run.begin; i < run.end; ++i) {
-        angle_rad[i] = q;
-        rate_rad_per_s[i] = v;
-        pull_rad_per_s2[i] = pulled(q, v);
+        angle_rad[i] = at.q;
+        rate_rad_per_s[i] = at.v;
+        pull_rad_per_s2[i] = pulled(at.q, at.v);
         if (i + 1 == run.end) break;
-        const double step = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step;
-        const int parts = std::max(1, static_cast<int>(std::ceil(w * step / longest_rad)));
-        for (int p = 0; p < parts; ++p) {
-          const double h = step / parts, k1 = pull - pulled(q, v);
-          const double q2 = q + 0.5 * h * v, v2 = v + 0.5 * h * k1;
-          q += h * v2;
-          v += h * (pull - pulled(q2, v2));
+        const double step_s = rows.t_s[i + 1] - rows.t_s[i], pull = -(rate[i + 1] - rate[i]) / step_s;
+        if (gap_rad > 0.0) {
+          at = moved(at, pull, w, step_s, pulled);
+          continue;
         }
+        if (std::abs(step_s - step) > alike * step) {
+          step = step_s;
+          by_angle = moved({1.0, 0.0}, 0.0, w, step, pulled);
+          by_rate = moved({0.0, 1.0}, 0.0, w, step, pulled);
+          by_pull = moved({0.0, 0.0}, 1.0, w, step, pulled);
+        }
+        at = {at.q * by_angle.q + at.v * by_rate.q + pull * by_pull.q,
+              at.q * by_angle.v + at.v * by_rate.v + pull * by_pull.v};
       }
     }
+  }
+
+private:
+  struct Motion {
+    double q = 0.0, v = 0.0;
+  };
+
+  /// Where it is after an interval, by the midpoint rule.
+  template <class Pulled>
+  static Motion moved(Motion at, double pull, double w_rad_per_s, double step_s, const Pulled& pulled) {
+    constexpr double longest_rad = 0.15;  // of the oscillation in a step of the rule
+    const int parts = std::max(1, static_cast<int>(std::ceil(w_rad_per_s * step_s / longest_rad)));
+    const double h = step_s / parts;
+    for (int p = 0; p < parts; ++p) {
+      const double k1 = pull - pulled(at.q, at.v);
+      const double q2 = at.q + 0.5 * h * at.v, v2 = at.v + 0.5 * h * k1;
+      at.q += h * v2;
+      at.v += h * (pull - pulled(q2, v2));
+    }
+    return at;
   }
 };
 

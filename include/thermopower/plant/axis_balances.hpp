@@ -66,15 +66,49 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
   return out;
 }
 
-/// Sines and cosines of an angle in rad so many times over, one column each.
-inline Eigen::MatrixXd waves(const Eigen::VectorXd& angle, double count) {
-  Eigen::MatrixXd both(angle.size(), 2);
-  for (Eigen::Index i = 0; i < angle.size(); ++i) {
-    const SineCosine at(count * angle[i]);
-    both(i, 0) = at.sine;
-    both(i, 1) = at.cosine;
+/// Sines and cosines of multiples of an angle. Those of a multiple come from those of the one before, which a scan of all of them asks
+/// for in turn: each by itself would take sixty times as long.
+class Waves {
+public:
+  /// @param angle  rad; worked out when it is first asked for
+  explicit Waves(std::shared_ptr<const Eigen::VectorXd> angle) : angle_(std::move(angle)) {}
+
+  /// The sine and the cosine of so many times the angle, one column each. @param count  1 or more, whole
+  Eigen::MatrixXd operator()(double count) {
+    if (once_.size() == 0) begin();
+    if (count < count_) restart();
+    for (; count_ < count; count_ += 1.0) {
+      const Eigen::VectorXd sine =
+          at_.col(0).cwiseProduct(once_.col(1)) + at_.col(1).cwiseProduct(once_.col(0));
+      at_.col(1) = at_.col(1).cwiseProduct(once_.col(1)) - at_.col(0).cwiseProduct(once_.col(0));
+      at_.col(0) = sine;
+    }
+    return at_;
   }
-  return both;
+
+private:
+  void begin() {
+    once_.resize(angle_->size(), 2);
+    for (Eigen::Index i = 0; i < angle_->size(); ++i) {
+      const SineCosine at((*angle_)[i]);
+      once_(i, 0) = at.sine;
+      once_(i, 1) = at.cosine;
+    }
+    restart();
+  }
+  void restart() {
+    at_ = once_;
+    count_ = 1.0;
+  }
+
+  std::shared_ptr<const Eigen::VectorXd> angle_;
+  Eigen::MatrixXd once_, at_;
+  double count_ = 0.0;  ///< of what `at_` holds
+};
+
+/// Those of the measured angle, for one scan. @param a  keeps the angle
+inline std::shared_ptr<Waves> waves_of(const std::shared_ptr<const AxisAtRows>& a) {
+  return std::make_shared<Waves>(std::shared_ptr<const Eigen::VectorXd>(a, &a->angle));
 }
 
 /// Temperatures above their mean.
@@ -181,8 +215,9 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
       return held(columns_of({*drive_Nm, drive_Nm->cwiseProduct(warmer_than_mean(motor_C))}));
     });
   if (!a->has_angle) return;
-  Freedom periodic{Submodel::mechanical_drive, "angle_deg", "", [a, drive_Nm, held](double count) {
-                     return held(scaled(waves(a->angle, count), *drive_Nm));
+  Freedom periodic{Submodel::mechanical_drive, "angle_deg", "",
+                   [waves = waves_of(a), drive_Nm, held](double count) {
+                     return held(scaled((*waves)(count), *drive_Nm));
                    }};
   periodic.scan = repeats_per_turn(*a);
   periodic.penalty = 2;
@@ -203,14 +238,14 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
   };
   if (a->has_angle) {
     add("angle_deg", "a torque with the sine of the angle",
-        [a, sampled] { return sampled(waves(a->angle, 1.0)); });
+        [a, sampled] { return sampled((*waves_of(a))(1.0)); });
     add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
       return sampled(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
     });
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "",
-                     [a, sampled](double count) { return sampled(waves(a->angle, count)); }};
+                     [waves = waves_of(a), sampled](double count) { return sampled((*waves)(count)); }};
     periodic.scan = repeats_per_turn(*a);
     periodic.penalty = 2;
     periodic.words_at = [](double count) { return repeating("a torque", count); };
@@ -381,8 +416,9 @@ inline Balance instrument_balance(const AxisAtRows& a) {
   b.freedoms.push_back({Submodel::sensing_angle, "rate_dps",
                         "the angle moves by another factor than the rate says",
                         [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
-  Freedom off_centre{Submodel::sensing_angle, "angle_deg", "", [rate_dps, angle](double count) {
-                       return directions_of(scaled(detail::waves(*angle, count), *rate_dps),
+  Freedom off_centre{Submodel::sensing_angle, "angle_deg", "",
+                     [rate_dps, waves = std::make_shared<detail::Waves>(angle)](double count) {
+                       return directions_of(scaled((*waves)(count), *rate_dps),
                                             [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
                      }};
   // A disc off its centre errs once a turn, an oval one twice, a magnet as often as it has pairs of poles.

@@ -260,7 +260,7 @@ private:
       to.twist_rad = from.twist_rad + rate.twist * h_s;
       to.twist_rate_rad_per_s = from.twist_rate_rad_per_s + rate.twist_rate * h_s;
     }
-    move_own(from, rate, h_s, to);
+    if (from.own.count > 0) move_own(from, rate, h_s, to);
   }
 
   /// The effects' own states, each solved exactly for a slope and a decay that stay as they are.
@@ -500,7 +500,7 @@ private:
       reached.twist_rate_rad_per_s += h_s * now.twist_rate;
       reached.twist_rad += h_s * reached.twist_rate_rad_per_s;
     }
-    move_own(state, now, h_s, reached);
+    if (state.own.count > 0) move_own(state, now, h_s, reached);
     Slope there;
     slope<compliant>(reached, t_s + h, drive, 1, there);
     const double missed =

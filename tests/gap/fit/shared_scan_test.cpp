@@ -86,3 +86,13 @@ TEST_CASE("a torque that repeats in a turn is looked at beside another cause, be
   CHECK(compare(axis, moving, {"imbalance", "torque_ripple"}, 0.5) > 40);
   compare(axis, moving, {"compliance", "cogging"}, 0.5);  // carries its state from window to window
 }
+
+TEST_CASE("the widest transition among frictions holds for all of them, of one that is not there yet, too") {
+  const Model axis = axis_model();
+  const Recording moving = test::axis_recording({0.02, 0.0, 1.0, 0}, 600, 7);
+  CHECK(compare(axis, moving, {"stribeck_friction", "asymmetric_friction"}, 0.5) > 40);
+  CHECK(compare(axis, moving, {"coulomb_friction", "stribeck_friction"}, 0.5) > 40);
+  Model rubbing = axis;
+  rubbing.effects["coulomb_friction"] = {{"Nm", 0.01}, {"transition_rad_per_s", 0.3}};
+  CHECK(compare(rubbing, moving, {"stribeck_friction"}, 0.5) > 10);
+}

@@ -48,46 +48,31 @@ public:
     constexpr std::size_t rows_a_term = 4;
     if (terms_.empty() || terms_.size() < rows_a_term * static_cast<std::size_t>(terms_.front().size()))
       return {};
-    const Eigen::Index count = terms_.front().size();
-    scale_ = Eigen::VectorXd::Zero(count);
-    for (const Eigen::VectorXd& one : terms_) scale_ += one.cwiseAbs2();
-    scale_ = (scale_ / static_cast<double>(terms_.size())).cwiseSqrt();
-    for (double& one : scale_)
-      if (!(one > 0.0)) one = 1.0;
-    const Eigen::VectorXd all = coefficients(-1);
-    const double left = squares(all, -1);
+    const Eigen::Index count = terms_.front().size(), rows = static_cast<Eigen::Index>(terms_.size());
+    Eigen::MatrixXd scaled(rows, count);
+    for (Eigen::Index i = 0; i < rows; ++i) scaled.row(i) = terms_[static_cast<std::size_t>(i)];
+    Eigen::VectorXd scale = (scaled.colwise().squaredNorm() / static_cast<double>(rows)).cwiseSqrt();
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!(scale[k] > 0.0)) scale[k] = 1.0;
+      scaled.col(k) /= scale[k];
+    }
+    const Eigen::Map<const Eigen::VectorXd> responses(responses_.data(), rows);
+    const auto squares = [&](const Eigen::VectorXd& by) { return (responses - scaled * by).squaredNorm(); };
+    const NormalEquations equations(scaled, responses);
+    const Eigen::VectorXd all = equations.solve();
+    const double left = squares(all);
     std::vector<ToldCoefficient> list;
     for (Eigen::Index k = 0; k < count; ++k) {
-      const double without = squares(coefficients(k), k);
+      const double without = squares(equations.solve_without(k));
       const double share = without > 0.0 ? std::clamp(1.0 - left / without, 0.0, 1.0) : 0.0;
-      list.push_back({all[k] / scale_[k], std::sqrt(share), static_cast<double>(terms_.size())});
+      list.push_back({all[k] / scale[k], std::sqrt(share), static_cast<double>(rows)});
     }
     return list;
   }
 
 private:
-  Eigen::VectorXd scaled(const Eigen::VectorXd& terms, Eigen::Index without) const {
-    Eigen::VectorXd x = terms.cwiseQuotient(scale_);
-    if (without >= 0) x[without] = 0.0;
-    return x;
-  }
-  Eigen::VectorXd coefficients(Eigen::Index without) const {
-    NormalEquations equations(scale_.size());
-    for (std::size_t i = 0; i < terms_.size(); ++i) equations.add(scaled(terms_[i], without), responses_[i]);
-    return equations.solve();
-  }
-  double squares(const Eigen::VectorXd& by, Eigen::Index without) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < terms_.size(); ++i) {
-      const double error = responses_[i] - scaled(terms_[i], without).dot(by);
-      sum += error * error;
-    }
-    return sum;
-  }
-
   std::vector<Eigen::VectorXd> terms_;
   std::vector<double> responses_;
-  mutable Eigen::VectorXd scale_;
 };
 
 /// The rows of a recording in which a signal was read, run by run, and the bells over them.

@@ -139,30 +139,35 @@ public:
     constexpr MotionThresholds limit;
     const std::vector<Row> rows = moving_rows(terms_of, together);
     if (rows.size() < limit.least_rows) return std::nullopt;
-    const std::vector<int> cogs = cogging_of(rows);
-    const Eigen::Index terms = rows.front().terms.size();
-    std::vector<Sums> blocks(limit.blocks, Sums(terms, cogs));
-    for (std::size_t i = 0; i < rows.size(); ++i) blocks[i * limit.blocks / rows.size()].add(rows[i]);
-    Sums all(terms, cogs);
-    for (const Sums& one : blocks) all.add(one, 1.0);
+    const Regressors regressors(rows);
+    const Eigen::Index count = regressors.terms().rows(), terms = rows.front().terms.size();
+    std::vector<NormalEquations> blocks;
+    NormalEquations all(regressors.terms().cols());
+    const auto parts = static_cast<Eigen::Index>(limit.blocks);
+    for (Eigen::Index k = 0; k < parts; ++k) {
+      const Eigen::Index begin = (count * k + parts - 1) / parts, end = (count * (k + 1) + parts - 1) / parts;
+      blocks.emplace_back(regressors.terms().middleRows(begin, end - begin),
+                          regressors.responses().segment(begin, end - begin));
+      all.add(blocks.back(), 1.0);
+    }
     MotionFit fit;
     const Eigen::VectorXd solved = all.solve();
     fit.value = solved.head(terms);
     if (!fit.value.allFinite()) return std::nullopt;
     fit.beside_value = solved.tail(solved.size() - terms);
-    fit.cogs = cogs;
-    for (const Sums& one : blocks) {
-      Sums rest = all;
+    fit.cogs = regressors.cogs();
+    for (const NormalEquations& one : blocks) {
+      NormalEquations rest = all;
       rest.add(one, -1.0);
       fit.without.push_back(rest.solve().head(terms));
     }
-    double squares = 0.0, left_squares = 0.0;
+    double squares = 0.0;
     for (const Row& row : rows) {
       const double by_dps = fit.value[0] * row.terms[0] * row.step_s;
       squares += by_dps * by_dps / static_cast<double>(rows.size());
-      const double left = row.response - all.regressors(row).dot(solved);
-      left_squares += left * left / static_cast<double>(rows.size());
     }
+    const double left_squares =
+        (regressors.responses() - regressors.terms() * solved).squaredNorm() / static_cast<double>(count);
     fit.first_dps = std::sqrt(squares);
     fit.left_dps2 = std::sqrt(left_squares);
     return fit;
@@ -218,10 +223,17 @@ private:
   static constexpr Eigen::Index others =
       7;  ///< of what turns the axis beside the command, the cogs not counted
 
+  /// What turns the axis beside the command and its cogs.
+  static Eigen::Matrix<double, others, 1> uncogged_terms(double dps, double rad) {
+    const plant::SineCosine once(rad);
+    Eigen::Matrix<double, others, 1> x;
+    x << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0;
+    return x;
+  }
+
   static Eigen::VectorXd beside_terms(double dps, double rad, const std::vector<int>& cogs_a_turn) {
     Eigen::VectorXd x(others + 2 * static_cast<Eigen::Index>(cogs_a_turn.size()));
-    const plant::SineCosine once(rad);
-    x.head(others) << dps, std::abs(dps), dps > 0.0 ? 1.0 : -1.0, rad, once.sine, once.cosine, 1.0;
+    x.head(others) = uncogged_terms(dps, rad);
     Eigen::Index at = others;
     for (const int cogs : cogs_a_turn) {
       const plant::SineCosine often(cogs * rad);
@@ -231,27 +243,62 @@ private:
     return x;
   }
 
-  /// Sums of the regression.
-  class Sums {
+  /// The rows of the regression: the command's terms and what turns the axis beside it, the cogs last.
+  class Regressors {
   public:
-    Sums(Eigen::Index terms, const std::vector<int>& cogs) : terms_(terms), cogs_(cogs), equations_(all()) {}
-
-    void add(const Row& row) { equations_.add(regressors(row), row.response); }
-    void add(const Sums& other, double weight) { equations_.add(other.equations_, weight); }
-    Eigen::VectorXd solve() const { return equations_.solve(); }
-
-    Eigen::VectorXd regressors(const Row& row) const {
-      Eigen::VectorXd x(all());
-      x << row.terms, beside_terms(row.dps, row.rad, cogs_);
-      return x;
+    explicit Regressors(const std::vector<Row>& rows) {
+      const Eigen::Index terms = rows.front().terms.size(), count = static_cast<Eigen::Index>(rows.size()),
+                         uncogged = terms + others;
+      terms_.resize(count, uncogged + 2 * MotionThresholds().periods);
+      responses_.resize(count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const Row& row = rows[static_cast<std::size_t>(i)];
+        terms_.row(i).head(terms) = row.terms;
+        terms_.row(i).segment(terms, others) = uncogged_terms(row.dps, row.rad);
+        responses_[i] = row.response;
+      }
+      for (int found = 0; found < MotionThresholds().periods; ++found) {
+        const Eigen::Index used = uncogged + 2 * found;
+        cogs_.push_back(strongest_beside(used, uncogged - 2));
+        for (Eigen::Index i = 0; i < count; ++i) {
+          const plant::SineCosine often(cogs_.back() * rows[static_cast<std::size_t>(i)].rad);
+          terms_(i, used) = often.sine;
+          terms_(i, used + 1) = often.cosine;
+        }
+      }
     }
 
-  private:
-    Eigen::Index all() const { return terms_ + others + 2 * static_cast<Eigen::Index>(cogs_.size()); }
+    const Eigen::MatrixXd& terms() const { return terms_; }
+    const Eigen::VectorXd& responses() const { return responses_; }
+    /// Periods a turn that are among the terms.
+    const std::vector<int>& cogs() const { return cogs_; }
 
-    Eigen::Index terms_;
+  private:
+    /// Cogs a turn of the strongest period of the angle in what the first terms leave.
+    /// @param used    so many of them
+    /// @param cosine  column of the cosine of the angle; the sine's is the one before
+    int strongest_beside(Eigen::Index used, Eigen::Index cosine) const {
+      const auto by = terms_.leftCols(used);
+      const Eigen::VectorXd left = responses_ - by * NormalEquations(by, responses_).solve();
+      const auto cos = terms_.col(cosine).array(), sin = terms_.col(cosine - 1).array();
+      Eigen::ArrayXd real = left.array() * cos, imaginary = left.array() * sin,
+                     turned;  // of one period a turn
+      int strongest = 0;
+      double most = -1.0;
+      // From two on: one is an imbalance.
+      for (int cogs = 2; cogs <= MotionThresholds().most_cogs + 2; ++cogs) {
+        turned = real * cos - imaginary * sin;
+        imaginary = real * sin + imaginary * cos;
+        real.swap(turned);
+        const double size = std::norm(std::complex<double>(real.sum(), imaginary.sum()));
+        if (size > most) most = size, strongest = cogs;
+      }
+      return strongest;
+    }
+
+    Eigen::MatrixXd terms_;
+    Eigen::VectorXd responses_;
     std::vector<int> cogs_;
-    NormalEquations equations_;
   };
 
   /// Hands each row with an acceleration to `use(driven, run, row, motion)`.
@@ -316,29 +363,6 @@ private:
       }
     });
     return moving;
-  }
-
-  /// Cogs a turn of the two strongest periods of the angle in what the rest leaves.
-  static std::vector<int> cogging_of(const std::vector<Row>& rows) {
-    constexpr MotionThresholds limit;
-    std::vector<int> cogs;
-    for (int round = 0; round < limit.periods; ++round) {
-      Sums all(rows.front().terms.size(), cogs);
-      for (const Row& row : rows) all.add(row);
-      const Eigen::VectorXd fitted = all.solve();
-      std::vector<std::complex<double>> sums(static_cast<std::size_t>(limit.most_cogs) + 1);
-      for (const Row& row : rows) {
-        const double left = row.response - all.regressors(row).dot(fitted);
-        const plant::SineCosine once(row.rad);
-        const std::complex<double> turn(once.cosine, once.sine);
-        std::complex<double> at = left * turn;
-        for (std::complex<double>& sum : sums) sum += at *= turn;  // from two cogs on: one is an imbalance
-      }
-      const auto strongest = std::max_element(
-          sums.begin(), sums.end(), [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
-      cogs.push_back(static_cast<int>(strongest - sums.begin()) + 2);
-    }
-    return cogs;
   }
 
   std::vector<Driven> recordings_;

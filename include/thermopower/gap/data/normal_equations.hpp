@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 
 #include <Eigen/Core>
 
@@ -14,6 +15,10 @@ public:
   /// @param terms  of the regression: how many
   explicit NormalEquations(Eigen::Index terms)
       : square_(Eigen::MatrixXd::Zero(terms, terms)), product_(Eigen::VectorXd::Zero(terms)) {}
+
+  /// Of many rows. @param terms  one column each. @param responses  one for each row
+  NormalEquations(const MatrixView& terms, const VectorView& responses)
+      : square_(gram(terms)), product_(transposed_times(terms, responses)) {}
 
   /// Adds a row. @param terms  the value of each
   void add(const Eigen::VectorXd& terms, double response) { add(terms, terms, response); }
@@ -36,6 +41,15 @@ public:
 
   /// The coefficients; of several that do as well the shortest.
   Eigen::VectorXd solve() const { return LeastSquares(square_).solve(product_); }
+
+  /// Those of a regression on all terms but one: 0 for that.
+  Eigen::VectorXd solve_without(Eigen::Index term) const {
+    NormalEquations others = *this;
+    others.square_.row(term).setZero();
+    others.square_.col(term).setZero();
+    others.product_[term] = 0.0;
+    return others.solve();
+  }
 
   /// Those of a regression on the first terms alone. @param count  of them
   Eigen::VectorXd solve_first(Eigen::Index count) const {

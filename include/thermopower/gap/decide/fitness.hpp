@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/fit/candidate.hpp>
 
 #include <algorithm>
@@ -28,6 +29,15 @@ inline const Candidate& fittest(const std::vector<Candidate>& candidates) {
   for (const Candidate& one : candidates)
     if (fitness(one) < fitness(*least)) least = &one;
   return *least;
+}
+
+/// Whether a candidate's residuals are some five times those of the best one, which leaves far more than noise itself: it is not
+/// half of what is missing, then, nor becomes the better one by some steps of a fit.
+inline bool is_out_of_reach(const Candidate& one, const Candidate& best) {
+  if (best.train.within(search_extent.plain_above)) return false;
+  double samples = 0.0;
+  for (const double of_signal : best.train.samples) samples += of_signal;
+  return fitness(one) - fitness(best) > std::log(search_extent.out_of_reach) * samples;
 }
 
 /// Indices of the candidates from index `first` on, the fittest first.

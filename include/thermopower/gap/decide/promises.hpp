@@ -133,13 +133,14 @@ private:
   }
 
   /// Places of the best single causes, and the best ones of every submodel that is under suspicion: of two causes of one size
-  /// neither does well alone, and what does is another effect that makes up for some of both.
+  /// neither does well alone, and what does is another effect that makes up for some of both. None that is out of reach.
   std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates) const {
     constexpr std::size_t best_of_all = 5;
     constexpr int best_of_submodel = 2;
     std::vector<std::size_t> seeds, others;
+    const Candidate& best = fittest(candidates);
     for (std::size_t index : by_fitness(candidates, 0))
-      if (candidates[index].explanation.effects.size() == 1)
+      if (candidates[index].explanation.effects.size() == 1 && !is_out_of_reach(candidates[index], best))
         (seeds.size() < best_of_all ? seeds : others).push_back(index);
     for (const plant::SubmodelName& suspect : suspects_) {
       int found = 0;

@@ -282,10 +282,11 @@ private:
     some.iterations = 10;
     rest.iterations = 15;
     FitOptions in_sight = some;
-    in_sight.hopeless = Attribution::out_of_sight * fittest(candidates).train.total();
+    const Candidate leader_so_far = fittest(candidates);
+    in_sight.hopeless = Attribution::out_of_sight * leader_so_far.train.total();
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
-      if (one.settled) return;
+      if (one.settled || (order[i] != 0 && is_out_of_reach(one, leader_so_far))) return;
       // What constants alone can do is said whoever wins.
       fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
       one.settled = one.fit.iterations < some.iterations;

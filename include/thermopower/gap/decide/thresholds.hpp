@@ -167,6 +167,8 @@ struct SearchThresholds {
   /// Mean square of what is left so far, in units of the noise, above which every second of these windows tells what is
   /// worth a fit: four times the noise is seen in a few samples.
   double plain_above = 16.0;
+  double out_of_reach =
+      25.0;  ///< times the mean square that the best leaves there: no half of a set of causes
   Eigen::Index judged_rows = 20000;   ///< held out, on which explanations are weighed
   Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score

@@ -45,7 +45,8 @@ public:
   }
 
   /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
-  /// the best one so far, and to the end from the best of them unless that is hopeless.
+  /// the best one so far, and to the end from the best of them unless that is hopeless. Where two of them lead to where as much is
+  /// explained, the others are not tried.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -57,8 +58,10 @@ public:
       few.hopeful = few.iterations - 1;
       for (const Eigen::VectorXd& start : starts) {
         FitResult trial = fitter.minimise(start, few);
-        if (candidate.fit.point.size() > 0 && !(trial.cost < candidate.fit.cost)) continue;
-        candidate.fit = std::move(trial);
+        const bool enough = lead_alike(trial, candidate.fit);
+        if (trial.cost < candidate.fit.cost || candidate.fit.point.size() == 0)
+          candidate.fit = std::move(trial);
+        if (enough) break;
         few.hopeless = std::min(options.hopeless, out_of_sight * candidate.fit.cost);
       }
       if (!(candidate.fit.cost > options.hopeless))
@@ -279,6 +282,12 @@ private:
     candidate.explanation = explanation;
     candidate.list = coordinates(*problem_.model, explanation, *problem_.catalogue);
     return candidate;
+  }
+
+  /// Whether fits from two starts explain much, and as much as each other.
+  static bool lead_alike(const FitResult& one, const FitResult& other) {
+    constexpr double alike = 0.01, much = 0.5;
+    return one.cost < much * one.began_at && std::abs(one.cost - other.cost) < alike * other.cost;
   }
 
   /// One linear step from each of some starts.

@@ -30,6 +30,7 @@ struct FitResult {
   std::vector<Start> starts;  ///< of every segment
   double chi2 = 1e300;        ///< data only
   double cost = 1e300;        ///< data and priors
+  double began_at = 1e300;    ///< the same where it began
   Eigen::MatrixXd
       information;           ///< half the cost's curvature in the coordinates, starts projected out; or empty
   Eigen::MatrixXd pulls;     ///< gradients of contiguous blocks of the data, one column each, in their order
@@ -79,6 +80,7 @@ public:
       seen = false;
       best.cost = view_.cost;
       best.chi2 = view_.chi2;
+      if (best.iterations == 0) best.began_at = best.cost;
       bool goes_on = false;
       double failed = std::numeric_limits<double>::infinity();  // squared length of the last step that did
       Failure failure;
