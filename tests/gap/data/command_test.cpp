@@ -27,6 +27,14 @@ std::optional<double> share_of(const Recording& r) {
   return share ? std::optional<double>(share->value) : std::nullopt;
 }
 
+/// Whether the command went on between the rows.
+bool went_on(const Recording& r) {
+  const Inputs inputs = prepare(test::SampledAxis::model(), r);
+  CommandBetweenRows between;
+  between.add(inputs, inputs.drive_A);
+  return between.steady().has_value();
+}
+
 /// Standard deviation of what is noise in the command.
 double noise_of(const Recording& r) {
   const Inputs inputs = prepare(test::SampledAxis::model(), r);
@@ -68,7 +76,10 @@ Recording geared(double quantum_deg, int each, double length_s) {
 }
 
 /// An axis that follows a command which is rough from row to row through a drive with a time constant, in steps of 0.1 ms.
-Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t seed) {
+/// @param white_A       what of the command no row remembers
+/// @param remembered_A  what the next row remembers four fifths of
+Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t seed, double white_A = 0.1,
+                        double remembered_A = 0.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   constexpr Eigen::Index rows = 6000;
@@ -78,15 +89,49 @@ Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t s
   r.name = "slow drive";
   r.t_s.resize(rows);
   Eigen::VectorXd drive(rows), angle(rows), rate(rows);
-  double rad = 0.0, radps = 0.0, torque_Nm = 0.0;
+  double rad = 0.0, radps = 0.0, torque_Nm = 0.0, remembered = 0.0;
   for (Eigen::Index k = 0; k < rows; ++k) {
     r.t_s[k] = step_s * static_cast<double>(k);
-    drive[k] = smooth_A * std::sin(3.0 * r.t_s[k]) + 0.1 * normal(random);
+    drive[k] = smooth_A * std::sin(3.0 * r.t_s[k]) + white_A * normal(random);
+    if (remembered_A > 0.0) remembered = 0.8 * remembered + 0.6 * normal(random);
+    drive[k] += remembered_A * remembered;
     angle[k] = 57.29578 * rad + 0.03 * normal(random);
     rate[k] = 57.29578 * radps + 0.2 * normal(random);
     for (int i = 0; i < inner; ++i) {
       torque_Nm += (0.09 * drive[k] - torque_Nm) * (1.0 - std::exp(-step_s / inner / time_constant_s));
       radps += (torque_Nm - 0.002 * radps) / 0.002 * step_s / inner;
+      rad += radps * step_s / inner;
+    }
+  }
+  r.set("drive_A", drive);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  return r;
+}
+
+/// An axis in a loop that is closed anew at each row and follows steps, through a drive that gives nothing for small commands and
+/// no more than so much for large ones, and gears that rub a share of it; in steps of 0.1 ms.
+Recording in_a_loop(double dead_A, double most_A, double rubbed, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  constexpr Eigen::Index rows = 6000;
+  constexpr int inner = 100;
+  constexpr double step_s = 0.01;
+  Recording r;
+  r.name = "in a loop";
+  r.t_s.resize(rows);
+  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  double rad = 0.0, radps = 0.0, target_rad = 0.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    r.t_s[k] = step_s * static_cast<double>(k);
+    if (k % 40 == 0) target_rad = 0.2 * normal(random);
+    angle[k] = 57.29578 * rad + 0.01 * normal(random);
+    rate[k] = 57.29578 * radps + 0.1 * normal(random);
+    drive[k] = 1.5 * (target_rad - angle[k] / 57.29578) - 0.2 * rate[k] / 57.29578;
+    const double beyond_A = std::max(0.0, std::min(std::abs(drive[k]), most_A) - dead_A);
+    for (int i = 0; i < inner; ++i) {
+      const double geared_A = std::copysign(beyond_A, drive[k]) - rubbed * beyond_A * std::tanh(radps / 0.01);
+      radps += (0.09 * geared_A - 0.002 * radps) / 0.002 * step_s / inner;
       rad += radps * step_s / inner;
     }
   }
@@ -202,6 +247,25 @@ TEST_CASE("a rough command that the motion follows late or slowly is no noise") 
       for (Eigen::Index i = 0; i + 5 < early.size(); ++i) early[i] = early[i + 5];
       late.set("drive_A", early);
       CHECK(noise_of(late) == 0.0);
+    }
+}
+
+TEST_CASE("a command that holds in a loop did not go on for what a dead band, a limit or gears take of it") {
+  constexpr double no_limit_A = 1e3;
+  for (const std::uint64_t seed : {45, 46, 47}) {
+    CAPTURE(seed);
+    for (const double dead_A : {0.0, 0.01, 0.02, 0.03})
+      CHECK_FALSE(went_on(in_a_loop(dead_A, no_limit_A, 0.0, seed)));
+    CHECK_FALSE(went_on(in_a_loop(0.0, 0.25, 0.0, seed)));
+    CHECK_FALSE(went_on(in_a_loop(0.0, no_limit_A, 0.3, seed)));
+  }
+}
+
+TEST_CASE("what a slow drive follows less the faster it is leaves no room for noise among the fastest") {
+  for (const std::uint64_t seed : {42, 43, 44})
+    for (const double time_constant_s : {0.03, 0.05, 0.08}) {
+      CAPTURE(seed, time_constant_s);
+      CHECK(noise_of(driven_slowly(time_constant_s, 0.5, seed, 0.03, 0.15)) == 0.0);
     }
 }
 

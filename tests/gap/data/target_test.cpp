@@ -37,6 +37,7 @@ struct Bench {
   double gravity_Nm = 0.0;    ///< the same
   double noise_deg = 0.02;    ///< of the angle, standard deviation
   double file_inertia = 1.0;  ///< that the simulation has, of the true one
+  double most_A = 1e6;        ///< that the drive gives, which the simulation does not know
 
   double kp_A_per_deg() const {
     return inertia_kgm2 * natural_radps * natural_radps / torque_constant_Nm_per_A / deg_per_radian;
@@ -87,9 +88,10 @@ struct Bench {
       for (int sample = 0; sample < samples_a_row; ++sample) {
         const double taken_s = now_s + (moves ? sample * period_s() : 0.0) + ahead_rows * row_s;
         const double command_A = kp_A_per_deg() * (target_deg(taken_s, length_s) - rad * deg_per_radian) -
-                                 kd_A_s_per_deg() * radps * deg_per_radian;
+                                 kd_A_s_per_deg() * radps * deg_per_radian,
+                     given_A = std::clamp(command_A, -most_A, most_A);
         for (int n = 0; n < inner; ++n) {
-          const double push_Nm = torque_constant_Nm_per_A * command_A - viscous_per_s * inertia_kgm2 * radps -
+          const double push_Nm = torque_constant_Nm_per_A * given_A - viscous_per_s * inertia_kgm2 * radps -
                                  coulomb_Nm * std::tanh(radps / 0.02) - gravity_Nm * std::sin(rad + 0.5);
           const double before = radps;
           radps += step_s * push_Nm / inertia_kgm2;
@@ -141,6 +143,24 @@ TEST_CASE("nor is it where the simulation lacks friction, a load or much of the 
         CAPTURE(file_inertia, coulomb_Nm, gravity_Nm);
         CHECK_FALSE(bench.said_share());
       }
+}
+
+TEST_CASE("nor is it where the drive gives less of its largest commands than it is asked for") {
+  for (const Path path : {Path::chirp, Path::multisine, Path::steps})
+    for (const double row_s : {0.02, 0.05})
+      for (const double natural_radps : {6.0, 14.0})
+        for (const int samples : {1, 2})
+          for (const bool logs_rate : {false, true}) {
+            Bench bench;
+            bench.path = path;
+            bench.row_s = row_s;
+            bench.natural_radps = natural_radps;
+            bench.samples_a_row = samples;
+            bench.logs_rate = logs_rate;
+            bench.most_A = 12.0 * bench.kp_A_per_deg();  // what 12 degrees of the target's 40 ask for
+            CAPTURE(static_cast<int>(path), row_s, natural_radps, samples, logs_rate);
+            CHECK_FALSE(bench.said_share());
+          }
 }
 
 TEST_CASE("a target that moves is given as far as the servo takes it on the way") {

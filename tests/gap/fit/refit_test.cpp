@@ -172,3 +172,23 @@ TEST_CASE("torques, inertia and frictions come back together to where their cons
   CHECK(candidate.fit.point[friction] == Approx(0.006).epsilon(0.05));
   CHECK(candidate.fit.point[0] == Approx(0.0).margin(0.05));
 }
+
+TEST_CASE(
+    "a load off the axis is found wherever it hangs, though two of the phases that a fit starts from lead nowhere") {
+  const Model model = axis_model();
+  constexpr double weight_Nm = 4e-3;
+  for (const int turned_deg : {0, 45, 90, 135, 180, 225, 270, 315}) {
+    CAPTURE(turned_deg);
+    test::AxisFault fault;
+    fault.weight_Nm = weight_Nm;
+    Recording r = test::axis_recording(fault, 2000, 12);
+    r.set("angle_deg", r.column("angle_deg").array() + turned_deg);
+    const std::vector<Inputs> inputs{prepare(model, r)};
+    FitProblem problem = problem_of(model, inputs);
+    problem.segments = cut(inputs, 0.2, plant_of(model));
+    const Candidate found = Attribution(problem).fit({{standard_catalogue().find("imbalance")}, {}}, {});
+    const auto size = static_cast<Eigen::Index>(model.calibrated().size());
+    CHECK(found.list[static_cast<std::size_t>(size)].value_of(found.fit.point[size]) ==
+          Approx(weight_Nm).epsilon(0.1));
+  }
+}

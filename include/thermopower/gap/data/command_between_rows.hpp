@@ -131,8 +131,15 @@ private:
     return list;
   }
 
-  static Terms held_and_next(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
-    return k + 1 < run.end ? terms({c[k], c[k + 1] - c[k]}) : Terms();
+  /// A row's command, its next step, and what a drive bends it by.
+  MotionRegression::TermsOf held_and_next() const {
+    return [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c, const RunSpan& run,
+                                           Eigen::Index k) {
+      const bool moves = k > run.begin || inputs.judged(Signal::rate_dps);
+      if (k + 1 >= run.end || !moves) return Terms();
+      return terms({c[k], c[k + 1] - c[k], bent.small(c[k]), bent.large(c[k]),
+                    BentCommand::rubbed(c[k], MeasuredMotion(inputs, k).rate_dps)});
+    };
   }
 
   /// Mean and slope of a row of a command around an interval.
@@ -144,7 +151,7 @@ private:
 
   /// From rows and means of them, else from the means around them where single rows are too rough.
   std::optional<Share> share_of_clean() const {
-    const std::optional<MotionFit> rows = motion_.fit(held_and_next);
+    const std::optional<MotionFit> rows = motion_.fit(held_and_next());
     if (const std::optional<Share> held = share_of_held(rows)) return held;
     const std::optional<Share> from_rows = rows ? share_of(*rows) : std::nullopt;
     return from_rows && smooth() && tells(*smooth()) ? share_around_rows() : from_rows;
@@ -155,7 +162,7 @@ private:
   /// of a loop that went on between the rows and whose own noise is in the command.
   std::optional<Share> share_of_noisy() const {
     const std::optional<Share> around_rows = share_around_rows();
-    return around_rows ? around_rows : share_of_held(motion_.fit(held_and_next));
+    return around_rows ? around_rows : share_of_held(motion_.fit(held_and_next()));
   }
 
   /// From single rows and from means of them, as they can tell a command that holds from one that goes on: the more precise
@@ -169,7 +176,7 @@ private:
     };
     std::optional<Share> means;
     for (const Eigen::Index together : {16, 8, 4})
-      if (!means) means = told_by(motion_.fit(held_and_next, together));
+      if (!means) means = told_by(motion_.fit(held_and_next(), together));
     const std::optional<Share> single = told_by(rows);
     if (!means || !single) return means ? means : single;
     const bool agree =

@@ -35,6 +35,7 @@ struct CommandNoiseThresholds {
   double mostly = 0.7;        ///< of a band without noise that the motion must follow
   double error = 0.1;   ///< standard error of what is followed in a band from which on the band tells nothing
   double match = 0.12;  ///< what is followed may differ by from what the noise leaves
+  double short_of = 0.2;  ///< that, in a band of which it leaves most: a drive that falls shorter is slow
 };
 
 /// Compares how strong a command is at each frequency with how much of that the acceleration follows.
@@ -113,7 +114,10 @@ public:
       const double error =
           std::sqrt(one.response / one.command / (independent * count() * one.bins)) / response;
       is_followed = is_followed || (left > limit.mostly && followed.real() > limit.mostly);
-      if (left > limit.not_followed) continue;
+      if (left > limit.not_followed) {
+        if (error < limit.error && left - followed.real() > limit.short_of + 3.0 * error) return 0.0;
+        continue;
+      }
       if (error > limit.error) {
         const double weight = 1.0 / (error * error);
         rough += weight * (followed - left);

@@ -78,6 +78,25 @@ struct MotionFit {
   }
 };
 
+/// What a drive may give beside a torque in proportion to its command: less of a small one, as a dead band does, less of a large
+/// one, as saturation does, and less of one that its gears rub. In a loop the command falls as it is followed, and what a small one gives
+/// less of passes for a part of the next one without these.
+class BentCommand {
+public:
+  /// @param usual  size of the command, in its unit, > 0
+  explicit BentCommand(double usual) : usual_(usual), small_(0.1 * usual) {}
+
+  /// Grows in the smallest commands alone: -1 to 1.
+  double small(double command) const { return command / std::hypot(command, small_); }
+  /// Grows most in the largest.
+  double large(double command) const { return command * std::abs(command) / usual_; }
+  /// What gears rub of it, against the motion. @param rate  its sign counts
+  static double rubbed(double command, double rate) { return std::copysign(command, rate); }
+
+private:
+  double usual_, small_;
+};
+
 /// Regresses the acceleration between rows on terms of the command beside friction, a spring, an imbalance, a constant and
 /// cogs.
 class MotionRegression {
@@ -110,6 +129,15 @@ public:
       if (one.inputs->judged(signal))
         scale = std::max(scale, white_scale(one.inputs->of(signal), one.inputs->runs));
     return scale;
+  }
+
+  /// How a drive may bend its command, by how large the commands are: root mean square, 1 where none is known.
+  BentCommand bent_command() const {
+    double squares = 0.0, count = 0.0;
+    for (const Driven& one : recordings_)
+      for (const double command : *one.command)
+        if (std::isfinite(command)) squares += command * command, count += 1.0;
+    return BentCommand(squares > 0.0 ? std::sqrt(squares / count) : 1.0);
   }
 
   /// The rate below which an axis may be stuck, deg/s: slower rows are left out.

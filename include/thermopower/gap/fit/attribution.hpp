@@ -45,8 +45,8 @@ public:
   }
 
   /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
-  /// the best one so far, and to the end from the best of them unless that is hopeless. Where two of them lead to where as much is
-  /// explained, the others are not tried.
+  /// the best one so far, and to the end from the best of them unless that is hopeless. Of a set, which begins where a part of it was
+  /// fitted, no further ones are tried where two explain much more than that, and as much as each other.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -58,7 +58,7 @@ public:
       few.hopeful = few.iterations - 1;
       for (const Eigen::VectorXd& start : starts) {
         FitResult trial = fitter.minimise(start, few);
-        const bool enough = lead_alike(trial, candidate.fit);
+        const bool enough = explanation.effects.size() > 1 && lead_alike(trial, candidate.fit);
         if (trial.cost < candidate.fit.cost || candidate.fit.point.size() == 0)
           candidate.fit = std::move(trial);
         if (enough) break;
@@ -284,9 +284,9 @@ private:
     return candidate;
   }
 
-  /// Whether fits from two starts explain much, and as much as each other.
+  /// Whether fits from two starts leave little of what there was, and as much as each other.
   static bool lead_alike(const FitResult& one, const FitResult& other) {
-    constexpr double alike = 0.01, much = 0.5;
+    constexpr double alike = 0.01, much = 0.25;
     return one.cost < much * one.began_at && std::abs(one.cost - other.cost) < alike * other.cost;
   }
 
