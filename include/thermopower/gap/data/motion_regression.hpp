@@ -83,18 +83,40 @@ struct MotionFit {
 /// less of passes for a part of the next one without these.
 class BentCommand {
 public:
-  /// @param usual  size of the command, in its unit, > 0
-  explicit BentCommand(double usual) : usual_(usual), small_(0.1 * usual) {}
+  /// @param commands  that there are, in one unit
+  explicit BentCommand(const std::vector<const Eigen::VectorXd*>& commands) {
+    const double squares = sum_over(commands, [](double c) { return c * c; }),
+                 count = sum_over(commands, [](double) { return 1.0; });
+    if (!(squares > 0.0)) return;
+    usual_ = std::sqrt(squares / count);
+    small_part_ = sum_over(commands, [&](double c) { return c * part_of_small(c); }) / squares;
+    large_part_ = sum_over(commands, [&](double c) { return c * part_of_large(c); }) / squares;
+  }
 
-  /// Grows in the smallest commands alone: -1 to 1.
-  double small(double command) const { return command / std::hypot(command, small_); }
-  /// Grows most in the largest.
-  double large(double command) const { return command * std::abs(command) / usual_; }
+  /// Grows in the smallest commands alone; without what of it is in proportion to all of them.
+  double small(double command) const { return part_of_small(command) - small_part_ * command; }
+  /// Grows most in the largest; without the same.
+  double large(double command) const { return part_of_large(command) - large_part_ * command; }
   /// What gears rub of it, against the motion. @param rate  its sign counts
   static double rubbed(double command, double rate) { return std::copysign(command, rate); }
 
 private:
-  double usual_, small_;
+  template <class Of>
+  static double sum_over(const std::vector<const Eigen::VectorXd*>& commands, Of&& of) {
+    double sum = 0.0;
+    for (const Eigen::VectorXd* all : commands)
+      for (const double one : *all)
+        if (std::isfinite(one)) sum += of(one);
+    return sum;
+  }
+  double part_of_small(double command) const {
+    constexpr double small = 0.1;  // of what is usual
+    return command / std::hypot(command, small * usual_);
+  }
+  double part_of_large(double command) const { return command * std::abs(command) / usual_; }
+
+  double usual_ = 1.0;  ///< root mean square
+  double small_part_ = 0.0, large_part_ = 0.0;
 };
 
 /// Regresses the acceleration between rows on terms of the command beside friction, a spring, an imbalance, a constant and
@@ -131,13 +153,11 @@ public:
     return scale;
   }
 
-  /// How a drive may bend its command, by how large the commands are: root mean square, 1 where none is known.
+  /// How a drive may bend the commands.
   BentCommand bent_command() const {
-    double squares = 0.0, count = 0.0;
-    for (const Driven& one : recordings_)
-      for (const double command : *one.command)
-        if (std::isfinite(command)) squares += command * command, count += 1.0;
-    return BentCommand(squares > 0.0 ? std::sqrt(squares / count) : 1.0);
+    std::vector<const Eigen::VectorXd*> commands;
+    for (const Driven& one : recordings_) commands.push_back(one.command);
+    return BentCommand(commands);
   }
 
   /// The rate below which an axis may be stuck, deg/s: slower rows are left out.
