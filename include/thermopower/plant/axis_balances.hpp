@@ -66,8 +66,8 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
   return out;
 }
 
-/// Sines and cosines of multiples of an angle. Those of a multiple come from those of the one before, which a scan of all of them asks
-/// for in turn: each by itself would take sixty times as long.
+/// Sines and cosines of multiples of an angle. Those of a multiple come from those of the one before, which a scan asks for in turn,
+/// by the sum of two angles: a few products in place of a polynomial each.
 class Waves {
 public:
   /// @param angle  rad; worked out when it is first asked for
