@@ -6,6 +6,8 @@
 // written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
 // least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
+#include "../../tools/thermopower-gap/keep_memory.hpp"
+
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/io/recording_file.hpp>
 
@@ -299,6 +301,7 @@ void compare_solvers() {
 }  // namespace
 
 int main(int count, char** values) {
+  keep_memory();  // as the program does
   std::vector<Eigen::Index> lengths;
   for (int i = 1; i < count; ++i) lengths.push_back(std::atol(values[i]));
   if (lengths.empty()) lengths = {100000, 1000000};

@@ -6,6 +6,7 @@
 
 #include "fleet.hpp"
 #include "html_text.hpp"
+#include "keep_memory.hpp"
 #include "nearest_name.hpp"
 
 #include <thermopower/gap.hpp>
@@ -18,9 +19,6 @@
 
 #include <CLI/CLI.hpp>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -700,16 +698,6 @@ int run(int count, char** values) {
   if (*columns) return list_columns(listed, proposal);
   if (*exporting) return export_model(arguments);
   return *predicting ? predict(arguments) : diagnose(arguments);
-}
-
-/// Keeps memory once it was asked for: a recording's columns are made and given back many times, and the system would map and clear
-/// them anew each time.
-void keep_memory() {
-#ifdef __GLIBC__
-  constexpr int most = 1 << 30;
-  mallopt(M_MMAP_THRESHOLD, most);
-  mallopt(M_TRIM_THRESHOLD, most);
-#endif
 }
 
 }  // namespace
