@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/plant/axis_at_rows.hpp>
+#include <thermopower/plant/waves.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/columns.hpp>
@@ -66,47 +67,7 @@ inline Eigen::MatrixXd building_up(const AxisAtRows& a) {
   return out;
 }
 
-/// Sines and cosines of multiples of an angle. Those of a multiple come from those of the one before, which a scan asks for in turn,
-/// by the sum of two angles: a few products in place of a polynomial each.
-class Waves {
-public:
-  /// @param angle  rad; worked out when it is first asked for
-  explicit Waves(std::shared_ptr<const Eigen::VectorXd> angle) : angle_(std::move(angle)) {}
-
-  /// The sine and the cosine of so many times the angle, one column each. @param count  1 or more, whole
-  Eigen::MatrixXd operator()(double count) {
-    if (once_.size() == 0) begin();
-    if (count < count_) restart();
-    for (; count_ < count; count_ += 1.0) {
-      const Eigen::VectorXd sine =
-          at_.col(0).cwiseProduct(once_.col(1)) + at_.col(1).cwiseProduct(once_.col(0));
-      at_.col(1) = at_.col(1).cwiseProduct(once_.col(1)) - at_.col(0).cwiseProduct(once_.col(0));
-      at_.col(0) = sine;
-    }
-    return at_;
-  }
-
-private:
-  void begin() {
-    once_.resize(angle_->size(), 2);
-    for (Eigen::Index i = 0; i < angle_->size(); ++i) {
-      const SineCosine at((*angle_)[i]);
-      once_(i, 0) = at.sine;
-      once_(i, 1) = at.cosine;
-    }
-    restart();
-  }
-  void restart() {
-    at_ = once_;
-    count_ = 1.0;
-  }
-
-  std::shared_ptr<const Eigen::VectorXd> angle_;
-  Eigen::MatrixXd once_, at_;
-  double count_ = 0.0;  ///< of what `at_` holds
-};
-
-/// Those of the measured angle, for one scan. @param a  keeps the angle
+/// Waves of the measured angle, for one scan. @param a  keeps the angle
 inline std::shared_ptr<Waves> waves_of(const std::shared_ptr<const AxisAtRows>& a) {
   return std::make_shared<Waves>(std::shared_ptr<const Eigen::VectorXd>(a, &a->angle));
 }
@@ -237,15 +198,16 @@ inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows
         {Submodel::mechanical_load, variable, words, [directions](double) { return directions(); }});
   };
   if (a->has_angle) {
+    const std::shared_ptr<Waves> waves = waves_of(a);
     add("angle_deg", "a torque with the sine of the angle",
-        [a, sampled] { return sampled((*waves_of(a))(1.0)); });
+        [waves, sampled] { return sampled((*waves)(1.0)); });
     add("angle_deg", "a torque in proportion to the angle", [a, n, sampled] {
       return sampled(columns_of({a->angle, Eigen::VectorXd::Ones(n)}));
     });
     add("angle_deg", "a torque that depends on the angle",
         [a, sampled] { return sampled(even_hats(a->angle, 9)); });
     Freedom periodic{Submodel::mechanical_load, "angle_deg", "",
-                     [waves = waves_of(a), sampled](double count) { return sampled((*waves)(count)); }};
+                     [waves, sampled](double count) { return sampled((*waves)(count)); }};
     periodic.scan = repeats_per_turn(*a);
     periodic.penalty = 2;
     periodic.words_at = [](double count) { return repeating("a torque", count); };
@@ -417,7 +379,7 @@ inline Balance instrument_balance(const AxisAtRows& a) {
                         "the angle moves by another factor than the rate says",
                         [rate_dps](double) { return std::vector<Direction>{flow_sampled(*rate_dps)}; }});
   Freedom off_centre{Submodel::sensing_angle, "angle_deg", "",
-                     [rate_dps, waves = std::make_shared<detail::Waves>(angle)](double count) {
+                     [rate_dps, waves = std::make_shared<Waves>(angle)](double count) {
                        return directions_of(scaled((*waves)(count), *rate_dps),
                                             [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
                      }};

@@ -75,6 +75,27 @@ Recording geared(double quantum_deg, int each, double length_s) {
   return r;
 }
 
+/// A minute of an axis, a hundred rows a second.
+struct Log {
+  static constexpr Eigen::Index rows = 6000;
+  static constexpr double step_s = 0.01;
+  Eigen::VectorXd t_s{rows}, drive_A{rows}, angle_deg{rows}, rate_dps{rows};
+
+  Log() {
+    for (Eigen::Index k = 0; k < rows; ++k) t_s[k] = step_s * static_cast<double>(k);
+  }
+
+  Recording recording(const char* name) const {
+    Recording r;
+    r.name = name;
+    r.t_s = t_s;
+    r.set("drive_A", drive_A);
+    r.set("angle_deg", angle_deg);
+    r.set("rate_dps", rate_dps);
+    return r;
+  }
+};
+
 /// An axis that follows a command which is rough from row to row through a drive with a time constant, in steps of 0.1 ms.
 /// @param white_A       what of the command no row remembers
 /// @param remembered_A  what the next row remembers four fifths of
@@ -82,31 +103,23 @@ Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t s
                         double remembered_A = 0.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  constexpr Eigen::Index rows = 6000;
   constexpr int inner = 100;
-  constexpr double step_s = 0.01;
-  Recording r;
-  r.name = "slow drive";
-  r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  constexpr double step_s = Log::step_s;
+  Log log;
   double rad = 0.0, radps = 0.0, torque_Nm = 0.0, remembered = 0.0;
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    r.t_s[k] = step_s * static_cast<double>(k);
-    drive[k] = smooth_A * std::sin(3.0 * r.t_s[k]) + white_A * normal(random);
+  for (Eigen::Index k = 0; k < Log::rows; ++k) {
+    log.drive_A[k] = smooth_A * std::sin(3.0 * log.t_s[k]) + white_A * normal(random);
     if (remembered_A > 0.0) remembered = 0.8 * remembered + 0.6 * normal(random);
-    drive[k] += remembered_A * remembered;
-    angle[k] = 57.29578 * rad + 0.03 * normal(random);
-    rate[k] = 57.29578 * radps + 0.2 * normal(random);
+    log.drive_A[k] += remembered_A * remembered;
+    log.angle_deg[k] = 57.29578 * rad + 0.03 * normal(random);
+    log.rate_dps[k] = 57.29578 * radps + 0.2 * normal(random);
     for (int i = 0; i < inner; ++i) {
-      torque_Nm += (0.09 * drive[k] - torque_Nm) * (1.0 - std::exp(-step_s / inner / time_constant_s));
+      torque_Nm += (0.09 * log.drive_A[k] - torque_Nm) * (1.0 - std::exp(-step_s / inner / time_constant_s));
       radps += (torque_Nm - 0.002 * radps) / 0.002 * step_s / inner;
       rad += radps * step_s / inner;
     }
   }
-  r.set("drive_A", drive);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
-  return r;
+  return log.recording("slow drive");
 }
 
 /// An axis in a loop that is closed anew at each row and follows steps, through a drive that gives nothing for small commands and
@@ -114,31 +127,24 @@ Recording driven_slowly(double time_constant_s, double smooth_A, std::uint64_t s
 Recording in_a_loop(double dead_A, double most_A, double rubbed, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  constexpr Eigen::Index rows = 6000;
   constexpr int inner = 100;
-  constexpr double step_s = 0.01;
-  Recording r;
-  r.name = "in a loop";
-  r.t_s.resize(rows);
-  Eigen::VectorXd drive(rows), angle(rows), rate(rows);
+  constexpr double step_s = Log::step_s;
+  Log log;
   double rad = 0.0, radps = 0.0, target_rad = 0.0;
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    r.t_s[k] = step_s * static_cast<double>(k);
+  for (Eigen::Index k = 0; k < Log::rows; ++k) {
     if (k % 40 == 0) target_rad = 0.2 * normal(random);
-    angle[k] = 57.29578 * rad + 0.01 * normal(random);
-    rate[k] = 57.29578 * radps + 0.1 * normal(random);
-    drive[k] = 1.5 * (target_rad - angle[k] / 57.29578) - 0.2 * rate[k] / 57.29578;
-    const double beyond_A = std::max(0.0, std::min(std::abs(drive[k]), most_A) - dead_A);
+    log.angle_deg[k] = 57.29578 * rad + 0.01 * normal(random);
+    log.rate_dps[k] = 57.29578 * radps + 0.1 * normal(random);
+    log.drive_A[k] = 1.5 * (target_rad - log.angle_deg[k] / 57.29578) - 0.2 * log.rate_dps[k] / 57.29578;
+    const double beyond_A = std::max(0.0, std::min(std::abs(log.drive_A[k]), most_A) - dead_A);
     for (int i = 0; i < inner; ++i) {
-      const double geared_A = std::copysign(beyond_A, drive[k]) - rubbed * beyond_A * std::tanh(radps / 0.01);
+      const double geared_A =
+          std::copysign(beyond_A, log.drive_A[k]) - rubbed * beyond_A * std::tanh(radps / 0.01);
       radps += (0.09 * geared_A - 0.002 * radps) / 0.002 * step_s / inner;
       rad += radps * step_s / inner;
     }
   }
-  r.set("drive_A", drive);
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
-  return r;
+  return log.recording("in a loop");
 }
 
 /// Without one of its columns.

@@ -132,14 +132,16 @@ private:
   }
 
   /// A row's command, its next step, and what a drive bends it by.
-  MotionRegression::TermsOf held_and_next() const {
-    return [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c, const RunSpan& run,
-                                           Eigen::Index k) {
+  const MotionRegression::TermsOf& held_and_next() const {
+    if (held_and_next_) return held_and_next_;
+    held_and_next_ = [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c,
+                                                     const RunSpan& run, Eigen::Index k) {
       const bool moves = k > run.begin || inputs.judged(Signal::rate_dps);
       if (k + 1 >= run.end || !moves) return Terms();
       return terms({c[k], c[k + 1] - c[k], bent.small(c[k]), bent.large(c[k]),
                     BentCommand::rubbed(c[k], MeasuredMotion(inputs, k).rate_dps)});
     };
+    return held_and_next_;
   }
 
   /// Mean and slope of a row of a command around an interval.
@@ -243,6 +245,7 @@ private:
   MotionRegression motion_;
   mutable std::optional<double> noise_;                     ///< once it was asked for
   mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
+  mutable MotionRegression::TermsOf held_and_next_;         ///< the same
 };
 
 /// Steps of a command from each row to the next; 0 from a run's last one.

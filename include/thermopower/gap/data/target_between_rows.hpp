@@ -55,35 +55,40 @@ public:
   /// nobody can tell it from damping; nor where the simulation runs away.
   std::optional<Share> steady() const {
     constexpr double agree = 3.0;  // standard errors
-    const std::optional<Share> plain = told(false);
+    const std::optional<Seen> seen = seen_in(recordings_, false);
+    if (!seen) return std::nullopt;
+    const std::optional<Share> sure = CommandBetweenRows::sure_of({seen->share.value, seen->share.error});
+    if (!sure || !(sure->value > 0.0)) return std::nullopt;
+    const std::optional<Share> plain = placed(*seen, false);
     if (!plain) return std::nullopt;
     const auto steady = CommandBetweenRows::steady_share(
         CommandBetweenRows::sure_of({plain->value, plain->error}), TargetThresholds().least_share);
     if (!steady) return std::nullopt;
     // What the drive takes of its command falls with that as the target is followed, and passes for a part of the next step.
-    const std::optional<Share> beside = told(true);
+    const std::optional<Seen> seen_beside = seen_in(recordings_, true);
+    const std::optional<Share> beside = seen_beside ? placed(*seen_beside, true) : std::nullopt;
     const bool was_that = beside && beside->value < TargetThresholds().least_share &&
                           plain->value - beside->value > agree * std::hypot(plain->error, beside->error);
     return was_that ? std::nullopt : steady;
   }
 
 private:
-  /// How much of a target's next step the servo is given before it is logged; nothing where nobody knows.
-  /// @param bent  beside what the drive may bend its command by
-  std::optional<Share> told(bool bent) const {
+  /// What a regression of the motion on the servo's command and on what it makes of the target's next step sees.
+  struct Seen {
+    double response = 0.0;  ///< of the axis to the command, deg/s^2 for each A
+    Share share;            ///< of the next step
+  };
+
+  /// How much of a target's next step the servo is given before it is logged, by what was seen; nothing where nobody knows.
+  /// @param bent  whether it was seen beside what the drive may bend its command by
+  std::optional<Share> placed(const Seen& seen, bool bent) const {
     constexpr TargetThresholds limit;
-    const std::optional<Seen> seen = seen_in(recordings_, bent);
-    if (!seen) return std::nullopt;
-    if (!bent) {
-      const std::optional<Share> sure = CommandBetweenRows::sure_of({seen->share.value, seen->share.error});
-      if (!sure || !(sure->value > 0.0)) return std::nullopt;
-    }
     // What slopes are off by goes with the loop's gain, and constants are known roughly: what a regression tells of them is
     // torque by inertia.
     Model like = model_;
     std::optional<Seen> holding = seen_in_simulation(like, 0.0, bent);
     for (int round = 0; holding && round < limit.adjustments; ++round) {
-      const double stronger = seen->response / holding->response;
+      const double stronger = seen.response / holding->response;
       if (!(stronger > 0.0)) return std::nullopt;
       if (std::abs(stronger - 1.0) < limit.as_strong) break;
       like.axis->inertia_kgm2 /= stronger;
@@ -92,31 +97,26 @@ private:
     if (!holding) return std::nullopt;
     const double moves = share_of_moving();
     const std::optional<Seen> moving = seen_in_simulation(like, moves, bent);
-    return moving ? between(seen->share, holding->share, moving->share, moves) : std::nullopt;
+    return moving ? between(seen.share, holding->share, moving->share, moves) : std::nullopt;
   }
-
-  /// What a regression of the motion on the servo's command and on what it makes of the target's next step sees.
-  struct Seen {
-    double response = 0.0;  ///< of the axis to the command, deg/s^2 for each A
-    Share share;            ///< of the next step
-  };
 
   std::optional<Seen> seen_in(const std::vector<const Inputs*>& recordings, bool bent) const {
     MotionRegression motion;
     for (const Inputs* one : recordings) motion.add(*one, one->servo_A);
-    const BentCommand drive = motion.bent_command();
+    std::optional<BentCommand> drive;
+    if (bent) drive = motion.bent_command();
     const std::optional<MotionFit> fit =
         motion.fit([&](const Inputs& inputs, const Eigen::VectorXd& servo_A, const RunSpan& run,
-                       Eigen::Index k) { return terms(inputs, servo_A, bent ? &drive : nullptr, run, k); });
+                       Eigen::Index k) { return terms(inputs, servo_A, drive, run, k); });
     if (!fit || !CommandBetweenRows::is_followed(*fit, motion.noise(Signal::rate_dps))) return std::nullopt;
     const auto [value, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; });
     if (!(error < CommandThresholds().precise)) return std::nullopt;
     return Seen{fit->value[0], {value, error}};
   }
 
-  /// @param bent  what the drive may bend its command by; null: nothing
-  MotionRegression::Terms terms(const Inputs& inputs, const Eigen::VectorXd& servo_A, const BentCommand* bent,
-                                const RunSpan& run, Eigen::Index k) const {
+  MotionRegression::Terms terms(const Inputs& inputs, const Eigen::VectorXd& servo_A,
+                                const std::optional<BentCommand>& bent, const RunSpan& run,
+                                Eigen::Index k) const {
     constexpr double saturated = 0.98;  // of the limit
     if (k + 1 >= run.end || std::abs(servo_A[k]) > saturated * gains_.limit_A) return {};
     const auto step = [&](const Eigen::VectorXd& target) {
@@ -125,7 +125,7 @@ private:
     const double next = gains_.position ? gains_.proportional * step(inputs.target_deg) +
                                               gains_.derivative * step(inputs.target_dps)
                                         : gains_.proportional * step(inputs.target_dps);
-    if (bent == nullptr) return Eigen::Vector2d(servo_A[k], next);
+    if (!bent) return Eigen::Vector2d(servo_A[k], next);
     return Eigen::Vector4d(servo_A[k], next, bent->small(servo_A[k]), bent->large(servo_A[k]));
   }
 

@@ -35,9 +35,7 @@ inline const Candidate& fittest(const std::vector<Candidate>& candidates) {
 /// half of what is missing, then, nor becomes the better one by some steps of a fit.
 inline bool is_out_of_reach(const Candidate& one, const Candidate& best) {
   if (best.train.within(search_extent.plain_above)) return false;
-  double samples = 0.0;
-  for (const double of_signal : best.train.samples) samples += of_signal;
-  return fitness(one) - fitness(best) > std::log(search_extent.out_of_reach) * samples;
+  return fitness(one) - fitness(best) > std::log(search_extent.out_of_reach) * best.train.count();
 }
 
 /// Indices of the candidates from index `first` on, the fittest first.

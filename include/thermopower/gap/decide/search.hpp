@@ -282,19 +282,22 @@ private:
     some.iterations = 10;
     rest.iterations = 15;
     FitOptions in_sight = some;
-    const Candidate leader_so_far = fittest(candidates);
-    in_sight.hopeless = Attribution::out_of_sight * leader_so_far.train.total();
+    const Candidate& so_far = fittest(candidates);
+    in_sight.hopeless = Attribution::out_of_sight * so_far.train.total();
+    order.erase(
+        std::remove_if(order.begin(), order.end(),
+                       [&](std::size_t i) { return i != 0 && is_out_of_reach(candidates[i], so_far); }),
+        order.end());
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
-      if (one.settled || (order[i] != 0 && is_out_of_reach(one, leader_so_far))) return;
+      if (one.settled) return;
       // What constants alone can do is said whoever wins.
       fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
       one.settled = one.fit.iterations < some.iterations;
     });
     constexpr double out_of_sight = 1.4;  // of fitness per sample: residuals twice as large
     const Candidate& leader = fittest(candidates);
-    double samples = 0.0;
-    for (double of_signal : leader.train.samples) samples += of_signal;
+    const double samples = leader.train.count();
     const double least = fitness(leader);
     std::vector<std::size_t> unfinished;
     for (std::size_t index : order) {

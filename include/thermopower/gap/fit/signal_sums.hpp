@@ -35,6 +35,13 @@ struct SignalSums {
     return false;
   }
 
+  /// How many were summed, of all signals.
+  double count() const {
+    double sum = 0.0;
+    for (double of_signal : samples) sum += of_signal;
+    return sum;
+  }
+
   /// Sum of the squares of all signals.
   double total() const {
     double sum = 0.0;
