@@ -6,7 +6,6 @@
 
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/report/noise_at_a_row.hpp>
-#include <thermopower/gap/report/noise_of_errors.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -254,75 +253,4 @@ TEST_CASE(
     const Eigen::VectorXd rounded = (values.array() / 8.0).round() * 8.0;
     CHECK(NoiseAtARow(rounded, runs).share_at(4004, begins) == 1.0);  // neighbours are rounded alike
   }
-}
-
-namespace {
-
-/// Errors of a simulation over windows of 50 rows at 100 Hz: a motion that it lacks, which moves angle and rate, and the noise of
-/// both sensors.
-struct WindowedErrors {
-  Inputs inputs;
-  std::vector<Segment> segments;
-  Errors errors;
-
-  WindowedErrors(int windows, double lacking_deg, const std::vector<double>& rate_noise, double angle_noise,
-                 Random& random) {
-    constexpr int rows = 50;
-    constexpr double dt_s = 0.01;
-    inputs.t_s = Eigen::VectorXd::LinSpaced(windows * rows, 0.0, dt_s * (windows * rows - 1));
-    for (int w = 0; w < windows; ++w) {
-      const double pulse = 4.0 + 8.0 * std::abs(normal(random));  // rad/s of what is missing
-      for (int k = 0; k < rows; ++k) {
-        const auto at = static_cast<std::size_t>(w * rows + k);
-        const double t_s = dt_s * k;
-        take(Signal::angle_deg, w, w * rows + k,
-             lacking_deg * std::sin(pulse * t_s) + angle_noise * normal(random));
-        take(Signal::rate_dps, w, w * rows + k, lacking_deg * pulse * std::cos(pulse * t_s) + rate_noise[at]);
-      }
-      Segment segment;
-      segment.inputs = &inputs;
-      segment.begin = w * rows;
-      segment.end = segment.begin + rows;
-      segments.push_back(segment);
-    }
-  }
-
-  void take(Signal signal, int window, int row, double error) {
-    const auto at = static_cast<std::size_t>(signal);
-    errors.of[at].push_back(error);
-    errors.segment[at].push_back(window);
-    errors.row[at].push_back(row);
-  }
-};
-
-}  // namespace
-
-TEST_CASE("an angle tells the noise of the rate beside it that lasts, whatever motion a model lacks") {
-  constexpr int windows = 80, rows = 50 * windows;
-  constexpr double sd = 0.8;
-  const auto scaled = [](std::vector<double> noise) {
-    for (double& one : noise) one *= sd;
-    return noise;
-  };
-  std::vector<double> of_lasting, of_white, of_none;
-  for (unsigned seed = 1; seed <= 21; ++seed) {
-    Random random(seed);
-    const auto lasting = [&](const std::vector<double>& noise) {
-      const WindowedErrors one(windows, 3.0, noise, 0.01, random);
-      REQUIRE(one.errors.rms(Signal::rate_dps) > 10.0 * sd);
-      const auto told = lasting_rate_noise(one.errors, one.segments);
-      REQUIRE(told);
-      return *told;
-    };
-    of_lasting.push_back(lasting(scaled(coloured(rows, 0.95, random))));
-    of_white.push_back(lasting(scaled(coloured(rows, 0.0, random))));
-    of_none.push_back(lasting(std::vector<double>(rows, 0.0)));
-  }
-  CHECK(median_of(of_lasting) == Approx(sd).epsilon(0.2));
-  CHECK(quantile_of(of_lasting, 0.0) > 0.6 * sd);
-  CHECK(quantile_of(of_white, 1.0) < 0.25 * sd);
-  CHECK(quantile_of(of_none, 1.0) < 0.25 * sd);
-  Random random(1);
-  const WindowedErrors few(2, 3.0, std::vector<double>(100, 0.0), 0.01, random);
-  CHECK_FALSE(lasting_rate_noise(few.errors, few.segments));
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -41,6 +42,28 @@ struct NoiseThresholds {
   std::size_t least_for_correlation = 8;  ///< samples; fewer count one by one
 };
 
+/// Memories of noise from one sample to the next that are looked for; what remembers longer is the error of a model.
+inline constexpr std::array<double, 7> noise_memories = {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.97};
+
+/// How much noise a residual can have at most, by what else is known of it: over stretches of several lengths something was seen
+/// that noise in the residual adds to.
+struct MostNoise {
+  /// Stretches of one length.
+  struct Stretch {
+    double squares = 0.0;  ///< mean square of what was seen over them, at most
+    std::array<double, noise_memories.size()> of_noise{};  ///< that noise of variance 1 adds, by its memory
+  };
+  std::vector<Stretch> stretches;  ///< none: nothing is known
+
+  /// Variance of noise of a memory beside white noise, at most; infinite where nothing is known.
+  double beside(double white, std::size_t memory) const {
+    double most = std::numeric_limits<double>::infinity();
+    for (const Stretch& one : stretches)
+      most = std::min(most, (one.squares - white * one.of_noise[0]) / one.of_noise[memory]);
+    return std::max(most, 0.0);
+  }
+};
+
 /// Standard deviation of the noise in a residual: white, coloured up to an AR(1) of 0.97, with heavy tails, other in
 /// other parts of the sequence; without what a wrong model leaves.
 ///
@@ -54,9 +77,11 @@ struct NoiseThresholds {
 ///                  NoiseThresholds::same_level tell nothing of each other, those at the same level do across the jumps
 /// @param measured  as long, or empty: what was measured, where the simulation has no noise of its own; what noise there is
 ///                  is in it, too, and where it is smooth there is little
+/// @param most      of noise that remembers; white noise is as large as the residual says
 /// @return 0 where there are too few samples; never more than the root mean square of the sequence
 double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum = 0.0,
-                const std::vector<double>& levels = {}, const std::vector<double>& measured = {});
+                const std::vector<double>& levels = {}, const std::vector<double>& measured = {},
+                const MostNoise& most = {});
 
 /// The noise in a residual.
 struct NoiseEstimate {
@@ -71,13 +96,12 @@ struct NoiseEstimate {
 /// twenty know it to a third.
 NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
                                 double quantum = 0.0, const std::vector<double>& levels = {},
-                                const std::vector<double>& measured = {});
-
-/// Memory of noise from one sample to the next, at most: what remembers longer is the error of a model.
-inline constexpr double longest_memory = 0.97;
+                                const std::vector<double>& measured = {}, const MostNoise& most = {});
 
 /// Factor by which the noise of a mean of samples is larger than that of as many independent ones, at most: an AR(1)'s.
-inline double most_of_a_mean() { return std::sqrt((1.0 + longest_memory) / (1.0 - longest_memory)); }
+inline double most_of_a_mean() {
+  return std::sqrt((1.0 + noise_memories.back()) / (1.0 - noise_memories.back()));
+}
 
 /// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
 inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
@@ -125,9 +149,11 @@ inline double third_difference_scale(const std::vector<double>& sequence, const 
 /// @param variogram  there, > 0
 /// @param weights    of the relative errors there
 /// @param roughness  mean square that third differences of the noise have at most
+/// @param most       in the same units; what is beyond it is an error
 inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
                                          const std::vector<double>& variogram,
-                                         const std::vector<double>& weights, double roughness) {
+                                         const std::vector<double>& weights, double roughness,
+                                         const MostNoise& most = {}) {
   constexpr NoiseThresholds limit;
   const auto rows = static_cast<Eigen::Index>(lags.size());
   const auto shape = [&](auto&& function) {
@@ -139,10 +165,9 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
     return column;
   };
   std::vector<Eigen::VectorXd> noises, errors;
-  // Memories of noise from one sample to the next, and widths of a model's errors in samples.
-  constexpr double memories[] = {0.0, 0.5, 0.7, 0.8, 0.9, 0.95, longest_memory};
+  // Widths of a model's errors in samples.
   constexpr double widths[] = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 45.0, 68.0, 100.0, 400.0};
-  for (const double memory : memories)
+  for (const double memory : noise_memories)
     noises.push_back(shape([&](double lag) { return 1.0 - std::pow(memory, lag); }));
   for (const double width : widths)
     errors.push_back(shape([&](double lag) { return 1.0 - std::exp(-lag * lag / (width * width)); }));
@@ -158,11 +183,13 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
       const double cost = (columns * parts - wanted).squaredNorm() +
                           limit.part_penalty * static_cast<double>((parts.array() > 0.0).count());
       costs.push_back(cost);
-      const double of_rough = third_differences(0.0) * parts[0] + third_differences(memories[k]) * parts[1];
-      variances.push_back((parts[0] + parts[1]) * (of_rough > roughness ? roughness / of_rough : 1.0));
+      const double remembering = std::min(parts[1], most.beside(parts[0], k)),
+                   of_rough =
+                       third_differences(0.0) * parts[0] + third_differences(noise_memories[k]) * remembering;
+      variances.push_back((parts[0] + remembering) * (of_rough > roughness ? roughness / of_rough : 1.0));
       // Squares of Gaussian samples correlate as the squares of the samples' correlation (Isserlis).
-      const double remembered = variances.back() > 0.0 ? parts[1] / variances.back() : 0.0,
-                   square = memories[k] * memories[k];
+      const double remembered = variances.back() > 0.0 ? remembering / variances.back() : 0.0,
+                   square = noise_memories[k] * noise_memories[k];
       alike.push_back(1.0 + 2.0 * remembered * remembered * square / (1.0 - square));
     }
   const double least = *std::min_element(costs.begin(), costs.end());
@@ -225,13 +252,14 @@ inline bool jumps_with(const std::vector<double>& levels, const std::vector<doub
 }
 
 inline double noise_sd(const std::vector<double>& sequence, const std::vector<bool>& gaps, double quantum,
-                       const std::vector<double>& levels, const std::vector<double>& measured) {
-  return noise_of_sequence(sequence, gaps, quantum, levels, measured).sd;
+                       const std::vector<double>& levels, const std::vector<double>& measured,
+                       const MostNoise& most) {
+  return noise_of_sequence(sequence, gaps, quantum, levels, measured, most).sd;
 }
 
 inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, const std::vector<bool>& gaps,
                                        double quantum, const std::vector<double>& levels,
-                                       const std::vector<double>& measured) {
+                                       const std::vector<double>& measured, const MostNoise& most) {
   constexpr NoiseThresholds limit;
   const std::size_t count = sequence.size();
   if (count < limit.least_pairs) return {};
@@ -305,7 +333,9 @@ inline NoiseEstimate noise_of_sequence(const std::vector<double>& sequence, cons
   const double smooth =
       std::pow(limit.smooth * third_difference_scale(scaled, since_jump, 0.2, 0.2533), 2.0) /
       third_differences(0.0);
-  const VariogramNoise noise = noise_of_variogram(lags, variogram, weights, rough);
+  MostNoise most_scaled = most;
+  for (MostNoise::Stretch& one : most_scaled.stretches) one.squares /= squares;
+  const VariogramNoise noise = noise_of_variogram(lags, variogram, weights, rough, most_scaled);
   const double variance = std::min(std::max(noise.variance, smooth) * squares, mean_square);
   const double by_chance =
       limit.standard_errors * std::sqrt((noise.squares_alike - 1.0) / (2.0 * static_cast<double>(count)));
