@@ -365,6 +365,7 @@ inline plant::EffectInfo info_of(const py::dict& given) {
   for (const auto& need : given["needs"].cast<std::vector<std::string>>())
     info.needs.push_back(need_of(need, info.id));
   info.costly = given["costly"].cast<bool>();
+  info.strikes = given["strikes"].cast<bool>();
   return info;
 }
 

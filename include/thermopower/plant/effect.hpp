@@ -227,6 +227,9 @@ struct EffectInfo {
   /// What it is to simulators of bodies: adds itself to a joint. Null: they have no words for it, and an export leaves it out
   /// with its numbers.
   void (*in_a_joint)(const double* parameters, JointDescription& joint) = nullptr;
+  /// Whether sides meet and part in it: each blow moves all later ones, and a fit of its parameters stands in one of many hollows.
+  /// The diagnosis looks beside the place where it ended.
+  bool strikes = false;
 };
 
 }  // namespace thermopower::plant

@@ -126,6 +126,7 @@ class Effect:
     and the function sets slope and per_s of d(value)/dt = slope - per_s value.
     needs: what must be recorded or modelled for it, as in lists of effects ("airspeed_mps"), beside what its places need.
     costly: looked at only where no cheaper cause alone explains the data.
+    strikes: sides meet and part in it, so that a fit of its parameters stands in one of many hollows: the diagnosis looks beside it.
     For an effect that a Plant switches on itself, leave act and on out, and say the submodel.
 
     >>> def drag(p, terms):
@@ -139,7 +140,7 @@ class Effect:
                   "friction": "mechanical.friction", "axis_structure": "mechanical.structure", "axis_readings": "sensing.angle"}
 
     def __init__(self, id, act=None, *, on=None, parameters=(), submodel=None, equation="", prose="", experiment="", states=None, needs=(),
-                 costly=False):
+                 costly=False, strikes=False):
         if hasattr(act, "items"):
             if on is not None or not act:
                 raise InvalidInput(f"effect '{id}': a dict of functions says itself on what they act")
@@ -159,7 +160,8 @@ class Effect:
         self._given = {"id": id, "acts": acts, "parameters": list(parameters), "submodel": submodel,
                        "equation": equation or f"{id}: a function in Python",
                        "prose": prose or (words[0] if words else id).strip().splitlines()[0], "experiment": experiment or "vary every input",
-                       "states": list(dict(states or {}).items()), "needs": list(needs), "costly": bool(costly)}
+                       "states": list(dict(states or {}).items()), "needs": list(needs), "costly": bool(costly),
+                       "strikes": bool(strikes)}
 
     def __repr__(self):
         return f"Effect({self.id!r})"

@@ -44,6 +44,7 @@ class Effect:
         states: Optional[Mapping[str, str]] = ...,
         needs: Sequence[str] = ...,
         costly: bool = ...,
+        strikes: bool = ...,
     ) -> None: ...
 
 class Plant:

@@ -117,6 +117,10 @@ public:
 
   /// Weighs what was found on held-out data.
   void decide() {
+    const bool has_less_noise = leave_only_noise();
+    look_beside_blows();
+    if (has_less_noise && options_.effects_at_once > 1 && has_room())
+      add_sets(search_->promising().pairs(attempt_.candidates, effects(), {}, {}));
     weigh_all();
     // What fits the data it was fitted to, and fails on others, was a stand-in.
     constexpr double near = decision.near_floor;
@@ -234,12 +238,42 @@ private:
   /// The noise is what the best explanation leaves; then all are looked at anew.
   void renew() {
     const std::array<double, signal_count> before = attempt_.problem.sigma;
-    measure_noise(attempt_.problem, attempt_.best(), train_);
+    attempt_.problem.sigma = noise_left(attempt_.problem, attempt_.best(), train_, taken_for_noise_);
     std::array<double, signal_count> by;
     for (std::size_t i = 0; i < signal_count; ++i) by[i] = before[i] / attempt_.problem.sigma[i];
     set_noise(attempt_.problem.sigma);
     attempt_.problem.correlation = mean_correlation(correlation_of(attempt_.best(), attempt_.problem));
     search_->renew(attempt_.candidates, by);
+  }
+
+  /// Blows that an explanation misses a little look like noise that remembers, in each signal. While a search is far from them
+  /// that is as well: it follows the motion between them. Once it has found what it can, what angle and rate show alike is
+  /// no noise any more. @return whether that made a difference
+  bool leave_only_noise() {
+    constexpr double matters = 1.25;  // times the noise
+    const std::array<double, signal_count> less =
+        noise_left(attempt_.problem, attempt_.best(), train_, TakenForNoise::what_differs);
+    bool is_less = false;
+    for (std::size_t i = 0; i < signal_count; ++i) is_less |= attempt_.problem.sigma[i] > matters * less[i];
+    if (!is_less) return false;
+    taken_for_noise_ = TakenForNoise::what_differs;
+    renew();
+    return true;
+  }
+
+  /// Where the best explanation strikes, looks for a deeper hollow beside that in which its fit ended, as long as there is one.
+  void look_beside_blows() {
+    constexpr int times = 4;
+    constexpr double deeper = 0.98;  // of the cost
+    for (int i = 0; i < times; ++i) {
+      const auto best = static_cast<std::size_t>(&attempt_.best() - attempt_.candidates.data());
+      const std::vector<Eigen::VectorXd> places = places_beside(attempt_.candidates[best]);
+      if (places.empty()) return;
+      Candidate beside = fine_->fit_from(attempt_.candidates[best].explanation, places, {});
+      if (!(beside.fit.cost < deeper * attempt_.candidates[best].fit.cost)) return;
+      attempt_.candidates[best] = std::move(beside);
+      renew();
+    }
   }
 
   void add_costly() {
@@ -307,6 +341,7 @@ private:
   std::vector<Promise> pairs_;                ///< the most promising ones, where somebody asked
   std::vector<Explanation> late_;             ///< causes that came after that
   bool pairs_come_near_ = false;
+  TakenForNoise taken_for_noise_ = TakenForNoise::what_looks_like_it;
   Attempt attempt_;
 };
 

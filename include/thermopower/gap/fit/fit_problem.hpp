@@ -103,7 +103,8 @@ struct FitProblem {
     }
   }
 
-  /// What was measured of a signal of an axis at the rows that have residuals, in units of the noise; empty of others.
+  /// What was measured of a signal of an axis at the rows that have residuals; of averages, as large as that of one sample; empty
+  /// of others.
   std::vector<double> measured_of_axis(Signal signal) const {
     std::vector<double> measured;
     for (const Segment& segment : segments) {
@@ -114,7 +115,8 @@ struct FitProblem {
       const Eigen::VectorXd& values = segment.inputs->of(signal);
       for (Eigen::Index row = segment.begin; row < segment.end; ++row)
         if (std::isfinite(values[row]))
-          measured.push_back(values[row] * weight_of(*segment.inputs, signal, row));
+          measured.push_back(values[row] * weight_of(*segment.inputs, signal, row) *
+                             sigma[static_cast<std::size_t>(signal)]);
     }
     return measured;
   }

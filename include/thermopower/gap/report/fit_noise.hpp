@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/report/noise_of_errors.hpp>
+#include <thermopower/gap/report/rate_beside_angle.hpp>
 #include <thermopower/gap/report/score.hpp>
 
 #include <algorithm>
@@ -30,25 +31,59 @@ inline double most_noise(const FitProblem& problem, Signal signal) {
   return most_of_a_mean() * most;
 }
 
-/// Takes what a candidate leaves for a witness of the noise.
+/// What a candidate leaves of the data that it was fitted to, in the signals' units; of averages, as large as that of one sample.
+inline Errors errors_left(const FitProblem& problem, const Candidate& candidate) {
+  Errors left;
+  problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, candidate.fit.starts, false,
+                   [&](std::size_t segment, const FitProblem::Residuals& one) {
+                     for (std::size_t i = 0; i < one.row.size(); ++i) {
+                       const auto at = static_cast<std::size_t>(one.signal[i]);
+                       left.of[at].push_back(one.value[static_cast<Eigen::Index>(i)] * problem.sigma[at]);
+                       left.segment[at].push_back(static_cast<int>(segment));
+                       left.row[at].push_back(one.row[i]);
+                     }
+                   });
+  return left;
+}
+
+/// What is taken for noise of what a candidate leaves.
+enum class TakenForNoise {
+  what_looks_like_it,  ///< in each signal: a motion that is missed counts, too, where it looks like noise that remembers
+  what_differs,  ///< no more than what a rate and the angle beside it do not show alike
+};
+
+/// Noise of each signal, as what a candidate leaves tells it; that of the problem where it says nothing of a signal.
 /// @param recordings  that the problem is made of, for the steps of their channels
-inline void measure_noise(FitProblem& problem, const Candidate& candidate,
-                          const std::vector<Inputs>& recordings) {
-  std::array<std::vector<bool>, signal_count> gaps;
-  const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, &gaps);
+inline std::array<double, signal_count> noise_left(const FitProblem& problem, const Candidate& candidate,
+                                                   const std::vector<Inputs>& recordings,
+                                                   TakenForNoise taken = TakenForNoise::what_looks_like_it) {
+  const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
+  const Errors left = errors_left(problem, candidate);
+  RateBesideAngle::Most most;
+  if (taken == TakenForNoise::what_differs && !is_averaged)
+    most = RateBesideAngle(left, problem.segments).most_noise();
   const std::array<double, signal_count> wander =
       wander_of_command(augmented(*problem.model, candidate.explanation, candidate.list, candidate.fit.point),
                         problem.segments, *problem.catalogue);
+  std::array<double, signal_count> sigma = problem.sigma;
   for (std::size_t i = 0; i < signal_count; ++i) {
-    if (residuals[i].empty()) continue;
+    if (left.of[i].empty()) continue;
     const auto signal = static_cast<Signal>(i);
-    const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
-    const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal) / problem.sigma[i];
-    const double in_units = noise_sd(residuals[i], gaps[i], quantum, {}, problem.measured_of_axis(signal)),
-                 sd = std::min(in_units * problem.sigma[i], most_noise(problem, signal)),
-                 rms = rms_of(residuals[i]) * problem.sigma[i];
-    problem.sigma[i] = std::max(with_wander(sd, wander[i], rms), 1e-9);
+    std::vector<bool> gaps(left.of[i].size(), true);
+    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = left.segment[i][k] != left.segment[i][k - 1];
+    const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal),
+                 sd = std::min(noise_sd(left.of[i], gaps, quantum, {}, problem.measured_of_axis(signal),
+                                        most.of(signal)),
+                               most_noise(problem, signal));
+    sigma[i] = std::max(with_wander(sd, wander[i], left.rms(signal)), 1e-9);
   }
+  return sigma;
+}
+
+/// Takes what a candidate leaves for a witness of the noise: all that looks like it.
+inline void measure_noise(FitProblem& problem, const Candidate& candidate,
+                          const std::vector<Inputs>& recordings) {
+  problem.sigma = noise_left(problem, candidate, recordings);
 }
 
 }  // namespace thermopower::gap::engine

@@ -41,7 +41,7 @@ struct Backlash {
          parameter(damping, "damping").unit("1").within(1e-3, 2.0).logarithmic().starts({0.15})},
         {Need::axis_model},
         "slow reversals at small torque, and fast ones"};
-    info.costly = true;
+    info.costly = info.strikes = true;
     return info;
   }
 
