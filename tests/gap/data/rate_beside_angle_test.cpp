@@ -195,18 +195,31 @@ TEST_CASE("noise that remembers stays what it is beside another signal") {
 
 TEST_CASE("a rate that was made from the angle, or an angle from the rate, tells nothing of their noise") {
   const double memory = GENERATE(0.0, 0.9);
-  const bool rate_is_made = GENERATE(true, false);
+  enum class Made { rate, rate_by_a_filter, angle };
+  const Made made = GENERATE(Made::rate, Made::rate_by_a_filter, Made::angle);
+  int told = 0;
   for (unsigned seed = 1; seed <= 21; ++seed) {
     Random random(seed);
     std::vector<double> angle = noise_of(0.05, memory, random), rate = noise_of(0.8, memory, random);
-    for (std::size_t i = 1; i < angle.size(); ++i) {
-      if (rate_is_made) rate[i] = (angle[i] - angle[i - 1]) / dt_s;
-      else angle[i] = angle[i - 1] + 0.5 * (rate[i - 1] + rate[i]) * dt_s;
-    }
+    if (made == Made::angle)
+      for (std::size_t i = 1; i < angle.size(); ++i)
+        angle[i] = angle[i - 1] + 0.5 * (rate[i - 1] + rate[i]) * dt_s;
+    else if (made == Made::rate)
+      for (std::size_t i = 1; i < angle.size(); ++i) rate[i] = (angle[i] - angle[i - 1]) / dt_s;
+    else  // the slope of a parabola through nine readings (Savitzky and Golay 1964)
+      for (std::size_t i = 4; i + 4 < angle.size(); ++i) {
+        rate[i] = 0.0;
+        for (int k = 1; k <= 4; ++k)
+          rate[i] += k * (angle[i + static_cast<std::size_t>(k)] - angle[i - static_cast<std::size_t>(k)]) /
+                     (60.0 * dt_s);
+      }
     const WindowedErrors one(nothing, rate, angle);
-    CHECK(one.found(Signal::rate_dps).beside == one.found(Signal::rate_dps).alone);
-    CHECK(one.found(Signal::angle_deg).beside == one.found(Signal::angle_deg).alone);
+    told += one.found(Signal::rate_dps).beside != one.found(Signal::rate_dps).alone ||
+                    one.found(Signal::angle_deg).beside != one.found(Signal::angle_deg).alone
+                ? 1
+                : 0;
   }
+  CHECK(told == 0);
 }
 
 TEST_CASE("signals of a plant of one's own are no angle and no rate, wherever they are counted") {

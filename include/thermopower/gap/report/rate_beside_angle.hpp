@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/report/score.hpp>
 
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -90,13 +90,44 @@ public:
   /// Noise of the rate moves its mean over some rows, noise of the angle both ends of its slope, and neither can be more than what
   /// lies between them at any number of rows: a blow, or a wobble that a model lacks, looks like noise that remembers in one signal
   /// and is none where both show it. White noise is told by each signal itself. A rate that was made from the angle holds
-  /// its noise, too, and tells nothing: less lies between them then than the rate's own white noise would leave.
+  /// its noise, too, and tells nothing: see has_noise_of_its_own().
   Most most_noise() const {
-    constexpr double certain = 2.0,          // standard errors
-        fewest = 8.0, made_of_angle = 0.25;  // stretches that share no row; share of the white noise
+    constexpr double certain = 2.0;  // standard errors
+    const std::vector<Stretches> all = stretches();
+    if (!has_noise_of_its_own(all)) return {};
     Most most;
-    double share_of_white = infinite;
-    const double white = white_variance();
+    for (const Stretches& one : all) {
+      const double at_most = one.variance * (1.0 + certain * std::sqrt(2.0 / one.apart));
+      MostNoise::Stretch of_rate{at_most, {}}, of_angle{at_most * one.length_s * one.length_s, {}};
+      for (std::size_t i = 0; i < noise_memories.size(); ++i) {
+        of_rate.of_noise[i] = of_mean(noise_memories[i], one.intervals);
+        of_angle.of_noise[i] = 2.0 * (1.0 - std::pow(noise_memories[i], static_cast<double>(one.intervals)));
+      }
+      most.rate.stretches.push_back(of_rate);
+      most.angle.stretches.push_back(of_angle);
+    }
+    return most;
+  }
+
+private:
+  struct Row {
+    int segment;
+    double t_s, angle, rate,
+        went;  // the last: integral of the rate since the first of the rows that follow on each other
+    std::size_t since;  // of those rows, how many before this one
+  };
+
+  /// Stretches of rows that follow on each other, all of as many intervals.
+  struct Stretches {
+    std::size_t intervals;
+    double variance, length_s;  // of the mean rate beyond the slope of the angle, deg/s; mean
+    double apart;               // how many of them share no row
+  };
+
+  /// Of as many lengths as there are enough stretches of.
+  std::vector<Stretches> stretches() const {
+    constexpr double fewest = 8.0;
+    std::vector<Stretches> all;
     for (const std::size_t intervals : {1, 2, 4, 8, 16, 32, 64}) {
       const std::vector<double> beyond = beyond_slope(intervals);
       const double middle = mean_of(beyond);
@@ -109,29 +140,44 @@ public:
         }
       const double apart = count / static_cast<double>(intervals);
       if (apart < fewest) break;
-      const double variance = squares / count, at_most = variance * (1.0 + certain * std::sqrt(2.0 / apart));
-      length_s /= count;
-      share_of_white = variance / (white * of_mean(0.0, intervals));
-      MostNoise::Stretch of_rate{at_most, {}}, of_angle{at_most * length_s * length_s, {}};
-      for (std::size_t i = 0; i < noise_memories.size(); ++i) {
-        of_rate.of_noise[i] = of_mean(noise_memories[i], intervals);
-        of_angle.of_noise[i] = 2.0 * (1.0 - std::pow(noise_memories[i], static_cast<double>(intervals)));
-      }
-      most.rate.stretches.push_back(of_rate);
-      most.angle.stretches.push_back(of_angle);
+      all.push_back({intervals, squares / count, length_s / count, apart});
     }
-    return share_of_white < made_of_angle ? Most() : most;
+    return all;
   }
 
-private:
-  struct Row {
-    int segment;
-    double t_s, angle, rate,
-        went;  // the last: integral of the rate since the first of the rows that follow on each other
-    std::size_t since;  // of those rows, how many before this one
-  };
+  /// Whether neither was made from the other. An angle that was summed up from the rate is as far from its integral everywhere: less lies
+  /// between them than the rate's white noise would leave. A rate that was made from the angle follows from the angles around it,
+  /// whatever filter that was, and leaves less of itself than its white noise, too.
+  bool has_noise_of_its_own(const std::vector<Stretches>& all) const {
+    if (all.empty()) return false;
+    constexpr double of_white = 0.25;
+    const double white = of_white * white_variance();
+    return all.back().variance >= white * of_mean(0.0, all.back().intervals) && beyond_angles() >= white;
+  }
 
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  /// Mean square of what the rate is beyond a sum of the angle's steps around it, fitted to all of them, (deg/s)^2.
+  double beyond_angles() const {
+    constexpr std::size_t around = 8, most_rows = 20000;
+    constexpr Eigen::Index terms = 2 * around;
+    const std::size_t stride = std::max<std::size_t>(1, rows_.size() / most_rows);
+    std::vector<std::size_t> middles;
+    for (std::size_t i = around; i + around < rows_.size(); i += stride)
+      if (rows_[i + around].since >= 2 * around) middles.push_back(i);
+    const auto steps = [&](std::size_t i) {
+      Eigen::VectorXd one(terms);
+      for (Eigen::Index k = 0; k < terms; ++k) {
+        const std::size_t at = i - around + static_cast<std::size_t>(k);
+        one[k] = rows_[at + 1].angle - rows_[at].angle;
+      }
+      return one;
+    };
+    NormalEquations equations(terms);
+    for (const std::size_t i : middles) equations.add(steps(i), rows_[i].rate);
+    const Eigen::VectorXd shares = equations.solve();
+    double squares = 0.0;
+    for (const std::size_t i : middles) squares += std::pow(rows_[i].rate - steps(i).dot(shares), 2.0);
+    return middles.size() > 2 * around ? squares / static_cast<double>(middles.size() - 2 * around) : 0.0;
+  }
 
   /// By how much the mean rate over some intervals is beyond the slope of the angle, at the row that each ends at, deg/s; NaN
   /// where rows do not follow on each other.
