@@ -142,6 +142,20 @@ TEST_CASE(
                open.alternatives.empty()));
 }
 
+TEST_CASE("a frame that takes most of a run to warm up is a frame, and no box of air") {
+  Body body;
+  body.sink = 1800.0;
+  body.contact = 4.0;
+  body.sink_to_room = 0.3;  // 0.68 of a run of 4800 s
+  const Diagnosis diagnosis = diagnosed(test::bench_model(), body);
+  INFO(diagnosis.reason);
+  REQUIRE(diagnosis.cause.size() == 1);
+  CHECK(diagnosis.cause.front().effect == "contact_resistance");
+  CHECK(holds(diagnosis, "J_per_K", 1800.0));
+  CHECK(holds(diagnosis, "K_per_W", 4.0));
+  CHECK(holds(diagnosis, "W_per_K", 0.3));
+}
+
 TEST_CASE(
     "heat of the iron is told from heat that goes with the square of the rate, and by where it enters") {
   Body body;

@@ -490,10 +490,10 @@ TEST_CASE("a sink that does not change in a run is no sink, but air of another t
   one.fit.point[count - 3] = std::log(100.0);
   one.fit.point[count - 2] = std::log(10.0);  // 1000 s
   CHECK_FALSE(ends_on_bounds(one, model));
-  CHECK_FALSE(ends_on_bounds(one, model, lasts(2500.0)));
-  CHECK(ends_on_bounds(one, model, lasts(1500.0)));
+  CHECK_FALSE(ends_on_bounds(one, model, lasts(1200.0)));
+  CHECK(ends_on_bounds(one, model, lasts(800.0)));
   one.fit.point[count - 1] = 0.1;  // half of the heat leaves by the air: 500 s
-  CHECK_FALSE(ends_on_bounds(one, model, lasts(1500.0)));
+  CHECK_FALSE(ends_on_bounds(one, model, lasts(800.0)));
 }
 
 TEST_CASE("a rise of friction whose knee no motion reaches is not told from a drag") {

@@ -212,7 +212,7 @@ struct EffectInfo {
   /// held-out data: it costs much to
   /// simulate, or is a richer kind of a cause that is cheaper.
   bool costly = false;
-  /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds half of the
+  /// The slowest time constant in s that its parameters bring, where it needs to be seen: one that exceeds the
   /// longest run stands for something that does not change in it. None: any.
   double (*slowest_s)(const double* parameters) = nullptr;
   /// Whether it is what it is called with these parameters; a fit that ends where it is not stands for something else. None:

@@ -104,7 +104,7 @@ inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
 /// the model has does not count either, nor what may vanish and does.)
 ///
 /// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than half a run, a
+/// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than a run, a
 /// friction backward of what never moved backward.
 /// @param shown  by the training data; anything where it is not given
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const Shown& shown = {}) {
@@ -134,8 +134,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
     if (all && !entry->info.parameters.empty()) return true;
     std::vector<double> values;
     for (std::size_t i = first; i < at; ++i) values.push_back(candidate.value(i));
-    if (entry->info.slowest_s != nullptr &&
-        entry->info.slowest_s(values.data()) > decision.seen_within * shown.longest_run_s)
+    if (entry->info.slowest_s != nullptr && entry->info.slowest_s(values.data()) > shown.longest_run_s)
       return true;
     if (entry->info.is_itself != nullptr && !entry->info.is_itself(values.data())) return true;
     if (entry->info.is_itself_alone != nullptr && !has_dry_friction(constants) &&

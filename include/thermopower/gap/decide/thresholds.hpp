@@ -28,8 +28,6 @@ struct DecisionThresholds {
   double equal = 0.1;
   /// The same, below which it cannot be what one fits better by than the other.
   double the_same = 0.01;
-  /// Share of the longest run that the slowest time constant of a cause may last, to be seen in it.
-  double seen_within = 0.5;
   /// Standard errors by which a richer explanation must fit better than a simpler one not to stay behind it.
   double beyond_doubt = 2.0;
   /// Probability, as a share of the likeliest one's, from which a rival is an alternative. With a single rival below
