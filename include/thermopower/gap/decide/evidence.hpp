@@ -29,7 +29,7 @@ struct Weight {
 /// How many residuals of a candidate count as one, signal by signal, in the data it was fitted to.
 inline Weight correlation_of(const Candidate& candidate, const FitProblem& problem) {
   Weight weight;
-  const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
+  const auto residuals = Attribution::residuals(candidate, problem, candidate.fit.starts);
   for (std::size_t i = 0; i < signal_count; ++i)
     if (!residuals[i].empty()) weight.correlation[i] = correlation_samples(residuals[i]);
   return weight;
@@ -479,8 +479,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
 /// Change that a candidate makes to the empty explanation's residuals, all signals in one vector.
 inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& empty,
                                  const FitProblem& problem) {
-  const auto with = Attribution::residuals(candidate, problem, candidate.fit.starts, nullptr);
-  const auto without = Attribution::residuals(empty, problem, empty.fit.starts, nullptr);
+  const auto with = Attribution::residuals(candidate, problem, candidate.fit.starts);
+  const auto without = Attribution::residuals(empty, problem, empty.fit.starts);
   std::size_t count = 0;
   for (const auto& one : with) count += one.size();
   Eigen::VectorXd change(static_cast<Eigen::Index>(count));

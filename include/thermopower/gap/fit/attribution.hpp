@@ -168,7 +168,7 @@ public:
   /// Squared residuals of a candidate on a problem, segments starting as given.
   static SignalSums sums(const Candidate& candidate, const FitProblem& problem,
                          const std::vector<Start>& starts) {
-    const auto by_signal = residuals(candidate, problem, starts, nullptr);
+    const auto by_signal = residuals(candidate, problem, starts);
     SignalSums result;
     for (std::size_t i = 0; i < signal_count; ++i) result.set(i, by_signal[i], 1.0);
     return result;
@@ -176,18 +176,13 @@ public:
 
   /// Residuals of a candidate by signal, in units of the noise; starts as fitted.
   static ResidualsBySignal residuals(const Candidate& candidate, const FitProblem& problem,
-                                     const std::vector<Start>& starts,
-                                     std::array<std::vector<bool>, signal_count>* gaps) {
+                                     const std::vector<Start>& starts) {
     ResidualsBySignal result;
     problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, starts, false,
                      [&](std::size_t, const FitProblem::Residuals& one) {
-                       std::array<bool, signal_count> first = plant::for_each_signal(true);
-                       for (Eigen::Index i = 0; i < one.value.size(); ++i) {
-                         const auto at = static_cast<std::size_t>(one.signal[static_cast<std::size_t>(i)]);
-                         result[at].push_back(one.value[i]);
-                         if (gaps != nullptr) (*gaps)[at].push_back(first[at]);
-                         first[at] = false;
-                       }
+                       for (std::size_t i = 0; i < one.signal.size(); ++i)
+                         result[static_cast<std::size_t>(one.signal[i])].push_back(
+                             one.value[static_cast<Eigen::Index>(i)]);
                      });
     return result;
   }

@@ -122,7 +122,7 @@ inline std::vector<Eigen::VectorXd> places_beside(const Candidate& candidate) {
   return places;
 }
 
-/// Both.
+/// Out of what free_from_trap() and lead_outside() know.
 inline void free_from_traps(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
   free_from_trap(fitter, candidate, options);
   lead_outside(fitter, candidate, options);
