@@ -105,6 +105,26 @@ TEST_CASE("a large gap is no wrong unit") {
   CHECK(decision(rubbing_model(), limited).find("rpm") == std::string::npos);
 }
 
+TEST_CASE("a column that was lost for some seconds hides no unit of it, and makes none") {
+  const char* const lost = GENERATE("angle_deg", "rate_dps");
+  const auto with_a_hole = [&](Recording r) {
+    Eigen::VectorXd column = r.column(lost);
+    const Eigen::Index rows = column.size();
+    column.segment(rows / 3, rows / 10).setConstant(missing);
+    r.set(lost, column);
+    return r;
+  };
+  INFO(lost);
+  CHECK(decision(rubbing_model(), with_a_hole(axis())).empty());
+  Recording limited = axis();
+  change(limited, "drive_A", times(5.0));
+  CHECK(decision(rubbing_model(), with_a_hole(limited)).find("rpm") == std::string::npos);
+  Recording turning = axis();
+  change(turning, "rate_dps", times(1.0 / 6.0));
+  CHECK(decision(rubbing_model(), with_a_hole(turning)) ==
+        "wrong_unit(rate_dps) --column rate_dps=rate_dps:rpm");
+}
+
 TEST_CASE("each unit of an axis is told where friction takes half of the drive") {
   const char* const drive = "drive_A";
   const char* const angle = "angle_deg";

@@ -55,6 +55,41 @@ struct MotionTold {
   }
 };
 
+/// The integral of a column over time, also across rows in which another one was not read: by trapezoids, and over the few rows in
+/// which it was not read itself it holds.
+class Travel {
+public:
+  /// @param column  NaN: not read
+  Travel(const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs, const Eigen::VectorXd& column)
+      : went_(Eigen::VectorXd::Zero(column.size())), lost_(static_cast<std::size_t>(column.size()), 0) {
+    // A column may be read more seldom than others.
+    const Eigen::Index read = std::max<Eigen::Index>(1, column.array().isFinite().count()),
+                       longest_hole = 8 * (column.size() / read);
+    const Eigen::VectorXd held = last_known(column, runs);
+    for (const RunSpan& run : runs) {
+      Eigen::Index known = run.begin;
+      for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+        if (std::isfinite(column[i])) known = i;
+        const double way = 0.5 * (held[i - 1] + held[i]) * (t_s[i] - t_s[i - 1]);
+        const bool is_lost = i - known > longest_hole || !std::isfinite(way);
+        went_[i] = went_[i - 1] + (is_lost ? 0.0 : way);
+        lost_[static_cast<std::size_t>(i)] = lost_[static_cast<std::size_t>(i - 1)] + (is_lost ? 1 : 0);
+      }
+    }
+  }
+
+  /// Of two rows of one run.
+  double between(Eigen::Index row, Eigen::Index next) const { return went_[next] - went_[row]; }
+  /// Whether it was read between them.
+  bool is_known(Eigen::Index row, Eigen::Index next) const {
+    return lost_[static_cast<std::size_t>(row)] == lost_[static_cast<std::size_t>(next)];
+  }
+
+private:
+  Eigen::VectorXd went_;
+  std::vector<int> lost_;  // rows so far in which it was not
+};
+
 /// The columns of an axis against each other and against what drives it.
 class MotionScale {
 public:
@@ -138,16 +173,17 @@ private:
     constexpr MotionScaleThresholds limit;
     ColumnRatio best;
     if (column.size() == 0 || whole.size() == 0) return best;
-    const Eigen::VectorXd held = last_known(column, runs_);
+    const Travel travel(t_s_, runs_, column);
     const ReadRows rows(t_s_, runs_, whole);
     for (std::size_t length = limit.shortest; length <= limit.longest; length *= 2) {
       double xx = 0.0, xy = 0.0, yy = 0.0;
       int count = 0;
       rows.for_each_bell(length, [&](const std::vector<ReadRows::Part>& parts) {
+        if (!travel.is_known(parts.front().row, parts.back().next)) return;
         double x = 0.0, y = 0.0;
         for (const ReadRows::Part& one : parts) {
           x += one.weight * (whole[one.next] - whole[one.row]);
-          y += one.weight * 0.5 * (held[one.row] + held[one.next]) * one.step_s;
+          y += one.weight * travel.between(one.row, one.next);
         }
         if (!std::isfinite(x) || !std::isfinite(y)) return;
         xx += x * x, xy += x * y, yy += y * y, ++count;
