@@ -247,9 +247,11 @@ private:
   }
 
   /// Blows that an explanation misses a little look like noise that remembers, in each signal. While a search is far from them
-  /// that is as well: it follows the motion between them. Once it has found what it can, what angle and rate show alike is
-  /// no noise any more. @return whether that made a difference
+  /// that is as well: it follows the motion between them. Where the best explanation strikes, and has found what it can, what
+  /// angle and rate show alike is no noise any more. Beside any other, what is missed may have any cause, and counts for as little as
+  /// noise does. @return whether that made a difference
   bool leave_only_noise() {
+    if (!attempt_.best().explanation.strikes()) return false;
     constexpr double matters = 1.25;  // times the noise
     const std::array<double, signal_count> less =
         noise_left(attempt_.problem, attempt_.best(), train_, TakenForNoise::what_differs);

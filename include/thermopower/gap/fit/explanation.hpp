@@ -89,6 +89,12 @@ struct Explanation {
     return static_cast<int>(count);
   }
 
+  /// Whether sides meet and part in one of its effects (EffectInfo::strikes).
+  bool strikes() const {
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const CatalogueEntry* entry) { return entry->info.strikes; });
+  }
+
   /// Whether its effects have details that are not free.
   bool can_be_refined() const {
     for (const CatalogueEntry* entry : effects)

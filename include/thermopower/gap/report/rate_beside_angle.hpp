@@ -79,7 +79,8 @@ public:
 
   /// The most that noise can be in one of the two.
   struct Most {
-    MostNoise angle, rate;
+    MostNoise angle;  ///< in it
+    MostNoise rate;   ///< in it
 
     /// Nothing is known of any other.
     MostNoise of(Signal signal) const {
