@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/plant/axis_at_rows.hpp>
-#include <thermopower/plant/waves.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/balance.hpp>
 #include <thermopower/plant/columns.hpp>
@@ -11,6 +10,7 @@
 #include <thermopower/plant/samples.hpp>
 #include <thermopower/plant/sine_cosine.hpp>
 #include <thermopower/plant/variable_words.hpp>
+#include <thermopower/plant/waves.hpp>
 
 #include <algorithm>
 #include <cmath>

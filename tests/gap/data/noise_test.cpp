@@ -3,6 +3,7 @@
 
 // The noise of a residual, whatever its colour and tails, with and without the error of a wrong model beside it.
 #include "../../catch.hpp"
+#include "coloured_noise.hpp"
 
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/report/noise_at_a_row.hpp>
@@ -10,35 +11,20 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <vector>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
+using test::coloured;
+using test::normal;
+using test::Random;
 
 namespace {
-
-typedef std::mt19937 Random;  // its sequence is the standard's; the distributions are ours
-
-double normal(Random& random) {
-  const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
-  return std::sqrt(-2.0 * std::log(uniform())) * std::cos(6.283185307179586 * uniform());
-}
 
 /// Student's t with three degrees of freedom, scaled to a standard deviation of 1.
 double heavy_tailed(Random& random) {
   const double a = normal(random), b = normal(random), c = normal(random);
   return normal(random) / std::sqrt((a * a + b * b + c * c) / 3.0) / std::sqrt(3.0);
-}
-
-std::vector<double> coloured(int count, double memory, Random& random) {
-  std::vector<double> x;
-  double state = normal(random);
-  for (int i = 0; i < count; ++i) {
-    x.push_back(state);
-    state = memory * state + std::sqrt(1.0 - memory * memory) * normal(random);
-  }
-  return x;
 }
 
 /// Median of the estimate over the truth in 21 draws.

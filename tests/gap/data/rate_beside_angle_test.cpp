@@ -3,6 +3,7 @@
 
 // What a rate and the angle beside it say of each other's noise: whatever a model lacks moves both alike.
 #include "../../catch.hpp"
+#include "coloured_noise.hpp"
 
 #include <thermopower/gap/report/noise_of_errors.hpp>
 #include <thermopower/gap/report/rate_beside_angle.hpp>
@@ -10,33 +11,21 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <vector>
 
 using namespace thermopower::gap;
 using namespace thermopower::gap::engine;
+using test::normal;
+using test::Random;
 
 namespace {
-
-typedef std::mt19937 Random;  // its sequence is the standard's; the distributions are ours
-
-double normal(Random& random) {
-  const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
-  return std::sqrt(-2.0 * std::log(uniform())) * std::cos(6.283185307179586 * uniform());
-}
 
 constexpr int windows = 80, rows_of_window = 50, rows = windows * rows_of_window;
 constexpr double dt_s = 0.01;
 
-/// Noise of a memory from one row to the next, @param sd  its standard deviation.
+/// Noise of a memory from one row to the next, in every row. @param sd  its standard deviation
 std::vector<double> noise_of(double sd, double memory, Random& random) {
-  std::vector<double> x;
-  double state = normal(random);
-  for (int i = 0; i < rows; ++i) {
-    x.push_back(sd * state);
-    state = memory * state + std::sqrt(1.0 - memory * memory) * normal(random);
-  }
-  return x;
+  return test::coloured(rows, memory, random, sd);
 }
 
 std::vector<double> no_noise() { return std::vector<double>(rows, 0.0); }
@@ -116,8 +105,7 @@ struct WindowedErrors {
   };
   Found found(Signal signal) const {
     const auto at = static_cast<std::size_t>(signal);
-    std::vector<bool> gaps(errors.of[at].size(), false);
-    for (std::size_t i = 0; i < gaps.size(); i += rows_of_window) gaps[i] = true;
+    const std::vector<bool> gaps = errors.gaps(signal);
     const auto most = RateBesideAngle(errors, segments).most_noise().of(signal);
     return {noise_sd(errors.of[at], gaps, 0.0, {}, {}, most), noise_sd(errors.of[at], gaps)};
   }

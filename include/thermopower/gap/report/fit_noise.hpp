@@ -69,11 +69,9 @@ inline std::array<double, signal_count> noise_left(const FitProblem& problem, co
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (left.of[i].empty()) continue;
     const auto signal = static_cast<Signal>(i);
-    std::vector<bool> gaps(left.of[i].size(), true);
-    for (std::size_t k = 1; k < gaps.size(); ++k) gaps[k] = left.segment[i][k] != left.segment[i][k - 1];
     const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal),
-                 sd = std::min(noise_sd(left.of[i], gaps, quantum, {}, problem.measured_of_axis(signal),
-                                        most.of(signal)),
+                 sd = std::min(noise_sd(left.of[i], left.gaps(signal), quantum, {},
+                                        problem.measured_of_axis(signal), most.of(signal)),
                                most_noise(problem, signal));
     sigma[i] = std::max(with_wander(sd, wander[i], left.rms(signal)), 1e-9);
   }

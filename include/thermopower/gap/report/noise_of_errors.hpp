@@ -39,12 +39,9 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
   const RateBesideAngle::Most most = both.most_noise();
   for (std::size_t i = 0; i < signal_count; ++i) {
     const std::size_t count = errors.of[i].size();
-    std::vector<bool> gaps(count, false);
     std::vector<double> levels, measured;  // the latter of an axis: what drives it is integrated twice
     for (std::size_t k = 0; k < count; ++k) {
-      const int segment = errors.segment[i][k];
-      gaps[k] = k > 0 && segment != errors.segment[i][k - 1];
-      const Segment& of = segments[static_cast<std::size_t>(segment)];
+      const Segment& of = segments[static_cast<std::size_t>(errors.segment[i][k])];
       const Eigen::VectorXd& power = of.inputs->power_param;
       if (of.axis) measured.push_back(errors.simulated[i][k] - errors.of[i][k]);
       if (power.size() > 0 && static_cast<Signal>(i) == Signal::current_A)
@@ -54,8 +51,8 @@ inline std::array<NoiseEstimate, signal_count> noise_estimates_of(const Errors& 
     if (levels.size() < count) levels.clear();
     if (measured.size() < count) measured.clear();
     const auto signal = static_cast<Signal>(i);
-    noise[i] = noise_of_sequence(errors.of[i], gaps, coarsest_quantum(inputs, signal), levels, measured,
-                                 most.of(signal));
+    noise[i] = noise_of_sequence(errors.of[i], errors.gaps(signal), coarsest_quantum(inputs, signal), levels,
+                                 measured, most.of(signal));
     // A handful of readings tells no noise from an error: all of it may be noise.
     if (count < NoiseThresholds().least_pairs) noise[i].sd = noise[i].by_chance = errors.rms(signal);
   }

@@ -158,26 +158,24 @@ private:
 
   /// Mean square of what the rate is beyond a sum of the angle's steps around it, fitted to all of them, (deg/s)^2.
   double beyond_angles() const {
-    constexpr std::size_t around = 8, most_rows = 20000;
-    constexpr Eigen::Index terms = 2 * around;
+    constexpr std::size_t around = 8, terms = 2 * around, most_rows = 20000;
     const std::size_t stride = std::max<std::size_t>(1, rows_.size() / most_rows);
     std::vector<std::size_t> middles;
     for (std::size_t i = around; i + around < rows_.size(); i += stride)
-      if (rows_[i + around].since >= 2 * around) middles.push_back(i);
-    const auto steps = [&](std::size_t i) {
-      Eigen::VectorXd one(terms);
-      for (Eigen::Index k = 0; k < terms; ++k) {
-        const std::size_t at = i - around + static_cast<std::size_t>(k);
-        one[k] = rows_[at + 1].angle - rows_[at].angle;
+      if (rows_[i + around].since >= terms) middles.push_back(i);
+    if (middles.size() <= terms) return 0.0;
+    Eigen::MatrixXd steps(static_cast<Eigen::Index>(middles.size()), static_cast<Eigen::Index>(terms));
+    Eigen::VectorXd rates(steps.rows());
+    for (Eigen::Index i = 0; i < steps.rows(); ++i) {
+      const std::size_t middle = middles[static_cast<std::size_t>(i)];
+      rates[i] = rows_[middle].rate;
+      for (Eigen::Index k = 0; k < steps.cols(); ++k) {
+        const std::size_t at = middle - around + static_cast<std::size_t>(k);
+        steps(i, k) = rows_[at + 1].angle - rows_[at].angle;
       }
-      return one;
-    };
-    NormalEquations equations(terms);
-    for (const std::size_t i : middles) equations.add(steps(i), rows_[i].rate);
-    const Eigen::VectorXd shares = equations.solve();
-    double squares = 0.0;
-    for (const std::size_t i : middles) squares += std::pow(rows_[i].rate - steps(i).dot(shares), 2.0);
-    return middles.size() > 2 * around ? squares / static_cast<double>(middles.size() - 2 * around) : 0.0;
+    }
+    const Eigen::VectorXd shares = NormalEquations(steps, rates).solve();
+    return (rates - steps * shares).squaredNorm() / static_cast<double>(middles.size() - terms);
   }
 
   /// By how much the mean rate over some intervals is beyond the slope of the angle, at the row that each ends at, deg/s; NaN

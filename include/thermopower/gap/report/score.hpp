@@ -25,6 +25,13 @@ struct Errors {
   std::array<std::vector<double>, signal_count> simulated;  ///< simulated value, in the signal's unit
   std::array<std::vector<Eigen::Index>, signal_count> row;  ///< row in the recording of that segment
 
+  /// Of each of a signal's errors whether it does not follow on the one before it: the first one of each segment.
+  std::vector<bool> gaps(Signal signal) const {
+    const std::vector<int>& places = segment[static_cast<std::size_t>(signal)];
+    std::vector<bool> begins(places.size(), true);
+    for (std::size_t i = 1; i < places.size(); ++i) begins[i] = places[i] != places[i - 1];
+    return begins;
+  }
   /// Root mean square of a signal's errors; 0 without any.
   double rms(Signal signal) const { return rms_of(of[static_cast<std::size_t>(signal)]); }
 };
