@@ -70,6 +70,9 @@ TEST_CASE(
   twin.info.id = "half";
   twin.dual = nullptr;
   CHECK_THROWS_AS(catalogue.add(twin), InvalidInput);
+  twin.dual = standard_catalogue().find("radiation")->dual;
+  twin.wide = nullptr;
+  CHECK_THROWS_AS(catalogue.add(twin), InvalidInput);
   twin = *standard_catalogue().find("radiation");
   twin.info.id = "nowhere";
   twin.hooks = HookSet();

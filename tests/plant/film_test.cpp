@@ -127,15 +127,25 @@ TEST_CASE("the hyperbolic tangent is the C library's to 1e-15 of itself, at ever
   CHECK(std::isnan(hyperbolic_tangent(std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST_CASE("a tail that is 0 is none only where no direction moves it") {
-  Dual tail(0.0);
-  CHECK(is_constant(tail, 0.0));
-  for (int direction = 0; direction < dual_width; ++direction) {
-    Dual moved(0.0);
+namespace {
+
+template <int width>
+void check_that_each_direction_counts() {
+  using Number = DualOf<width>;
+  CHECK(is_constant(Number(0.0), 0.0));
+  for (int direction = 0; direction < width; ++direction) {
+    Number moved(0.0);
     moved.seed(direction);
     CHECK_FALSE(is_constant(moved, 0.0));
     moved.forget(0);
     CHECK(is_constant(moved, 0.0));
   }
-  CHECK_FALSE(is_constant(Dual(-0.3), 0.0));
+  CHECK_FALSE(is_constant(Number(-0.3), 0.0));
+}
+
+}  // namespace
+
+TEST_CASE("a tail that is 0 is none only where no direction moves it") {
+  check_that_each_direction_counts<dual_width>();
+  check_that_each_direction_counts<wide_dual_width>();
 }

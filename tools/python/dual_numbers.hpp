@@ -16,23 +16,25 @@ namespace thermopower::python {
 namespace py = pybind11;
 
 /// a to a plain power: whole ones by products, so that a may be negative.
-inline plant::Dual power_of(const plant::Dual& a, double b) {
+template <class Dual>
+Dual power_of(const Dual& a, double b) {
   constexpr double most = 8.0;
   if (b != std::floor(b) || std::abs(b) > most) return exp(log(a) * b);
-  plant::Dual product(1.0);
+  Dual product(1.0);
   for (double i = 0.0; i < std::abs(b); ++i) product *= a;
   return b < 0.0 ? 1.0 / product : product;
 }
 
 /// A function of x by its value and its derivative there.
-inline plant::Dual of(const plant::Dual& x, double value, double derivative) {
+template <class Dual>
+Dual of(const Dual& x, double value, double derivative) {
   return (x - x.value()) * derivative + value;
 }
 
 /// Numbers that carry their derivatives, as Python sees them. NumPy's functions find theirs by name.
-inline void bind_dual(py::module_& module) {
-  using plant::Dual;
-  py::class_<Dual>(module, "Dual")
+template <class Dual>
+void bind_dual(py::module_& module, const char* name) {
+  py::class_<Dual>(module, name)
       .def(py::init<double>())
       .def_property_readonly("value", &Dual::value)
       .def_property_readonly("slope", [](const Dual& a) { return a.slope(0); })

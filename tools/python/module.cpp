@@ -234,9 +234,11 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("summary", &Result::summary)
       .def("header", &Result::header)
       .def("series", &Result::series);
-  thermopower::python::bind_dual(module);
+  thermopower::python::bind_dual<plant::Dual>(module, "Dual");
+  thermopower::python::bind_dual<plant::WideDual>(module, "WideDual");
   thermopower::python::bind_added_friction<double>(module, "AddedFriction");
   thermopower::python::bind_added_friction<plant::Dual>(module, "AddedFrictionOfDuals");
+  thermopower::python::bind_added_friction<plant::WideDual>(module, "AddedFrictionOfWideDuals");
   py::class_<gap::Model>(module, "Model")
       .def_readonly("name", &gap::Model::name)
       .def("constants", &thermopower::python::constants_of)

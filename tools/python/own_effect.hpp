@@ -391,6 +391,7 @@ inline void add_effect(plant::Catalogue& catalogue, const py::dict& given) {
   else if (hooks.any_bench() && !hooks.bench_readings) need(plant::Need::thermal_model);
   entry.plain = std::make_shared<Hooks<double>>(entry.info, acts);
   entry.dual = std::make_shared<Hooks<plant::Dual>>(entry.info, acts);
+  entry.wide = std::make_shared<Hooks<plant::WideDual>>(entry.info, acts);
   entry.traced = std::make_shared<Unwritten>();
   catalogue.add(std::move(entry));
 }

@@ -35,6 +35,7 @@ public:
 
   int start_size(const Segment&) const override { return 2; }
 
+  int directions_at_once() const override { return wide_dual_width; }
   Start start_weight(const Segment& segment, const std::array<double, signal_count>& sigma) const override;
 
   std::unique_ptr<Rollout> rollout(const Model& model, const Catalogue& catalogue,

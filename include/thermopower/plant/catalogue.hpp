@@ -130,7 +130,7 @@ HookSet hook_set_of() {
 
 }  // namespace detail
 
-/// An effect of the catalogue: what it is, and its hooks for both scalars.
+/// An effect of the catalogue: what it is, and its hooks for all scalars.
 ///
 /// @snippet plant_examples.cpp catalogue
 /// How to: @ref diagnose_a_gap.
@@ -139,6 +139,7 @@ struct CatalogueEntry {
   HookSet hooks;                                            ///< where it acts
   std::shared_ptr<const detail::Hooks<double>> plain;       ///< its hooks for simulations
   std::shared_ptr<const detail::Hooks<Dual>> dual;          ///< and for fits, with derivatives
+  std::shared_ptr<const detail::Hooks<WideDual>> wide;      ///< in more directions
   std::shared_ptr<const detail::Hooks<Expression>> traced;  ///< and for writing its equation down
 
   /// The hooks for a scalar.
@@ -146,6 +147,7 @@ struct CatalogueEntry {
   const detail::Hooks<Scalar>& of() const {
     if constexpr (std::is_same_v<Scalar, double>) return *plain;
     else if constexpr (std::is_same_v<Scalar, Expression>) return *traced;
+    else if constexpr (std::is_same_v<Scalar, WideDual>) return *wide;
     else return *dual;
   }
 };
@@ -172,11 +174,12 @@ public:
         "XTerms<Scalar>& terms)' where XTerms is one of plant/terms.hpp");
     if constexpr (detail::HasInfo<Effect>::value && detail::has_any_hook<Effect>)
       add({Effect::info(), detail::hook_set_of<Effect>(), detail::hooks_of<Effect, double>(),
-           detail::hooks_of<Effect, Dual>(), detail::hooks_of<Effect, Expression>()});
+           detail::hooks_of<Effect, Dual>(), detail::hooks_of<Effect, WideDual>(),
+           detail::hooks_of<Effect, Expression>()});
     return *this;
   }
 
-  /// Adds an effect whose hooks are objects, for equations that are no C++ types: all three kinds of them, for every term
+  /// Adds an effect whose hooks are objects, for equations that are no C++ types: all kinds of them, for every term
   /// that the set of hooks names. @throws InvalidInput where its info is unusable, its id is taken, or hooks are missing
   Catalogue& add(CatalogueEntry entry);
 

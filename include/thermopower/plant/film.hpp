@@ -48,9 +48,10 @@ struct FilmAt {
 };
 
 /// The share of friction, see above.
-inline Dual film_share(const Dual& x, const Dual& tail) {
+template <int width>
+DualOf<width> film_share(const DualOf<width>& x, const DualOf<width>& tail) {
   const FilmAt at(x.value(), tail.value());
-  return Dual::composed(at.share, x, at.slope, tail, at.by_tail);
+  return DualOf<width>::composed(at.share, x, at.slope, tail, at.by_tail);
 }
 
 /// The share and its derivative by x.
@@ -66,9 +67,10 @@ struct FilmWithSlope {
 
 private:
   FilmWithSlope(const FilmAt& at, double, double) : share(at.share), slope(at.slope) {}
-  FilmWithSlope(const FilmAt& at, const Dual& x, const Dual& tail)
-      : share(Dual::composed(at.share, x, at.slope, tail, at.by_tail)),
-        slope(Dual::composed(at.slope, x, at.slope_by_x, tail, at.slope_by_tail)) {}
+  template <int width>
+  FilmWithSlope(const FilmAt& at, const DualOf<width>& x, const DualOf<width>& tail)
+      : share(DualOf<width>::composed(at.share, x, at.slope, tail, at.by_tail)),
+        slope(DualOf<width>::composed(at.slope, x, at.slope_by_x, tail, at.slope_by_tail)) {}
 };
 
 }  // namespace thermopower::plant

@@ -8,6 +8,10 @@
 
 #include <thermopower/gap/fit/fit_problem.hpp>
 
+#include <algorithm>
+#include <set>
+#include <string>
+
 using namespace engine_fixture;
 
 namespace {
@@ -95,4 +99,46 @@ TEST_CASE(
     REQUIRE(seen.size() == most);
     for (std::size_t i = 0; i < most; ++i) CHECK(seen[i] == Approx(parts[i]).epsilon(1e-6));
   }
+}
+
+TEST_CASE("a derivative is the same whatever other directions are asked for with it") {
+  const Model model = axis_model();
+  std::vector<Inputs> inputs{prepare(model, test::axis_recording({0.02, 0.0, 1.0, 0}, 600, 7))};
+  FitProblem problem;
+  problem.model = &model;
+  problem.catalogue = &standard_catalogue();
+  problem.sigma = thermopower::plant::for_each_signal(0.1);
+  problem.segments = cut(inputs, 0.5, plant_of(model));
+  const std::vector<Start> starts = problem.measured_starts();
+  using Ids = std::vector<std::string>;
+  std::set<bool> seen_wide;
+  for (const Ids& ids : {Ids{"imbalance"}, Ids{"imbalance", "stribeck_friction"},
+                         Ids{"imbalance", "stribeck_friction", "cogging"},
+                         Ids{"compliance", "stribeck_friction", "cogging", "drive_lag", "torque_ripple"}}) {
+    Explanation explanation;
+    for (const std::string& id : ids) explanation.effects.push_back(standard_catalogue().find(id));
+    const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
+    Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i)
+      at[static_cast<Eigen::Index>(i)] = std::clamp(list[i].start + 0.01, list[i].lower, list[i].upper);
+    const auto jacobian = [&](const std::vector<Coordinate>& asked) {
+      std::vector<Eigen::MatrixXd> parts;
+      problem.evaluate(explanation, asked, at, starts, true,
+                       [&](std::size_t, const FitProblem::Residuals& one) { parts.push_back(one.jacobian); });
+      return parts;
+    };
+    const std::vector<Eigen::MatrixXd> all = jacobian(list);
+    const auto n = static_cast<Eigen::Index>(list.size());
+    const auto free = std::count_if(list.begin(), list.end(), [](const auto& one) { return !one.still; });
+    seen_wide.insert(free + 2 > thermopower::plant::dual_width);
+    for (Eigen::Index k = 0; k < n + 2; ++k) {
+      std::vector<Coordinate> alone = list;
+      for (Eigen::Index i = 0; i < n; ++i)
+        alone[static_cast<std::size_t>(i)].still = alone[static_cast<std::size_t>(i)].still || i != k;
+      const std::vector<Eigen::MatrixXd> one = jacobian(alone);
+      for (std::size_t i = 0; i < one.size(); ++i)
+        CHECK((one[i].col(k) - all[i].col(k)).norm() <= 1e-5 * all[i].col(k).norm());
+    }
+  }
+  CHECK(seen_wide.size() == 2);
 }

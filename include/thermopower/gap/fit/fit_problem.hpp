@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -83,23 +84,24 @@ struct FitProblem {
       for (int i = 0; i < largest; ++i) columns.push_back(parameters + i);
     }
     const ParameterPoint point = point_of(*model, explanation, list, at);
-    std::vector<Residuals> all(segments.size());
-    // As many directions at once as the plant carries; the last pass carries the starts, too.
-    const int directions = static_cast<int>(columns.size()), at_once = plant.directions_at_once();
-    for (int first = 0; first == 0 || first < directions; first += at_once) {
+    // As few passes as the plant can do with, and those of one size.
+    const int directions = static_cast<int>(columns.size()), most = plant.directions_at_once();
+    const int count = std::max(1, (directions + most - 1) / most), at_once = (directions + count - 1) / count;
+    std::vector<std::pair<Directions, std::unique_ptr<plant::Rollout>>> passes;
+    for (int first = 0, pass = 0; pass < count; ++pass, first += at_once) {
       const Directions now{first, std::min(at_once, directions - first)};
-      const auto rollout = plant.rollout(*model, *catalogue, point, now, SimulationMode::free_running);
-      Readings readings;
-      for (std::size_t i = 0; i < segments.size(); ++i) {
-        const Segment& segment = segments[i];
-        if (first == 0)
-          reserve(plant, segment, with_jacobian ? parameters + plant.start_size(segment) : 0, all[i]);
+      passes.emplace_back(now, plant.rollout(*model, *catalogue, point, now, SimulationMode::free_running));
+    }
+    Readings readings;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      const Segment& segment = segments[i];
+      Residuals all;
+      reserve(plant, segment, with_jacobian ? parameters + plant.start_size(segment) : 0, all);
+      for (const auto& [now, rollout] : passes) {
         rollout->roll(segment, starts[i], readings);
-        if (!segment.warm_up) take(plant.signals(segment), segment, readings, now, columns, all[i]);
-        if (first + at_once < directions) continue;
-        if (!use(i, all[i])) return;
-        all[i] = {};
+        if (!segment.warm_up) take(plant.signals(segment), segment, readings, now, columns, all);
       }
+      if (!use(i, all)) return;
     }
   }
 

@@ -298,6 +298,8 @@ THERMOPOWER_GAP_INLINE std::unique_ptr<Rollout> ActuatorPlant::rollout(const Mod
                                                                        const ParameterPoint& point,
                                                                        const Directions& directions,
                                                                        SimulationMode mode) const {
+  if (directions.count > dual_width)
+    return std::make_unique<detail::ActuatorRollout<WideDual>>(model, catalogue, point, directions, mode);
   if (directions.count > 0)
     return std::make_unique<detail::ActuatorRollout<Dual>>(model, catalogue, point, directions, mode);
   return std::make_unique<detail::ActuatorRollout<double>>(model, catalogue, point, directions, mode);

@@ -90,7 +90,8 @@ THERMOPOWER_GAP_INLINE void Catalogue::check(const EffectInfo& info, const HookS
 
 THERMOPOWER_GAP_INLINE Catalogue& Catalogue::add(CatalogueEntry entry) {
   check(entry.info, entry.hooks);
-  if (!(entry.hooks.any_bench() || entry.hooks.any_axis()) || !entry.plain || !entry.dual || !entry.traced)
+  if (!(entry.hooks.any_bench() || entry.hooks.any_axis()) || !entry.plain || !entry.dual || !entry.wide ||
+      !entry.traced)
     throw InvalidInput("effect '" + entry.info.id +
                        "' has no hooks: expected one of each kind, and where they act");
   infos_.push_back(entry.info);

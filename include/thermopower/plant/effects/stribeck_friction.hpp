@@ -25,13 +25,14 @@ Scalar stribeck_share(const Scalar& x, const Scalar& exponent) {
 }
 
 /// The same, its derivatives worked out in plain numbers: an axis with such a friction asks for them at every step.
-inline Dual stribeck_share(const Dual& x, const Dual& exponent) {
+template <int width>
+DualOf<width> stribeck_share(const DualOf<width>& x, const DualOf<width>& exponent) {
   const bool moves = x.value() > stribeck_still;
   const double at = moves ? x.value() : stribeck_still, of_rate = std::log(at);
   const double power = std::exp(exponent.value() * of_rate), share = std::exp(-power);
   const double by_power = -share * power;
-  return Dual::composed(share, x, moves ? by_power * exponent.value() / at : 0.0, exponent,
-                        by_power * of_rate);
+  return DualOf<width>::composed(share, x, moves ? by_power * exponent.value() / at : 0.0, exponent,
+                                 by_power * of_rate);
 }
 
 /// Dry friction with a Stribeck rise near standstill.
@@ -95,11 +96,8 @@ struct StribeckFriction {
   /// Adds dry friction with a rise near standstill.
   template <class Scalar>
   static void act(const Scalar* p, FrictionTerms<Scalar>& terms) {
-    using std::exp;
-    using std::log;
-    constexpr double still = 1e-9;  // of the knee: a power of 0 has no derivative
-    const Scalar ratio = at_least(magnitude(Scalar(terms.rate_rad_per_s / p[knee_rad_per_s])), still);
-    const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * exp(-exp(p[exponent] * log(ratio)));
+    const Scalar ratio = magnitude(Scalar(terms.rate_rad_per_s / p[knee_rad_per_s]));
+    const Scalar friction_Nm = p[size_Nm] + p[rise_Nm] * stribeck_share(ratio, p[exponent]);
     terms.add_friction(friction_Nm, friction_Nm, p[transition], p[tail]);
   }
 };
