@@ -297,6 +297,8 @@ struct GivenFor<Expression> {
 
 /// The expression itself: which way code takes is followed, not decided.
 inline GivenExpression value_of(const Expression& x) { return GivenExpression(x); }
+/// Whether it is a constant of some value, in the equation that is written.
+inline bool is_constant(const Expression& x, double value) { return detail::is(x, value); }
 /// |x|.
 inline Expression magnitude(const Expression& x) { return abs(x); }
 /// |x|.

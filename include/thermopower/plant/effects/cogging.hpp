@@ -65,7 +65,12 @@ struct Cogging {
     using std::cos;
     using std::sin;
     const Scalar phase = p[cycles_per_turn] * terms.angle_rad;
-    const Scalar s = sin(phase), c = cos(phase), s2 = 2.0 * s * c, c2 = c * c - s * s;
+    const Scalar s = sin(phase), c = cos(phase);
+    if (is_constant(p[second_sin], 0.0) && is_constant(p[second_cos], 0.0)) {
+      terms.load_Nm -= p[sin_Nm] * s + p[cos_Nm] * c;
+      return;
+    }
+    const Scalar s2 = 2.0 * s * c, c2 = c * c - s * s;
     terms.load_Nm -= p[sin_Nm] * (s + p[second_sin] * s2 + p[second_cos] * c2) +
                      p[cos_Nm] * (c + p[second_sin] * c2 - p[second_cos] * s2);
   }
