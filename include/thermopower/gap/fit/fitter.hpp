@@ -89,11 +89,13 @@ public:
         const double length = view_.information.diagonal().dot((trial.point - best.point).cwiseAbs2());
         // A step about as long as one that failed fails, too.
         if (length > shorter * shorter * failed) continue;
+        const double promise = best.cost - promised_cost(trial.point - best.point);
+        const double enough = options.relative_decrease * best.cost;
+        // One that promises no more than with what a fit ends is worth a look before others have failed.
+        if (promise < (attempt == 0 ? hardly_worth_a_look : 1.0) * enough) continue;
         failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
-        const bool look_ahead =
-            attempt == 0 && best.iterations + 1 < options.iterations &&
-            best.cost - promised_cost(trial.point - best.point) > options.relative_decrease * best.cost;
+        const bool look_ahead = attempt == 0 && best.iterations + 1 < options.iterations && promise > enough;
         trial.cost = look_ahead ? cost_ahead(trial.point, trial.starts, best.cost, trial.chi2)
                                 : cost(trial.point, trial.starts, best.cost, trial.chi2);
         if (trial.cost < best.cost) {
@@ -113,9 +115,9 @@ public:
           break;
         }
         const bool to_the_end = samples_in(look_ahead ? ahead_.residuals : plain_) == view_.samples;
-        const double promised = promised_cost(trial.point - best.point);
-        const bool hardly_promised = best.cost - promised < hardly_any * best.cost;
-        if (to_the_end && hardly_promised && failure.is_of_the_ground({length, trial.cost - promised})) break;
+        const bool hardly_promised = promise < hardly_any * best.cost;
+        const double above = trial.cost - (best.cost - promise);
+        if (to_the_end && hardly_promised && failure.is_of_the_ground({length, above})) break;
       }
       if (!goes_on) break;
       if (best.iterations + 1 >= options.hopeful && best.cost > options.hopeless) break;
@@ -412,6 +414,7 @@ private:
 
   static constexpr double hardly_any =
       1e-3;  ///< of the cost: for so little a fit does not go on over rough ground
+  static constexpr double hardly_worth_a_look = 0.1;  ///< of the decrease with which a fit ends
   static constexpr double shorter = 0.9;  ///< than a step that failed is one worth trying, by its length
 
   const FitProblem& problem_;
