@@ -63,14 +63,16 @@ public:
   void add(std::vector<Candidate>& candidates, const std::vector<Candidate>& tried) const {
     const std::size_t first = candidates.size();
     candidates.insert(candidates.end(), tried.begin(), tried.end());
-    refine(candidates, first, 7);
+    take_along(candidates, first);
+    finish(candidates, 7);
   }
 
   /// Takes candidates to fine data that have become others, and fits the best of them there.
   /// @param hopeless  cost of a fit so far from which on a candidate is taken as it stands
   void take_over(std::vector<Candidate>& candidates, double hopeless) const {
     for (Candidate& one : candidates) one.settled = false;
-    refine(candidates, 0, 5, hopeless);
+    take_along(candidates, 0, hopeless);
+    finish(candidates, fitted_to_the_end);
   }
 
   /// Looks at the details of the effects of the best candidates, where these leave more than noise: a second harmonic is one
@@ -120,13 +122,24 @@ public:
     return std::find(near.begin(), near.end(), 1) != near.end();
   }
 
-  /// Adds sets of causes, fitted, and the best one again with members exchanged for their relatives.
+  /// Adds sets of causes, fitted to the first look's data and taken to the fine data: what they leave there says what the noise is,
+  /// and only then it is worth fitting them to the end.
   /// @param sets  the most promising one first
-  void add_sets(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
-                const std::vector<Explanation>& singles) const {
+  void add_sets(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
     add_fitted(candidates, sets, Attribution(look.some, look.few));
-    exchange(candidates, singles);
+  }
+
+  /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
+  /// stood in for only one is found at a time.
+  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
+    constexpr int rounds = 2;
+    for (int round = 0; round < rounds; ++round) {
+      const Explanation leader = fittest(candidates).explanation;
+      exchange_members(candidates, singles);
+      const Explanation& now = fittest(candidates).explanation;
+      if (now.size() == leader.size() && now.includes(leader)) return;
+    }
   }
 
   /// Adds the best set without one member after another, from where the whole ended: it may have been reached by a way on which
@@ -142,6 +155,7 @@ public:
     }
     const FirstLook look(whole, glimpse_, coarse_);
     add_fitted(candidates, parts, Attribution(look.some, look.few));
+    finish(candidates, fitted_to_the_end);
   }
 
   /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the
@@ -161,6 +175,7 @@ public:
       std::size_t related = 0;
       for (std::size_t index : order) {
         if (index == order[place] || index == 0) continue;
+        if (candidates[index].train.total() <= leader.train.total()) continue;  // nothing to learn there
         if (leader.explanation.includes(candidates[index].explanation) ||
             (place < related_to &&
              is_simpler_counterpart(candidates[index].explanation, leader.explanation)) ||
@@ -203,10 +218,12 @@ public:
       one.settled = false;
       for (std::size_t i = 0; i < signal_count; ++i) one.train.scale(i, by[i]);
     }
-    refine(candidates, candidates.size(), 4);
+    finish(candidates, fitted_to_the_end);
   }
 
 private:
+  static constexpr std::size_t fitted_to_the_end = 5;
+
   static FitOptions quick() {
     FitOptions options;
     options.iterations = 10;
@@ -263,11 +280,10 @@ private:
            is_related(rich, simple);
   }
 
-  /// Takes candidates from index `first` on to the fine data, then fits the `count` best of all to the end: those that
-  /// after some steps are in sight of the best one.
+  /// Takes candidates from index `first` on to the fine data.
   /// @param hopeless  cost of a first fit from which on a candidate is taken there as it stands
-  void refine(std::vector<Candidate>& candidates, std::size_t first, std::size_t count,
-              double hopeless = FitOptions{}.hopeless) const {
+  void take_along(std::vector<Candidate>& candidates, std::size_t first,
+                  double hopeless = FitOptions{}.hopeless) const {
     FitOptions look;
     look.iterations = 1;
     in_parallel(candidates.size() - first, threads_, [&](std::size_t i) {
@@ -275,6 +291,10 @@ private:
       if (one.fit.cost > hopeless && !wants_longer(one.explanation)) fine_.adopt(one);
       else fine_.polish(one, look);
     });
+  }
+
+  /// Fits the `count` best of all to the end: those that after some steps are in sight of the best one.
+  void finish(std::vector<Candidate>& candidates, std::size_t count) const {
     std::vector<std::size_t> order = by_fitness(candidates, 0);
     order.resize(std::min(count, order.size()));
     if (std::find(order.begin(), order.end(), std::size_t{0}) == order.end()) order.push_back(0);
@@ -344,23 +364,11 @@ private:
     in_parallel(sets.size() - 1, threads_, [&](std::size_t i) { fit_one(i + 1); });
     const std::size_t first = candidates.size();
     for (Candidate& one : found) candidates.push_back(std::move(one));
-    refine(candidates, first, 5, options.hopeless);
+    take_along(candidates, first, options.hopeless);
   }
 
   static std::size_t place_of(const std::vector<Candidate>& candidates, const Candidate& one) {
     return static_cast<std::size_t>(&one - candidates.data());
-  }
-
-  /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
-  /// stood in for only one is found at a time.
-  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
-    constexpr int rounds = 2;
-    for (int round = 0; round < rounds; ++round) {
-      const Explanation leader = fittest(candidates).explanation;
-      exchange_members(candidates, singles);
-      const Explanation& now = fittest(candidates).explanation;
-      if (now.size() == leader.size() && now.includes(leader)) return;
-    }
   }
 
   /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
@@ -380,8 +388,10 @@ private:
         other.effects[member] = single.effects.front();
         if (!is_known(candidates, other)) tries.push_back({{}, place, std::move(other)});
       }
+    if (tries.empty()) return;
     const FirstLook look(near, glimpse_, coarse_);
     add_fitted(candidates, tries, Attribution(look.some, look.few));
+    finish(candidates, fitted_to_the_end);
   }
 
   const Attribution& glimpse_;

@@ -199,7 +199,9 @@ private:
 
   /// @param sets  the most promising one first
   void add_sets(const std::vector<Promise>& sets) {
-    search_->add_sets(attempt_.candidates, sets, effects());
+    search_->add_sets(attempt_.candidates, sets);
+    renew();
+    search_->exchange(attempt_.candidates, effects());
     renew();
   }
 
