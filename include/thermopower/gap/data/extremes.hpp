@@ -18,15 +18,18 @@ struct Extreme {
   std::ptrdiff_t beside = 0;  ///< samples that have the one next to it
 };
 
-/// The largest value of a column, or the least. @param sorted  its samples, ascending, at least one  @param top  the largest
-inline Extreme extreme_of(const std::vector<double>& sorted, bool top) {
+/// The largest value of a column, or the least; where there is no other one, it is next to itself.
+/// @param samples  at least one  @param top  the largest
+inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
+  const auto is_beyond = [top](double one, double other) { return top ? one > other : one < other; };
   Extreme one;
-  one.value = top ? sorted.back() : sorted.front();
-  one.count = std::count(sorted.begin(), sorted.end(), one.value);
-  const auto last = static_cast<std::ptrdiff_t>(sorted.size()) - 1;
-  const std::ptrdiff_t at = std::min(one.count, last);
-  one.next = sorted[static_cast<std::size_t>(top ? last - at : at)];
-  one.beside = std::count(sorted.begin(), sorted.end(), one.next);
+  one.value = one.next = samples.front();
+  for (const double sample : samples)
+    if (is_beyond(sample, one.value)) one.value = sample;
+  for (const double sample : samples)
+    if (sample != one.value && (one.next == one.value || is_beyond(sample, one.next))) one.next = sample;
+  one.count = std::count(samples.begin(), samples.end(), one.value);
+  one.beside = std::count(samples.begin(), samples.end(), one.next);
   return one;
 }
 

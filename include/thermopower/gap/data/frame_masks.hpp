@@ -60,9 +60,9 @@ inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSp
   const double largest = steps.empty() ? 0.0 : *std::max_element(steps.begin(), steps.end());
   steps.erase(std::remove_if(steps.begin(), steps.end(), [&](double x) { return !(x > nothing * largest); }),
               steps.end());
-  std::sort(steps.begin(), steps.end());
-  for (std::size_t i = 1; i < steps.size(); ++i)
-    if (steps[i] <= steps[i - 1] * (1.0 + same)) return steps[i - 1];
+  SortedFromBelow sorted(std::move(steps));
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] <= sorted[i - 1] * (1.0 + same)) return sorted[i - 1];
   return 0.0;
 }
 

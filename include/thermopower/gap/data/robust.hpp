@@ -2,12 +2,14 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/sorted_from_below.hpp>
 #include <thermopower/gap/recording.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 /// @file robust.hpp
@@ -113,16 +115,16 @@ inline double quantum_of(const Eigen::VectorXd& values, double same = 1e-3) {
     previous = value;
     if (steps.size() >= enough) break;
   }
-  std::sort(steps.begin(), steps.end());
+  SortedFromBelow sorted(std::move(steps));
   constexpr std::size_t few = 10;
-  if (steps.size() < few) return steps.empty() ? 0.0 : steps.front();
-  const double needed = std::max(2.0, often * static_cast<double>(steps.size()));
-  for (std::size_t from = 0; from < steps.size();) {
+  if (sorted.size() < few) return sorted.size() == 0 ? 0.0 : sorted[0];
+  const double needed = std::max(2.0, often * static_cast<double>(sorted.size()));
+  // Where many steps are smaller, one that repeats only happens to.
+  for (std::size_t from = 0; static_cast<double>(from) <= odd * static_cast<double>(sorted.size());) {
+    const double step = sorted[from];
     std::size_t to = from;
-    while (to < steps.size() && steps[to] <= steps[from] * (1.0 + same)) ++to;
-    // Where many steps are smaller, this one only happens to repeat.
-    if (static_cast<double>(to - from) >= needed)
-      return static_cast<double>(from) <= odd * static_cast<double>(steps.size()) ? steps[from] : 0.0;
+    while (to < sorted.size() && sorted[to] <= step * (1.0 + same)) ++to;
+    if (static_cast<double>(to - from) >= needed) return step;
     from = to;
   }
   return 0.0;

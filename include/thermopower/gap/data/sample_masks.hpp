@@ -133,11 +133,10 @@ public:
   /// other samples come in. A range ends at the same magnitude on both sides: what one side proves, the other need not.
   RowMask clipped() {
     RowMask mask = empty();
-    std::vector<double> list = finite_samples(values_);
+    const std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
-    std::sort(list.begin(), list.end());
-    const bool is_mirrored = list.back() == -list.front();
     const std::array<Extreme, 2> ends{extreme_of(list, true), extreme_of(list, false)};
+    const bool is_mirrored = ends[0].value == -ends[1].value;
     const std::array<bool, 2> proven{is_clipped(ends[0]), is_clipped(ends[1])};
     for (std::size_t k = 0; k < 2; ++k) {
       if (!proven[k] && !(is_mirrored && proven[1 - k])) continue;
@@ -155,8 +154,7 @@ private:
   void add_ends(RowMask& mask) const {
     if (traits_.cannot_jump) return;  // a temperature nears its end slowly, and reads it for long
     if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return;
-    std::vector<double> list = finite_samples(values_);
-    std::sort(list.begin(), list.end());
+    const std::vector<double> list = finite_samples(values_);
     for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
       if (one.value == 0.0 || one.count < limit_.least_clipped) continue;
       std::ptrdiff_t masked = 0;

@@ -167,6 +167,7 @@ public:
     finish.relative_decrease = 1e-5;
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
     constexpr std::size_t looked_at = 6, related_to = 2;
+    std::vector<char> is_lost(candidates.size(), 0);
     for (std::size_t place = 0; place < std::min(looked_at, order.size()); ++place) {
       const double farthest = Attribution::out_of_sight * fittest(candidates).train.total();
       if (candidates[order[place]].train.total() > farthest) continue;
@@ -174,7 +175,7 @@ public:
       std::vector<std::size_t> rivals;
       std::size_t related = 0;
       for (std::size_t index : order) {
-        if (index == order[place] || index == 0) continue;
+        if (index == order[place] || index == 0 || is_lost[index]) continue;
         if (candidates[index].train.total() <= leader.train.total()) continue;  // nothing to learn there
         if (leader.explanation.includes(candidates[index].explanation) ||
             (place < related_to &&
@@ -184,7 +185,7 @@ public:
           rivals.push_back(index);
       }
       in_parallel(rivals.size(), threads_, [&](std::size_t i) {
-        fine_.refit_from(candidates[rivals[i]], leader, finish, decision.second_takes);
+        is_lost[rivals[i]] = !fine_.refit_from(candidates[rivals[i]], leader, finish, decision.second_takes);
       });
     }
   }
@@ -304,10 +305,13 @@ private:
     FitOptions in_sight = some;
     const Candidate& so_far = fittest(candidates);
     in_sight.hopeless = Attribution::out_of_sight * so_far.train.total();
-    order.erase(
-        std::remove_if(order.begin(), order.end(),
-                       [&](std::size_t i) { return i != 0 && is_out_of_reach(candidates[i], so_far); }),
-        order.end());
+    const double lost = Attribution::lost_from * so_far.train.total();
+    order.erase(std::remove_if(order.begin(), order.end(),
+                               [&](std::size_t i) {
+                                 return i != 0 && (is_out_of_reach(candidates[i], so_far) ||
+                                                   candidates[i].train.total() > lost);
+                               }),
+                order.end());
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
       if (one.settled) return;

@@ -191,13 +191,15 @@ public:
   /// the candidate has too, under their own names or, between effects of one submodel, under the same one. Keeps
   /// the better of both fits. Where the other one's effects have details that are free, the candidate's are freed, too,
   /// and stay so where they take away at least `share` of what is left above the noise.
-  void refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options,
+  /// @return whether the candidate was worth a fit: what is lost, where it ended and by the first derivatives there, has lost
+  ///         whatever its constants are
+  bool refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options,
                   double share) const {
     if (other.explanation.refined && candidate.explanation.can_be_refined()) {
       Candidate finer = with_details_free(candidate);
-      refit_from(finer, other, options, share);
+      const bool was_worth_it = refit_from(finer, other, options, share);
       if (takes_away(finer, candidate, share)) candidate = std::move(finer);
-      return;
+      return was_worth_it;
     }
     Eigen::VectorXd from = candidate.fit.point;
     for (std::size_t i = 0; i < candidate.list.size(); ++i)
@@ -209,16 +211,16 @@ public:
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     FitOptions in_sight = options;
     in_sight.hopeless = out_of_sight * other.train.total();
-    // What is lost, where it ended and by the first derivatives there, has lost whatever its constants are.
     const double lost = lost_from * other.train.total();
     if (candidate.train.total() > lost &&
         (runs_away(candidate, from, starts_of(other)) || !(fitter.scan(from, starts_of(other)) <= lost)))
-      return;
+      return false;
     FitResult again = fitter.minimise(from, in_sight, starts_of(other));
-    if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return;
+    if (starts_of(candidate) != nullptr && !(again.cost < fitter.cost(candidate.fit))) return true;
     candidate.fit = std::move(again);
     candidate.settled = false;
     candidate.train = candidate.fit.sums;
+    return true;
   }
 
 private:

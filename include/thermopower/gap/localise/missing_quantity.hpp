@@ -226,14 +226,15 @@ inline Ordered strongest_axis(const Observed& o) {
   Ordered best;
   constexpr int bins = 12, shifts = 12;
   for (const OrderingAxis& axis : o.axes) {
-    const double ratio = correlation_ratio(o.value, axis.values, bins);
+    const BinnedRows rows(axis.values, bins);
+    const double ratio = rows.correlation_ratio(o.value);
     if (ratio > best.ratio) {
       best.ratio = ratio;
       best.axis = axis.name;
     }
     for (int s = 1; s <= shifts; ++s) {
       const Eigen::Index shift = o.value.size() * (2 * s + 1) / (2 * shifts + 4);
-      best.chance = std::max(best.chance, correlation_ratio(o.value, axis.values, bins, shift));
+      best.chance = std::max(best.chance, rows.correlation_ratio(o.value, shift));
     }
   }
   return best;

@@ -17,32 +17,52 @@
 
 namespace thermopower::gap::engine {
 
-/// Share of the variance of `value` that the mean over bins of `variable` explains, 0..1.
-inline double correlation_ratio(const Eigen::VectorXd& value, const Eigen::VectorXd& variable, int bins,
-                                Eigen::Index shift = 0) {
-  const std::vector<double> edges = equal_count_edges(variable, bins);
-  if (edges.size() < 3) return 0.0;
-  const Eigen::Index bands = static_cast<Eigen::Index>(edges.size());
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(bands), count = Eigen::VectorXd::Zero(bands);
-  double total = 0.0, square = 0.0, n = 0.0;
-  for (Eigen::Index i = 0; i < value.size(); ++i) {
-    const double v = value[(i + shift) % value.size()];
-    if (!std::isfinite(v) || !std::isfinite(variable[i])) continue;
-    const Eigen::Index k = std::upper_bound(edges.begin() + 1, edges.end() - 1, variable[i]) - edges.begin();
-    sum[k] += v;
-    count[k] += 1.0;
-    total += v;
-    square += v * v;
-    n += 1.0;
+/// Rows sorted into bins of a variable, about as many in each.
+class BinnedRows {
+public:
+  /// @param variable  one value per row; rows without one are in no bin
+  BinnedRows(const Eigen::VectorXd& variable, int bins) {
+    const std::vector<double> edges = equal_count_edges(variable, bins);
+    if (edges.size() < 3) return;
+    bands_ = static_cast<Eigen::Index>(edges.size());
+    band_.reserve(static_cast<std::size_t>(variable.size()));
+    for (const double one : variable) {
+      const auto band = std::upper_bound(edges.begin() + 1, edges.end() - 1, one) - edges.begin();
+      band_.push_back(std::isfinite(one) ? static_cast<int>(band) : none_);
+    }
   }
-  if (n < 4.0) return 0.0;
-  const double variance = square - total * total / n;
-  double between = -total * total / n;
-  for (Eigen::Index k = 0; k < bands; ++k) {
-    if (count[k] > 0.0) between += sum[k] * sum[k] / count[k];
+
+  /// Share of the variance of `value` that its mean over the bins explains, 0..1.
+  /// @param value  one per row; those that are not finite are left out
+  /// @param shift  rows by which it is moved against the variable, in a circle; 0 to the number of rows
+  double correlation_ratio(const Eigen::VectorXd& value, Eigen::Index shift = 0) const {
+    if (bands_ == 0) return 0.0;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(bands_), count = Eigen::VectorXd::Zero(bands_);
+    double total = 0.0, square = 0.0, n = 0.0;
+    Eigen::Index at = shift;
+    for (const int band : band_) {
+      if (at == value.size()) at = 0;
+      const double v = value[at++];
+      if (band == none_ || !std::isfinite(v)) continue;
+      sum[band] += v;
+      count[band] += 1.0;
+      total += v;
+      square += v * v;
+      n += 1.0;
+    }
+    if (n < 4.0) return 0.0;
+    const double variance = square - total * total / n;
+    double between = -total * total / n;
+    for (Eigen::Index k = 0; k < bands_; ++k)
+      if (count[k] > 0.0) between += sum[k] * sum[k] / count[k];
+    return variance > 0.0 ? std::min(1.0, std::max(0.0, between / variance)) : 0.0;
   }
-  return variance > 0.0 ? std::min(1.0, std::max(0.0, between / variance)) : 0.0;
-}
+
+private:
+  static constexpr int none_ = -1;
+  Eigen::Index bands_ = 0;  ///< 0: the variable hardly varies
+  std::vector<int> band_;   ///< of each row
+};
 
 /// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most
 /// 2048 block means).
