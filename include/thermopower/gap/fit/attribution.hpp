@@ -46,7 +46,8 @@ public:
 
   /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
   /// the best one so far, and to the end from the best of them unless that is hopeless. Of a set, which begins where a part of it was
-  /// fitted, no further ones are tried where two explain much more than that, and as much as each other.
+  /// fitted, no further ones are tried where two explain much more than that, and as much as each other, or where two end far beyond
+  /// what is hopeless.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -56,9 +57,11 @@ public:
       FitOptions few = options;
       few.iterations = std::min(4, options.iterations);
       few.hopeful = few.iterations - 1;
+      int lost = 0;
       for (const Eigen::VectorXd& start : starts) {
         FitResult trial = fitter.minimise(start, few);
-        const bool enough = explanation.effects.size() > 1 && lead_alike(trial, candidate.fit);
+        lost += trial.cost > out_of_sight * options.hopeless ? 1 : 0;
+        const bool enough = explanation.effects.size() > 1 && (lead_alike(trial, candidate.fit) || lost == 2);
         if (trial.cost < candidate.fit.cost || candidate.fit.point.size() == 0)
           candidate.fit = std::move(trial);
         if (enough) break;
