@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each
-// length is generated in place as a motor in one run, as a motor in runs of 3000 rows, as a moving axis, and as one that lacks two causes;
-// written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
+// length is generated in place as a motor in one run, as a motor in runs of 3000 rows, as a moving axis, and as one that lacks two
+// causes: in one run, in runs of 1000 rows, and with what dirties a log; written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
 // least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
 #include "../../tools/thermopower-gap/keep_memory.hpp"
@@ -109,9 +109,9 @@ Model axis() {
   return model;
 }
 
-/// An axis with dry friction, driven by a few frequencies, logged at 100 Hz with noise.
+/// An axis with dry friction, driven by a few frequencies, logged at 100 Hz with noise. Every run of `run_rows` begins at rest.
 /// @param weight_Nm  of a load off the axis: a second cause
-Recording axis_recording(Eigen::Index rows, double weight_Nm = 0.0) {
+Recording axis_recording(Eigen::Index rows, double weight_Nm, Eigen::Index run_rows) {
   std::mt19937 random(2);
   std::normal_distribution<double> noise;
   Recording r;
@@ -121,6 +121,10 @@ Recording axis_recording(Eigen::Index rows, double weight_Nm = 0.0) {
   double angle_rad = 0.0, rate_rad_per_s = 0.0;
   const double interval = 0.01, degrees = 57.29577951308232;
   for (Eigen::Index i = 0; i < rows; ++i) {
+    if (i % run_rows == 0) {
+      angle_rad = rate_rad_per_s = 0.0;
+      r.runs.push_back({i, std::min(rows, i + run_rows), "r" + std::to_string(i / run_rows)});
+    }
     const double t_s = r.t_s[i] = interval * static_cast<double>(i);
     drive[i] = 0.1 * (std::sin(1.1 * t_s) + std::sin(2.9 * t_s + 1.0) + std::sin(7.3 * t_s + 2.0)) -
                0.05 * angle_rad;
@@ -139,6 +143,42 @@ Recording axis_recording(Eigen::Index rows, double weight_Nm = 0.0) {
   r.set("angle_deg", angle);
   r.set("rate_dps", rate);
   r.set("motor_C", motor_C);
+  return r;
+}
+
+/// The recording of an axis with a hundredth of its samples far off, a few missing, frames that repeat the one before them, and
+/// rows that were lost.
+Recording soiled(const Recording& clean) {
+  std::mt19937 random(3);
+  const auto one_in = [&](unsigned count) { return random() % count == 0; };
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < clean.rows(); ++i) {
+    if (i > 0 && one_in(30000)) i += 300;
+    if (i < clean.rows()) kept.push_back(i);
+  }
+  Recording r;
+  r.name = clean.name;
+  r.t_s = clean.t_s(kept);
+  for (const auto& column : clean.columns) {
+    Eigen::VectorXd values = column.values(kept);
+    if (column.name == "angle_deg" || column.name == "rate_dps") {
+      for (double& value : values) {
+        if (one_in(100)) value += (one_in(2) ? 1.0 : -1.0) * static_cast<double>(20 + random() % 400);
+        if (one_in(300)) value = std::nan("");
+      }
+    }
+    r.set(column.name, values);
+  }
+  r.runs.push_back({0, r.rows(), "r0"});
+  Eigen::VectorXd angle = *r.find("angle_deg"), rate = *r.find("rate_dps");
+  for (Eigen::Index i = 1; i < r.rows(); ++i)
+    if (one_in(2000))
+      for (auto k = 2 + random() % 20; k > 0 && i < r.rows(); --k, ++i) {
+        angle[i] = angle[i - 1];
+        rate[i] = rate[i - 1];
+      }
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
   return r;
 }
 
@@ -186,7 +226,7 @@ void measure(const char* what, const Model& model, const std::string& path, Eige
   options.threads = threads;
   const Diagnosis diagnosis = diagnose(model, train, held_out, options);
   const double end = now_s();
-  std::printf("%-14s %8td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", what,
+  std::printf("%-15s %8td rows, %u thread%s: %6.2f s, %4ld MB; reading %.2f", what,
               static_cast<std::ptrdiff_t>(rows), threads, threads == 1 ? " " : "s", end - begin, peak_MB(),
               read - begin);
   for (const auto& stage : diagnosis.timings) std::printf(", %s %.2f", stage.stage.c_str(), stage.seconds);
@@ -313,8 +353,10 @@ int main(int count, char** values) {
     };
     both("motor", motor(), [&] { return motor_recording(rows, rows); });
     both("motor in runs", motor(), [&] { return motor_recording(rows, 3000); });
-    both("axis", axis(), [&] { return axis_recording(rows); });
-    both("axis, 2 causes", axis(), [&] { return axis_recording(rows, 0.03); });
+    both("axis", axis(), [&] { return axis_recording(rows, 0.0, rows); });
+    both("axis, 2 causes", axis(), [&] { return axis_recording(rows, 0.03, rows); });
+    both("2 causes, runs", axis(), [&] { return axis_recording(rows, 0.03, 1000); });
+    both("2 causes, dirty", axis(), [&] { return soiled(axis_recording(rows, 0.03, rows)); });
   }
   std::filesystem::remove(path);
   compare_solvers();

@@ -91,7 +91,7 @@ public:
         if (length > shorter * shorter * failed) continue;
         const double promise = best.cost - promised_cost(trial.point - best.point);
         const double enough = options.relative_decrease * best.cost;
-        // One that promises no more than with what a fit ends is worth a look before others have failed.
+        // One that promises no more than that with which a fit ends is looked at as the first one only, and hardly any not at all.
         if (promise < (attempt == 0 ? hardly_worth_a_look : 1.0) * enough) continue;
         failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
