@@ -267,3 +267,29 @@ TEST_CASE(
   }
   CHECK(named >= 9);
 }
+
+TEST_CASE("a first reading that is off makes no gap, and hides none") {
+  const double off_K = GENERATE(0.4, 0.8, -0.8, 3.0);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const auto answer = [&](const test::BenchFault& fault, double conductance) {
+      Recording held_out = test::bench_recording(fault, 300, seed + 100);
+      Eigen::VectorXd motor_C = *held_out.find("motor_C");
+      motor_C[0] += off_K;
+      held_out.set("motor_C", motor_C);
+      Model model = test::bench_model();
+      std::get<LumpedThermalModel>(model.thermal).conductance_W_per_K *= conductance;
+      return diagnose(model, {test::bench_recording(fault, 900, seed)}, {held_out});
+    };
+    CAPTURE(off_K, seed);
+    CHECK(answer({}, 1.0).verdict == Verdict::no_gap);
+    CHECK(answer({}, 1.04).verdict == Verdict::no_gap);
+    test::BenchFault offset;
+    offset.sensor_offset_A = 0.05;
+    const Diagnosis biased = answer(offset, 1.0);
+    CHECK(biased.verdict == Verdict::explained);
+    CHECK(test::causes_of(biased) == std::vector<std::string>{"current_sensor_offset"});
+    test::BenchFault loss;
+    loss.extra_loss_W_per_K2 = 1e-3;
+    CHECK(answer(loss, 1.0).verdict != Verdict::no_gap);
+  }
+}

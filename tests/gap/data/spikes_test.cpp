@@ -250,3 +250,27 @@ TEST_CASE("a rate that returns to its largest value for a row at a time is not a
   const PreparedRecording prepared(test::axis_model(), r);
   for (const Finding& one : prepared.findings()) CHECK(one.kind != FindingKind::clipped_samples);
 }
+
+TEST_CASE("a first reading is far off where those after it do not go back to it") {
+  test::Noise noise(5);
+  const auto far = [&](double tau_rows, double rise, double off_sds, double sd) {
+    constexpr int samples_in_run = 60;
+    Eigen::VectorXd column(samples_in_run);
+    for (int i = 0; i < samples_in_run; ++i)
+      column[i] = 20.0 + rise * std::exp(-i / tau_rows) + sd * noise() + (i == 0 ? off_sds * sd : 0.0);
+    const OrderedSamples samples(column, nullptr, {0, samples_in_run, "r0"});
+    return first_reading_off(samples, sd, MaskThresholds().first_sds) > 0.0;
+  };
+  int seen = 0, false_alarms = 0;
+  constexpr int draws = 2000;
+  for (int k = 0; k < draws; ++k) {
+    const double tau_rows = 20.0 + 0.1 * k, rise = (k % 2 == 0 ? 1.0 : -1.0) * (k % 7);
+    seen += far(tau_rows, rise, k % 3 == 0 ? -8.0 : 8.0, 0.1) ? 1 : 0;
+    false_alarms += far(tau_rows, rise, 0.0, 0.1) ? 1 : 0;
+  }
+  CHECK(seen > 0.95 * draws);
+  CHECK(false_alarms <= draws / 500);
+  // A body that cools within a few rows begins far from where it ends, and so does what the next row reads.
+  for (const double tau_rows : {1.0, 2.0, 3.0, 5.0, 10.0})
+    for (const double rise : {-20.0, 20.0}) CHECK_FALSE(far(tau_rows, rise, 0.0, 0.01));
+}

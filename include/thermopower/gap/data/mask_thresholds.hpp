@@ -13,6 +13,7 @@ namespace thermopower::gap::engine {
 struct MaskThresholds {
   double spike_scales = 6.5;  ///< noise scales between a sample and the median of five around it
   double spike_bends = 3.0;   ///< of the second differences around it: where a signal bends, more is needed
+  double first_sds = 4.0;     ///< standard deviations of the first reading of a run off those after it
   std::size_t bends_around = 5;  ///< second differences before and after
   double worth_a_look =
       4.0;  ///< noise scales off the motion of four neighbours from which a sample is looked at

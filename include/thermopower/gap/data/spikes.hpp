@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/first_reading.hpp>
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/motion_spikes.hpp>
 #include <thermopower/gap/data/robust.hpp>
@@ -74,6 +75,7 @@ private:
     if (count < 7) return;
     std::vector<double> far(count, 0.0);
     far_from_the_median(values, run, samples, far);
+    if (traits_.cannot_jump) far_from_the_beginning(samples, far);
     far_from_the_motion(values, run, samples, motion_, far);
     if (besides.size() > 0)
       far_from_the_motion(values, run, OrderedSamples(besides, traits_.t_s, run), besides_ways_, far, true);
@@ -102,6 +104,13 @@ private:
       if (motion_confirmed_[static_cast<std::size_t>(row)] == 0 && !is_motion(values, run, row, off[i]))
         far[i] = off[i];
     }
+  }
+
+  /// Raises how far the first sample of a run lies. A body remembers what it starts from: there less is far than elsewhere.
+  void far_from_the_beginning(const OrderedSamples& samples, std::vector<double>& far) const {
+    const double off =
+        first_reading_off(samples, std::max(scale_, quantum_ / std::sqrt(12.0)), limit_.first_sds);
+    if (off > limit_.quanta * quantum_) far.front() = std::max(far.front(), off);
   }
 
   /// Sets how far samples lie from the median of five around them, where that is farther than a motion goes.

@@ -74,7 +74,8 @@ public:
     const Model& witness = follows_its_data(attempt.best()) ? best : model_;
     const Errors errors = errors_of(best, segments, catalogue_);
     const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_),
-                                           floor = floor_of(witness, errors, sigma, segments, catalogue_);
+                                           floor = floor_of(witness, errors, sigma, segments, catalogue_,
+                                                            FirstReadings::within_their_noise);
     for (std::size_t i = 0; i < signal_count; ++i)
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
     // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its

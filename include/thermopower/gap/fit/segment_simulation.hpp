@@ -79,7 +79,7 @@ inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment
 /// @param sigma  noise of each signal
 inline void fit_measured_start(const Plant& plant, Rollout& rollout, const Segment& segment,
                                const std::array<double, signal_count>& sigma, Start& start) {
-  constexpr double farthest_sd = 2.0, prior = 1.0;
+  constexpr double farthest_sd = 4.0, prior = 1.0;  // what is farther off is masked
   const std::vector<Signal>& signals = plant.signals(segment);
   std::vector<double> unit;
   for (const Signal signal : signals) unit.push_back(sigma[static_cast<std::size_t>(signal)]);

@@ -377,7 +377,8 @@ inline bool is_within_noise(const Model& model, const std::vector<Inputs>& input
   if (witness != nullptr &&
       witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
     for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
-  const std::array<double, signal_count> floor = floor_of(model, errors, sigma, full, catalogue);
+  const std::array<double, signal_count> floor =
+      floor_of(model, errors, sigma, full, catalogue, FirstReadings::as_they_are);
   for (std::size_t i = 0; i < signal_count; ++i) {
     const double by_chance = chance && noise[i].sd > 0.0
                                  ? std::min(noise[i].by_chance / noise[i].sd, decision.most_by_chance)
@@ -406,7 +407,8 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   // The augmented model is the fitted one where there is a cause, else the model as configured.
   const Errors& after = result.cause.empty() ? before : best;
   const std::array<double, signal_count> floor =
-      floor_of(fits ? fitted : model, best, noise_of(best, segments, inputs), segments, catalogue);
+      floor_of(fits ? fitted : model, best, noise_of(best, segments, inputs), segments, catalogue,
+               FirstReadings::as_they_are);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);

@@ -5,6 +5,7 @@
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/data/first_reading.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/report/noise_at_a_row.hpp>
 
@@ -201,12 +202,45 @@ inline double taken_back(const Readings& readings, const Segment& segment, int s
   return square > 0.0 ? product / square : 0.0;
 }
 
+/// What the whole runs are simulated from that a floor is for.
+enum class FirstReadings {
+  within_their_noise,  ///< where a start within their noise fits best
+  as_they_are          ///< the readings themselves
+};
+
+/// Whether a first reading of a whole run is off what its signal says after it.
+inline bool begins_off(const Plant& plant, const Segment& segment) {
+  constexpr double off_sds = 1.2;
+  constexpr Eigen::Index told_by = 24;
+  const RunSpan beginning{segment.begin, std::min(segment.end, segment.begin + told_by + 1), ""};
+  for (const Signal signal : plant.signals(segment))
+    if (segment.inputs->judged(signal) &&
+        BeforeOthers(OrderedSamples(segment.inputs->of(signal), nullptr, beginning), 0, told_by, 0.0)
+                .off_sds > off_sds)
+      return true;
+  return false;
+}
+
+/// What the measured start of a whole run is off as far as the model and the first readings by themselves say so; 0 where it is no more
+/// than noise. A perfect model simulates on from that.
+/// @param sd  noise of the start
+inline Start known_off(const Plant& plant, Rollout& rollout, const Segment& segment,
+                       const std::array<double, signal_count>& sigma, const Start& sd) {
+  constexpr double more_than_noise = 2.0;
+  Start off = Start::Zero(sd.size());
+  if (segment.axis || !begins_off(plant, segment)) return off;
+  const Start fitted = start_of(plant, rollout, segment, &sigma);
+  for (Eigen::Index i = 0; i < sd.size(); ++i)
+    if (sd[i] > 0.0 && std::abs(fitted[i]) > more_than_noise * sd[i]) off[i] = std::abs(fitted[i]);
+  return off;
+}
+
 /// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
 /// from, carried through the model. What nobody measures of that state is fitted, and takes a part of it back: of a window
 /// that starts an angle off, a rate that is a little off, too, leaves a quarter of the mean square.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
-                                                    const Catalogue& catalogue) {
+                                                    const Catalogue& catalogue, FirstReadings readings_are) {
   const Plant& plant = plant_of(model);
   std::array<double, signal_count> sum{}, count{};
   Readings readings;
@@ -216,7 +250,9 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   for (Segment segment : segments) {
     segment.carries_on = false;
     const Inputs& inputs = *segment.inputs;
-    const Start sd = rollout->measured_start_sd(segment, starts.at(segment));
+    Start sd = rollout->measured_start_sd(segment, starts.at(segment));
+    if (readings_are == FirstReadings::as_they_are)
+      sd = sd.cwiseMax(known_off(plant, *rollout, segment, sigma, sd));
     rollout->roll(segment, Start::Zero(sd.size()), readings);
     const std::vector<Signal>& signals = plant.signals(segment);
     Start back = Start::Zero(sd.size());
@@ -282,11 +318,12 @@ inline std::array<double, signal_count> wander_of_starts(const Model& model,
 
 /// What a perfect model would score where a command may be noisy, too.
 /// @param errors  of the best simulation  @param sigma  noise of the signals
+/// @param first   what the simulations begin with that it is for
 inline std::array<double, signal_count> floor_of(const Model& best, const Errors& errors,
                                                  const std::array<double, signal_count>& sigma,
                                                  const std::vector<Segment>& segments,
-                                                 const Catalogue& catalogue) {
-  std::array<double, signal_count> floor = noise_floor(best, segments, sigma, catalogue);
+                                                 const Catalogue& catalogue, FirstReadings first) {
+  std::array<double, signal_count> floor = noise_floor(best, segments, sigma, catalogue, first);
   const std::array<double, signal_count> wander = wander_of_command(best, segments, catalogue);
   const std::array<double, signal_count> carried = wander_of_starts(best, segments, sigma, catalogue);
   for (std::size_t i = 0; i < signal_count; ++i) {
