@@ -226,6 +226,7 @@ TEST_CASE("a servo's gains") {
 
 TEST_CASE("scalars: one that carries derivatives, one that writes itself down") {
   //! [dual]
+  static_assert(std::is_same_v<plant::Dual, plant::DualOf<12>>);  // derivatives in twelve directions
   plant::Dual volt(6.0);
   volt.seed(0);                                   // varies with direction 0
   const plant::Dual heat_W = volt * volt / 12.0;  // of 12 ohm

@@ -104,9 +104,10 @@ inline Interval interval_of(const Candidate& candidate, std::size_t place, const
   return {std::max(value - reach, one.lower), std::min(value + reach, one.upper)};
 }
 
-/// Whether the data narrow the range of a coordinate. @param interval  its interval_of()
+/// Whether the data narrow the range of a coordinate by a tenth at least. @param interval  its interval_of()
 inline bool is_narrower(const Interval& interval, const Coordinate& one) {
-  return interval.low > one.lower || interval.high < one.upper;
+  constexpr double hardly = 0.9;
+  return interval.high - interval.low < hardly * (one.upper - one.lower);
 }
 
 /// Whether a fit looked for a parameter as an effect's own: it is no detail of a shape, and moved.
@@ -141,8 +142,8 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
   }
 }
 
-/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all of its
-/// range. Then the data show that something is missing, and nothing of what.
+/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all but
+/// a tenth of its range at most. Then the data show that something is missing, and nothing of what.
 inline bool may_be_anything(const Candidate& candidate, const Model& model, const Weight& weight) {
   const Covariance covariance = covariance_of(candidate, weight);
   if (covariance.of.size() == 0) return false;

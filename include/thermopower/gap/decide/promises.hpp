@@ -27,28 +27,26 @@ inline std::vector<plant::SubmodelName> suspects_among(const std::vector<Locatio
   return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
 }
 
-/// A question to half of an axis' windows. Where all that there is so far leaves far more than noise, it tells as well as the whole
-/// one which explanations are worth more; else it stays the whole one.
-/// @param so_far    the best candidate
-/// @param together  so many windows in a row are kept or left out
-inline FitProblem halved(const Attribution& whole, const Candidate& so_far, Eigen::Index together = 1) {
-  FitProblem part = whole.problem();
-  if (so_far.train.within(search_extent.plain_above)) return part;
-  Eigen::Index rows = 0;
-  for (const Segment& one : part.segments)
-    if (one.axis && !one.warm_up) rows += one.end - one.begin;
-  part.segments = thinned_axis(part.segments, rows / 2, {}, together);
-  return part;
-}
-
-/// What explanations are first looked at in.
+/// What explanations are first looked at in. Where all that there is so far leaves far more than noise, half of an axis'
+/// windows tells as well as all of them which are worth more.
 struct FirstLook {
   FitProblem few;   ///< on which all are looked at
   FitProblem some;  ///< on which the best of those are
 
   /// @param so_far  the best candidate
   FirstLook(const Candidate& so_far, const Attribution& glimpse, const Attribution& coarse)
-      : few(halved(glimpse, so_far)), some(halved(coarse, so_far)) {}
+      : few(glimpse.problem()), some(coarse.problem()) {
+    if (so_far.train.within(search_extent.plain_above)) return;
+    for (FitProblem* one : {&few, &some}) one->segments = thinned_axis(one->segments, rows(*one) / 2);
+  }
+
+private:
+  static Eigen::Index rows(const FitProblem& problem) {
+    Eigen::Index count = 0;
+    for (const Segment& one : problem.segments)
+      if (one.axis && !one.warm_up) count += one.end - one.begin;
+    return count;
+  }
 };
 
 /// A set worth fitting.

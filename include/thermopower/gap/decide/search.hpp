@@ -48,7 +48,7 @@ public:
 
   /// The empty explanation and every single one, fitted to the first look's data alone.
   std::vector<Candidate> try_singles(const std::vector<Explanation>& singles) const {
-    std::vector<Candidate> tried{fit(coarse_, longer_, {}, quick())};
+    std::vector<Candidate> tried{fit(coarse_, {}, quick())};
     for (Candidate& one : fit_all(singles, tried.front())) tried.push_back(std::move(one));
     return tried;
   }
@@ -233,16 +233,15 @@ private:
   }
 
   /// A first fit, away from the fine data.
-  Candidate fit(const Attribution& coarse, const Attribution& longer, const Explanation& explanation,
-                const FitOptions& options, const Candidate* near = nullptr,
-                const std::vector<Eigen::VectorXd>& starts = {}) const {
-    const bool is_longer = wants_longer(explanation);
+  Candidate fit(const Attribution& coarse, const Explanation& explanation, const FitOptions& options,
+                const Candidate* near = nullptr, const std::vector<Eigen::VectorXd>& starts = {}) const {
+    const bool longer = wants_longer(explanation);
     FitOptions on_longer = options;
     on_longer.hopeless = FitOptions{}.hopeless;  // that was a cost on other data
     if (starts.empty())
-      return is_longer ? longer.fit(explanation, on_longer, near) : coarse.fit(explanation, options, near);
+      return longer ? longer_.fit(explanation, on_longer, near) : coarse.fit(explanation, options, near);
     Candidate found = coarse.fit_from(explanation, starts, options);
-    return is_longer ? longer.fit(explanation, on_longer, near, &found.fit.point) : found;
+    return longer ? longer_.fit(explanation, on_longer, near, &found.fit.point) : found;
   }
 
   /// Whether an explanation is fitted to longer segments.
@@ -256,11 +255,10 @@ private:
   std::vector<Candidate> fit_all(const std::vector<Explanation>& explanations,
                                  const Candidate& so_far) const {
     const FirstLook look(so_far, glimpse_, coarse_);
-    const FitProblem some_longer = halved(longer_, so_far, search_extent.windows_together);
-    const Attribution coarse(look.some, look.few), longer(some_longer);
+    const Attribution coarse(look.some, look.few);
     std::vector<Candidate> candidates(explanations.size());
     in_parallel(explanations.size(), threads_,
-                [&](std::size_t i) { candidates[i] = fit(coarse, longer, explanations[i], quick()); });
+                [&](std::size_t i) { candidates[i] = fit(coarse, explanations[i], quick()); });
     return candidates;
   }
 
@@ -362,8 +360,7 @@ private:
     FitOptions options = quick();
     options.iterations = 12;
     const auto fit_one = [&](std::size_t i) {
-      found[i] =
-          fit(coarse, longer_, sets[i].together, options, &candidates[sets[i].near], sets[i].guess.starts);
+      found[i] = fit(coarse, sets[i].together, options, &candidates[sets[i].near], sets[i].guess.starts);
     };
     fit_one(0);
     if (!wants_longer(sets.front().together))

@@ -257,7 +257,10 @@ private:
                             !leaves_little(result_, decision.may_leave_a_course) &&
                             has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
     if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));
-    const bool taken_back = short_of_noise || unproven || on_its_own;
+    // Rows as recorded may tell less than the averages that were searched.
+    const bool of_any_size = named && !unproven && !on_its_own && may_be_anything(chosen, model_, weight);
+    if (of_any_size) take_causes_back(result_, model_, nothing_known(may_be_of_any_size));
+    const bool taken_back = short_of_noise || unproven || on_its_own || of_any_size;
     if (taken_back && result_.verdict == Verdict::unexplained && suffice_by_chance(attempt))
       take_causes_back(result_, model_, nothing_missing());
     if (named && leaves_a_rest && !taken_back)

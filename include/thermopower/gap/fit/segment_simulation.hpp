@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/first_reading.hpp>
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 
@@ -74,12 +75,28 @@ inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment
   }
 }
 
+/// Whether a first reading of a whole run is off what its signal says after it.
+inline bool begins_off(const Plant& plant, const Segment& segment) {
+  constexpr double off_sds = 2.0;
+  constexpr Eigen::Index told_by = 40;
+  const RunSpan beginning{segment.begin, std::min(segment.end, segment.begin + told_by), ""};
+  const auto is_off = [&](Signal signal) {
+    return segment.inputs->judged(signal) &&
+           first_reading_off(OrderedSamples(segment.inputs->of(signal), nullptr, beginning), 0.0, off_sds) >
+               0.0;
+  };
+  const std::vector<Signal>& signals = plant.signals(segment);
+  return std::any_of(signals.begin(), signals.end(), is_off);
+}
+
 /// Moves the measured starts of a segment to where they fit its samples best, within their noise: a single reading is
-/// off by that much, and what it is off stays for as long as the body remembers.
+/// off by that much, and what it is off stays for as long as the body remembers. Where the first readings themselves say that one is
+/// off, farther: what is farther still is masked.
 /// @param sigma  noise of each signal
 inline void fit_measured_start(const Plant& plant, Rollout& rollout, const Segment& segment,
                                const std::array<double, signal_count>& sigma, Start& start) {
-  constexpr double farthest_sd = 4.0, prior = 1.0;  // what is farther off is masked
+  constexpr double prior = 1.0;
+  const double farthest_sd = begins_off(plant, segment) ? 4.0 : 2.0;
   const std::vector<Signal>& signals = plant.signals(segment);
   std::vector<double> unit;
   for (const Signal signal : signals) unit.push_back(sigma[static_cast<std::size_t>(signal)]);

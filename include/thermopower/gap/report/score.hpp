@@ -5,7 +5,6 @@
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/data/first_reading.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
 #include <thermopower/gap/report/noise_at_a_row.hpp>
 
@@ -207,19 +206,6 @@ enum class FirstReadings {
   within_their_noise,  ///< where a start within their noise fits best
   as_they_are          ///< the readings themselves
 };
-
-/// Whether a first reading of a whole run is off what its signal says after it.
-inline bool begins_off(const Plant& plant, const Segment& segment) {
-  constexpr double off_sds = 1.2;
-  constexpr Eigen::Index told_by = 24;
-  const RunSpan beginning{segment.begin, std::min(segment.end, segment.begin + told_by + 1), ""};
-  for (const Signal signal : plant.signals(segment))
-    if (segment.inputs->judged(signal) &&
-        BeforeOthers(OrderedSamples(segment.inputs->of(signal), nullptr, beginning), 0, told_by, 0.0)
-                .off_sds > off_sds)
-      return true;
-  return false;
-}
 
 /// What the measured start of a whole run is off as far as the model and the first readings by themselves say so; 0 where it is no more
 /// than noise. A perfect model simulates on from that.
