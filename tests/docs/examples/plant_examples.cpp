@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace gap = thermopower::gap;
 namespace plant = thermopower::plant;

@@ -91,8 +91,9 @@ public:
         if (length > shorter * shorter * failed) continue;
         const double promise = best.cost - promised_cost(trial.point - best.point);
         const double enough = options.relative_decrease * best.cost;
-        // One that promises no more than that with which a fit ends is looked at as the first one only, and hardly any not at all.
-        if (promise < (attempt == 0 ? hardly_worth_a_look : 1.0) * enough) continue;
+        // One that promises no more than that with which a fit ends is looked at as the first one only, but where blows make little of
+        // what is promised.
+        if (attempt > 0 && promise < enough && !explanation_.strikes()) continue;
         failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
         const bool look_ahead = attempt == 0 && best.iterations + 1 < options.iterations && promise > enough;
@@ -414,7 +415,6 @@ private:
 
   static constexpr double hardly_any =
       1e-3;  ///< of the cost: for so little a fit does not go on over rough ground
-  static constexpr double hardly_worth_a_look = 0.1;  ///< of the decrease with which a fit ends
   static constexpr double shorter = 0.9;  ///< than a step that failed is one worth trying, by its length
 
   const FitProblem& problem_;
