@@ -142,8 +142,8 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
   }
 }
 
-/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is all but
-/// a tenth of its range at most. Then the data show that something is missing, and nothing of what.
+/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is nine
+/// tenths of its range or more. Then the data show that something is missing, and nothing of what.
 inline bool may_be_anything(const Candidate& candidate, const Model& model, const Weight& weight) {
   const Covariance covariance = covariance_of(candidate, weight);
   if (covariance.of.size() == 0) return false;
