@@ -3,8 +3,8 @@
 
 // Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each
 // length is generated in place as a motor in one run, as a motor in runs of 3000 rows, as a moving axis, and as one that lacks two
-// causes: in one run, in runs of 1000 rows, and with what dirties a log; written as CSV, read, and diagnosed with the whole catalogue on one thread and on two. Then one
-// least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
+// causes: in one run, in runs of 1000 rows, and with what dirties a log; written as CSV, read, and diagnosed with the whole
+// catalogue on one thread and on two. Then one least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
 #include "../../tools/thermopower-gap/keep_memory.hpp"
 

@@ -30,6 +30,28 @@ std::vector<double> squares_by_segment(const FitProblem& problem, const Explanat
   return sums;
 }
 
+/// The windows of some recordings, as a fit is asked about them. @param model, inputs  must outlive it
+FitProblem posed(const Model& model, const std::vector<Inputs>& inputs) {
+  FitProblem problem = problem_of(model, inputs);
+  problem.sigma = thermopower::plant::for_each_signal(0.1);
+  problem.segments = cut(inputs, 0.5, plant_of(model));
+  return problem;
+}
+
+Explanation explanation_of(const std::vector<std::string>& ids) {
+  Explanation explanation;
+  for (const std::string& id : ids) explanation.effects.push_back(standard_catalogue().find(id));
+  return explanation;
+}
+
+/// Beside where coordinates start. @param by  as far, within their bounds
+Eigen::VectorXd beside_starts(const std::vector<Coordinate>& list, double by = 0.0) {
+  Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    at[static_cast<Eigen::Index>(i)] = std::clamp(list[i].start + by, list[i].lower, list[i].upper);
+  return at;
+}
+
 }  // namespace
 
 TEST_CASE("a sum of squares is that of the residuals, and ends early only above its limit") {
@@ -41,16 +63,10 @@ TEST_CASE("a sum of squares is that of the residuals, and ends early only above 
       moving ? test::axis_recording({0.02, 0.0, 1.0, 0}, 1500, 7) : test::bench_recording({}, 1500, 7);
   std::vector<Inputs> inputs{prepare(model, recording)};
   inputs.front().repeats = Eigen::VectorXd::LinSpaced(inputs.front().rows(), 1.0, 4.0);
-  FitProblem problem;
-  problem.model = &model;
-  problem.catalogue = &standard_catalogue();
-  problem.sigma = thermopower::plant::for_each_signal(0.1);
-  problem.segments = cut(inputs, 0.5, plant_of(model));
-  Explanation explanation;
-  explanation.effects.push_back(standard_catalogue().find(id));
+  const FitProblem problem = posed(model, inputs);
+  const Explanation explanation = explanation_of({id});
   const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
-  Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i) at[static_cast<Eigen::Index>(i)] = list[i].start;
+  const Eigen::VectorXd at = beside_starts(list);
   std::vector<Start> starts = problem.measured_starts();
   for (std::size_t i = 0; i < starts.size(); ++i) starts[i].setConstant(0.01 * static_cast<double>(i % 3));
   const std::vector<double> parts = squares_by_segment(problem, explanation, list, at, starts);
@@ -71,19 +87,12 @@ TEST_CASE(
     "residuals with their derivatives are those without, and what comes after a refusal is not looked at") {
   const Model model = axis_model();
   std::vector<Inputs> inputs{prepare(model, test::axis_recording({0.02, 0.0, 1.0, 0}, 1500, 7))};
-  FitProblem problem;
-  problem.model = &model;
-  problem.catalogue = &standard_catalogue();
-  problem.sigma = thermopower::plant::for_each_signal(0.1);
-  problem.segments = cut(inputs, 0.5, plant_of(model));
+  const FitProblem problem = posed(model, inputs);
   REQUIRE(problem.segments.size() > 4);
   // More coordinates than one pass of derivatives carries.
-  Explanation explanation;
-  for (const char* const id : {"compliance", "stribeck_friction", "cogging"})
-    explanation.effects.push_back(standard_catalogue().find(id));
+  const Explanation explanation = explanation_of({"compliance", "stribeck_friction", "cogging"});
   const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
-  Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i) at[static_cast<Eigen::Index>(i)] = list[i].start;
+  const Eigen::VectorXd at = beside_starts(list);
   const std::vector<Start> starts = problem.measured_starts();
   const std::vector<double> parts = squares_by_segment(problem, explanation, list, at, starts);
   for (const std::size_t most : {std::size_t{1}, std::size_t{3}, parts.size()}) {
@@ -104,23 +113,16 @@ TEST_CASE(
 TEST_CASE("a derivative is the same whatever other directions are asked for with it") {
   const Model model = axis_model();
   std::vector<Inputs> inputs{prepare(model, test::axis_recording({0.02, 0.0, 1.0, 0}, 600, 7))};
-  FitProblem problem;
-  problem.model = &model;
-  problem.catalogue = &standard_catalogue();
-  problem.sigma = thermopower::plant::for_each_signal(0.1);
-  problem.segments = cut(inputs, 0.5, plant_of(model));
+  const FitProblem problem = posed(model, inputs);
   const std::vector<Start> starts = problem.measured_starts();
   using Ids = std::vector<std::string>;
   std::set<bool> seen_wide;
   for (const Ids& ids : {Ids{"imbalance"}, Ids{"imbalance", "stribeck_friction"},
                          Ids{"imbalance", "stribeck_friction", "cogging"},
                          Ids{"compliance", "stribeck_friction", "cogging", "drive_lag", "torque_ripple"}}) {
-    Explanation explanation;
-    for (const std::string& id : ids) explanation.effects.push_back(standard_catalogue().find(id));
+    const Explanation explanation = explanation_of(ids);
     const std::vector<Coordinate> list = coordinates(model, explanation, standard_catalogue());
-    Eigen::VectorXd at(static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i)
-      at[static_cast<Eigen::Index>(i)] = std::clamp(list[i].start + 0.01, list[i].lower, list[i].upper);
+    const Eigen::VectorXd at = beside_starts(list, 0.01);
     const auto jacobian = [&](const std::vector<Coordinate>& asked) {
       std::vector<Eigen::MatrixXd> parts;
       problem.evaluate(explanation, asked, at, starts, true,

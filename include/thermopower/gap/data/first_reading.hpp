@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/linear_solve.hpp>
+#include <thermopower/gap/data/matrix_product.hpp>
 #include <thermopower/gap/data/neighbour_motion.hpp>
 
 #include <Eigen/Core>
@@ -34,9 +35,9 @@ struct BeforeOthers {
       powers.row(static_cast<Eigen::Index>(k)) << 1.0, x, x * x;
       falls[static_cast<Eigen::Index>(k)] = samples.values[place] - samples.values[other];
     }
-    Eigen::MatrixXd inverse = powers.transpose() * powers;
+    Eigen::MatrixXd inverse = gram(powers);
     invert_symmetric(inverse);
-    const Eigen::VectorXd fitted = inverse * (powers.transpose() * falls);
+    const Eigen::VectorXd fitted = transposed_times(inverse, transposed_times(powers, falls));
     const double left = (falls - powers * fitted).squaredNorm() / static_cast<double>(rows - terms);
     off = fitted[0];
     const double sd = std::max(noise, std::sqrt(left)) * std::sqrt(1.0 + inverse(0, 0));

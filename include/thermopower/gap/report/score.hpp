@@ -226,7 +226,7 @@ inline Start known_off(const Plant& plant, Rollout& rollout, const Segment& segm
 /// that starts an angle off, a rate that is a little off, too, leaves a quarter of the mean square.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
-                                                    const Catalogue& catalogue, FirstReadings readings_are) {
+                                                    const Catalogue& catalogue, FirstReadings first) {
   const Plant& plant = plant_of(model);
   std::array<double, signal_count> sum{}, count{};
   Readings readings;
@@ -237,8 +237,7 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
     segment.carries_on = false;
     const Inputs& inputs = *segment.inputs;
     Start sd = rollout->measured_start_sd(segment, starts.at(segment));
-    if (readings_are == FirstReadings::as_they_are)
-      sd = sd.cwiseMax(known_off(plant, *rollout, segment, sigma, sd));
+    if (first == FirstReadings::as_they_are) sd = sd.cwiseMax(known_off(plant, *rollout, segment, sigma, sd));
     rollout->roll(segment, Start::Zero(sd.size()), readings);
     const std::vector<Signal>& signals = plant.signals(segment);
     Start back = Start::Zero(sd.size());
