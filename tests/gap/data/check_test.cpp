@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
@@ -906,6 +907,43 @@ TEST_CASE("a frame repeated in motion is found in a log that rests nearly always
   CHECK(taken(r, prepared, "angle_deg") == bad);
 }
 
+TEST_CASE(
+    "frames repeated for long are masked wherever the axis moves, also where the frame reads nearly rest") {
+  const bool rate_first = GENERATE(false, true);
+  Recording r = test::axis_recording({}, 6000, 4);
+  test::Noise noise(11);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  constexpr Eigen::Index repeats = 15, apart = 97;  // more than what is looked at as single frames
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double t_s = 0.01 * static_cast<double>(i);
+    angle[i] = 40.0 * std::sin(2.0 * t_s) + 9.0 * std::sin(7.1 * t_s) + 0.02 * noise();
+    rate[i] = 80.0 * std::cos(2.0 * t_s) + 63.9 * std::cos(7.1 * t_s) + 0.15 * noise();
+    if (i < apart || i % apart >= repeats) continue;
+    angle[i] = angle[i - 1];
+    rate[i] = rate[i - 1];
+    bad.insert(i);
+  }
+  int nearly_at_rest = 0;
+  for (Eigen::Index i = apart; i < r.rows(); i += apart) nearly_at_rest += std::abs(rate[i]) < 8.0 ? 1 : 0;
+  REQUIRE(nearly_at_rest >= 4);
+  r.remove("angle_deg");
+  r.remove("rate_dps");
+  if (rate_first) r.set("rate_dps", rate);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  for (const char* column : {"angle_deg", "rate_dps"}) {
+    CAPTURE(column);
+    const std::set<Eigen::Index> out = taken(r, prepared, column);
+    std::vector<Eigen::Index> missed, sound;
+    std::set_difference(bad.begin(), bad.end(), out.begin(), out.end(), std::back_inserter(missed));
+    std::set_difference(out.begin(), out.end(), bad.begin(), bad.end(), std::back_inserter(sound));
+    CHECK(missed.empty());
+    CHECK(1000 * sound.size() < static_cast<std::size_t>(r.rows()));  // one beside a stretch now and then
+  }
+}
+
 TEST_CASE("what sticks and breaks away repeats no frame") {
   // It stands for 5 rows of 60, and goes by 4.4 deg in the others.
   Recording r;
@@ -1181,6 +1219,18 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
     const PreparedRecording stopped(model, one);
     CHECK(stopped.recording().spans().size() == 1);
     for (const Finding& finding : stopped.findings()) CHECK(finding.kind != FindingKind::position_reset);
+  }
+  // And one whose frames are repeated while the axis turns round, wherever that begins.
+  for (int from = 1300; from < 1460; from += 7) {
+    CAPTURE(from);
+    for (int i = 0; i < rows; ++i) {
+      angle[i] = 60.0 * std::sin(0.04 * i) + 5.0 * std::sin(0.17 * i) + 0.02 * noise();
+      rate[i] = 240.0 * std::cos(0.04 * i) + 85.0 * std::cos(0.17 * i) + 0.2 * noise();
+    }
+    for (int i = from + 1; i < from + 20; ++i) angle[i] = angle[from], rate[i] = rate[from];
+    one.set("angle_deg", angle);
+    one.set("rate_dps", rate);
+    CHECK(PreparedRecording(model, one).recording().spans().size() == 1);
   }
   // And one that goes on where the axis turns round, with a reading astray now and then while it stands.
   for (int i = 0; i < rows; ++i) {

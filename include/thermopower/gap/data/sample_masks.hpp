@@ -260,6 +260,19 @@ private:
     return !(std::abs(rate) > rest_rate());
   }
 
+  /// Whether a column that rarely stands stood, too, or was lost, from a row on: then frames were repeated, and it tells nothing. An
+  /// exact 0 is a rest.
+  bool repeats_too(const Eigen::VectorXd& other, Eigen::Index from, Eigen::Index to) const {
+    double stood_at = missing;
+    for (Eigen::Index row = from; row <= to; ++row) {
+      if (!std::isfinite(other[row])) continue;
+      if (other[row] == 0.0 || (std::isfinite(stood_at) && other[row] != stood_at)) return false;
+      stood_at = other[row];
+    }
+    if (other_equal_share_ < 0.0) other_equal_share_ = equal_share_of(step_sizes(other, runs_));
+    return other_equal_share_ < limit_.rarely_equal;
+  }
+
   double rest_rate() const {
     if (rest_rate_ >= 0.0) return rest_rate_;
     constexpr double rest_share = 0.05,  // of the rate's 90th percentile
@@ -409,10 +422,12 @@ private:
       if (end < rows.size() && catches_up(rows[begin], rows[end])) return true;
       std::size_t moving = 0;
       for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
-      if (2 * moving < end - begin)
+      if (2 * moving < end - begin && !repeats_too(*traits_.at_rest, rows[begin], rows[end - 1]))
         return went_somewhere(rows[begin], end < rows.size() ? rows[end] : rows[end - 1]);
     }
-    if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value)) return false;
+    if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value) &&
+        !repeats_too(*traits_.integral, rows[begin], rows[end - 1]))
+      return false;
     if (improbable && (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value))) return true;
     if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
     // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
@@ -441,7 +456,7 @@ private:
   ColumnTraits traits_;
   std::optional<Spikes> spikes_;  // which remember what the column was before samples were taken away
   double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
-  mutable double rest_rate_ = -1.0, position_quantum_ = -1.0;
+  mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0;
 };
 
 }  // namespace thermopower::gap::engine

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
 
 #include <algorithm>
@@ -37,6 +38,7 @@ struct SegmentThresholds {
   Eigen::Index reset_rows = 5;    ///< on both sides that know nothing of such a rate
   Eigen::Index glitch_rows = 50;  ///< what comes back within so many is a sensor's fault
   double comes_back = 0.2;        ///< of a jump by which the next one may miss where the first began
+  double nearly_all = 0.98;       ///< of the rates: what is beyond may be a spike's
   double went_on = 0.3;  ///< of a jump by which the rate may miss it where the angle stood still before
   Eigen::Index least_rows = 4;  ///< shorter segments tell nothing and are left out
 };
@@ -197,22 +199,35 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
                 "log without losing rows");
 }
 
-/// How far a rate says that an axis went while its angle stood still up to a row, the interval after that included; degrees.
-/// Where the rate stood still, too, it went on to what it is in the next row.
-inline double went_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
-                                  const Eigen::VectorXd& t_s, Eigen::Index row, Eigen::Index begin) {
-  double went = 0.0;
+/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may well stand.
+inline double fastest_that_rarely_stands(const Eigen::VectorXd& rate_dps, const std::vector<RunSpan>& runs) {
+  std::vector<double> rates = finite_samples(rate_dps.cwiseAbs());
+  const bool stands = !(equal_share_of(step_sizes(rate_dps, runs)) < MaskThresholds().rarely_equal);
+  return rates.empty() || stands ? 0.0 : quantile_of(rates, SegmentThresholds().nearly_all);
+}
+
+/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as far as its
+/// rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it is fast.
+/// @param fastest_dps  0: a rate that stands still tells as much as any other
+inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
+                                   double fastest_dps, const Eigen::VectorXd& t_s, Eigen::Index row,
+                                   Eigen::Index begin) {
+  const double jump = angle[row + 1] - angle[row];
+  double went = 0.0, read_dps = missing;
   Eigen::Index first = row;
-  bool stood = true;
+  bool is_one = true;
   const auto stands = [&](Eigen::Index i) {  // a spike in between says nothing
     return angle[i] == angle[row] || (i > begin && angle[i - 1] == angle[row]);
   };
   for (Eigen::Index i = row; i >= begin && stands(i); first = i--) {
-    stood = stood && rate_dps[i] == rate_dps[row];
-    if (std::isfinite(rate_dps[i])) went += rate_dps[i] * (t_s[i + 1] - t_s[i]);
+    if (!std::isfinite(rate_dps[i])) continue;
+    is_one = is_one && !(std::abs(rate_dps[i] - read_dps) > 0.0);
+    read_dps = rate_dps[i];
+    went += rate_dps[i] * (t_s[i + 1] - t_s[i]);
   }
-  const bool repeats = stood && first < row && std::isfinite(rate_dps[row + 1]);
-  return repeats ? 0.5 * (rate_dps[row] + rate_dps[row + 1]) * (t_s[row + 1] - t_s[first]) : went;
+  if (fastest_dps > 0.0 && is_one && first < row && read_dps != 0.0)
+    return std::abs(jump) <= fastest_dps * (t_s[row + 1] - t_s[first]);
+  return std::abs(went - jump) <= SegmentThresholds().went_on * std::abs(jump);
 }
 
 /// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
@@ -225,6 +240,7 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
   constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
   const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
+  const double fastest_dps = rate_dps != nullptr ? fastest_that_rarely_stands(*rate_dps, runs) : 0.0;
   RowMask cut(starts.size(), 0);
   double largest = 0.0;
   for (const RunSpan& run : runs)
@@ -245,8 +261,7 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
         is_reset = !(k + 1 + i < run.end && is_burst(k, k + 1 + i, k + i)) &&
                    !(k - i >= run.begin && is_burst(k - i, k + 1, k - i));
       if (is_reset && rate_dps != nullptr)
-        is_reset = std::abs(went_while_standing(angle, *rate_dps, t_s, k, run.begin) - jump) >
-                   limit.went_on * std::abs(jump);
+        is_reset = !went_on_while_standing(angle, *rate_dps, fastest_dps, t_s, k, run.begin);
       if (!is_reset) continue;
       cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
