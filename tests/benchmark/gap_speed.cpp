@@ -2,8 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Time and memory of a whole diagnosis: gap_speed [rows ...], 100000 and 1000000 without arguments. Each
-// length is generated in place as a motor in one run, as a motor in runs of 3000 rows, as a moving axis, and as one that lacks two
-// causes: in one run, in runs of 1000 rows, and with what dirties a log; written as CSV, read, and diagnosed with the whole
+// length is generated in place as a motor in one run, in runs of 3000 rows, and with what dirties a log, as a moving axis, and as one
+// that lacks two causes: in one run, in runs of 1000 rows, and dirty; written as CSV, read, and diagnosed with the whole
 // catalogue on one thread and on two. Then one least-squares fit of the same residuals, with the same derivatives, by this library and by Ceres.
 
 #include "../../tools/thermopower-gap/keep_memory.hpp"
@@ -32,6 +32,7 @@
 #include <filesystem>
 #include <random>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 using namespace thermopower::gap;
@@ -146,9 +147,10 @@ Recording axis_recording(Eigen::Index rows, double weight_Nm, Eigen::Index run_r
   return r;
 }
 
-/// The recording of an axis with a hundredth of its samples far off, a few missing, frames that repeat the one before them, and
-/// rows that were lost.
-Recording soiled(const Recording& clean) {
+/// A recording with a hundredth of the samples of some columns far off, a few missing, frames that repeat the one before them,
+/// and rows that were lost.
+/// @param columns  with how far off a sample is at least, in their units; at most 21 times as far
+Recording soiled(const Recording& clean, const std::vector<std::pair<const char*, double>>& columns) {
   std::mt19937 random(3);
   const auto one_in = [&](unsigned count) { return random() % count == 0; };
   std::vector<Eigen::Index> kept;
@@ -159,26 +161,24 @@ Recording soiled(const Recording& clean) {
   Recording r;
   r.name = clean.name;
   r.t_s = clean.t_s(kept);
-  for (const auto& column : clean.columns) {
-    Eigen::VectorXd values = column.values(kept);
-    if (column.name == "angle_deg" || column.name == "rate_dps") {
-      for (double& value : values) {
-        if (one_in(100)) value += (one_in(2) ? 1.0 : -1.0) * static_cast<double>(20 + random() % 400);
-        if (one_in(300)) value = std::nan("");
-      }
-    }
-    r.set(column.name, values);
-  }
+  for (const auto& column : clean.columns) r.set(column.name, column.values(kept));
   r.runs.push_back({0, r.rows(), "r0"});
-  Eigen::VectorXd angle = *r.find("angle_deg"), rate = *r.find("rate_dps");
+  for (const auto& [name, least] : columns) {
+    Eigen::VectorXd values = *r.find(name);
+    for (double& value : values) {
+      if (one_in(100))
+        value += (one_in(2) ? 1.0 : -1.0) * (1.0 + 0.05 * static_cast<double>(random() % 400)) * least;
+      if (one_in(300)) value = std::nan("");
+    }
+    r.set(name, values);
+  }
+  std::vector<Eigen::VectorXd> outputs;
+  for (const auto& column : columns) outputs.push_back(*r.find(column.first));
   for (Eigen::Index i = 1; i < r.rows(); ++i)
     if (one_in(2000))
-      for (auto k = 2 + random() % 20; k > 0 && i < r.rows(); --k, ++i) {
-        angle[i] = angle[i - 1];
-        rate[i] = rate[i - 1];
-      }
-  r.set("angle_deg", angle);
-  r.set("rate_dps", rate);
+      for (auto k = 2 + random() % 20; k > 0 && i < r.rows(); --k, ++i)
+        for (Eigen::VectorXd& output : outputs) output[i] = output[i - 1];
+  for (std::size_t c = 0; c < columns.size(); ++c) r.set(columns[c].first, outputs[c]);
   return r;
 }
 
@@ -356,7 +356,12 @@ int main(int count, char** values) {
     both("axis", axis(), [&] { return axis_recording(rows, 0.0, rows); });
     both("axis, 2 causes", axis(), [&] { return axis_recording(rows, 0.03, rows); });
     both("2 causes, runs", axis(), [&] { return axis_recording(rows, 0.03, 1000); });
-    both("2 causes, dirty", axis(), [&] { return soiled(axis_recording(rows, 0.03, rows)); });
+    both("motor, dirty", motor(), [&] {
+      return soiled(motor_recording(rows, rows), {{"current_A", 0.1}, {"motor_C", 2.0}});
+    });
+    both("2 causes, dirty", axis(), [&] {
+      return soiled(axis_recording(rows, 0.03, rows), {{"angle_deg", 20.0}, {"rate_dps", 20.0}});
+    });
   }
   std::filesystem::remove(path);
   compare_solvers();

@@ -944,6 +944,37 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "frames repeated where an axis starts from rest are seen by a fine angle, not where that stands at rest, too") {
+  const bool is_fine = GENERATE(true, false), repeats = GENERATE(true, false);
+  CAPTURE(is_fine, repeats);
+  Recording r = test::axis_recording({}, 6000, 4);
+  test::Noise noise(5);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  double at_deg = 0.0, dps = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    // Every 300 rows: rests for 150, speeds up by 6 deg/s a row for 75, and slows down.
+    const Eigen::Index row = i % 300;
+    dps = row < 150 ? 0.0 : 6.0 * static_cast<double>(std::min(row - 149, 300 - row));
+    const double moves_dps = i / 300 % 2 == 0 ? dps : -dps;
+    at_deg += 0.01 * moves_dps;
+    rate[i] = 0.1 * std::round((moves_dps + 0.04 * noise()) / 0.1);
+    const double read_deg = is_fine || dps > 0.0 ? at_deg + 0.01 * noise() : at_deg;
+    angle[i] = std::round(read_deg * 1e4) / 1e4;
+    if (row == 148) rate[i] = 0.0;
+    if (row < 149 || row > 151 || !repeats) continue;
+    rate[i] = rate[i - 1];
+    angle[i] = angle[i - 1];
+    bad.insert(i);
+  }
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked) == (is_fine && repeats));
+  if (is_fine) CHECK(taken(r, prepared, "rate_dps") == bad);
+}
+
 TEST_CASE("what sticks and breaks away repeats no frame") {
   // It stands for 5 rows of 60, and goes by 4.4 deg in the others.
   Recording r;

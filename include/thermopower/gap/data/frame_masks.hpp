@@ -67,6 +67,45 @@ inline double finest_step(const Eigen::VectorXd& values, const std::vector<RunSp
   return 0.0;
 }
 
+/// Rests of an output that reads an exact 0 there: whether the others stand for as long meanwhile. Of a fine angle the noise
+/// shows at rest, too.
+class Rests {
+public:
+  /// @param same  of each row: 2 where all outputs are the same as in the row before
+  Rests(const std::vector<const Eigen::VectorXd*>& outputs, const std::vector<char>& same,
+        const std::vector<RunSpan>& runs)
+      : outputs_(outputs) {
+    for (const Eigen::VectorXd* one : outputs) {
+      double rows = 0.0, single = 0.0, more = 0.0;
+      for (const RunSpan& run : runs)
+        for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+          if ((*one)[i] != 0.0 || (*one)[i - 1] != 0.0) continue;
+          rows += 1.0;
+          const auto row = static_cast<std::size_t>(i);
+          if (same[row] != 2) continue;
+          const bool is_single = same[row - 1] != 2 && (i + 1 == run.end || same[row + 1] != 2);
+          (is_single ? single : more) += 1.0;
+        }
+      rows_.push_back(rows);
+      stand_.push_back(more > FrameThresholds().by_chance * rows ? 1.0 : (single + 1.0) / (rows + 1.0));
+    }
+  }
+
+  /// Whether a frame that stands for some rows may be a rest.
+  bool may_be(Eigen::Index row, Eigen::Index lasts) const {
+    for (std::size_t c = 0; c < outputs_.size(); ++c)
+      if ((*outputs_[c])[row] == 0.0 &&
+          !(rows_[c] * std::pow(stand_[c], static_cast<double>(lasts)) < FrameThresholds().never_by_chance))
+        return true;
+    return false;
+  }
+
+private:
+  const std::vector<const Eigen::VectorXd*>& outputs_;
+  std::vector<double> rows_;   ///< of rests of each output
+  std::vector<double> stand_;  ///< share of these in which all stand by chance
+};
+
 /// Rows that repeat all outputs of the row before them (at most a few in a row), where the outputs change at every
 /// other row around them, or catch up at once with what they missed.
 inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& outputs,
@@ -161,6 +200,7 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
     as_fast_as[k].rows += as_fast_as[k + 1].rows;
     as_fast_as[k].repeats += as_fast_as[k + 1].repeats;
   }
+  const Rests rests(outputs, same, runs);
   const auto around_of = [&](const RunSpan& run, Eigen::Index begin, Eigen::Index end) {
     return std::pair{std::max(run.begin + 1, begin - around), std::min(run.end, end + around)};
   };
@@ -207,15 +247,13 @@ inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& output
       }
       Eigen::Index end = i;
       while (end < run.end && same[static_cast<std::size_t>(end)] == 2) ++end;
-      // An exact 0 is what a good sensor reads at rest: what sticks, and then breaks away, repeats no frame.
-      const bool rests = std::any_of(outputs.begin(), outputs.end(),
-                                     [&](const Eigen::VectorXd* one) { return (*one)[i] == 0.0; });
       const std::size_t moves =
           std::max(speed[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(end - 1)]);
       const Odds& alike = as_fast_as[moves - std::min(moves, frames.slower_speeds)];
       const Odds& odds = outputs.size() < 2 || alike.rows < frames.least_moving ? overall : alike;
       const double by_chance = odds.rows * std::pow(odds.chance, static_cast<double>(end - i));
-      if (!rests && end - i <= frames.longest_repeat &&
+      // What sticks, and then breaks away, repeats no frame.
+      if (!rests.may_be(i, end - i) && end - i <= frames.longest_repeat &&
           ((odds.repeats_are_rare() && is_alone(run, i, end)) ||
            (by_chance < frames.never_by_chance && catches_up(run, i, end))))
         for (Eigen::Index k = i; k < end; ++k) mask[static_cast<std::size_t>(k)] = 1;
