@@ -73,3 +73,19 @@ TEST_CASE("a fault that begins in the middle of a run is said with its time") {
   REQUIRE(half.where.front().only_in.front().from_s);
   CHECK(*half.where.front().only_in.front().from_s == Approx(20.0).margin(2.5));
 }
+
+TEST_CASE(
+    "what shows from the first row of a short run on did not begin later, where fewer rows cannot tell") {
+  const Eigen::Index rows = GENERATE(150, 170, 200, 230, 260, 300, 400);
+  CAPTURE(rows);
+  test::AxisFault fault;
+  fault.spring_Nm_per_rad = 0.02;
+  const Recording whole = test::axis_recording(fault, 3000, 3);
+  Recording cut = named(whole, "one");
+  cut.runs = {{0, rows, "a"}, {rows, 3000, "a"}};
+  const Localisation all =
+      found(test::axis_model(), {cut}, {named(test::axis_recording(fault, 3000, 4), "two")});
+  REQUIRE_FALSE(all.where.empty());
+  for (const Location& one : all.where)
+    for (const Occurrence& run : one.only_in) CHECK_FALSE(run.from_s);
+}

@@ -89,16 +89,20 @@ public:
   /// Up to when it holds, of one that does not hold to the end; none: there is no such time.
   std::optional<double> holds_until_s() const {
     int held = 0;
-    for (int end = 1; end < limit_.stretches && left_before(end) <= limit_.holds; ++end) held = end;
+    for (int end = 1; end < limit_.stretches && left_before(end) <= limit_.holds; ++end)
+      if (tells_before(end)) held = end;
     if (held < limit_.first || !could_show_before(held)) return {};
     const Eigen::Index row = balance_.rows->size() * held / limit_.stretches;
     return balance_.rows->t_s[std::min(row, balance_.rows->size() - 1)];
   }
 
 private:
+  /// Whether the rows before a stretch are enough to tell anything.
+  bool tells_before(int stretch) const { return (stretch_.array() < stretch).count() >= stage_.least_rows; }
+
   double left_before(int stretch) const {
+    if (!tells_before(stretch)) return 0.0;
     const Problem part = part_of(whole_, stretch_, 0, stretch);
-    if (part.y.size() < stage_.least_rows) return 0.0;
     return sum_of_squares_left(part, Eigen::MatrixXd(part.y.size(), 0)) /
            (floor_per_row_ * static_cast<double>(part.y.size()));
   }
