@@ -342,6 +342,12 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
     masks.take(lost);
     list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
                   "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+    const RowMask held = held_over_steps(values, *power, runs, masks.scale());
+    take_away(values, held);
+    masks.take(held);
+    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, held, FindingAction::masked,
+                  "still read what they did before the power stepped, which shows at once otherwise",
+                  "look at what reads the sensor");
   }
   RowMask spikes = masks.spikes();
   // Where the power steps too often to be looked at in between: what it leaves.
