@@ -974,3 +974,41 @@ TEST_CASE(
   for (std::size_t i = 0; i < followed.gap.size(); ++i)
     CHECK(missed.gap[i].noise_floor < followed.gap[i].noise_floor);
 }
+
+TEST_CASE("a beginning that bends, as that of a thermometer that lags, is no first reading that is off") {
+  constexpr int draws = 40;
+  constexpr double noise_C = 0.05;
+  const Model model = test::bench_model();
+  const auto begin_off = [&](bool lags, double off_C) {
+    int count = 0;
+    for (unsigned seed = 1; seed <= draws; ++seed) {
+      constexpr Eigen::Index rows = 200;
+      test::Noise noise(seed);
+      Recording recording;
+      recording.name = "beginning";
+      recording.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, rows - 1.0);
+      Eigen::VectorXd motor(rows);
+      double body_C = 24.0, shown_C = 24.0;
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        motor[i] = (lags ? shown_C : body_C) + noise_C * noise();
+        for (int k = 0; k < 10; ++k) {
+          body_C += 0.1 * (0.5 - 0.01 * (body_C - 24.0));
+          shown_C += 0.1 * (body_C - shown_C) / 8.0;
+        }
+      }
+      motor[0] += off_C;
+      recording.set("power_param", Eigen::VectorXd::Constant(rows, 180.0));
+      recording.set("ambient_C", Eigen::VectorXd::Constant(rows, 24.0));
+      recording.set("motor_C", motor);
+      const std::vector<Inputs> inputs{prepare(model, recording)};
+      const std::vector<Segment> segments = cut(inputs, 0.0, plant_of(model));
+      REQUIRE(segments.size() == 1);
+      count += begins_off(plant_of(model), segments.front()) ? 1 : 0;
+    }
+    return count;
+  };
+  // A first sample is off by more than 1.2 deviations by chance in one of five.
+  CHECK(begin_off(false, 0.0) < draws / 2);
+  CHECK(begin_off(true, 0.0) < draws / 2);
+  CHECK(begin_off(false, 6.0 * noise_C) > 9 * draws / 10);
+}

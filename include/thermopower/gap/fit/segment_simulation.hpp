@@ -75,16 +75,15 @@ inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment
   }
 }
 
-/// Whether a first reading of a whole run is off what its signal says after it.
+/// Whether a first reading of a whole run is off what its signal says after it, alone: a steep or bent beginning is the signal's.
 inline bool begins_off(const Plant& plant, const Segment& segment) {
   constexpr double off_sds = 1.2;
-  constexpr std::size_t told_by = 24;
-  const Eigen::Index end = segment.begin + static_cast<Eigen::Index>(told_by) + 1;
-  const RunSpan beginning{segment.begin, std::min(segment.end, end), ""};
+  constexpr Eigen::Index told_by = 26;  // rows: two more than the longest parabola
+  const RunSpan beginning{segment.begin, std::min(segment.end, segment.begin + told_by), ""};
   const auto is_off = [&](Signal signal) {
     if (!segment.inputs->judged(signal)) return false;
     const OrderedSamples samples(segment.inputs->of(signal), nullptr, beginning);
-    return BeforeOthers(samples, 0, told_by, 0.0).off_sds > off_sds;
+    return first_reading_off(samples, 0.0, off_sds) > 0.0;
   };
   const std::vector<Signal>& signals = plant.signals(segment);
   return std::any_of(signals.begin(), signals.end(), is_off);
