@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -240,7 +241,7 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
   constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
   const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
-  const double fastest_dps = rate_dps != nullptr ? fastest_that_rarely_stands(*rate_dps, runs) : 0.0;
+  std::optional<double> fastest_dps;  // of the whole recording: asked where something jumps
   RowMask cut(starts.size(), 0);
   double largest = 0.0;
   for (const RunSpan& run : runs)
@@ -260,8 +261,10 @@ inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const 
       for (Eigen::Index i = 1; i <= limit.glitch_rows && is_reset; ++i)
         is_reset = !(k + 1 + i < run.end && is_burst(k, k + 1 + i, k + i)) &&
                    !(k - i >= run.begin && is_burst(k - i, k + 1, k - i));
-      if (is_reset && rate_dps != nullptr)
-        is_reset = !went_on_while_standing(angle, *rate_dps, fastest_dps, t_s, k, run.begin);
+      if (is_reset && rate_dps != nullptr) {
+        if (!fastest_dps) fastest_dps = fastest_that_rarely_stands(*rate_dps, runs);
+        is_reset = !went_on_while_standing(angle, *rate_dps, *fastest_dps, t_s, k, run.begin);
+      }
       if (!is_reset) continue;
       cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
