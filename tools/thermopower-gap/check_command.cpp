@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "command.hpp"
+#include "command_options.hpp"
+#include "program.hpp"
+#include "progress.hpp"
+
+#include <thermopower/gap.hpp>
+#include <thermopower/io.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+namespace gap = thermopower::gap;
+namespace io = thermopower::io;
+
+namespace {
+
+int check(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  refuse_overlaps(arguments);
+  io::OutputFiles outputs;
+  if (!arguments.report.empty()) outputs.expect(arguments.report);
+  gap::DataReport report;
+  {
+    Progress progress;
+    const gap::Model model = io::read_model(arguments.model, catalogue);
+    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
+    std::vector<gap::Finding> findings;
+    const std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
+    const std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
+    gap::Options options;
+    options.horizon_s = arguments.horizon_s;
+    options.as_recorded = arguments.as_recorded;
+    progress.stage("checking");
+    report = gap::check_data(model, recordings, held_out, options, catalogue);
+    report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+    if (!arguments.report.empty()) outputs.put(arguments.report, io::check_json(report));
+    outputs.commit();
+  }
+  std::fputs(io::check_text(report).c_str(), stdout);
+  return gap::deciding(report.findings) != nullptr || !report.too_little.empty() ? too_little_data : made;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& program) {
+  const auto asked = std::make_shared<Arguments>();
+  CLI::App* const app = program.add_subcommand(
+      "check", "say what is wrong with recordings, and what they can show; nothing is fitted");
+  app->add_option("--model", asked->model, "the simulation under test (JSON)")->required();
+  add_recordings(*app, *asked, "a recording");
+  app->add_option("--heldout", asked->held_out, "a recording to judge on; may be repeated");
+  app->add_option("--report", asked->report, "write the same for machines (JSON)");
+  add_horizon(*app, *asked)->capture_default_str();
+  add_as_recorded(*app, *asked);
+  add_column_choices(*app, *asked);
+  return {app, [asked] { return check(*asked); }};
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "command_options.hpp"
+
+#include <string>
+
+// What Options::validate() takes, as a fault of the usage.
+const CLI::Validator seconds(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool fine = CLI::detail::lexical_cast(text, value) && value >= 1e-6 && value <= 1e9;
+      return fine ? std::string() : "'" + text + "' is not a number of seconds from 1e-6 to 1e9";
+    },
+    "1e-6..1e9");
+// CLI11's own takes nan for a number within.
+const CLI::Validator share(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool fine = CLI::detail::lexical_cast(text, value) && value >= 0.0 && value <= 0.5;
+      return fine ? std::string() : "'" + text + "' is not a number from 0 to 0.5";
+    },
+    "0..0.5");
+
+const char* const recording_kinds = "CSV, MCAP, SimpleBGC capture";
+
+void add_recordings(CLI::App& app, Arguments& arguments, const char* help) {
+  app.add_option("--recording", arguments.recordings,
+                 std::string(help) + " (" + recording_kinds + "); may be repeated")
+      ->required();
+}
+
+void add_column_choices(CLI::App& app, Arguments& arguments) {
+  app.add_option("--column", arguments.columns,
+                 "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
+                 "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
+  app.add_option("--map", arguments.maps, "a file of such lines, as 'columns FILE --proposal' writes it");
+}
+
+CLI::Option* add_horizon(CLI::App& app, Arguments& arguments) {
+  return app.add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(seconds);
+}
+
+void add_as_recorded(CLI::App& app, Arguments& arguments) {
+  app.add_flag("--as-recorded", arguments.as_recorded,
+               "mask and cut nothing: say what is wrong with the data, and use them all the same");
+}
+
+void add_simulator_exports(CLI::App& app, Arguments& arguments) {
+  app.add_option("--mjcf", arguments.mjcf, "write the axis as a model of MuJoCo (MJCF)");
+  app.add_option("--urdf", arguments.urdf, "write the axis as a joint (URDF)");
+}

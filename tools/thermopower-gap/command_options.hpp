@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#pragma once
+
+#include "program.hpp"
+
+#include <CLI/CLI.hpp>
+
+/// @brief What `--recording` takes, for help texts.
+extern const char* const recording_kinds;
+
+/// @brief Takes a number of seconds, as Options::validate() does.
+extern const CLI::Validator seconds;
+/// @brief Takes a share from 0 to 0.5; nan is none.
+extern const CLI::Validator share;
+
+/// @brief Adds `--recording`, required and repeatable.
+void add_recordings(CLI::App& app, Arguments& arguments, const char* help);
+/// @brief Adds `--column` and `--map`.
+void add_column_choices(CLI::App& app, Arguments& arguments);
+/// @brief Adds `--horizon`.
+CLI::Option* add_horizon(CLI::App& app, Arguments& arguments);
+/// @brief Adds `--as-recorded`.
+void add_as_recorded(CLI::App& app, Arguments& arguments);
+/// @brief Adds `--mjcf` and `--urdf`.
+void add_simulator_exports(CLI::App& app, Arguments& arguments);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "command.hpp"
+#include "command_options.hpp"
+#include "program.hpp"
+#include "progress.hpp"
+
+#include <thermopower/gap.hpp>
+#include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/io.hpp>
+#include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <utility>
+
+namespace gap = thermopower::gap;
+namespace io = thermopower::io;
+
+int diagnose(const Arguments& arguments) {
+  const gap::Catalogue& catalogue = gap::standard_catalogue();
+  if (!arguments.of_fleet) refuse_overlaps(arguments);
+  io::OutputFiles outputs;
+  for (const auto* path : arguments.outputs()) {
+    if (!path->empty() && !arguments.of_fleet) outputs.expect(*path);
+  }
+  gap::Diagnosis diagnosis;
+  gap::Model model;
+  {
+    Progress progress;
+    model = read_model(arguments, catalogue);
+    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
+    check_ids(arguments.without, gap::catalogue_of(model, catalogue));
+    std::vector<gap::Finding> findings;
+    std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
+    std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
+    gap::Options options;
+    options.horizon_s = arguments.horizon_s;
+    options.tolerance = arguments.tolerance;
+    options.without = arguments.without;
+    options.threads =
+        arguments.threads != 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+    options.seed = arguments.seed;
+    options.as_recorded = arguments.as_recorded;
+    if (held_out.empty()) {
+      for (auto& recording : recordings) {
+        auto [first, last] = gap::split(recording, options.held_out_fraction);
+        recording = std::move(first);
+        held_out.push_back(std::move(last));
+      }
+    }
+    progress.stage("diagnosing");
+    diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
+    diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
+    progress.stage("writing");
+    if (!arguments.report.empty()) outputs.put(arguments.report, io::report_json(diagnosis));
+    if (!arguments.html.empty())
+      outputs.put(arguments.html, io::report_html(diagnosis, model.name,
+                                                  gap::catalogue_of(model, catalogue).list(), held_out));
+    if (!arguments.predictions.empty()) {
+      outputs.put(arguments.predictions,
+                  io::predictions_csv(model, diagnosis, held_out, arguments.horizon_s, catalogue));
+    }
+    if (!arguments.augmented.empty()) outputs.put(arguments.augmented, io::to_json(diagnosis.augmented));
+    write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);
+    outputs.commit();
+  }
+  if (!arguments.of_fleet) std::fputs(io::summary(diagnosis).c_str(), stdout);
+  return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
+}
+
+Command add_diagnose(CLI::App& program) {
+  const auto asked = std::make_shared<Arguments>();
+  CLI::App* const app = program.add_subcommand("diagnose", "find the missing effect");
+  app->add_option("--model", asked->model, "the simulation under test (JSON)")->required();
+  add_recordings(*app, *asked, "a recording to find and fit on");
+  app->add_option("--heldout", asked->held_out,
+                  "a recording to judge on; without it the last 30 % of each recording");
+  app->add_option("--report", asked->report, "write the report for machines (JSON)");
+  app->add_option("--html", asked->html, "write the report for people (one HTML page)");
+  app->add_option("--predictions", asked->predictions, "write held-out predictions (CSV)");
+  app->add_option("--augmented", asked->augmented, "write the model with what was found (JSON)");
+  app->add_option("--header", asked->header, "write the same as a C++11 header for firmware");
+  app->add_option("--without", asked->without, "remove an effect from the catalogue; may be repeated");
+  add_horizon(*app, *asked)->capture_default_str();
+  app->add_option("--tolerance", asked->tolerance, "relative shrinkage of the gap below which nobody cares")
+      ->check(share)
+      ->capture_default_str();
+  app->add_option("--threads", asked->threads,
+                  "worker threads; 0: one per core. The result does not depend on it")
+      ->check(CLI::Range(0u, 1024u))
+      ->capture_default_str();
+  app->add_option("--seed", asked->seed, "of the bootstrap")->capture_default_str();
+  add_as_recorded(*app, *asked);
+  add_column_choices(*app, *asked);
+  add_simulator_exports(*app, *asked);
+  return {app, [asked] { return diagnose(*asked); }};
+}
