@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/model.hpp>
+#include <thermopower/gap/propose/effort_fit.hpp>
+#include <thermopower/gap/propose/effort_residual.hpp>
+#include <thermopower/gap/propose/inverse_score.hpp>
+#include <thermopower/gap/propose/periods.hpp>
+#include <thermopower/plant/catalogue.hpp>
+#include <thermopower/plant/instance.hpp>
+#include <thermopower/plant/submodel.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// @file effort_starts.hpp
+/// What an effect is to the inverse problem: where fits of it begin, and when it is not what it is called.
+
+namespace thermopower::gap::engine {
+
+/// Whether a parameter counts cycles of the angle in a turn.
+inline bool counts_cycles(const plant::Parameter& parameter) { return parameter.name == "cycles_per_turn"; }
+
+/// Whether an effect has such a parameter.
+inline bool counts_cycles(const plant::CatalogueEntry& entry) {
+  const auto& all = entry.info.parameters;
+  return std::any_of(all.begin(), all.end(), [](const plant::Parameter& one) { return counts_cycles(one); });
+}
+
+/// The first start of each parameter, or its standard.
+inline std::vector<double> first_starts(const plant::CatalogueEntry& entry) {
+  std::vector<double> values;
+  for (const plant::Parameter& one : entry.info.parameters)
+    values.push_back(one.standard ? *one.standard : one.starts.front());
+  return values;
+}
+
+/// What an effect makes of the structure of an axis.
+inline plant::AxisStructure<double> structure_of(const plant::CatalogueEntry& entry) {
+  plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, 0.0, false, false, false};
+  if (entry.hooks.axis_structure) entry.of<double>().call(first_starts(entry).data(), shape);
+  return shape;
+}
+
+/// Whether it hangs part of the inertia on a spring.
+inline bool makes_a_spring(const plant::CatalogueEntry& entry) { return structure_of(entry).compliant; }
+
+/// The longest delay from effort to torque that is looked for, s. @param interval_s  between rows
+inline double longest_delay_s(double interval_s) {
+  return std::max(propose_thresholds.longest_delay_rows * interval_s, propose_thresholds.longest_delay_s);
+}
+
+/// Constants of the axis and of the model's own effects on it, with what is known of them.
+inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Catalogue& catalogue) {
+  constexpr double farthest = 1e6;  // real inertias were off by 27 000
+  std::vector<BoundedCoordinate> list;
+  const std::vector<CalibratedConstant> all = model.calibrated();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const CalibratedConstant& constant = all[k];
+    bool acts = constant.block == "axis" && constant.has_slack;
+    if (const plant::CatalogueEntry* effect = catalogue.find(constant.effect()))
+      for (const plant::Parameter& parameter : effect->info.parameters)
+        acts = acts ||
+               (effect->hooks.any_axis() && parameter.name == constant.fields.front() && !parameter.standard);
+    if (!acts) continue;
+    BoundedCoordinate one;
+    one.at.is_constant = true;
+    one.at.constant = k;
+    one.is_place = constant.is_place;
+    one.lower = constant.is_place ? -known_constants.farthest_place_rad : 1.0 / farthest;
+    one.upper = constant.is_place ? known_constants.farthest_place_rad : farthest;
+    // Inertia and drag take in what a fit lacked; a winding's constants are read from a sheet.
+    constexpr double fitted_by_users = 5.0, stated = 0.5;  // logarithms
+    const bool is_fitted = constant.id == "inertia" || constant.id == "viscous" || constant.block != "axis";
+    one.first_reach = constant.is_place ? known_constants.farthest_place_rad
+                      : is_fitted       ? fitted_by_users
+                                        : stated;
+    one.prior.sd = model.uncertainty_of(constant, known_constants.uncertainty);
+    list.push_back(one);
+  }
+  return list;
+}
+
+/// Where fits of an effect begin: the products of its parameters' starts. Cycles in a turn come from what is left over, delays
+/// from the rows.
+/// @param left  residuals of effort without the effect, at the compared rows
+inline std::vector<std::vector<double>> starts_of(const plant::CatalogueEntry& entry,
+                                                  const EffortResidual& data, const Eigen::VectorXd& left) {
+  const ComparedRows& compared = data.compared();
+  std::vector<std::vector<double>> all = {{}};
+  for (const plant::Parameter& parameter : entry.info.parameters) {
+    std::vector<double> starts = parameter.starts;
+    if (parameter.standard) {
+      starts = {*parameter.standard};
+    } else if (counts_cycles(parameter)) {
+      Eigen::VectorXd angle(compared.size());
+      for (Eigen::Index i = 0; i < angle.size(); ++i)
+        angle[i] = data.rows().angle_rad[compared.rows[static_cast<std::size_t>(i)]];
+      constexpr int most = 150;
+      constexpr double periods = 2.0;
+      constexpr std::size_t count = 3;
+      starts = cycles_in_turn(angle, left, periods, most, count);
+      const Eigen::VectorXd with_effort = left.cwiseProduct(compared.effort);
+      for (const double one : cycles_in_turn(angle, with_effort, periods, most, count)) starts.push_back(one);
+    } else if (structure_of(entry).delayed) {
+      const double interval_s = data.rows().pieces.front().interval_s;
+      const double longest_s = longest_delay_s(interval_s);
+      const double step_s = std::max(0.5 * interval_s, longest_s / 40.0);
+      starts.clear();
+      for (double at = step_s; at <= longest_s * 1.001; at += step_s) starts.push_back(at);
+    } else if (parameter.starts_relative_to == plant::Input::drive_A) {
+      const double largest = compared.effort.cwiseAbs().maxCoeff() * data.ampere_per_effort();
+      for (double& one : starts) one *= largest;
+    }
+    std::vector<std::vector<double>> longer;
+    for (const std::vector<double>& one : all)
+      for (const double value : starts) {
+        longer.push_back(one);
+        longer.back().push_back(std::clamp(value, parameter.lower, parameter.upper));
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+/// Why an effect with these parameters does not count.
+/// @param rate_rad_per_s  of the motion
+inline InverseRefusal why_not_with(const plant::CatalogueEntry& entry, const std::vector<double>& parameters,
+                                   const Model& model, const Eigen::VectorXd& rate_rad_per_s) {
+  constexpr double near = 1e-9;
+  bool has_size = false, is_absent = true;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const plant::Parameter& one = entry.info.parameters[p];
+    if (one.standard) continue;
+    const double range = one.upper - one.lower, at = parameters[p];
+    const bool low = at <= one.lower + near * range, high = at >= one.upper - near * range;
+    if ((one.degenerate_at_bounds && (low || high)) || (one.degenerate_at_upper && high))
+      return InverseRefusal::not_itself;
+    if (one.within_the_motion && at > rate_rad_per_s.cwiseAbs().maxCoeff()) return InverseRefusal::not_itself;
+    if (one.absent_at != one.lower && one.absent_at != one.upper) continue;
+    has_size = true;
+    is_absent = is_absent && (one.absent_at == one.lower ? at <= one.lower + 1e-12 : at >= one.upper - 1e-12);
+  }
+  if (has_size && is_absent)
+    return entry.info.submodel == plant::Submodel::mechanical_friction ? InverseRefusal::drives_the_motion
+                                                                       : InverseRefusal::vanishes;
+  if (entry.info.is_itself != nullptr && !entry.info.is_itself(parameters.data()))
+    return InverseRefusal::not_itself;
+  if (entry.info.is_itself_alone != nullptr && model.effects.empty() &&
+      !entry.info.is_itself_alone(parameters.data()))
+    return InverseRefusal::not_itself;
+  return InverseRefusal::none;
+}
+
+}  // namespace thermopower::gap::engine
