@@ -6,8 +6,7 @@
 
 namespace thermopower::gap::engine {
 
-/// How effort and motion are compared, and when a term is proposed. Held by the closed loops of tests/gap/propose and
-/// tests/gap_benchmark/closed_loop_draw.hpp.
+/// How effort and motion are compared, and when a term is proposed. Held by tests/gap/propose/effort_problem_test.cpp.
 struct ProposeThresholds {
   double motion_cutoff = 0.15;    ///< of the low-pass on motion and effort, as a share of the grid's rate
   double residual_cutoff = 0.12;  ///< of the low-pass on what is left over, as a share of the grid's rate
