@@ -15,7 +15,7 @@ file(REMOVE_RECURSE ${package})
 file(COPY ${root}/include/thermopower/air_celsius.hpp ${root}/include/thermopower/config_error.hpp ${root}/include/thermopower/config_record.hpp ${root}/include/thermopower/thermopower.hpp
           ${root}/include/thermopower/version.hpp
      DESTINATION ${package}/src/thermopower)
-foreach(part actuator control detail fixed_point motors sbgc)
+foreach(part actuator control detail fixed_point monitor motors sbgc)
   file(COPY ${root}/include/thermopower/${part} DESTINATION ${package}/src/thermopower)
 endforeach()
 # The Arduino builder finds a library by a header in the root of its sources.

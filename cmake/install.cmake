@@ -14,7 +14,7 @@ install(FILES include/thermopower/air_celsius.hpp include/thermopower/config_err
               include/thermopower/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers)
 install(DIRECTORY include/thermopower/actuator include/thermopower/control include/thermopower/detail include/thermopower/fixed_point
-                  include/thermopower/motors include/thermopower/sbgc
+                  include/thermopower/monitor include/thermopower/motors include/thermopower/sbgc
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/thermopower COMPONENT headers FILES_MATCHING PATTERN "*.hpp")
 
 if(THERMOPOWER_DESKTOP)

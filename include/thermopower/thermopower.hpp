@@ -52,6 +52,7 @@
 #include "control/step_power_law.hpp"
 #include "control/utilisation.hpp"
 #include "control/voltage_gain.hpp"
+#include "monitor/model_monitor.hpp"
 #include "motors/bgm2606_90t.hpp"
 #include "motors/bgm5208_200_12.hpp"
 #include "sbgc/codec.hpp"

@@ -35,7 +35,12 @@ enum class LimitReason : uint8_t {
   config_invalid = 72,        ///< `validate()` refused the configuration.
   not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
   supply_implausible = 74,    ///< The supply reads higher than it can be.
-  sensor_missing = 75         ///< The motor has to be measured, and is not.
+  sensor_missing = 75,        ///< The motor has to be measured, and is not.
+
+  heat_disagrees = 90,        ///< A `ModelMonitor`: less or more heat shows than was put in, by more than the bounds explain.
+  thermometer_disagrees = 91, ///< The same, and no constant change of heat, loss or air explains it: the thermometer.
+  winding_disagrees = 92,     ///< Voltage and current do not fit the winding's resistance: shorted turns or a loose contact.
+  friction_disagrees = 93     ///< The torque does not fit the motion: friction has grown, or the load is gone.
   // clang-format on
 };
 

@@ -13,7 +13,7 @@ if(NOT CMAKE_SYSTEM_PROCESSOR STREQUAL "avr")
 endif()
 
 # The programs that measure time and stack.
-set(target_cost_parts fixed fixed_axes sbgc float float_axes float_gimbal)
+set(target_cost_parts fixed fixed_axes sbgc float float_axes float_gimbal monitor)
 set(target_cost_programs)
 # What all have in common: a program for its flags, whose objects the others take.
 thermopower_add_target_program(cost_nothing ${CMAKE_CURRENT_LIST_DIR}/cost.cpp ${CMAKE_CURRENT_LIST_DIR}/cost_main.cpp)

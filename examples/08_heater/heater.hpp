@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+// A printer's heater in firmware: PID, the usual checks as policies, and the monitor beside them. C++11, no heap: take it as
+// it is.
+
+#include <thermopower/monitor/model_monitor.hpp>
+
+namespace heater {
+
+namespace tp = thermopower;
+
+//! [printer heaters]
+/// A hotend of 40 W: 13 J/K of block and 2 of element, 3 behind it, a fan. Calibrated to 6 %.
+struct Hotend {
+  static constexpr tp::MonitorConfig monitor() { return {3.0, 1000.0, true}; }  // blocks, false alarms, cuts
+  static constexpr tp::HeatBalanceConfig heat_balance() {
+    return {40.0,         // W at full duty and 24 V
+            0.06,         // off by 6 %
+            15.0, 0.06,   // J/K that follow the thermistor
+            3.0,  75.0,   // J/K that follow 75 s later,
+            0.15,         //   both off by 15 %
+            3.5,  0.15,   // s until heat shows: element and thermistor
+            0.10, 0.06,   // W/K to the air,
+            0.05, 0.10,   //   and what the full fan adds
+            5.0,          // K that the air may be off
+            0.07, 0.03};  // K of noise and resolution of the thermistor
+  }
+  static constexpr float ohm_at_20C() { return 14.4f; }
+  static constexpr float tempco_per_K() { return 0.0002f; }
+  static constexpr float highest_C() { return 275.0f; }
+};
+
+/// A bed of 220 W under glass, its trace of copper.
+struct Bed {
+  static constexpr tp::MonitorConfig monitor() { return {8.0, 1000.0, true}; }
+  static constexpr tp::HeatBalanceConfig heat_balance() {
+    return {221.0, 0.05, 850.0, 0.05, 450.0, 75.0, 0.10, 7.75, 0.15, 1.3, 0.06, 0.8, 0.10, 3.0, 0.05, 0.02};
+  }
+  static constexpr float ohm_at_20C() { return 2.6f; }
+  static constexpr float tempco_per_K() { return 0.0039f; }
+  static constexpr float highest_C() { return 120.0f; }
+};
+//! [printer heaters]
+
+/// A check in the manner of Marlin: while heating, so many kelvins in each period; once there, not below the target for longer
+/// than a period.
+class RunawayCheck {
+public:
+  struct Config {
+    float watch_s, watch_K;        ///< While heating.
+    float period_s, hysteresis_K;  ///< Once there.
+    static constexpr Config hotend() { return {20.0f, 2.0f, 40.0f, 4.0f}; }
+    static constexpr Config bed() { return {60.0f, 2.0f, 20.0f, 2.0f}; }
+  };
+  explicit RunawayCheck(const Config& config) : config_(config) {}
+
+  /// False once the check has failed.
+  bool step(float target_C, float measured_C, float dt_s) {
+    if (!(target_C > 0.0f)) is_watching_ = is_there_ = false;
+    if (target_C != last_target_C_) {
+      is_there_ = false;
+      watch_anew(measured_C);
+      is_watching_ = target_C > measured_C + config_.watch_K;
+    }
+    last_target_C_ = target_C;
+    timer_s_ += dt_s;
+    if (measured_C >= target_C - config_.hysteresis_K) {
+      is_there_ = true;
+      is_watching_ = false;
+      timer_s_ = 0.0f;
+    } else if (is_watching_ && measured_C >= goal_C_) {
+      watch_anew(measured_C);
+    } else if ((is_watching_ && timer_s_ > config_.watch_s) || (is_there_ && timer_s_ > config_.period_s)) {
+      has_failed_ = true;
+    }
+    return !has_failed_;
+  }
+
+private:
+  void watch_anew(float measured_C) {
+    goal_C_ = measured_C + config_.watch_K;
+    timer_s_ = 0.0f;
+  }
+  Config config_;
+  float last_target_C_ = 0.0f, goal_C_ = 0.0f, timer_s_ = 0.0f;
+  bool is_watching_ = false, is_there_ = false, has_failed_ = false;
+};
+
+/// A check in the manner of Klipper: the sum of kelvins below the target, second by second, unless the temperature still rises.
+class KelvinSumCheck {
+public:
+  struct Config {
+    float most_Ks, hysteresis_K, gain_K, gain_s;
+    static constexpr Config hotend() { return {120.0f, 5.0f, 2.0f, 20.0f}; }
+    static constexpr Config bed() { return {120.0f, 5.0f, 2.0f, 60.0f}; }
+  };
+  explicit KelvinSumCheck(const Config& config) : config_(config) {}
+
+  /// False once the check has failed.
+  bool step(float target_C, float measured_C, float dt_s) {
+    now_s_ += dt_s;
+    const bool is_new = target_C != last_target_C_;
+    last_target_C_ = target_C;
+    if (measured_C >= target_C - config_.hysteresis_K || !(target_C > 0.0f)) {
+      is_approaching_ = false;
+      if (measured_C <= target_C + config_.hysteresis_K) sum_Ks_ = 0.0f;
+      return !has_failed_;
+    }
+    sum_Ks_ += (target_C - config_.hysteresis_K - measured_C) * dt_s;
+    if (!is_approaching_) {
+      if (is_new) approach(measured_C);
+      else if (sum_Ks_ >= config_.most_Ks) has_failed_ = true;
+    } else if (measured_C >= goal_C_) {
+      sum_Ks_ = 0.0f;
+      approach(measured_C);
+    } else if (now_s_ >= goal_s_) {
+      is_approaching_ = false;
+    }
+    return !has_failed_;
+  }
+
+private:
+  void approach(float measured_C) {
+    is_approaching_ = true;
+    goal_C_ = measured_C + config_.gain_K;
+    goal_s_ = now_s_ + config_.gain_s;
+  }
+  Config config_;
+  float now_s_ = 0.0f, last_target_C_ = 0.0f, sum_Ks_ = 0.0f, goal_C_ = 0.0f, goal_s_ = 0.0f;
+  bool is_approaching_ = false, has_failed_ = false;
+};
+
+/// A check in the manner of drives: the reading moves faster than anything heated does.
+class RateCheck {
+public:
+  struct Config {
+    float fastest_K_per_s;
+    static constexpr Config hotend() { return {12.0f}; }
+    static constexpr Config bed() { return {4.0f}; }
+  };
+  explicit RateCheck(const Config& config) : config_(config) {}
+  /// False once the check has failed.
+  bool step(float, float measured_C, float dt_s) {
+    since_s_ += dt_s;
+    if (since_s_ < 1.0f) return !has_failed_;
+    const float change_K = measured_C - last_C_;
+    if (has_last_ &&
+        (change_K > config_.fastest_K_per_s * since_s_ || change_K < -config_.fastest_K_per_s * since_s_))
+      has_failed_ = true;
+    last_C_ = measured_C;
+    has_last_ = true;
+    since_s_ = 0.0f;
+    return !has_failed_;
+  }
+
+private:
+  Config config_;
+  float last_C_ = 0.0f, since_s_ = 0.0f;
+  bool has_last_ = false, has_failed_ = false;
+};
+
+/// A PID that does not wind up. Its output is a duty, 0 .. 1.
+class Pid {
+public:
+  struct Config {
+    float per_K, per_K_s, s_per_K, filter_s;
+    static constexpr Config hotend() { return {0.05f, 0.0015f, 0.15f, 2.0f}; }
+    static constexpr Config bed() { return {0.12f, 0.0008f, 0.5f, 6.0f}; }
+  };
+  explicit Pid(const Config& config) : config_(config) {}
+
+  float step(float target_C, float measured_C, float dt_s) {
+    if (!has_last_) smooth_C_ = measured_C;
+    has_last_ = true;
+    const float share = dt_s < config_.filter_s ? dt_s / config_.filter_s : 1.0f;
+    const float change_K = share * (measured_C - smooth_C_);
+    smooth_C_ += change_K;
+    const float missing_K = target_C - measured_C;
+    const float direct = config_.per_K * missing_K - (dt_s > 0.0f ? config_.s_per_K * change_K / dt_s : 0.0f);
+    const float wanted = direct + integral_;
+    if ((wanted < 1.0f || missing_K < 0.0f) && (wanted > 0.0f || missing_K > 0.0f))
+      integral_ += config_.per_K_s * missing_K * dt_s;
+    integral_ = integral_ < 0.0f ? 0.0f : (integral_ > 1.0f ? 1.0f : integral_);
+    return wanted < 0.0f ? 0.0f : (wanted > 1.0f ? 1.0f : wanted);
+  }
+
+private:
+  Config config_;
+  float integral_ = 0.0f, smooth_C_ = 0.0f;
+  bool has_last_ = false;
+};
+
+/// Heat at a duty, as the firmware knows it: supply and the element's resistance, as warm as the thermistor.
+template <class Plant>
+float heat_W(float duty, float supply_V, float measured_C) {
+  return duty * supply_V * supply_V /
+         (Plant::ohm_at_20C() * (1.0f + Plant::tempco_per_K() * (measured_C - 20.0f)));
+}
+
+//! [printer heater]
+/// A heater with everything that may cut it.
+/// @tparam Plant  constants, such as Hotend  @tparam Check  the usual check, such as RunawayCheck
+template <class Plant, class Check>
+class Heater {
+public:
+  Heater(const Pid::Config& pid, const typename Check::Config& check) : pid_(pid), check_(check) {}
+
+  /// @param fan  the fan's share, 0 .. 255  @return duty for the next cycle, 0 .. 1
+  float step(float target_C, float measured_C, float air_C, float supply_V, uint8_t fan, float dt_s) {
+    if (!(measured_C > 0.0f && measured_C < Plant::highest_C()))
+      return cut(tp::LimitReason::temperature_not_finite);
+    // The duty of the last cycle made the heat since then.
+    monitor_.step(
+        tp::MonitorInputs::heater(heat_W<Plant>(duty_, supply_V, measured_C), measured_C, air_C, fan), dt_s);
+    const tp::LimitedPower granted = monitor_.limit(255);
+    if (granted.reason != tp::LimitReason::none) return cut(granted.reason);
+    if (!check_.step(target_C, measured_C, dt_s)) return cut(tp::LimitReason::sensor_missing);
+    reason_ = tp::LimitReason::none;
+    return duty_ = target_C > 0.0f ? pid_.step(target_C, measured_C, dt_s) : 0.0f;
+  }
+  tp::LimitReason reason() const { return reason_; }  ///< Why it is cut.
+  const tp::ModelMonitor<Plant>& monitor() const {
+    return monitor_;
+  }  ///< What it disagrees on, and the suspects.
+
+private:
+  float cut(tp::LimitReason reason) {
+    reason_ = reason;
+    return duty_ = 0.0f;
+  }
+  Pid pid_;
+  Check check_;
+  tp::ModelMonitor<Plant> monitor_;
+  float duty_ = 0.0f;
+  tp::LimitReason reason_ = tp::LimitReason::none;
+};
+//! [printer heater]
+
+}  // namespace heater
