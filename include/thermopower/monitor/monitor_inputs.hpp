@@ -57,13 +57,13 @@ enum class Disagreement : uint8_t {
 /// @ingroup monitor
 enum class Suspect : uint8_t {
   none = 0,  ///< Nothing disagrees.
-  heater =
-      1,     ///< Heat differs by a constant factor, or stays on: weak heater, shorted winding, wrong supply.
+  /// Heat differs by a constant factor, or stays on: weak heater, shorted winding, wrong supply.
+  heater = 1,
   loss = 2,  ///< The loss differs by a constant factor: covered, or in a draught.
   fan = 4,   ///< The fan's part of the loss differs by a constant factor: it has stopped.
   air = 8,   ///< The air is warmer or colder than told by a constant.
-  thermometer =
-      16,  ///< Its reading stands still, or is off by a constant share; alone: no constant change explains it.
+  /// The reading stands still, or is off by a constant share; alone: no constant change explains it.
+  thermometer = 16,
   winding = 32,  ///< Turns or a contact.
   friction = 64  ///< Bearings, gear or load.
 };

@@ -35,6 +35,8 @@ struct Given {
   int8_t camera_C, frame_C;
   float camera_real_C, frame_real_C, level_real, power_W, elapsed_s;
   uint16_t battery_cV;
+  tp::MonitorInputs work;  ///< Of an actuator at work: made by the operations that take it.
+  float work_s;
 };
 extern Given given;
 

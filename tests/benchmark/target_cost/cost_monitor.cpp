@@ -36,14 +36,12 @@ float between(float low, float high) {
 }
 
 /// What an actuator at work gives, in steps of which ten close a block.
-tp::MonitorInputs at_work;
-float step_s;
 void give_work() {
-  at_work = tp::MonitorInputs::motor(between(0.0f, 40.0f), between(-20.0f, 280.0f), between(-10.0f, 45.0f),
-                                     between(-24.0f, 24.0f), between(-3.9f, 3.9f), between(-20.0f, 180.0f),
-                                     between(-400.0f, 400.0f));
-  at_work.fan = static_cast<uint8_t>(between(0.0f, 255.0f));
-  step_s = between(0.5f, 1.5f);
+  given.work = tp::MonitorInputs::motor(between(0.0f, 40.0f), between(-20.0f, 280.0f), between(-10.0f, 45.0f),
+                                        between(-24.0f, 24.0f), between(-3.9f, 3.9f), between(-20.0f, 180.0f),
+                                        between(-400.0f, 400.0f));
+  given.work.fan = static_cast<uint8_t>(between(0.0f, 255.0f));
+  given.work_s = between(0.5f, 1.5f);
 }
 
 void give_more(uint16_t) {}
@@ -51,7 +49,7 @@ void give_more(uint16_t) {}
 template <class Plant>
 void step_monitor() {
   static tp::ModelMonitor<Plant> monitor;
-  small_sink = static_cast<uint8_t>(monitor.step(at_work, step_s));
+  small_sink = static_cast<uint8_t>(monitor.step(given.work, given.work_s));
 }
 
 }  // namespace

@@ -343,10 +343,10 @@ private:
     uint16_t slack = static_cast<uint16_t>(allowed + (static_cast<uint16_t>(step) >> 1));
     if (slack > 16000u) slack = 16000u;
     int16_t rest = residual;
-    for (uint8_t bit = 1; bit != 0; bit = static_cast<uint8_t>(bit << 1)) {
+    for (uint8_t change = 1; change != 0; change = static_cast<uint8_t>(change << 1)) {
       if (rest > -16000) rest = static_cast<int16_t>(rest - step);
       if (rest > static_cast<int16_t>(slack) || rest < -static_cast<int16_t>(slack))
-        set = static_cast<uint8_t>(set & ~bit);
+        set = static_cast<uint8_t>(set & ~change);
     }
     return set;
   }
