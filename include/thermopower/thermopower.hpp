@@ -10,6 +10,7 @@
 #include "actuator/cached_current.hpp"
 #include "actuator/cooling.hpp"
 #include "actuator/current_model.hpp"
+#include "actuator/data_sheet.hpp"
 #include "actuator/duty.hpp"
 #include "actuator/energy_meter.hpp"
 #include "actuator/field_oriented.hpp"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// The cost of the monitor: of a step in which a block closes above all.
+// The cost of the monitor: of a step in which a block closes above all. And of what people write on their own.
 #include "cost.hpp"
+#include "rivals.hpp"
 
 using namespace cost;
 
@@ -57,7 +58,23 @@ void step_monitor() {
 extern "C" void monitor_heater() { step_monitor<Hotend>(); }
 extern "C" void monitor_motor() { step_monitor<Motor>(); }
 
+extern "C" void rival_model() {
+  static rivals::EightLineModel model(14.0f, 0.23f, 110.0f, 25.0f);
+  small_sink = model.step(given.power_W, given.level, given.elapsed_s);
+}
+extern "C" void rival_derating() {
+  static rivals::LinearDerating derating(70.0f, 90.0f);
+  small_sink = derating.step(given.warm_C, given.level);
+}
+extern "C" void rival_square() {
+  static rivals::CurrentSquareOverTime square(1.4f, 30.0f);
+  small_sink = square.step(given.power_W, given.level, given.elapsed_s);
+}
+
 extern "C" void measure_all() {
   thermopower_cost_searched(monitor_heater, give_work, give_more, counter::searches / 20);
   thermopower_cost_searched(monitor_motor, give_work, give_more, counter::searches / 20);
+  thermopower_cost(rival_model);
+  thermopower_cost(rival_derating);
+  thermopower_cost(rival_square);
 }

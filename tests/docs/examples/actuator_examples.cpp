@@ -361,3 +361,31 @@ TEST_CASE("in whole numbers: a motor, its heating and its temperature") {
   CHECK(motor_C == Approx(same.hottest_C()).margin(0.1));
   CHECK(heating > 0);
 }
+
+TEST_CASE("constants with bounds from three numbers of a data sheet") {
+  //! [data sheet]
+  // A sheet that says 1.4 A continuous, 2 ohm and a time constant of 12 minutes; 0: not said.
+  constexpr tp::MotorDataSheet sheet = {2.0, 0.0, 0.0, 0.0, 1.4, 125.0, 0.0, 0.0, 0.0, 720.0};
+  static_assert(sheet.is_enough(), "resistance, continuous current and time constant are");
+  const float winding_J_per_K = static_cast<float>(sheet.winding_heat_capacity().nominal),
+              body_J_per_K = static_cast<float>(sheet.body_heat_capacity().nominal),
+              coupling_W_per_K = static_cast<float>(sheet.coupling().nominal),
+              loss_W_per_K = static_cast<float>(sheet.conductance().nominal);
+  tp::TwoNodeThermalModel<> thermal({winding_J_per_K, body_J_per_K, coupling_W_per_K, {loss_W_per_K}}, 25.0f);
+  // For a limiter that is proved, the bounds themselves.
+  tp::CertifiedTwoNodeConfig network = tp::CertifiedTwoNodeConfig::standard();
+  constexpr tp::ConstantRange winding = sheet.winding_heat_capacity(), body = sheet.body_heat_capacity();
+  network.winding_heat_capacity_J_per_K = {static_cast<float>(winding.lowest),
+                                           static_cast<float>(winding.highest)};
+  network.body_heat_capacity_J_per_K = {static_cast<float>(body.lowest), static_cast<float>(body.highest)};
+  network.least_coupling_W_per_K = static_cast<float>(sheet.coupling().lowest);
+  network.least_conductance_W_per_K = static_cast<float>(sheet.conductance().lowest);
+  network.maximum_winding_C = static_cast<float>(sheet.hottest_C());
+  network.maximum_body_C = 100.0f;
+  //! [data sheet]
+  CHECK(network.validate() == tp::ConfigError::none);
+  // At the continuous current the nominal winding is at its limit, for ever.
+  const float heat_W = 1.4f * 1.4f * 2.0f * (1.0f + 0.00393f * 100.0f);
+  for (int i = 0; i < 200; ++i) thermal.step({heat_W, 0.0f, {25.0f, 0.0f}}, 60.0f);
+  CHECK(thermal.hottest_C() == Approx(125.0f).epsilon(0.002));
+}
