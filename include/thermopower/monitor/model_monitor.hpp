@@ -99,7 +99,7 @@ struct MotionPart<Plant, true> : MotionBalance<Plant> {
 /// as the body cools. Inputs that are not numbers judge nothing: a limiter has to take them as hot.
 ///
 /// @snippet monitor_examples.cpp watch a heater
-/// How to: @ref heater_with_monitor. Math: @ref explain_monitor.
+/// How to: @ref heater_with_monitor. Menu: @ref policies. Math: @ref explain_monitor.
 /// @ingroup monitor
 template <class Plant>
 class ModelMonitor {
