@@ -10,6 +10,8 @@
 #include "nearest_name.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -19,10 +21,13 @@
 namespace thermopower::io {
 namespace {
 
+using Needs = ColumnChoice::Needs;
+
 struct Unit {
   const char* text;
   double factor;
   double offset;
+  Needs needs = Needs::nothing;
 };
 
 struct Quantity {
@@ -56,6 +61,7 @@ const std::vector<Quantity>& quantities() {
         {"dps", 1.0, 0.0},
         {"rad/s", plant::deg_per_rad, 0.0},
         {"rpm", 6.0, 0.0},
+        {"mrad/s", 1e-3 * plant::deg_per_rad, 0.0},
         {"rev/s", 360.0, 0.0}}},
       {"_mps", {{"m/s", 1.0, 0.0}, {"km/h", 1.0 / 3.6, 0.0}}},
       {"_deg",
@@ -64,7 +70,19 @@ const std::vector<Quantity>& quantities() {
         {"mrad", 1e-3 * plant::deg_per_rad, 0.0},
         {"rev", 360.0, 0.0}}},
       {"_Nm", {{"Nm", 1.0, 0.0}, {"mNm", 1e-3, 0.0}, {"Ncm", 1e-2, 0.0}}},
+      {"drive_A",
+       {{"A", 1.0, 0.0},
+        {"mA", 1e-3, 0.0},
+        {"uA", 1e-6, 0.0},
+        {"Nm", 1.0, 0.0, Needs::torque_constant},
+        {"mNm", 1e-3, 0.0, Needs::torque_constant}}},
       {"_A", {{"A", 1.0, 0.0}, {"mA", 1e-3, 0.0}, {"uA", 1e-6, 0.0}}},
+      {"voltage_V",
+       {{"V", 1.0, 0.0},
+        {"mV", 1e-3, 0.0},
+        {"1", 1.0, 0.0, Needs::supply},
+        {"%", 1e-2, 0.0, Needs::supply},
+        {"255", 1.0 / 255.0, 0.0, Needs::supply}}},
       {"_V", {{"V", 1.0, 0.0}, {"mV", 1e-3, 0.0}}},
       {"_W", {{"W", 1.0, 0.0}, {"mW", 1e-3, 0.0}, {"kW", 1e3, 0.0}}},
       {"_C",
@@ -98,7 +116,64 @@ std::vector<std::string> units_of(const std::string& name) {
   return list;
 }
 
+double ColumnChoice::value_of(double number) const {
+  if (sign_bit > 0) {
+    const double sign = std::ldexp(1.0, sign_bit);
+    if (number >= sign && number < 2.0 * sign) number = sign - number;
+  }
+  return (number - offset) * factor;
+}
+
 namespace {
+
+// A number above 0, all of a text.
+bool read_number(const std::string& text, double& value) {
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && last == end && std::isfinite(value) && value > 0.0;
+}
+
+// Counts: whole numbers of which so many are a turn, or full power.
+bool read_counts(const std::string& name, const std::string& unit, double& factor) {
+  constexpr double fewest = 2.0, most = 4294967296.0;
+  const Quantity* const quantity = quantity_of(name);
+  if (quantity == nullptr) return false;
+  const std::string ending = quantity->ending;
+  std::string counts = unit;
+  if (ending == "_dps") {
+    if (counts.size() < 3 || counts.compare(counts.size() - 2, 2, "/s") != 0) return false;
+    counts.resize(counts.size() - 2);
+  } else if (ending != "_deg" && ending != "power_param") {
+    return false;
+  }
+  double number = 0.0;
+  if (!read_number(counts, number) || number < fewest || number > most || number != std::floor(number))
+    return false;
+  factor = (ending == "power_param" ? 255.0 : 360.0) / number;
+  return true;
+}
+
+// A unit by itself, or one that is multiplied or divided by a number.
+bool take_unit(const std::string& unit, ColumnChoice& choice) {
+  const Quantity* const quantity = quantity_of(choice.name);
+  if (quantity == nullptr) return false;
+  for (const Unit& one : quantity->units)
+    if (unit == one.text) {
+      choice.factor = one.factor;
+      choice.offset = one.offset;
+      choice.needs = one.needs;
+      return true;
+    }
+  if (read_counts(choice.name, unit, choice.factor)) return true;
+  const std::size_t at = unit.find_last_of("*/");
+  double number = 0.0;
+  if (at == std::string::npos || at == 0 || !read_number(unit.substr(at + 1), number)) return false;
+  if (!take_unit(unit.substr(0, at), choice)) return false;
+  const double factor = unit[at] == '*' ? number : 1.0 / number;
+  choice.factor *= factor;
+  choice.offset /= factor;
+  return true;
+}
 
 ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   const auto fail = [&](const std::string& what) { throw InputError(where + excerpt(text) + ": " + what); };
@@ -111,6 +186,7 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   const std::size_t colon = choice.header.rfind(':');
   if (colon == std::string::npos) return choice;
   std::string unit = choice.header.substr(colon + 1);
+  choice.unit = unit;
   choice.header.resize(colon);
   if (choice.header.empty()) fail("the header is empty; expected NAME=HEADER:UNIT");
   const bool turned = !unit.empty() && unit[0] == '-';
@@ -119,15 +195,28 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   if (turned && quantity != nullptr && quantity->one_sided != nullptr)
     fail("a unit with a minus turns the sign round, and " + std::string(quantity->one_sided) +
          "; expected the unit without it");
-  std::string known;
-  for (const auto& one : quantity != nullptr ? quantity->units : std::vector<Unit>()) {
-    if (unit == one.text) {
-      choice.factor = turned ? -one.factor : one.factor;
-      choice.offset = one.offset;
-      return choice;
-    }
-    known += (known.empty() ? "" : ", ") + std::string(one.text);
+  if (const std::size_t comma = unit.find(','); comma != std::string::npos) {
+    const std::string encoding = unit.substr(comma + 1);
+    double bit = 0.0;
+    if (encoding.compare(0, 4, "sign") != 0 || !read_number(encoding.substr(4), bit) ||
+        bit != std::floor(bit) || bit > 31.0)
+      fail(excerpt(encoding) +
+           " is no way to hold a number; expected sign15 or another bit up to sign31, which is the sign of a "
+           "register with sign and magnitude");
+    choice.sign_bit = static_cast<int>(bit);
+    unit.resize(comma);
   }
+  if (take_unit(unit, choice)) {
+    if (turned) choice.factor = -choice.factor;
+    return choice;
+  }
+  std::string known;
+  for (const auto& one : quantity != nullptr ? quantity->units : std::vector<Unit>())
+    known += (known.empty() ? "" : ", ") + std::string(one.text);
+  const std::string ending = quantity != nullptr ? quantity->ending : "";
+  if (ending == "_deg") known += ", or how many counts a turn has, such as 4096";
+  if (ending == "_dps") known += ", or counts a turn per second, such as 4096/s";
+  if (ending == "power_param") known += ", or what full power is";
   fail(excerpt(unit) + " is no unit of " + choice.name +
        (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
   return choice;

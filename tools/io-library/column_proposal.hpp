@@ -4,22 +4,39 @@
 #pragma once
 
 #include <thermopower/io/column_list.hpp>
+#include <thermopower/io/csv_table.hpp>
 
 #include <string>
 #include <vector>
 
 namespace thermopower::io {
 
-/// Says what a column may be, from its header and range.
-void propose(ListedColumn& column);
+/// @brief What is known of a column besides its header and its numbers.
+struct ColumnHint {
+  std::string unit = {};     ///< in which it is, whatever the header says, as `--column` takes it
+  std::string because = {};  ///< where the unit or the refusal comes from
+  bool not_meant = false;    ///< the column is none of the format's
+  std::string name = {};     ///< of the format, where that is known
+};
 
-/// Of columns that seem to be the same one keeps its proposal: the one with the format's name, else the first.
-void settle_rivals(std::vector<ListedColumn>& list);
+/// @brief Proposes what the columns of a file are, one column for each name at most: those of one joint, the one that moves, in
+/// the units of their headers.
+/// @param hints  one for each column, or none at all
+/// @param joint  word in the headers of the joint that is meant; empty: the one that moves most
+/// @param table  the numbers themselves, where they are at hand: a rate and its angle then say each other's unit
+void propose(std::vector<ListedColumn>& list, const std::vector<ColumnHint>& hints, const std::string& joint,
+             const CsvTable* table = nullptr);
 
 /// What `--column` takes for a proposal; empty where there is none, or none is needed.
 std::string choice_text(const ListedColumn& column);
 
-/// The list and the options, without a word about time.
+/// The list alone.
 std::string list_text(const std::vector<ListedColumn>& columns);
+
+/// What to do next: the command, and what is missing for it.
+std::string next_text(const std::string& file, const std::vector<ListedColumn>& columns, bool needs_time);
+
+/// A word as a shell takes it.
+std::string quoted_for_shell(const std::string& text);
 
 }  // namespace thermopower::io

@@ -6,6 +6,8 @@
 #include <thermopower/io/input_error.hpp>
 
 #include "file_source.hpp"
+#include "time_stamp.hpp"
+#include "unit_words.hpp"
 
 #include <csv.h>
 
@@ -59,8 +61,8 @@ std::string shortest(double value) {
 class Parser {
 public:
   Parser(const std::string& file, const std::vector<std::string>& numeric,
-         const std::vector<ColumnChoice>& choices, bool any = false)
-      : numeric_(numeric), choices_(choices), any_(any) {
+         const std::vector<ColumnChoice>& choices, const CsvReading& how, bool any = false)
+      : numeric_(numeric), choices_(choices), how_(how), any_(any) {
     table_.file = file;
     if (csv_init(&csv_, CSV_STRICT | CSV_STRICT_FINI | CSV_REPALL_NL) != 0) throw std::bad_alloc();
     csv_set_blk_size(&csv_, 512);
@@ -187,13 +189,17 @@ private:
     Kind kind = Kind::undecided;
     bool must_be_number = false;
     bool power = false;
-    double factor = 1.0, offset = 0.0;
+    bool is_index = false;  // of pandas: the row's number, and no measurement
+    bool unnamed = false;   // must not hold anything
+    bool has_stamps = false, has_dates = false;
+    std::int64_t first_ns = 0, last_ns = 0;
+    ColumnChoice choice;
     std::vector<double> values;
   };
 
   [[noreturn]] void fail(std::size_t line, const std::string& column, const std::string& what) const {
     std::string text = table_.file;
-    if (line != 0) text += ":" + std::to_string(line);
+    if (line != 0) text += ":" + std::to_string(line <= how_.lines.size() ? how_.lines[line - 1] : line);
     text += ": ";
     if (!column.empty()) text += "column '" + column + "': ";
     throw InputError(text + what);
@@ -253,7 +259,11 @@ private:
 
   void take_field(const char* text, std::size_t size) {
     row_started_ = true;
-    if (header_done_) {
+    if (header_done_ && !first_row_done_) {
+      if (size > longest_field || field_ > most_columns)
+        fail(line_, column_name(), "a field or a row of this size; expected numbers");
+      first_row_.emplace_back(text, size);
+    } else if (header_done_) {
       take_value(text, size);
     } else {
       take_name(text, size);
@@ -278,10 +288,13 @@ private:
           "the first row holds numbers only: the header row is missing; expected names of columns above it, such as "
           "t_s,power_param,ambient_C,motor_C");
     for (std::size_t i = 0; i < header_.size(); ++i) {
-      if (header_[i].empty())
-        fail(1, {},
-             "the name of column number " + std::to_string(i + 1) +
-                 " is empty; expected a name for each column");
+      if (header_[i].empty() || header_[i] == "Unnamed: 0") {
+        const bool is_index = i == 0 && header_.size() > 1 &&
+                              std::find(header_.begin(), header_.end(), "index") == header_.end();
+        (is_index ? index_ : unnamed_).push_back(i);
+        if (is_index) header_[i] = "index";
+        continue;
+      }
       const auto end = header_.begin() + static_cast<std::ptrdiff_t>(i);
       if (std::find(header_.begin(), end, header_[i]) != end)
         fail(1, {},
@@ -317,8 +330,14 @@ private:
       if (chosen[at]) fail(1, header_[at], "is asked for twice; expected one name for each column");
       chosen[at] = true;
       names_[at] = choice.name;
-      targets_[at].factor = choice.factor;
-      targets_[at].offset = choice.offset;
+      targets_[at].choice = choice;
+    }
+    for (const std::size_t at : index_)
+      if (!chosen[at] && !any_) targets_[at].kind = Kind::unused;
+    for (const std::size_t at : index_) targets_[at].is_index = true;
+    for (const std::size_t at : unnamed_) {
+      targets_[at].kind = Kind::unused;
+      targets_[at].unnamed = true;
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const auto same = [&](const ColumnChoice& choice) { return choice.name == names_[i]; };
@@ -373,14 +392,21 @@ private:
       if (names_[i] == "t_s") time_ = i;
       if (names_[i] == "run") run_ = i;
     }
-    if (time_ == none && !any_) {
+    if (time_ != none && how_.rows_per_s > 0.0)
+      fail(
+          1, "t_s",
+          "is in the file; a rate of rows is for a file without time: leave --rate out, or give that column another name");
+    if (time_ == none && !any_ && how_.rows_per_s <= 0.0) {
       const bool other_separator = header_.size() == 1 && header_[0].find_first_of(" |") != std::string::npos;
-      fail(1, {},
-           "no column 't_s' (time in seconds) in the header row; found " + header_list() +
-               (other_separator ? "; expected columns separated by commas, semicolons or tabs"
-                                : "; --column t_s=HEADER says which one it is"));
+      fail(
+          1, {},
+          "no column 't_s' (time in seconds) in the header row; found " + header_list() +
+              (other_separator
+                   ? "; expected columns separated by commas, semicolons or tabs"
+                   : "; --column t_s=HEADER says which one it is, and --rate HZ that there is none and so many rows are a second"));
     }
     if (!names_above) return;
+    first_row_done_ = true;
     for (field_ = 0; field_ < first_row_.size(); ++field_)
       take_value(first_row_[field_].data(), first_row_[field_].size());
     end_data_row('\n');
@@ -423,19 +449,59 @@ private:
     if (field_ == time_ && any_digit && is_digit(word[0]) &&
         (word.find(':') != std::string::npos || std::count(word.begin(), word.end(), '-') == 2 ||
          std::count(word.begin(), word.end(), '/') == 2))
-      return " is a date or a time of day; expected seconds since the start, such as 0.25: subtract the first stamp from "
-             "all (in Python: (datetime.fromisoformat(stamp) - first).total_seconds())";
+      return " is a date or a time of day that cannot be read without doubt; expected seconds since the start, such as 0.25, or a date "
+             "such as 2026-01-31T12:34:56.789 (in Python: pandas.to_datetime(stamp).isoformat())";
     const std::string expected =
         " is not a number; expected a decimal number, or an empty cell or nan for a missing sample";
     if (table_.rows > 0 || any_digit) return expected;
-    word.erase(
-        std::remove_if(word.begin(), word.end(), [](char c) { return std::strchr("[]() ", c) != nullptr; }),
-        word.end());
-    const std::vector<std::string> units = units_of(names_[field_]);
-    const bool is_unit = word == "-" || std::find(units.begin(), units.end(), word) != units.end();
-    return is_unit
-               ? " is no number: this looks like a row of units; delete it (--column NAME=HEADER:UNIT says a unit)"
-               : expected;
+    return unit_word(word).dimension == Dimension::none
+               ? expected
+               : " is no number: this looks like a row of units; delete it (--column NAME=HEADER:UNIT says a unit)";
+  }
+
+  // Whether the first row below the header holds units in the place of numbers.
+  bool is_row_of_units() const {
+    std::size_t units = 0;
+    for (const std::string& cell : first_row_) {
+      double value = 0.0;
+      if (is_missing(cell.data(), cell.size()) || cell == "1") continue;
+      if (parse_number(cell.data(), cell.size(), value) != NumberFault::not_a_number) return false;
+      constexpr std::size_t longest_unit = 16;
+      if (cell.size() > longest_unit) return false;
+      units += unit_word(cell).dimension == Dimension::none ? 0 : 1;
+    }
+    const auto filled = static_cast<std::size_t>(std::count_if(
+        first_row_.begin(), first_row_.end(), [](const std::string& cell) { return !cell.empty(); }));
+    return units > 0 && 2 * units >= filled && first_row_.size() == header_.size();
+  }
+
+  // A column whose choice says no unit is in the unit that the row of units says.
+  void take_units() {
+    units_ = first_row_;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      ColumnChoice& choice = targets_[i].choice;
+      if (any_ || !targets_[i].must_be_number || !choice.unit.empty()) continue;
+      const UnitWord unit = unit_word(units_[i]);
+      if (unit.dimension == Dimension::none || units_[i] == "-") continue;
+      const std::vector<std::string> known = units_of(names_[i]);
+      if (std::find(known.begin(), known.end(), unit.unit) == known.end())
+        fail(line_, header_[i],
+             "the row of units says " + excerpt(units_[i]) + ", which is no unit of " + names_[i] +
+                 "; --column " + names_[i] + "=" + header_[i] + ":" + known.front() + " says another one");
+      choice = parse_column_choice(names_[i] + "=" + header_[i] + ":" + unit.unit);
+    }
+  }
+
+  void take_first_row(int terminator) {
+    first_row_done_ = true;
+    if (is_row_of_units()) {
+      take_units();
+      return;
+    }
+    const std::size_t fields = field_;
+    for (field_ = 0; field_ < fields; ++field_)
+      take_value(first_row_[field_].data(), first_row_[field_].size());
+    end_data_row(terminator);
   }
 
   /// Which unit a power may be in that is too large, and how to say so.
@@ -457,10 +523,16 @@ private:
       label_.assign(text, std::min(size, longest_field));
       return;
     }
+    if (target.unnamed && size > 0)
+      fail(line_, {},
+           "column number " + std::to_string(field_ + 1) + " has no name and holds " + excerpt(text, size) +
+               "; expected a name for each column");
     if (target.kind == Kind::text || target.kind == Kind::unused) return;
     double value = std::numeric_limits<double>::quiet_NaN();
     if (!is_missing(text, size)) {
       const NumberFault fault = parse_cell(text, size, value);
+      if (fault == NumberFault::not_a_number && (field_ == time_ || any_) && take_stamp(target, text, size))
+        return;
       if (fault == NumberFault::not_a_number) {
         if (target.kind == Kind::undecided && !target.must_be_number &&
             std::memchr(text, 0, size) == nullptr) {
@@ -476,8 +548,11 @@ private:
                  " is not finite; expected a finite number, or an empty cell or "
                  "nan for a missing sample");
       }
+      if (target.has_stamps)
+        fail(line_, header_[field_],
+             excerpt(text, size) + " follows dates or times of day; expected one of these in every row");
       target.kind = Kind::number;
-      value = (value - target.offset) * target.factor;
+      value = target.choice.value_of(value);
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
         fail(line_ + lines_in_row_, header_[field_],
              excerpt(text, size) + " is outside its range; expected 0..255" + other_power(value));
@@ -489,6 +564,29 @@ private:
     target.values.push_back(value);
   }
 
+  // Dates and times of day become seconds since the first. One column has one kind of them.
+  bool take_stamp(Target& target, const char* text, std::size_t size) const {
+    if (target.kind == Kind::number && !target.has_stamps) return false;
+    const auto stamp = parse_time_stamp(text, size);
+    if (!stamp || (target.has_stamps && stamp->has_date != target.has_dates)) return false;
+    if (!target.choice.unit.empty() && target.choice.unit != "s")
+      fail(
+          line_, header_[field_],
+          "holds dates or times of day, which have no unit; expected --column t_s=" + header_[field_] + ":s");
+    constexpr std::int64_t day_ns = 86400000000000;
+    std::int64_t ns = stamp->ns;
+    if (!target.has_stamps) target.first_ns = target.last_ns = ns;
+    // Past midnight.
+    if (!stamp->has_date)
+      while (ns + day_ns / 2 < target.last_ns) ns += day_ns;
+    target.has_stamps = true;
+    target.has_dates = stamp->has_date;
+    target.kind = Kind::number;
+    target.last_ns = ns;
+    target.values.push_back(static_cast<double>(ns - target.first_ns) / 1e9);
+    return true;
+  }
+
   void take_row(int terminator) {
     // With CSV_REPALL_NL a CRLF is reported twice; the LF that follows a CR ends nothing.
     const bool second_half = terminator == '\n' && last_terminator_ == '\r' && !row_started_;
@@ -497,6 +595,8 @@ private:
     if (row_started_) {
       if (!header_done_) {
         end_header();
+      } else if (!first_row_done_) {
+        take_first_row(terminator);
       } else {
         end_data_row(terminator);
       }
@@ -522,8 +622,11 @@ private:
       ++table_.rows;
       return;
     }
-    const std::vector<double>& time = targets_[time_].values;
     const bool new_run = row == 0 || (run_ != none && label_ != table_.run_labels.back());
+    if (time_ == none)
+      made_time_.push_back(new_run ? 0.0
+                                   : static_cast<double>(row - table_.run_begin.back()) / how_.rows_per_s);
+    const std::vector<double>& time = time_ == none ? made_time_ : targets_[time_].values;
     if (new_run) {
       table_.run_begin.push_back(row);
       table_.run_labels.push_back(label_);
@@ -575,11 +678,14 @@ private:
   }
 
   void collect() {
+    if (time_ == none && !any_) table_.columns.push_back({"t_s", std::move(made_time_)});
     for (std::size_t i = 0; i < header_.size(); ++i) {
       Target& target = targets_[i];
       if (target.kind == Kind::text) table_.ignored_text.push_back(header_[i]);
       if (target.kind != Kind::number && target.kind != Kind::undecided) continue;
+      if (target.has_stamps) table_.stamps.push_back(names_[i]);
       table_.columns.push_back({names_[i], std::move(target.values)});
+      if (!units_.empty()) table_.units.push_back(units_[i]);
     }
   }
 
@@ -587,6 +693,7 @@ private:
 
   const std::vector<std::string>& numeric_;
   const std::vector<ColumnChoice>& choices_;
+  const CsvReading& how_;
   bool any_;  ///< no column has a meaning
   CsvTable table_;
   csv_parser csv_{};
@@ -608,8 +715,12 @@ private:
   bool at_end_ = false;
   char separator_ = ',';
   bool in_comment_ = false;
-  std::string comment_, last_comment_;           ///< as it is read, and the last one above the first row
-  std::vector<std::string> first_row_;           ///< where the names were in a comment
+  std::string comment_, last_comment_;        ///< as it is read, and the last one above the first row
+  std::vector<std::string> first_row_;        ///< below the header: it may hold units
+  std::vector<std::string> units_;            ///< of all columns, where a row of units was there
+  std::vector<std::size_t> index_, unnamed_;  ///< columns without a name
+  std::vector<double> made_time_;             ///< of a file without time
+  bool first_row_done_ = false;
   std::size_t point_line_ = 0, comma_line_ = 0;  ///< where each decimal separator was seen first; 0: not yet
 };
 
@@ -625,9 +736,9 @@ CsvTable parse_bytes(Parser& parser, const char* bytes, std::size_t size) {
 }
 
 CsvTable read_file(const std::string& path, const std::vector<std::string>& numeric,
-                   const std::vector<ColumnChoice>& choices, bool any) {
+                   const std::vector<ColumnChoice>& choices, const CsvReading& how, bool any) {
   const OpenFile file = open_input(path, "a CSV file");
-  Parser parser(path == "-" ? "standard input" : path, numeric, choices, any);
+  Parser parser(path == "-" ? "standard input" : path, numeric, choices, how, any);
   std::vector<char> block(65536);
   for (;;) {
     const std::size_t got = std::fread(block.data(), 1, block.size(), file.get());
@@ -643,23 +754,25 @@ CsvTable read_file(const std::string& path, const std::vector<std::string>& nume
 }  // namespace
 
 CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
-                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices) {
-  Parser parser(name, numeric, choices);
+                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices,
+                   const CsvReading& how) {
+  Parser parser(name, numeric, choices, how);
   return parse_bytes(parser, bytes, size);
 }
 
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric,
-                  const std::vector<ColumnChoice>& choices) {
-  return read_file(path, numeric, choices, false);
+                  const std::vector<ColumnChoice>& choices, const CsvReading& how) {
+  return read_file(path, numeric, choices, how, false);
 }
 
 CsvTable parse_any_csv(const std::string& name, const char* bytes, std::size_t size) {
   const std::vector<std::string> numeric;
   const std::vector<ColumnChoice> choices;
-  Parser parser(name, numeric, choices, true);
+  const CsvReading how;
+  Parser parser(name, numeric, choices, how, true);
   return parse_bytes(parser, bytes, size);
 }
 
-CsvTable read_any_csv(const std::string& path) { return read_file(path, {}, {}, true); }
+CsvTable read_any_csv(const std::string& path) { return read_file(path, {}, {}, {}, true); }
 
 }  // namespace thermopower::io

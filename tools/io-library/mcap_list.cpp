@@ -69,7 +69,7 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 class Lister {
 public:
-  explicit Lister(std::string file) { contents_.file = std::move(file); }
+  Lister(std::string file, const std::string& joint) : joint_(joint) { contents_.file = std::move(file); }
 
   McapContents list(const ByteSource& source) {
     McapHandlers handlers;
@@ -78,29 +78,13 @@ public:
     handlers.message = [this](const McapMessage& message) { add(message); };
     read_mcap_records(contents_.file, source, handlers);
     for (auto& [name, topic] : topics_) finish(*topic);
-    prefer_encoders();
-    settle_rivals(contents_.columns);
+    propose(contents_.columns, hints_, joint_);
     for (ListedColumn& column : contents_.columns)
       if (column.proposed.empty() && column.why.empty()) column.why = "left out unless it is asked for";
     return std::move(contents_);
   }
 
 private:
-  // A rate that comes with an angle is the joint's; that of an inertial sensor may be anybody's.
-  void prefer_encoders() {
-    const bool joint =
-        std::any_of(contents_.columns.begin(), contents_.columns.end(), [](const ListedColumn& one) {
-          return one.proposed == "rate_dps" && one.header.find("angular_velocity") == std::string::npos;
-        });
-    for (ListedColumn& column : contents_.columns)
-      if (joint && column.proposed == "rate_dps" &&
-          column.header.find("angular_velocity") != std::string::npos) {
-        column.proposed.clear();
-        column.unit.clear();
-        column.why = "may be rate_dps, if its axis is the joint's";
-      }
-  }
-
   void add(const McapChannel& record) {
     const McapDecoder::Channel* const channel = decoder_.add(record);
     if (channel != nullptr && topics_.count(channel->topic) == 0)
@@ -185,64 +169,43 @@ private:
         column.missing = topic.messages - std::min(topic.messages, numbers.samples);
         column.least = numbers.least;
         column.greatest = numbers.greatest;
-        propose_for(topic, leaf, column);
+        hints_.push_back(hint_for(topic, leaf));
         contents_.columns.push_back(std::move(column));
       }
     }
   }
 
   // What the definitions of ROS say, before names and ranges are asked.
-  static void propose_for(const Topic& topic, const Leaf& leaf, ListedColumn& column) {
+  static ColumnHint hint_for(const Topic& topic, const Leaf& leaf) {
     std::string type = topic.channel.schema;
     if (const std::size_t middle = type.find("/msg/"); middle != std::string::npos) type.erase(middle, 4);
-    ListedColumn by_name;
-    by_name.header = topic.channel.topic + "." + leaf.path;
-    by_name.least = column.least;
-    by_name.greatest = column.greatest;
-    // The last member tells best what a field is; the topic tells the rest.
-    const std::size_t point = leaf.path.rfind('.');
-    by_name.header = point == std::string::npos ? leaf.path : leaf.path.substr(point + 1);
-    propose(by_name);
-    const bool by_topic = by_name.proposed.empty();
-    ListedColumn whole = by_name;
-    whole.header = topic.channel.topic + "." + leaf.path;
-    propose(whole);
-    const bool same_kind = by_topic || units_of(whole.proposed) == units_of(by_name.proposed);
-    const ListedColumn& guess = same_kind ? whole : by_name;
-    column.proposed = guess.proposed;
-    column.unit = guess.unit;
-    column.why = guess.proposed.empty() ? std::string() : guess.why;
-    if (column.proposed == "t_s") column.proposed.clear(), column.unit.clear(), column.why.clear();
-    const bool first_imu_axis = leaf.path == "angular_velocity.x";
-    const auto nothing = [&](const char* why) {
-      column.proposed.clear(), column.unit.clear(), column.why = why;
+    const auto nothing = [](const char* why) { return ColumnHint{{}, why, true, {}}; };
+    const auto in = [&](const char* unit, const char* name = "") {
+      return ColumnHint{unit, "the definition of " + type, false, name};
     };
-    const auto in = [&](const char* unit) {
-      if (column.proposed.empty()) return;
-      column.unit = unit;
-      column.why = "its name and the definition of " + type;
-    };
+    // Time is the messages' own; the layout of an array is no measurement.
+    if (leaf.path.find("stamp") != std::string::npos ||
+        leaf.path.find("time_from_start") != std::string::npos || leaf.path.compare(0, 7, "layout.") == 0)
+      return nothing("");
     if (type == "sensor_msgs/JointState" || type == "trajectory_msgs/JointTrajectoryPoint") {
-      if (leaf.path == "position[]") in("rad");
-      else if (leaf.path == "velocity[]") in("rad/s");
-      else if (leaf.path == "effort[]") nothing("torque of the drive; drive_A times the torque constant");
+      if (leaf.path == "position[]") return in("rad");
+      if (leaf.path == "velocity[]") return in("rad/s");
     } else if (type == "sensor_msgs/Imu") {
-      if (leaf.path.rfind("angular_velocity.", 0) == 0) {
-        in("rad/s");
-        if (!first_imu_axis) column.why += "; take the joint's axis";
-      } else {
-        nothing("");
-      }
+      if (leaf.path.compare(0, 17, "angular_velocity.") != 0) return nothing("");
+      ColumnHint hint = in("rad/s");
+      if (leaf.path != "angular_velocity.x") hint.because += "; take the joint's axis";
+      return hint;
     } else if (type == "sensor_msgs/Temperature") {
-      if (leaf.path == "variance") nothing("");
-      else in("degC");
+      return leaf.path == "variance" ? nothing("") : in("degC");
     } else if (type == "sensor_msgs/BatteryState") {
-      if (leaf.path == "voltage")
-        column.proposed = "supply_V", column.unit = "V", column.why = "the definition of " + type;
-      else nothing(leaf.path == "current" ? "the battery's current, of all motors" : "");
+      if (leaf.path == "voltage") return in("V", "supply_V");
+      return nothing(leaf.path == "current" ? "the battery's current, of all motors" : "");
     }
+    return {};
   }
 
+  std::string joint_;
+  std::vector<ColumnHint> hints_;
   McapContents contents_;
   McapDecoder decoder_;
   std::map<std::string, std::unique_ptr<Topic>> topics_;
@@ -250,13 +213,14 @@ private:
 
 }  // namespace
 
-McapContents list_mcap(const std::string& path) {
+McapContents list_mcap(const std::string& path, const std::string& joint) {
   FileSource source(path);
-  return Lister(source.name()).list(source.function());
+  return Lister(source.name(), joint).list(source.function());
 }
 
-McapContents list_mcap(const std::string& name, const char* bytes, std::size_t size) {
-  return Lister(name).list(memory_source(bytes, size));
+McapContents list_mcap(const std::string& name, const char* bytes, std::size_t size,
+                       const std::string& joint) {
+  return Lister(name, joint).list(memory_source(bytes, size));
 }
 
 std::string columns_text(const McapContents& contents) {
@@ -274,7 +238,7 @@ std::string columns_text(const McapContents& contents) {
     out += row + (topic.schema.empty() ? "" : topic.schema + ", ") + topic.encoding +
            (topic.unreadable.empty() ? "" : " (not readable: " + topic.unreadable + ")") + "\n";
   }
-  return out + "\n" + list_text(contents.columns);
+  return out + "\n" + list_text(contents.columns) + next_text(contents.file, contents.columns, false);
 }
 
 }  // namespace thermopower::io

@@ -328,7 +328,7 @@ RecordingFile to_recording(Capture capture, const std::vector<ColumnChoice>& cho
            std::to_string(samples.size()) +
            (of_board ? " frames of telemetry (only REALTIME_DATA_4 has all fields)" : " frames CONTROL"));
     StreamColumn column{choice.name, samples};
-    for (double& value : column.values) value = (value - choice.offset) * choice.factor;
+    for (double& value : column.values) value = choice.value_of(value);
     (of_board ? telemetry : control).columns.push_back(std::move(column));
   }
   std::vector<Stream> streams;
@@ -430,7 +430,7 @@ std::string columns_text(const SbgcCaptureContents& contents) {
                   one->lost_bytes, one->broken_frames);
     out += row;
   }
-  return out + "\n" + list_text(contents.columns);
+  return out + "\n" + list_text(contents.columns) + next_text(contents.file, contents.columns, false);
 }
 
 }  // namespace thermopower::io

@@ -35,7 +35,7 @@ int list_columns(const std::string& path, const std::string& proposal) {
     columns = contents.columns;
   } else {
     columns = io::list_columns(path);
-    text = io::columns_text(columns);
+    text = io::columns_text(columns, path == "-" ? "log.csv" : path);
   }
   if (!proposal.empty()) outputs.put(proposal, io::column_map_text(columns));
   outputs.commit();

@@ -8,17 +8,34 @@
 namespace thermopower::io {
 
 /// @brief Which column of a file is meant by a name of the format, and how its numbers become the format's unit:
-/// value = (number - offset) * factor.
+/// value = (number - offset) * factor, and then what `needs` says.
 struct ColumnChoice {
+  /// What the numbers must be multiplied or divided by besides.
+  enum class Needs {
+    nothing,          ///< the factor is all
+    torque_constant,  ///< a torque of the drive: divided by the model's torque constant it is a current
+    supply,           ///< a share of the supply: times its voltage it is the motor's
+  };
   std::string name;    ///< of the format, such as `motor_C`; any other name is a covariate
   std::string header;  ///< in the file's header row
   double factor =
       1.0;  ///< of the format's unit per unit of the file, negative where the sign is turned round
-  double offset = 0.0;  ///< in the file's unit
+  double offset = 0.0;    ///< in the file's unit
+  std::string unit = {};  ///< as it was given; empty: the unit of the file's row of units, else the format's
+  int sign_bit = 0;       ///< of a register that holds sign and magnitude; 0: a number with a sign of its own
+  Needs needs = Needs::nothing;  ///< what else makes the format's unit of it
+
+  /// A number of the file in the format's unit, but for what `needs` says.
+  double value_of(double number) const;
 };
 
 /// @brief Reads `NAME=HEADER[:UNIT]`, such as `motor_C=temp:degF`, `t_s=stamp:ms`, `power_param=duty:1` or
-/// `drive_A=current:-mA` (a minus turns the sign round). A header that holds a colon needs a unit after it.
+/// `drive_A=current:-mA`. A header that holds a colon needs a unit after it.
+///
+/// A minus before the unit turns the sign round. `rpm/7` and `A*0.01` divide and multiply: a gear, pole pairs, the size of a count.
+/// `angle_deg=pos:4096` are 4096 counts a turn, `rate_dps=speed:4096/s` the same per second; `,sign15` says that bit 15 of a
+/// register is its sign. `drive_A=effort:Nm` is the drive's own torque, divided by the model's torque constant;
+/// `voltage_V=duty:1` is a signed share of the supply.
 /// @throws InputError that says what is wrong and which units the name knows
 ColumnChoice parse_column_choice(const std::string& text);
 

@@ -35,8 +35,20 @@ struct CsvTable {
   };
   std::vector<Place> repeated;  ///< rows that were the row before them once more, cell for cell: left out
   std::vector<Place> restarts;  ///< rows whose time fell back to where the run began: a new run starts there
+  std::vector<std::string>
+      units;  ///< of each of `columns`, where a row of units stands below the header; else empty
+  std::vector<std::string>
+      stamps;  ///< of a table read by read_any_csv(): columns of dates or times of day, in s since the first
   bool ends_with_line_break =
       true;  ///< false: the last row has all its fields, but a cut in its last one would be invisible
+};
+
+/// @brief What a CSV file itself does not say.
+struct CsvReading {
+  double rows_per_s =
+      0.0;  ///< makes the time of a file that has none, from 0 at the first row of each run on; 0: it has one
+  std::vector<std::size_t> lines =
+      {};  ///< of a table made from a log: in which line of the log row i + 1 began, header first
 };
 
 /// @brief Reads a CSV file as RFC 4180 describes it: a header row, optional quotes, LF or CRLF, optional UTF-8
@@ -53,6 +65,11 @@ struct CsvTable {
 /// label of independent runs, any other is ignored and listed in CsvTable::ignored_text. A column of
 /// INTERFACE columns (numeric by definition) may not hold text.
 ///
+/// Three habits of programs are understood. A first row that holds units only is a row of units (CsvTable::units): a column
+/// whose choice says no unit is in that one. `t_s` may hold dates or times of day (ISO 8601, and as Python, pandas and
+/// spreadsheets write them); it becomes seconds since the first. A first column without a name, as pandas writes its index, is
+/// called `index` and left out unless it is chosen; a column without a name and without a cell is left out.
+///
 /// Blank lines are skipped. Numbers are parsed with std::from_chars, so that no locale can change their
 /// meaning.
 ///
@@ -62,11 +79,12 @@ struct CsvTable {
 /// taken by another one is left out
 /// @throws InputError with file, line, column and what was expected
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& numeric,
-                  const std::vector<ColumnChoice>& choices = {});
+                  const std::vector<ColumnChoice>& choices = {}, const CsvReading& how = {});
 
 /// @brief The same on bytes in memory; `name` stands in messages where a path would.
 CsvTable parse_csv(const std::string& name, const char* bytes, std::size_t size,
-                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices = {});
+                   const std::vector<std::string>& numeric, const std::vector<ColumnChoice>& choices = {},
+                   const CsvReading& how = {});
 
 /// @brief Reads any table of numbers: as read_csv(), but no column is required, none has a meaning, and rows may be in
 /// any order.

@@ -35,11 +35,12 @@ struct McapContents {
 /// opened begins like none.
 bool is_mcap(const std::string& path);
 
-/// @brief Lists topics and fields of an MCAP file. @throws InputError, see read_mcap()
-McapContents list_mcap(const std::string& path);
+/// @brief Lists topics and fields of an MCAP file. `joint` is as in list_columns(). @throws InputError, see read_mcap()
+McapContents list_mcap(const std::string& path, const std::string& joint = {});
 
 /// @brief The same on bytes in memory; `name` stands in messages where a path would.
-McapContents list_mcap(const std::string& name, const char* bytes, std::size_t size);
+McapContents list_mcap(const std::string& name, const char* bytes, std::size_t size,
+                       const std::string& joint = {});
 
 /// @brief The contents as text for a person, with the options `--column` that take the proposals.
 std::string columns_text(const McapContents& contents);
