@@ -50,3 +50,20 @@ install(FILES ${PROJECT_BINARY_DIR}/thermopowerConfig.cmake ${PROJECT_BINARY_DIR
 
 configure_file(${CMAKE_CURRENT_LIST_DIR}/thermopower.pc.in ${PROJECT_BINARY_DIR}/thermopower.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/thermopower.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig COMPONENT headers)
+
+# cpack -G DEB --config <build>/CPackConfig.cmake: one package of what was built. Configure with CMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON where
+# only some targets were.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_NAME thermopower)
+  set(CPACK_PACKAGE_CONTACT "the thermopower authors <maintainers@thermopower.invalid>")
+  set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+  set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev, nlohmann-json3-dev")
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_STRIP_FILES ON)
+  include(CPack)
+endif()

@@ -10,7 +10,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/version.cmake)
 thermopower_version(${root} version)
 
 file(COPY ${root}/include ${root}/LICENSE DESTINATION ${OUT})
-foreach(manifest library.json idf_component.yml conanfile.py vcpkg.json)
+foreach(manifest library.json idf_component.yml conanfile.py vcpkg.json portfile.cmake package.xml)
   configure_file(${root}/cmake/packaging/${manifest}.in ${OUT}/${manifest} @ONLY)
 endforeach()
 configure_file(${root}/cmake/packaging/CMakeLists.idf.txt.in ${OUT}/CMakeLists.txt @ONLY)

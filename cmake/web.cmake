@@ -27,19 +27,18 @@ file(MAKE_DIRECTORY ${web}/include)
 list(GET json 0 json)
 file(CREATE_LINK ${json}/nlohmann ${web}/include/nlohmann SYMBOLIC)
 
-set(gap check_data diagnose simulate standard_catalogue)
-set(io chart check_report chunk_compression column_choice column_list crc32 csv_table expression_text field_tree file_source held_out_runs
-       html_text json_message json_place mcap_file mcap_list mcap_messages mcap_records model_file nearest_name recording_file report_html
-       report_json residual_statistics ros2_schema sbgc_capture stream_join summary)
-list(TRANSFORM gap PREPEND ${PROJECT_SOURCE_DIR}/tools/gap-library/)
-list(TRANSFORM io PREPEND ${PROJECT_SOURCE_DIR}/tools/io-library/)
+# All of the two libraries, so that none of their files is forgotten here.
+file(GLOB libraries CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/gap-library/*.cpp ${PROJECT_SOURCE_DIR}/tools/io-library/*.cpp)
+list(TRANSFORM libraries REPLACE "\\.cpp$" "")
 set(here ${PROJECT_SOURCE_DIR}/tools/web)
 # Exceptions are those of WebAssembly: the older way, through JavaScript, costs a third of the speed.
 set(flags -O2 -fwasm-exceptions -msimd128)
 set(objects)
-foreach(source IN LISTS gap io ITEMS ${here}/csv/csv ${here}/web_program)
+foreach(source IN LISTS libraries ITEMS ${here}/csv/csv ${here}/web_program)
   get_filename_component(name ${source} NAME)
-  set(object ${web}/${name}.o)
+  get_filename_component(folder ${source} DIRECTORY)
+  get_filename_component(folder ${folder} NAME)
+  set(object ${web}/${folder}_${name}.o)
   add_custom_command(OUTPUT ${object} DEPENDS ${source}.cpp ${here}/charconv_of_double.hpp DEPFILE ${object}.d VERBATIM
     COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs ${THERMOPOWER_EMXX} -std=c++17 -DNDEBUG ${flags} -DTHERMOPOWER_GAP_LIBRARY
             -include ${here}/charconv_of_double.hpp -I${PROJECT_SOURCE_DIR}/include -I${here}/csv -isystem ${eigen} -isystem ${web}/include
@@ -53,7 +52,7 @@ set(thermopower_web_script ${web}/thermopower_gap.js)
 add_custom_command(OUTPUT ${program} DEPENDS ${objects} VERBATIM
   COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs ${THERMOPOWER_EMXX} ${flags} ${objects} -o ${program} -s SINGLE_FILE=1
           -s ALLOW_MEMORY_GROWTH=1 -s INITIAL_MEMORY=64MB -s TOTAL_STACK=4MB -s ENVIRONMENT=worker,node -s FORCE_FILESYSTEM=1
-          -s EXPORTED_FUNCTIONS=_thermopower_diagnose,_thermopower_example -s EXPORTED_RUNTIME_METHODS=FS,ccall
+          -s EXPORTED_FUNCTIONS=_thermopower_diagnose,_thermopower_example,_thermopower_columns -s EXPORTED_RUNTIME_METHODS=FS,ccall
   COMMENT "WebAssembly: program")
 add_custom_command(OUTPUT ${thermopower_web_script} DEPENDS ${program} ${here}/as_text.cjs VERBATIM
   COMMAND ${THERMOPOWER_NODE} ${here}/as_text.cjs ${program} ${thermopower_web_script})

@@ -18,6 +18,7 @@
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/io/predictions_file.hpp>
 #include <thermopower/io/recording_file.hpp>
+#include <thermopower/io/remedy.hpp>
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/sbgc_capture.hpp>

@@ -110,7 +110,7 @@ TEST_CASE("every kind of malformed input is refused with file, line, column and 
       {"t_s,motor_C\n0\n1,2\n", {"log.csv:2: ", "column 'motor_C'", "1 field ", "expected 2"}},
       {"t_s,motor_C\n0,1\n1", {"log.csv:3: ", "ends inside this row", "cut off"}},
       {"t_s,x,x\n0,1,2\n", {"log.csv:1: ", "column 'x' appears twice", "distinct names"}},
-      {"t_s,,x\n0,1,2\n", {"log.csv:1: ", "name of column number 2 is empty"}},
+      {"t_s,,x\n0,1,2\n", {"log.csv:2: ", "column number 2 has no name and holds '1'"}},
       {"time,motor_C\n0,1\n", {"log.csv:1: ", "no column 't_s'", "found 'time', 'motor_C'"}},
       {"t_s|motor_C\n0|1\n", {"log.csv:1: ", "no column 't_s'", "separated by commas, semicolons or tabs"}},
       {"t_s,motor_C\n0,1\n0,2\n", {"log.csv:3: ", "column 't_s'", "0 s follows 0 s", "strictly increasing"}},

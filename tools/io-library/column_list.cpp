@@ -6,12 +6,17 @@
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/csv_table.hpp>
 
+#include <thermopower/io/mcap_file.hpp>
+#include <thermopower/io/sbgc_capture.hpp>
+
 #include "column_proposal.hpp"
 #include "html_text.hpp"
+#include "log_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace thermopower::io {
 namespace {
@@ -102,7 +107,64 @@ std::string quoted_for_shell(const std::string& text) {
 }
 
 std::vector<ListedColumn> list_columns(const std::string& path, const std::string& joint) {
-  return listed(read_any_csv(path), joint);
+  return list_log(path, joint).columns;
+}
+
+LogContents list_log(const std::string& path, const std::string& joint) {
+  LogContents contents;
+  contents.file = path;
+  const auto of_text = [&](const LogText& log) {
+    contents.columns = list_columns(path, log.csv.data(), log.csv.size(), joint);
+    for (const std::string& note : log.notes) contents.about += "  " + note + "\n";
+  };
+  if (is_mcap(path)) {
+    McapContents mcap = list_mcap(path, joint);
+    contents.about = topics_text(mcap);
+    contents.columns = std::move(mcap.columns);
+    contents.needs_time = false;
+    return contents;
+  }
+  switch (kind_of_log(path)) {
+    case LogKind::klippy:
+      of_text(klippy_as_csv(path, all_bytes_of(path)));
+      return contents;
+    case LogKind::marlin:
+      of_text(marlin_as_csv(path, all_bytes_of(path)));
+      return contents;
+    case LogKind::json_lines:
+      of_text(json_lines_as_csv(path, all_bytes_of(path)));
+      return contents;
+    case LogKind::numpy:
+      of_text(numpy_as_csv(path, all_bytes_of(path)));
+      return contents;
+    case LogKind::candump:
+      contents.columns = list_candump(path, all_bytes_of(path), contents.about);
+      contents.needs_time = false;
+      return contents;
+    case LogKind::sqlite_bag: {
+      McapContents bag = list_mcap(path, joint);
+      contents.about = topics_text(bag);
+      contents.columns = std::move(bag.columns);
+      contents.needs_time = false;
+      return contents;
+    }
+    case LogKind::csv:
+      break;
+  }
+  if (is_sbgc_capture(path)) {
+    SbgcCaptureContents capture = list_sbgc_capture(path);
+    contents.about = capture_text(capture);
+    contents.columns = std::move(capture.columns);
+    contents.needs_time = false;
+    return contents;
+  }
+  contents.columns = listed(read_any_csv(path), joint);
+  return contents;
+}
+
+std::string columns_text(const LogContents& contents) {
+  return contents.about + (contents.about.empty() ? "" : "\n") + list_text(contents.columns) +
+         next_text(contents.file == "-" ? "log.csv" : contents.file, contents.columns, contents.needs_time);
 }
 
 std::vector<ListedColumn> list_columns(const std::string& name, const char* bytes, std::size_t size,

@@ -173,7 +173,7 @@ private:
     }
     guess.group = group_of(words);
     if (guess.name.empty()) return guess;
-    if (!hint.unit.empty()) {
+    if (!hint.because.empty()) {
       guess.unit = hint.unit;
       guess.has_unit = true;
       guess.why = hint.because;
@@ -263,7 +263,7 @@ private:
         if (has(words, {"ms"})) guess.unit = "ms", guess.has_unit = true;
         return guess;
       }
-      if (column.rises) return named("t_s", 1);
+      if (column.rises || unit.dimension == Dimension::time) return named("t_s", 1);
       if (words.size() == 1 && words[0] == "t") return named("motor_C", 2, "a T that falls is a temperature");
       return nothing("its name says time, but its numbers fall");
     }
@@ -279,7 +279,7 @@ private:
         has(words, {"angle", "position", "positions", "pos", "theta", "encoder", "qpos", "winkel", "lage"}) ||
         (has(words, {"q"}) && !has(words, {"axis"}));
     const bool named_torque = has(words, {"torque", "effort", "efforts", "tau", "drehmoment"});
-    const bool named_duty = has(words, {"duty", "pwm", "tastgrad", "heater"});
+    const bool named_duty = has(words, {"duty", "pwm", "tastgrad"}) || (has(words, {"heater"}) && !wanted);
     if (kind == Dimension::none || (kind == Dimension::share && named_duty)) {
       kind = has(words, {"airspeed", "windspeed", "wind"}) ? Dimension::speed
              : named_duty && !named_temperature            ? Dimension::share
@@ -311,7 +311,8 @@ private:
           return nothing("the supply's current, of all motors");
         if ((has(words, {"d"}) && has(words, {"axis"})) || has(words, {"id"}))
           return nothing("current of the d axis: it makes no torque");
-        if (column.whole && column.greatest > 1.0 && unit.dimension == Dimension::none)
+        if (column.whole && column.samples >= 16 && column.least >= 0.0 && column.greatest > 1.0 &&
+            unit.dimension == Dimension::none)
           return nothing(
               "may be current_A, but whole numbers without a unit: counts of a register; --column current_A=HEADER:A*SIZE says their size");
         return measured(named(wanted ? "drive_A" : "current_A", 3));
@@ -328,7 +329,7 @@ private:
         if (unit.dimension == Dimension::share && !named_duty) return Guess();
         return column.least < 0.0
                    ? measured(named("voltage_V", 2, "a duty with a sign: a share of the supply"))
-                   : measured(named("power_param", 2));
+                   : measured(named("power_param", body ? 3 : 2));
       case Dimension::rate: {
         if (has(words, {"erpm"}))
           return nothing("electrical revolutions; --column rate_dps=HEADER:rpm/7 divides by the pole pairs");
@@ -460,7 +461,12 @@ private:
       (guess.name == "angle_deg" ? joint.angle : joint.rate) =
           std::max(guess.name == "angle_deg" ? joint.angle : joint.rate, travel(i));
     }
-    if (joints.empty()) return;
+    if (joints.empty()) {
+      // A heater is chosen by its name alone.
+      has_joint_ = !joint_.empty();
+      chosen_ = group_of(words_of(joint_));
+      return;
+    }
     for (std::size_t i = 0; i < guesses_.size(); ++i) {
       const auto joint = joints.find(guesses_[i].group);
       if (joint == joints.end()) continue;
@@ -565,7 +571,11 @@ private:
       const auto value = [&](std::size_t i) {
         const Guess& guess = guesses_[i];
         const int near = nearness(guess);
-        return guess.weight * 100 + near * (name == "drive_A" ? 60 : 1000) + (range(list_[i]) > 0.0 ? 5 : 0);
+        return guess.weight * 100 +
+               (name != "drive_A" ? near * 1000
+                : near > 0        ? near * 60
+                                  : -1000) +
+               (range(list_[i]) > 0.0 ? 250 : 0);
       };
       std::size_t best = rivals.front();
       for (const std::size_t i : rivals)

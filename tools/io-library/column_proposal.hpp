@@ -5,6 +5,8 @@
 
 #include <thermopower/io/column_list.hpp>
 #include <thermopower/io/csv_table.hpp>
+#include <thermopower/io/mcap_file.hpp>
+#include <thermopower/io/sbgc_capture.hpp>
 
 #include <string>
 #include <vector>
@@ -35,6 +37,12 @@ std::string list_text(const std::vector<ListedColumn>& columns);
 
 /// What to do next: the command, and what is missing for it.
 std::string next_text(const std::string& file, const std::vector<ListedColumn>& columns, bool needs_time);
+
+/// The topics of an MCAP file as lines.
+std::string topics_text(const McapContents& contents);
+
+/// What a capture of a SimpleBGC board holds, as lines.
+std::string capture_text(const SbgcCaptureContents& contents);
 
 /// A word as a shell takes it.
 std::string quoted_for_shell(const std::string& text);

@@ -90,4 +90,12 @@ int first_byte_of(const std::string& path) {
   return byte == EOF ? -1 : byte;
 }
 
+bool begins_with(const std::string& path, const std::string& bytes) {
+  std::error_code status;
+  if (path == "-" || !std::filesystem::is_regular_file(path, status)) return false;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  std::string head(bytes.size(), '\0');
+  return file && std::fread(&head[0], 1, head.size(), file.get()) == head.size() && head == bytes;
+}
+
 }  // namespace thermopower::io

@@ -42,4 +42,7 @@ ByteSource memory_source(const char* bytes, std::size_t size);
 /// The first byte of a file (`-`: of standard input, where it stays to be read); -1 where there is none.
 int first_byte_of(const std::string& path);
 
+/// Whether a plain file begins with these bytes; a pipe or standard input is not asked.
+bool begins_with(const std::string& path, const std::string& bytes);
+
 }  // namespace thermopower::io

@@ -6,11 +6,14 @@
 #include <thermopower/io/input_error.hpp>
 
 #include "file_source.hpp"
+#include "log_text.hpp"
 #include "mcap_messages.hpp"
+#include "sqlite_bag.hpp"
 #include "stream_join.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -66,12 +69,13 @@ public:
     used_.assign(wanted_.size(), 0);
   }
 
-  RecordingFile read(const ByteSource& source) {
+  /// @param records  calls the handlers with all of a file's records
+  RecordingFile read(const std::function<void(const McapHandlers&)>& records) {
     McapHandlers handlers;
     handlers.schema = [this](const McapSchema& schema) { decoder_.add(schema); };
     handlers.channel = [this](const McapChannel& channel) { add(channel); };
     handlers.message = [this](const McapMessage& message) { add(message); };
-    read_mcap_records(file_, source, handlers);
+    records(handlers);
     return finish();
   }
 
@@ -363,15 +367,26 @@ private:
 }  // namespace
 
 RecordingFile read_mcap(const std::string& path, const std::vector<ColumnChoice>& choices) {
+  if (kind_of_log(path) == LogKind::sqlite_bag)
+    return Selector(path, choices).read([&](const McapHandlers& handlers) {
+      read_sqlite_bag(path, handlers);
+    });
   FileSource source(path);
-  return Selector(source.name(), choices).read(source.function());
+  return Selector(source.name(), choices).read([&](const McapHandlers& handlers) {
+    read_mcap_records(source.name(), source.function(), handlers);
+  });
 }
 
 RecordingFile parse_mcap(const std::string& name, const char* bytes, std::size_t size,
                          const std::vector<ColumnChoice>& choices) {
-  return Selector(name, choices).read(memory_source(bytes, size));
+  return Selector(name, choices).read([&](const McapHandlers& handlers) {
+    read_mcap_records(name, memory_source(bytes, size), handlers);
+  });
 }
 
-bool is_mcap(const std::string& path) { return first_byte_of(path) == 0x89; }
+bool is_mcap(const std::string& path) {
+  // HDF5 begins with the same byte.
+  return first_byte_of(path) == 0x89 && !begins_with(path, "\x89HDF");
+}
 
 }  // namespace thermopower::io

@@ -6,11 +6,14 @@
 
 #include "column_proposal.hpp"
 #include "file_source.hpp"
+#include "log_text.hpp"
 #include "mcap_messages.hpp"
+#include "sqlite_bag.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -71,12 +74,13 @@ class Lister {
 public:
   Lister(std::string file, const std::string& joint) : joint_(joint) { contents_.file = std::move(file); }
 
-  McapContents list(const ByteSource& source) {
+  /// @param records  calls the handlers with all of a file's records
+  McapContents list(const std::function<void(const McapHandlers&)>& records) {
     McapHandlers handlers;
     handlers.schema = [this](const McapSchema& schema) { decoder_.add(schema); };
     handlers.channel = [this](const McapChannel& channel) { add(channel); };
     handlers.message = [this](const McapMessage& message) { add(message); };
-    read_mcap_records(contents_.file, source, handlers);
+    records(handlers);
     for (auto& [name, topic] : topics_) finish(*topic);
     propose(contents_.columns, hints_, joint_);
     for (ListedColumn& column : contents_.columns)
@@ -214,16 +218,22 @@ private:
 }  // namespace
 
 McapContents list_mcap(const std::string& path, const std::string& joint) {
+  if (kind_of_log(path) == LogKind::sqlite_bag)
+    return Lister(path, joint).list([&](const McapHandlers& handlers) { read_sqlite_bag(path, handlers); });
   FileSource source(path);
-  return Lister(source.name(), joint).list(source.function());
+  return Lister(source.name(), joint).list([&](const McapHandlers& handlers) {
+    read_mcap_records(source.name(), source.function(), handlers);
+  });
 }
 
 McapContents list_mcap(const std::string& name, const char* bytes, std::size_t size,
                        const std::string& joint) {
-  return Lister(name, joint).list(memory_source(bytes, size));
+  return Lister(name, joint).list([&](const McapHandlers& handlers) {
+    read_mcap_records(name, memory_source(bytes, size), handlers);
+  });
 }
 
-std::string columns_text(const McapContents& contents) {
+std::string topics_text(const McapContents& contents) {
   std::string out;
   char row[300];
   std::snprintf(row, sizeof row, "  %-28s%10s%10s  %-14s%s\n", "topic", "messages", "per s", "time",
@@ -238,7 +248,12 @@ std::string columns_text(const McapContents& contents) {
     out += row + (topic.schema.empty() ? "" : topic.schema + ", ") + topic.encoding +
            (topic.unreadable.empty() ? "" : " (not readable: " + topic.unreadable + ")") + "\n";
   }
-  return out + "\n" + list_text(contents.columns) + next_text(contents.file, contents.columns, false);
+  return out;
+}
+
+std::string columns_text(const McapContents& contents) {
+  return topics_text(contents) + "\n" + list_text(contents.columns) +
+         next_text(contents.file, contents.columns, false);
 }
 
 }  // namespace thermopower::io

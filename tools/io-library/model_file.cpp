@@ -61,7 +61,8 @@ class Reader {
 public:
   Reader(const std::string& file, const Catalogue& catalogue) : file_(file), catalogue_(catalogue) {}
 
-  Model read(const std::string& text) {
+  Model read(const std::string& given) {
+    const std::string text = without_comments(given);
     const Json root = parse(text);
     text_ = text;
     if (!root.is_object())
@@ -106,6 +107,27 @@ private:
     std::string safe;  // RFC 6901
     for (const char c : key) safe += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
     return pointer + "/" + safe;
+  }
+
+  // Comments become blanks, so that places in the text stay what they are.
+  static std::string without_comments(std::string text) {
+    bool quoted = false;
+    for (std::size_t at = 0; at + 1 < text.size(); ++at) {
+      if (quoted && text[at] == '\\') {
+        ++at;
+      } else if (text[at] == '"') {
+        quoted = !quoted;
+      } else if (!quoted && text[at] == '/' && (text[at + 1] == '/' || text[at + 1] == '*')) {
+        const bool line = text[at + 1] == '/';
+        const std::size_t found = line ? text.find('\n', at) : text.find("*/", at + 2);
+        if (found == std::string::npos && !line) break;  // the parser says where it is
+        const std::size_t end = found == std::string::npos ? text.size() : line ? found : found + 2;
+        for (; at < end; ++at)
+          if (text[at] != '\n') text[at] = ' ';
+        --at;
+      }
+    }
+    return text;
   }
 
   Json parse(const std::string& text) const {

@@ -21,7 +21,9 @@ namespace {
   throw OutputError(path + ": cannot be written: " + std::strerror(error));
 }
 
+// `-` is standard output, as it is standard input where a file is read.
 bool is_special(const std::string& path) {
+  if (path == "-") return true;
   struct stat status {};
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
@@ -57,6 +59,10 @@ void write_all(int descriptor, const std::string& contents, const std::string& p
 }
 
 void write_through(const std::string& path, const std::string& contents) {
+  if (path == "-") {
+    write_all(STDOUT_FILENO, contents, "standard output");
+    return;
+  }
   const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) fail(path, errno);
   try {
@@ -81,6 +87,7 @@ mode_t rights_for(const std::string& path) {
 }  // namespace
 
 void OutputFiles::expect(const std::string& path) {
+  if (path == "-") return;
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) fail(path, EISDIR);
   if (is_special(path)) {

@@ -7,6 +7,9 @@
 #include <thermopower/io/mcap_file.hpp>
 #include <thermopower/io/sbgc_capture.hpp>
 
+#include "log_text.hpp"
+
+#include <cmath>
 #include <utility>
 
 namespace thermopower::io {
@@ -80,10 +83,104 @@ RecordingFile to_recording(CsvTable table) {
   return file;
 }
 
+namespace {
+
+using Needs = ColumnChoice::Needs;
+
+// A torque of the drive becomes a current before the file is read: a factor is all it takes.
+void take_torque_constant(const std::string& path, ReadOptions& options) {
+  for (ColumnChoice& choice : options.choices) {
+    if (choice.needs != Needs::torque_constant) continue;
+    if (options.torque_constant_Nm_per_A == 0.0)
+      throw InputError(
+          path + ": column '" + choice.name + "': " + excerpt(choice.header) +
+          " is a torque, and the model has no torque_constant_Nm_per_A that makes a current of it; expected an axis in "
+          "the model, or a current in A");
+    choice.factor /= options.torque_constant_Nm_per_A;
+  }
+}
+
+// Shares of the supply become volts once the supply is known.
+void take_supply(const std::string& path, const ReadOptions& options, Recording& recording) {
+  for (const ColumnChoice& choice : options.choices) {
+    if (choice.needs != Needs::supply || !recording.has(choice.name)) continue;
+    Eigen::VectorXd volts = recording.column(choice.name);
+    double supply = options.nominal_V;
+    if (!recording.has("supply_V") && !(supply > 0.0))
+      throw InputError(
+          path + ": column '" + choice.name + "': " + excerpt(choice.header) +
+          " is a share of the supply, and nobody says how much that is; expected a column supply_V, --supply, or "
+          "/supply/nominal_V in the model");
+    for (Eigen::Index row = 0; row < volts.size(); ++row) {
+      if (recording.has("supply_V") && std::isfinite(recording.column("supply_V")[row]))
+        supply = recording.column("supply_V")[row];
+      volts[row] *= supply;
+    }
+    recording.set(choice.name, volts);
+  }
+}
+
+void take_constants(const std::string& path, const ReadOptions& options, Recording& recording) {
+  for (const auto& [name, value] : options.constants) {
+    if (recording.has(name))
+      throw InputError(path + ": column '" + name +
+                       "': is in the file, and is given as a constant, too; expected one of the two");
+    recording.set(name, Eigen::VectorXd::Constant(recording.t_s.size(), value));
+  }
+}
+
+RecordingFile from_text(const std::string& path, const LogText& log, const ReadOptions& options) {
+  const std::string name = path == "-" ? "standard input" : path;
+  RecordingFile file = to_recording(parse_csv(name, log.csv.data(), log.csv.size(), known_columns(),
+                                              options.choices, {options.rows_per_s, log.lines}));
+  return file;
+}
+
+RecordingFile read_any(const std::string& path, const ReadOptions& options) {
+  if (is_mcap(path)) return read_mcap(path, options.choices);
+  switch (kind_of_log(path)) {
+    case LogKind::klippy:
+      return from_text(path, klippy_as_csv(path, all_bytes_of(path)), options);
+    case LogKind::marlin:
+      return from_text(path, marlin_as_csv(path, all_bytes_of(path)), options);
+    case LogKind::json_lines:
+      return from_text(path, json_lines_as_csv(path, all_bytes_of(path)), options);
+    case LogKind::numpy:
+      return from_text(path, numpy_as_csv(path, all_bytes_of(path)), options);
+    case LogKind::candump:
+      return candump_as_recording(path, all_bytes_of(path), options.choices);
+    case LogKind::sqlite_bag:
+      return read_mcap(path, options.choices);
+    case LogKind::csv:
+      break;
+  }
+  if (is_sbgc_capture(path)) return read_sbgc_capture(path, options.choices);
+  return to_recording(read_csv(path, known_columns(), options.choices, {options.rows_per_s, {}}));
+}
+
+}  // namespace
+
+ReadOptions read_options(const gap::Model& model, std::vector<ColumnChoice> choices) {
+  ReadOptions options;
+  options.choices = std::move(choices);
+  if (model.axis) options.torque_constant_Nm_per_A = model.axis->torque_constant_Nm_per_A;
+  if (model.supply) options.nominal_V = model.supply->nominal_V;
+  return options;
+}
+
+RecordingFile read_recording(const std::string& path, const ReadOptions& given) {
+  ReadOptions options = given;
+  take_torque_constant(path, options);
+  RecordingFile file = read_any(path, options);
+  take_constants(path, options, file.recording);
+  take_supply(path, options, file.recording);
+  return file;
+}
+
 RecordingFile read_recording(const std::string& path, const std::vector<ColumnChoice>& choices) {
-  if (is_mcap(path)) return read_mcap(path, choices);
-  if (is_sbgc_capture(path)) return read_sbgc_capture(path, choices);
-  return to_recording(read_csv(path, known_columns(), choices));
+  ReadOptions options;
+  options.choices = choices;
+  return read_recording(path, options);
 }
 
 }  // namespace thermopower::io

@@ -417,7 +417,7 @@ SbgcCaptureContents list_sbgc_capture(const std::string& path) {
   return list_sbgc_capture(source.name(), read_all(source));
 }
 
-std::string columns_text(const SbgcCaptureContents& contents) {
+std::string capture_text(const SbgcCaptureContents& contents) {
   char row[300];
   std::snprintf(row, sizeof row,
                 "  serial line of a SimpleBGC board, %.4g s: %zu frames of telemetry, %zu CONTROL\n",
@@ -430,7 +430,12 @@ std::string columns_text(const SbgcCaptureContents& contents) {
                   one->lost_bytes, one->broken_frames);
     out += row;
   }
-  return out + "\n" + list_text(contents.columns) + next_text(contents.file, contents.columns, false);
+  return out;
+}
+
+std::string columns_text(const SbgcCaptureContents& contents) {
+  return capture_text(contents) + "\n" + list_text(contents.columns) +
+         next_text(contents.file, contents.columns, false);
 }
 
 }  // namespace thermopower::io

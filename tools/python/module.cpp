@@ -214,6 +214,24 @@ PYBIND11_MODULE(_thermopower, module) {
       .def_readonly("name", &gap::Recording::name)
       .def_property_readonly("rows", &gap::Recording::rows);
   module.def("read_recording", &recording_in, released());
+  module.def("choice_of", [](const std::string& text) {
+    const io::ColumnChoice choice = io::parse_column_choice(text);
+    return std::make_pair(choice.name, choice.header);
+  });
+  module.def("chosen_values", [](const std::string& text, Eigen::VectorXd values) {
+    const io::ColumnChoice choice = io::parse_column_choice(text);
+    if (choice.needs != io::ColumnChoice::Needs::nothing)
+      throw io::InputError(
+          "columns: " + text +
+          ": a torque or a duty becomes a current or a voltage where a file is read; multiply the column of a frame");
+    for (double& value : values) value = choice.value_of(value);
+    return values;
+  });
+  module.def("remedy", [](const std::string& mend, const std::vector<std::string>& choices) {
+    std::vector<io::ColumnChoice> in_force;
+    for (const std::string& text : choices) in_force.push_back(io::parse_column_choice(text));
+    return io::remedy_in_force(mend, in_force);
+  });
   py::class_<gap::Options>(module, "Options")
       .def(py::init())
       .def_readwrite("horizon_s", &gap::Options::horizon_s)

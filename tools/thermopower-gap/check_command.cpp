@@ -29,20 +29,21 @@ int check(const Arguments& arguments) {
   {
     Progress progress;
     const gap::Model model = io::read_model(arguments.model, catalogue);
-    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
+    const io::ReadOptions how = reading(arguments, model);
     std::vector<gap::Finding> findings;
-    const std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
-    const std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
+    const std::vector<gap::Recording> recordings = read_all(arguments.recordings, how, findings);
+    const std::vector<gap::Recording> held_out = read_all(arguments.held_out, how, findings);
     gap::Options options;
     options.horizon_s = arguments.horizon_s;
     options.as_recorded = arguments.as_recorded;
     progress.stage("checking");
     report = gap::check_data(model, recordings, held_out, options, catalogue);
     report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+    io::put_remedies_in_force(report.findings, how.choices);
     if (!arguments.report.empty()) outputs.put(arguments.report, io::check_json(report));
     outputs.commit();
   }
-  std::fputs(io::check_text(report).c_str(), stdout);
+  std::fputs(io::check_text(report).c_str(), arguments.report == "-" ? stderr : stdout);
   return gap::deciding(report.findings) != nullptr || !report.too_little.empty() ? too_little_data : made;
 }
 

@@ -16,28 +16,16 @@ namespace io = thermopower::io;
 
 namespace {
 
-int list_columns(const std::string& path, const std::string& proposal) {
+int list_columns(const std::string& path, const std::string& proposal, const std::string& joint) {
   io::OutputFiles outputs;
   if (!proposal.empty()) {
     if (plain_path(proposal) == plain_path(path))
       throw UsageError("'" + path + "' is named twice; an output must not be an input");
     outputs.expect(proposal);
   }
-  std::string text;
-  std::vector<io::ListedColumn> columns;
-  if (io::is_mcap(path)) {
-    const io::McapContents contents = io::list_mcap(path);
-    text = io::columns_text(contents);
-    columns = contents.columns;
-  } else if (io::is_sbgc_capture(path)) {
-    const io::SbgcCaptureContents contents = io::list_sbgc_capture(path);
-    text = io::columns_text(contents);
-    columns = contents.columns;
-  } else {
-    columns = io::list_columns(path);
-    text = io::columns_text(columns, path == "-" ? "log.csv" : path);
-  }
-  if (!proposal.empty()) outputs.put(proposal, io::column_map_text(columns));
+  const io::LogContents contents = io::list_log(path, joint);
+  const std::string text = io::columns_text(contents);
+  if (!proposal.empty()) outputs.put(proposal, io::column_map_text(contents.columns));
   outputs.commit();
   std::fputs(text.c_str(), stdout);
   return made;
@@ -47,7 +35,7 @@ int list_columns(const std::string& path, const std::string& proposal) {
 
 Command add_columns(CLI::App& program) {
   struct Asked {
-    std::string file, proposal;
+    std::string file, proposal, joint;
   };
   const auto asked = std::make_shared<Asked>();
   CLI::App* const app =
@@ -56,5 +44,7 @@ Command add_columns(CLI::App& program) {
                   std::string("a recording (") + recording_kinds + "), - for standard input")
       ->required();
   app->add_option("--proposal", asked->proposal, "write the proposals as a mapping file for --map");
-  return {app, [asked] { return list_columns(asked->file, asked->proposal); }};
+  app->add_option("--joint", asked->joint,
+                  "word in the headers of the joint or heater that is meant; without it the one that moves");
+  return {app, [asked] { return list_columns(asked->file, asked->proposal, asked->joint); }};
 }

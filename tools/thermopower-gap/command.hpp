@@ -25,5 +25,7 @@ Command add_export(CLI::App& program);
 Command add_columns(CLI::App& program);
 /// @brief Adds `fleet`: diagnoses every log of a table.
 Command add_fleet(CLI::App& program);
+/// @brief Adds `init`: writes a model file from a robot's description, options or questions.
+Command add_init(CLI::App& program);
 /// @brief Adds `effects`: lists the catalogue.
 Command add_effects(CLI::App& program);

@@ -3,6 +3,8 @@
 
 #include "command_options.hpp"
 
+#include <cmath>
+#include <cstdio>
 #include <string>
 
 // What Options::validate() takes, as a fault of the usage.
@@ -13,6 +15,29 @@ const CLI::Validator seconds(
       return fine ? std::string() : "'" + text + "' is not a number of seconds from 1e-6 to 1e9";
     },
     "1e-6..1e9");
+// CLI11's own tells its type and no more.
+CLI::Validator whole_number(double most) {
+  char range[40];
+  std::snprintf(range, sizeof range, "0..%.0f", most);
+  const std::string from_to = range;
+  return CLI::Validator(
+      [most, from_to](std::string& text) {
+        double value = 0.0;
+        const bool fine = CLI::detail::lexical_cast(text, value) && value >= 0.0 && value <= most &&
+                          value == std::floor(value);
+        return fine ? std::string() : "'" + text + "' is not a whole number; expected " + from_to;
+      },
+      from_to);
+}
+
+// Rows a second of a log.
+const CLI::Validator rate(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool fine = CLI::detail::lexical_cast(text, value) && value >= 1e-6 && value <= 1e7;
+      return fine ? std::string() : "'" + text + "' is not a number of rows a second from 1e-6 to 1e7";
+    },
+    "1e-6..1e7");
 // CLI11's own takes nan for a number within.
 const CLI::Validator share(
     [](std::string& text) {
@@ -22,7 +47,8 @@ const CLI::Validator share(
     },
     "0..0.5");
 
-const char* const recording_kinds = "CSV, MCAP, SimpleBGC capture";
+const char* const recording_kinds =
+    "CSV, MCAP, rosbag2, klippy.log, Marlin, candump, JSON lines, npz, SimpleBGC";
 
 void add_recordings(CLI::App& app, Arguments& arguments, const char* help) {
   app.add_option("--recording", arguments.recordings,
@@ -35,6 +61,17 @@ void add_column_choices(CLI::App& app, Arguments& arguments) {
                  "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
                  "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
   app.add_option("--map", arguments.maps, "a file of such lines, as 'columns FILE --proposal' writes it");
+  app.add_option("--rate", arguments.rows_per_s, "rows a second of CSV files without time, in Hz")
+      ->check(rate);
+  const auto number = [](double low, double high) { return CLI::Range(low, high); };
+  app.add_option("--ambient", arguments.ambient_C, "the air's temperature in degC, where no column has it")
+      ->check(number(-90.0, 200.0))
+      ->each([&arguments](const std::string&) { arguments.has_ambient = true; });
+  app.add_option("--supply", arguments.supply_V, "the supply in V, where no column has it")
+      ->check(number(0.01, 1e5))
+      ->each([&arguments](const std::string&) { arguments.has_supply = true; });
+  app.add_option("--constant", arguments.constants,
+                 "NAME=NUMBER: another column that the files lack and that did not change; may be repeated");
 }
 
 CLI::Option* add_horizon(CLI::App& app, Arguments& arguments) {

@@ -17,7 +17,12 @@ extern const CLI::Validator share;
 
 /// @brief Adds `--recording`, required and repeatable.
 void add_recordings(CLI::App& app, Arguments& arguments, const char* help);
-/// @brief Adds `--column` and `--map`.
+/// @brief Takes a whole number from 0 on.
+CLI::Validator whole_number(double most);
+/// @brief Takes rows a second.
+extern const CLI::Validator rate;
+
+/// @brief Adds `--column`, `--map`, `--rate`, `--ambient`, `--supply` and `--constant`.
 void add_column_choices(CLI::App& app, Arguments& arguments);
 /// @brief Adds `--horizon`.
 CLI::Option* add_horizon(CLI::App& app, Arguments& arguments);

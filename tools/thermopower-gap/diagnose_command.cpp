@@ -25,7 +25,8 @@ int diagnose(const Arguments& arguments) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   if (!arguments.of_fleet) refuse_overlaps(arguments);
   io::OutputFiles outputs;
-  for (const auto* path : arguments.outputs()) {
+  const std::vector<const std::string*> outputs_asked = arguments.outputs();
+  for (const auto* path : outputs_asked) {
     if (!path->empty() && !arguments.of_fleet) outputs.expect(*path);
   }
   gap::Diagnosis diagnosis;
@@ -33,11 +34,11 @@ int diagnose(const Arguments& arguments) {
   {
     Progress progress;
     model = read_model(arguments, catalogue);
-    const std::vector<io::ColumnChoice> choices = column_choices(arguments, model);
+    const io::ReadOptions how = reading(arguments, model);
     check_ids(arguments.without, gap::catalogue_of(model, catalogue));
     std::vector<gap::Finding> findings;
-    std::vector<gap::Recording> recordings = read_all(arguments.recordings, choices, findings);
-    std::vector<gap::Recording> held_out = read_all(arguments.held_out, choices, findings);
+    std::vector<gap::Recording> recordings = read_all(arguments.recordings, how, findings);
+    std::vector<gap::Recording> held_out = read_all(arguments.held_out, how, findings);
     gap::Options options;
     options.horizon_s = arguments.horizon_s;
     options.tolerance = arguments.tolerance;
@@ -56,6 +57,7 @@ int diagnose(const Arguments& arguments) {
     progress.stage("diagnosing");
     diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
     diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
+    io::put_remedies_in_force(diagnosis.findings, how.choices);
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, io::report_json(diagnosis));
     if (!arguments.html.empty())
@@ -69,7 +71,10 @@ int diagnose(const Arguments& arguments) {
     write_exports(arguments, diagnosis.augmented, io::one_sentence(diagnosis), catalogue, outputs);
     outputs.commit();
   }
-  if (!arguments.of_fleet) std::fputs(io::summary(diagnosis).c_str(), stdout);
+  // Where an output is standard output, it has that for itself.
+  const bool taken = std::any_of(outputs_asked.begin(), outputs_asked.end(),
+                                 [](const std::string* path) { return *path == "-"; });
+  if (!arguments.of_fleet) std::fputs(io::summary(diagnosis).c_str(), taken ? stderr : stdout);
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
@@ -92,9 +97,11 @@ Command add_diagnose(CLI::App& program) {
       ->capture_default_str();
   app->add_option("--threads", asked->threads,
                   "worker threads; 0: one per core. The result does not depend on it")
-      ->check(CLI::Range(0u, 1024u))
+      ->check(whole_number(1024.0))
       ->capture_default_str();
-  app->add_option("--seed", asked->seed, "of the bootstrap")->capture_default_str();
+  app->add_option("--seed", asked->seed, "of the bootstrap")
+      ->check(whole_number(4294967295.0))
+      ->capture_default_str();
   add_as_recorded(*app, *asked);
   add_column_choices(*app, *asked);
   add_simulator_exports(*app, *asked);

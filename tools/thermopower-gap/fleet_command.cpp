@@ -59,7 +59,7 @@ Command add_fleet(CLI::App& program) {
       ->required();
   app->add_option("--workers", fleet.workers,
                   "processes at a time; 0: one per core. The results do not depend on it")
-      ->check(CLI::Range(0u, 1024u))
+      ->check(whole_number(1024.0))
       ->capture_default_str();
   app->add_flag("!--no-pages", fleet.pages, "write no page (HTML) for each log");
   app->add_option("--column", asked->each.columns, "as for diagnose, of every log");

@@ -41,6 +41,36 @@ void expect_subcommand(CLI::App& app, const std::string& given) {
       (nearest.empty() ? "; expected one of " : "; did you mean " + nearest + "? Expected one of ") + list);
 }
 
+// Says what was typed that no option is, before the parser says what is missing.
+void expect_options(const CLI::App& subcommand, int count, char** values) {
+  std::vector<std::string> options = {"--help"};
+  std::string required;
+  bool takes_words = false;
+  for (const CLI::Option* const one : subcommand.get_options([](const CLI::Option*) { return true; })) {
+    for (const std::string& name : one->get_lnames()) options.push_back("--" + name);
+    takes_words = takes_words || one->get_positional();
+    if (one->get_required()) required += (required.empty() ? "" : " ") + one->get_name() + " ...";
+  }
+  for (int i = 2; i < count; ++i) {
+    const std::string word = values[i];
+    const std::string name = word.substr(0, word.find('='));
+    if (name.size() > 2 && name.compare(0, 2, "--") == 0) {
+      if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+      const std::string nearest = io::nearest_name(name, options);
+      throw UsageError("there is no option " + name + " of " + subcommand.get_name() +
+                       (nearest.empty()
+                            ? "; 'thermopower-gap " + subcommand.get_name() + " --help' lists them"
+                            : "; did you mean " + nearest + "?"));
+    }
+    const bool is_letter =
+        name.size() == 2 && name[0] == '-' && name[1] >= 'a' && name[1] <= 'z' && name != "-h";
+    if (is_letter) throw UsageError("there is no option " + name + "; options are spelt out: " + required);
+    if (i == 2 && !takes_words && !word.empty() && word[0] != '-')
+      throw UsageError(io::excerpt(word) + " stands before any option; expected " +
+                       (required.empty() ? "an option first" : required));
+  }
+}
+
 std::string version() {
   using thermopower::Version;
   return std::to_string(Version::major_number()) + "." + std::to_string(Version::minor_number()) + "." +
@@ -57,12 +87,15 @@ int run(int count, char** values) {
       "Exit status: 0 a diagnosis was made, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand.");
   const std::vector<Command> commands = {add_diagnose(app), add_predict(app), add_check(app),
                                          add_export(app),   add_columns(app), add_fleet(app),
-                                         add_effects(app)};
+                                         add_effects(app),  add_init(app)};
   for (const Command& command : commands)
     for (CLI::Option* const option : command.app->get_options([](const CLI::Option*) { return true; }))
       if (option->get_expected_min() > 0) option->check(not_empty);
 
-  if (count > 1 && values[1][0] != '-') expect_subcommand(app, values[1]);
+  if (count > 1 && values[1][0] != '-') {
+    expect_subcommand(app, values[1]);
+    expect_options(*app.get_subcommand(values[1]), count, values);
+  }
   try {
     app.parse(count, values);
   } catch (const CLI::ParseError& error) {

@@ -112,7 +112,7 @@ int predict(const Arguments& arguments) {
   const gap::Model augmented = io::read_model(arguments.model, catalogue);
   std::vector<gap::Finding> findings;
   std::vector<gap::Recording> recordings =
-      read_all(arguments.recordings, column_choices(arguments, augmented), findings);
+      read_all(arguments.recordings, reading(arguments, augmented), findings);
   const std::map<std::string, double> starts = starts_of(arguments.starts, augmented);
   for (const gap::Recording& one : recordings) warn_of_holes(one, augmented);
   for (gap::Recording& one : recordings) one = io::with_starts(std::move(one), augmented, starts);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
+#include "nearest_name.hpp"
 #include "program.hpp"
 
 #include <thermopower/gap.hpp>
@@ -9,6 +10,8 @@
 #include <thermopower/plant/plant_info.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -33,7 +36,7 @@ std::vector<std::string> own_columns(const gap::Model& model) {
 }  // namespace
 
 // What stands on the command line goes before what a mapping file says of the same name.
-std::vector<io::ColumnChoice> column_choices(const Arguments& arguments, const gap::Model& model) {
+io::ReadOptions reading(const Arguments& arguments, const gap::Model& model) {
   std::vector<io::ColumnChoice> choices;
   const std::vector<std::string> own = own_columns(model);
   const auto find = [&](const std::string& name) {
@@ -48,22 +51,42 @@ std::vector<io::ColumnChoice> column_choices(const Arguments& arguments, const g
         throw io::InputError(path + ": " + wrong);
       choices.push_back(choice);
     }
-  std::vector<std::string> given;
   try {
     for (const auto& text : arguments.columns) {
       const io::ColumnChoice choice = io::parse_column_choice(text);
-      if (std::find(given.begin(), given.end(), choice.name) != given.end())
-        throw UsageError("--column " + choice.name + " is given twice");
       if (const std::string wrong = io::unknown_name(choice, own); !wrong.empty())
         throw UsageError("--column " + text + ": " + wrong);
-      given.push_back(choice.name);
       if (const auto known = find(choice.name); known != choices.end()) *known = choice;
       else choices.push_back(choice);
     }
   } catch (const io::InputError& error) {
     throw UsageError(error.what());
   }
-  return choices;
+  io::ReadOptions options = io::read_options(model, std::move(choices));
+  options.rows_per_s = arguments.rows_per_s;
+  const auto set = [&](const std::string& option, const std::string& name, double value) {
+    for (const auto& [other, before] : options.constants)
+      if (other == name) throw UsageError(option + ": " + name + " is given twice");
+    options.constants.emplace_back(name, value);
+  };
+  if (arguments.has_ambient) set("--ambient", "ambient_C", arguments.ambient_C);
+  if (arguments.has_supply) set("--supply", "supply_V", arguments.supply_V);
+  for (const std::string& text : arguments.constants) {
+    const std::size_t equals = text.find('=');
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const bool fine = equals != std::string::npos && equals > 0 &&
+                      std::from_chars(text.data() + equals + 1, end, value).ptr == end &&
+                      equals + 1 < text.size() && std::isfinite(value);
+    const std::string name = text.substr(0, equals);
+    if (!fine) throw UsageError("--constant " + text + ": expected NAME=NUMBER, such as airspeed_mps=2.5");
+    if (name == "t_s" || name == "run")
+      throw UsageError("--constant " + text + ": " + name + " is no constant");
+    if (const std::string wrong = io::unknown_name({name, "a column"}, own); !wrong.empty())
+      throw UsageError("--constant " + text + ": " + wrong);
+    set("--constant", name, value);
+  }
+  return options;
 }
 
 // A choice of a fleet, before the models are known.
@@ -75,12 +98,11 @@ void expect_choice(const std::string& text) {
   }
 }
 
-std::vector<gap::Recording> read_all(const std::vector<std::string>& paths,
-                                     const std::vector<io::ColumnChoice>& choices,
+std::vector<gap::Recording> read_all(const std::vector<std::string>& paths, const io::ReadOptions& how,
                                      std::vector<gap::Finding>& findings) {
   std::vector<gap::Recording> list;
   for (const auto& path : paths) {
-    io::RecordingFile file = io::read_recording(path, choices);
+    io::RecordingFile file = io::read_recording(path, how);
     list.push_back(std::move(file.recording));
     findings.insert(findings.end(), file.findings.begin(), file.findings.end());
   }
@@ -123,8 +145,12 @@ void refuse_overlaps(const Arguments& arguments) {
 void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalogue) {
   for (const auto& id : ids) {
     if (id.rfind("calibration.", 0) == 0 || catalogue.find(id) != nullptr) continue;
-    throw UsageError("--without: there is no effect '" + id +
-                     "'; 'thermopower-gap effects --model' lists them");
+    std::vector<std::string> known;
+    for (const auto& effect : catalogue.list()) known.push_back(effect.id);
+    const std::string nearest = io::nearest_name(id, known);
+    throw UsageError("--without: there is no effect '" + id + "'; " +
+                     (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
+                     "'thermopower-gap effects --model' lists them");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/output_files.hpp>
+#include <thermopower/io/recording_file.hpp>
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/plant/catalogue.hpp>
 
@@ -32,6 +33,10 @@ struct Arguments {
     return {&report, &html, &predictions, &augmented, &header, &mjcf, &urdf};
   }
   std::vector<std::string> recordings, held_out, without, columns, maps, starts;
+  std::vector<std::string> constants;  ///< NAME=VALUE of columns that the files lack
+  double ambient_C = 0.0, supply_V = 0.0;
+  bool has_ambient = false, has_supply = false;
+  double rows_per_s = 0.0;  ///< of files without time; 0: they have one
   bool as_recorded = false;
   bool of_fleet = false;  ///< one log of it: nothing is printed, and its paths are the fleet's own
   double horizon_s = 0.5;
@@ -40,17 +45,17 @@ struct Arguments {
   unsigned seed = 1;
 };
 
-/// @brief Which column is which: the mapping files, and `--column`, which goes before them.
+/// @brief How the files are read: the mapping files, `--column`, which goes before them, `--rate` and the constants. Of two `--column`
+/// for one name the later one is taken.
 /// @throws UsageError or InputError that names the option or the line
-std::vector<thermopower::io::ColumnChoice> column_choices(const Arguments& arguments,
-                                                          const thermopower::gap::Model& model);
+thermopower::io::ReadOptions reading(const Arguments& arguments, const thermopower::gap::Model& model);
 
 /// @brief Checks a `--column` before the models are known. @throws UsageError
 void expect_choice(const std::string& text);
 
 /// @brief Reads recordings; what the reader noticed goes to the end of `findings`. @throws InputError
 std::vector<thermopower::gap::Recording> read_all(const std::vector<std::string>& paths,
-                                                  const std::vector<thermopower::io::ColumnChoice>& choices,
+                                                  const thermopower::io::ReadOptions& how,
                                                   std::vector<thermopower::gap::Finding>& findings);
 
 /// @brief A path without detours: absolute, links followed as far as it exists.

@@ -6,8 +6,10 @@
 #include <thermopower/thermopower.hpp>
 
 #include <thermopower/gap/diagnose.hpp>
+#include <thermopower/io/column_list.hpp>
 #include <thermopower/io/model_file.hpp>
 #include <thermopower/io/recording_file.hpp>
+#include <thermopower/io/remedy.hpp>
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/summary.hpp>
@@ -64,16 +66,50 @@ std::vector<std::string> lines(const std::string& text) {
   return list;
 }
 
+// The curves of the held-out data, for the page's slider between the two simulations.
+nlohmann::ordered_json curves(const gap::Diagnosis& diagnosis) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const auto numbers = [](const Eigen::VectorXd& values) {
+    return std::vector<double>(values.begin(), values.end());
+  };
+  for (const gap::SignalSeries& one : diagnosis.series)
+    list.push_back({{"signal", to_string(one.signal)},
+                    {"unit", one.unit},
+                    {"t_s", numbers(one.t_s)},
+                    {"measured", numbers(one.measured)},
+                    {"off", numbers(one.baseline)},
+                    {"on", numbers(one.augmented)}});
+  return list;
+}
+
+// What the page's mapping says: lines of a mapping file, and of constants such as `--ambient 24`.
+io::ReadOptions reading(const gap::Model& model, const std::string& mapping) {
+  io::ReadOptions options = io::read_options(model);
+  std::string columns;
+  for (const std::string& line : lines(mapping)) {
+    double number = 0.0;
+    if (std::sscanf(line.c_str(), " --ambient %lf", &number) == 1)
+      options.constants.emplace_back("ambient_C", number);
+    else if (std::sscanf(line.c_str(), " --supply %lf", &number) == 1)
+      options.constants.emplace_back("supply_V", number);
+    else if (std::sscanf(line.c_str(), " --rate %lf", &number) == 1) options.rows_per_s = number;
+    else columns += (line.compare(0, 9, "--column ") == 0 ? line.substr(9) : line) + "\n";
+  }
+  if (columns.find('=') != std::string::npos) options.choices = io::parse_column_map("the mapping", columns);
+  return options;
+}
+
 nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vector<std::string>& training,
-                                 const std::vector<std::string>& held_out_paths) {
+                                 const std::vector<std::string>& held_out_paths, const std::string& mapping) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   const gap::Model model = io::read_model(model_path, catalogue);
+  const io::ReadOptions how = reading(model, mapping);
   std::vector<gap::Finding> findings;
   std::size_t rows = 0;
   const auto read_all = [&](const std::vector<std::string>& paths) {
     std::vector<gap::Recording> all;
     for (const std::string& path : paths) {
-      io::RecordingFile file = io::read_recording(path);
+      io::RecordingFile file = io::read_recording(path, how);
       findings.insert(findings.end(), file.findings.begin(), file.findings.end());
       rows += static_cast<std::size_t>(file.recording.t_s.size());
       all.push_back(std::move(file.recording));
@@ -92,8 +128,10 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
   gap::Diagnosis diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
   diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
+  io::put_remedies_in_force(diagnosis.findings, how.choices);
   return {
       {"verdict", to_string(diagnosis.verdict)},
+      {"curves", curves(diagnosis)},
       {"rows", rows},
       {"seconds", seconds},
       {"summary", io::summary(diagnosis)},
@@ -113,12 +151,27 @@ const char* thermopower_example(int rows, double tempco_per_K, unsigned seed) {
   return answer.c_str();
 }
 
-/// @param training, held_out  paths, one a line; without held-out ones the last 30 % of each recording are
-/// @return JSON: `verdict`, `rows`, `seconds`, `summary`, `report` and `html`, or `error`
-const char* thermopower_diagnose(const char* model, const char* training, const char* held_out) {
+/// What is in a recording. @return JSON: `text` for a person and `mapping`, the lines of a mapping file, or `error`
+const char* thermopower_columns(const char* path) {
   nlohmann::ordered_json result;
   try {
-    result = diagnosed(model, lines(training), lines(held_out));
+    const io::LogContents contents = io::list_log(path);
+    result = {{"text", io::columns_text(contents)}, {"mapping", io::column_map_text(contents.columns)}};
+  } catch (const std::exception& problem) {
+    result = {{"error", problem.what()}};
+  }
+  answer = result.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return answer.c_str();
+}
+
+/// @param training, held_out  paths, one a line; without held-out ones the last 30 % of each recording are
+/// @param mapping  lines of a mapping file, `--ambient`, `--supply` and `--rate`; may be empty
+/// @return JSON: `verdict`, `rows`, `seconds`, `summary`, `report`, `curves` and `html`, or `error`
+const char* thermopower_diagnose(const char* model, const char* training, const char* held_out,
+                                 const char* mapping) {
+  nlohmann::ordered_json result;
+  try {
+    result = diagnosed(model, lines(training), lines(held_out), mapping);
   } catch (const std::exception& problem) {
     result = {{"error", problem.what()}};
   }

@@ -36,6 +36,20 @@ std::vector<ListedColumn> list_columns(const std::string& path, const std::strin
 std::vector<ListedColumn> list_columns(const std::string& name, const char* bytes, std::size_t size,
                                        const std::string& joint = {});
 
+/// @brief What a recording of any kind holds.
+struct LogContents {
+  std::string file;   ///< path
+  std::string about;  ///< topics, frames, a controller's gains: lines for a person; may be empty
+  std::vector<ListedColumn> columns;  ///< what may be mapped, with proposals
+  bool needs_time = true;             ///< time is a column; false: the recording has a clock of its own
+};
+
+/// @brief Lists a recording of any kind that read_recording() reads. @throws InputError
+LogContents list_log(const std::string& path, const std::string& joint = {});
+
+/// @brief The contents as text for a person, with the command that diagnoses the file with the proposals.
+std::string columns_text(const LogContents& contents);
+
 /// @brief The list as text for a person, with the command that diagnoses the file with the proposals.
 /// @param file  as the command names it
 std::string columns_text(const std::vector<ListedColumn>& columns, const std::string& file = "log.csv");

@@ -20,6 +20,7 @@ columns are named as in those files (`t_s`, `motor_C`, `drive_A`, ...), and a co
 
 import json
 import os
+import shlex
 
 import numpy as np
 
@@ -324,16 +325,44 @@ class Diagnosis(Part):
         return figure
 
 
+def _choices(columns):
+    """columns= as a list of NAME=HEADER[:UNIT]; a text is what a finding says to type: '--column a=b --column c=d'."""
+    words = shlex.split(columns) if isinstance(columns, str) else [str(one) for one in columns]
+    return [one[len("--column "):] if one.startswith("--column ") else one for one in words if one != "--column"]
+
+
+def _chosen(taken, name, choices):
+    """The columns of a frame by the names of the format, in its units."""
+    chosen = {}
+    for text in choices:
+        column, header = _thermopower.choice_of(text)
+        if header not in taken:
+            raise InputError(f"{name}: there is no column '{header}' (asked for as {column}); found {', '.join(taken)}")
+        try:
+            values = np.asarray(taken[header], dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"{name}: column '{header}' (asked for as {column}) holds {taken[header].dtype}; expected numbers") from None
+        chosen[column] = _thermopower.chosen_values(text, values)
+    used = {_thermopower.choice_of(text)[1] for text in choices}
+    return {**{key: values for key, values in taken.items() if key not in used and key not in chosen}, **chosen}
+
+
+def _in_force(content, columns):
+    """What findings say to type, in the columns that were asked for."""
+    for one in content.get("findings", ()):
+        one["mend"] = _thermopower.remedy(one["mend"], _choices(columns))
+    return content
+
+
 def _recording(data, name, columns=()):
     if isinstance(data, _thermopower.Recording):
         return data
     if isinstance(data, (str, os.PathLike)):
-        return _thermopower.read_recording(os.fspath(data), list(columns))
-    if columns:
-        raise InputError("columns= is for recordings that are files; rename and convert the columns of others")
+        return _thermopower.read_recording(os.fspath(data), _choices(columns))
     if not hasattr(data, "keys"):
         raise InputError(f"{name}: is a {type(data).__name__}; expected a dict of arrays, a DataFrame or a path")
     taken = {str(key): np.asarray(data[key]) for key in data.keys()}
+    taken = _chosen(taken, name, _choices(columns))
     if "t_s" not in taken:
         raise InputError(f"{name}: there is no column 't_s'; expected the time of each row in seconds")
     rows = len(taken["t_s"])
@@ -413,11 +442,11 @@ def read_model(path):
 def diagnose(model, recordings, held_out=None, columns=(), effects=(), **options):
     """Finds where the model and the recordings part, and which effect is missing.
 
-    held_out: recordings to judge on; without them the last 30 % of each recording. columns: for files only, as the
-    program's --column. effects: of one's own (Effect), beside those of the catalogue. Ctrl-C ends it. Options are those of the program: horizon_s, tolerance, held_out_fraction, effects_at_once,
+    held_out: recordings to judge on; without them the last 30 % of each recording. columns: as the program's --column, a
+    list of NAME=HEADER[:UNIT] or the text that a finding says to type. effects: of one's own (Effect), beside those of the catalogue. Ctrl-C ends it. Options are those of the program: horizon_s, tolerance, held_out_fraction, effects_at_once,
     without, as_recorded, threads, seed.
     """
-    return Diagnosis(
+    found = Diagnosis(
         _thermopower.diagnose(
             _model(model, effects),
             _own(effects),
@@ -427,12 +456,14 @@ def diagnose(model, recordings, held_out=None, columns=(), effects=(), **options
         ),
         model if isinstance(model, Plant) else None,
     )
+    _in_force(found._content, columns)
+    return found
 
 
 def check(model, recordings, held_out=None, columns=(), effects=(), **options):
     """What is wrong with recordings, and what they can show; nothing is fitted."""
     return Part(
-        json.loads(
+        _in_force(json.loads(
             _thermopower.check(
                 _model(model, effects),
                 _own(effects),
@@ -440,7 +471,7 @@ def check(model, recordings, held_out=None, columns=(), effects=(), **options):
                 _recordings(held_out, "held_out", columns),
                 _options(options),
             )
-        )
+        ), columns)
     )
 
 
