@@ -236,6 +236,13 @@ void measure(const char* what, const Model& model, const std::string& path, Eige
 }
 
 #ifdef THERMOPOWER_HAS_CERES
+/// The start of a motor: two states.
+Start start_at(const double* states) {
+  Start start(2);
+  start << states[0], states[1];
+  return start;
+}
+
 /// The residuals of a fit problem and their derivatives, as Ceres asks for them: explanation's coordinates,
 /// then the start.
 class SameResiduals : public ceres::CostFunction {
@@ -251,7 +258,7 @@ public:
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Index n = static_cast<Eigen::Index>(list_.size());
     const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(parameters[0], n);
-    const std::vector<Start> starts{Start(parameters[1][0], parameters[1][1])};
+    const std::vector<Start> starts{start_at(parameters[1])};
     problem_.evaluate(explanation_, list_, at, starts, jacobians != nullptr,
                       [&](std::size_t, const FitProblem::Residuals& r) {
                         Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = r.value;
@@ -325,7 +332,7 @@ void compare_solvers() {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &same, &summary);
   const double theirs_s = now_s() - begin;
-  const std::vector<Start> starts{Start(start[0], start[1])};
+  const std::vector<Start> starts{start_at(start)};
   double chi2 = 0.0;
   problem.evaluate(explanation, list, Eigen::Map<const Eigen::VectorXd>(at.data(), from.size()), starts,
                    false,
