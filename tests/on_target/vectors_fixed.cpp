@@ -15,6 +15,7 @@ int main() {
   on_target::run_fixed_heating<motors::Bgm2606_90t>(report);
   on_target::run_fixed_heating<motors::Bgm5208_200_12>(report);
   on_target::run_fixed_gimbal(report);
+  on_target::run_monitor(report);
   report.section("end");
   platform::stop(0);
 }

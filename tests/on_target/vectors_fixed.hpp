@@ -111,4 +111,45 @@ struct FixedTelemetry {
   }
 }
 
+/// A motor with all balances of the monitor: its inputs are binary fractions, the same on every machine.
+struct WatchedMotor {
+  static constexpr thermopower::MonitorConfig monitor() { return {2.0, 1000.0, true}; }
+  static constexpr thermopower::HeatBalanceConfig heat_balance() {
+    return thermopower::HeatBalanceConfig::measured_body(30.0, 8.0, 80.0, 1.0, 0.2, 0.1, 0.1);
+  }
+  static constexpr thermopower::WindingBalanceConfig winding_balance() {
+    return {24.0, 12.0, 0.05, 0.00393, 25.0, 15.0, 0.2, 0.1};
+  }
+  static constexpr thermopower::MotionBalanceConfig motion_balance() {
+    return {4.0, 400.0, 2.0, 0.05, 0.05, 1e-5, 0.05, 0.004, 1e-5, 0.3, 0.002, 0.002};
+  }
+};
+
+[[gnu::noinline]] inline void run_monitor(Report& report) {
+  namespace tp = thermopower;
+  report.section("monitor");
+  static tp::ModelMonitor<WatchedMotor> monitor;
+  for (uint8_t block = 0; block < 24; ++block) {
+    Digest digest;
+    for (uint8_t count = 0; count < 100; ++count) {
+      // Heat and a housing that follows it at first, and then stands still.
+      const uint16_t step = static_cast<uint16_t>(block * 100u + count);
+      const uint16_t warmer = step < 1200 ? step : uint16_t(1200);
+      const tp::MonitorInputs inputs = tp::MonitorInputs::motor(
+          block == 20 && count == 7 ? tp::detail::not_a_number() : 12.0f,
+          25.0f + static_cast<float>(warmer) * 0.0078125f, 25.0f, static_cast<float>(step % 128u) * 0.125f,
+          static_cast<float>(step % 64u) * 0.03125f - 1.0f, 25.0f + static_cast<float>(warmer) * 0.015625f,
+          static_cast<float>(step % 512u) - 128.0f);
+      digest.add(static_cast<uint32_t>(monitor.step(inputs, 0.125f)));
+      digest.add(monitor.heat().evidence().more);
+      digest.add(monitor.heat().evidence().less);
+      digest.add(static_cast<uint32_t>(monitor.heat().heater_set()) << 16 |
+                 static_cast<uint32_t>(monitor.heat().loss_set()) << 8 | monitor.heat().air_set());
+      digest.add(monitor.suspects());
+      digest.add(monitor.record().since_s);
+    }
+    report.integer(digest.value());
+  }
+}
+
 }  // namespace on_target
