@@ -173,6 +173,20 @@ TEST_CASE("the loop's rate does not matter, up to a tenth of a block") {
   }
 }
 
+TEST_CASE("a fast loop keeps the time: steps far below a tick are carried on") {
+  for (const double dt_s : {0.0003, 0.0005, 0.0019, 0.0077}) {
+    CAPTURE(dt_s);
+    ModelMonitor<Plate> monitor;
+    RealPlate real;
+    real.heat = 1.1;  // at the edge of the bounds, where lost time would show at once
+    real.capacity_J_per_K *= 1.1;
+    CHECK(alarm_s(monitor, real, 100.0, 100.0, dt_s) < 0.0);
+    CHECK(monitor.is_watching_heat());
+    real.heat = 0.6;
+    CHECK(alarm_s(monitor, real, 60.0, 200.0, dt_s) > 0.0);
+  }
+}
+
 TEST_CASE("two nodes are one balance, whichever of them is measured") {
   for (const bool is_winding : {false, true}) {
     CAPTURE(is_winding);
@@ -194,6 +208,26 @@ TEST_CASE("two nodes are one balance, whichever of them is measured") {
     for (const double heat_W : {30.0, 5.0, 20.0, 0.0})
       CHECK(run(heat_W, heat_W, 240.0) == Disagreement::none);
     CHECK(run(20.0, 14.0, 240.0) == Disagreement::heat_missing);
+  }
+}
+
+TEST_CASE("a monitor that starts on a warm body waits until it knows where the second mass is") {
+  double winding_C = 20.0, body_C = 20.0;
+  for (int restart = 0; restart < 6; ++restart) {  // each in the middle of another heating
+    ModelMonitor<Winding> monitor;
+    bool has_watched = false;
+    for (int i = 0; i < 6000; ++i) {
+      const double heat_W = restart % 2 == 0 ? 30.0 : (i < 400 ? 0.0 : 10.0), across_W = winding_C - body_C;
+      winding_C += 0.05 * (heat_W - across_W) / 10.0;
+      body_C += 0.05 * (across_W - 0.3 * (body_C - 20.0)) / 80.0;
+      if (restart == 0 && i < 400) continue;
+      monitor.step(MonitorInputs::heater(static_cast<float>(heat_W), static_cast<float>(winding_C), 20.0f),
+                   0.05f);
+      has_watched = has_watched || monitor.is_watching_heat();
+    }
+    CAPTURE(restart);
+    CHECK(monitor.disagreement() == Disagreement::none);
+    CHECK(has_watched);
   }
 }
 

@@ -60,4 +60,19 @@ static_assert(sizeof(Axis) <= 160, "an axis");
 static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 592, "a gimbal");
 #endif
 
+/// A motor with every balance: the monitor promises 60 bytes of it.
+struct Watched {
+  static constexpr tp::MonitorConfig monitor() { return {2.0, 1000.0, true}; }
+  static constexpr tp::HeatBalanceConfig heat_balance() {
+    return tp::HeatBalanceConfig::measured_body(30.0, 8.0, 80.0, 1.0, 0.2, 0.1, 0.1);
+  }
+  static constexpr tp::WindingBalanceConfig winding_balance() {
+    return {24.0, 12.0, 0.05, 0.00393, 25.0, 15.0, 0.2, 0.1};
+  }
+  static constexpr tp::MotionBalanceConfig motion_balance() {
+    return {4.0, 400.0, 2.0, 0.05, 0.05, 1e-5, 0.05, 0.004, 1e-5, 0.3, 0.002, 0.002};
+  }
+};
+static_assert(sizeof(tp::ModelMonitor<Watched>) <= (alignof(uint32_t) == 1 ? 60 : 68), "state only");
+
 }  // namespace

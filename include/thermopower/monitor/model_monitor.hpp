@@ -122,9 +122,8 @@ public:
   /// @return which balance disagrees; it stays until `acknowledge()`
   Disagreement step(const Inputs& inputs, float dt_s) noexcept {
     constexpr uint8_t limit = limit_of(config(), tests());
-    constexpr uint16_t block = static_cast<uint16_t>(config().block_s * 1024.0),
-                       longest_s = detail::upper_bits(8.0);
-    const int16_t ticks = detail::to_count(dt_s, longest_s, 10);
+    constexpr uint16_t block = static_cast<uint16_t>(config().block_s * 1024.0);
+    const int16_t ticks = ticks_of(dt_s);
     if (ticks < 0) {
       restart();
       return disagreement();
@@ -230,6 +229,16 @@ private:
     return static_cast<uint8_t>(detail::evidence_limit(config.false_alarm_h, config.block_s, tests));
   }
 
+  // In 1/1024 s; the rest of short steps is carried on, so that a loop of any rate keeps the time. Below 0: no time.
+  int16_t ticks_of(float dt_s) noexcept {
+    constexpr uint16_t longest_s = detail::upper_bits(8.0), short_s = detail::upper_bits(0.1171875);
+    const int16_t fine = detail::to_count(dt_s, short_s, 18);
+    if (fine == detail::no_count()) return detail::to_count(dt_s, longest_s, 10);
+    if (fine < 0) return fine;
+    const uint16_t sum = static_cast<uint16_t>(rest_ + static_cast<uint16_t>(fine));
+    rest_ = static_cast<uint8_t>(sum & 0xffu);
+    return static_cast<int16_t>(sum >> 8);
+  }
   // Winding and motion are watched in turns, block by block, with the same sums.
   bool is_turn_of_winding() const noexcept {
     return !has_motion() || (has_winding() && (found_ & 0x80u) == 0);
@@ -257,6 +266,7 @@ private:
   typename detail::TurnSumsOf<(detail::HasWindingBalance<Plant>::value ||
                                detail::HasMotionBalance<Plant>::value)>::Type sums_;
   uint16_t ticks_ = 0;
+  uint8_t rest_ = 0;   // of the time, 1/262144 s
   uint8_t found_ = 0;  // the disagreement, and whose turn it is
 };
 

@@ -51,8 +51,15 @@ struct FanSum<false> {
 /// The temperature of the second mass, where there is one.
 template <bool has_second>
 struct SecondMass {
-  int32_t second = 0;  // 1/16384 K
-  int16_t into = 0;    // heat into it, a time constant later
+  int16_t into = 0;   // heat into it, a time constant later
+  int16_t whole = 0;  // 1/64 K
+  uint8_t low = 0;    // 1/16384 K
+  int32_t second() const noexcept { return static_cast<int32_t>(whole) * 256 + low; }
+  void warm(int32_t change) noexcept {
+    const int32_t now = second() + change;
+    low = static_cast<uint8_t>(now & 0xff);
+    whole = static_cast<int16_t>(now >> 8);
+  }
 };
 template <>
 struct SecondMass<false> {};
@@ -137,9 +144,9 @@ public:
   /// Ends a block; `judge()` then weighs it in the next steps. @param limit  where the evidence alarms
   void close(uint8_t limit) noexcept {
     constexpr BinaryScale loss = loss_scale(), fan = fan_scale();
-    while (is_judging()) judge(limit);                 // a loop so slow that it never came to it
-    heat_in_ = upper(static_cast<int32_t>(heat_));     // 1/256 s of full heat, as all that follows
-    residual_ = static_cast<int16_t>(last_ - start_);  // what balance() begins with
+    while (is_judging()) judge(limit);                            // a loop so slow that it never came to it
+    heat_in_ = upper(static_cast<int32_t>(heat_));                // 1/256 s of full heat, as all that follows
+    residual_ = saturated(static_cast<int32_t>(last_) - start_);  // what balance() begins with
     lost_ = saturated(times(rise_, loss));
     if (has_fan) Fan::blow(saturated(times(Fan::fan_sum(), fan)));
     if ((flags_ & is_flat) == 0) flat_ = 0;
@@ -275,7 +282,8 @@ private:
     settling_ = is_cold || !has_second ? for_lag : for_second;
   }
   static void set_second_of(SecondMass<true>* mass, int16_t now) noexcept {
-    mass->second = static_cast<int32_t>(now) * 256;
+    mass->whole = now;
+    mass->low = 0;
   }
   static void set_second_of(SecondMass<false>*, int16_t) noexcept {}
 
@@ -324,8 +332,8 @@ private:
     constexpr uint8_t error = fraction(config().second_error);
     constexpr BinaryScale per_count = second_scale();
     const int32_t middle = (static_cast<int32_t>(start_) * 2 - change) * 128;
-    const int32_t warmer = scaled(middle - mass->second, share);
-    mass->second += warmer;
+    const int32_t warmer = scaled(middle - mass->second(), share);
+    mass->warm(warmer);
     const int16_t flow = saturated(times(warmer, per_count));
     mass->into = static_cast<int16_t>(mass->into + scaled(static_cast<int32_t>(flow) - mass->into, share));
     // A change of its heat capacity, and one of its time constant.
