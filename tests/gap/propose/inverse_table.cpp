@@ -2,6 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 
 // Prints what the inverse problem says of case folders (model.json, train*.csv, heldout*.csv): a tool for developers.
+//
+//     gap_inverse_table [--all] CASE_DIR ...    a line for each; with --all every effect and the sets that were tried
+//     gap_inverse_table --benchmark DIR         what gap_benchmark_generate drew, scored: is what is told of the right kind?
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/propose/effort_problem.hpp>
@@ -9,11 +12,16 @@
 #include <thermopower/io/recording_file.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <ctime>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,11 +48,11 @@ std::vector<Inputs> inputs_of(std::vector<PreparedRecording>& prepared) {
   return list;
 }
 
-void print(const char* what, const InverseScore& score, const Model& model, bool details) {
+void print(const char* what, const InverseScore& score, const Model& model) {
   std::string ids;
   for (const auto* effect : score.effects) ids += (ids.empty() ? "" : " + ") + effect->info.id;
   if (!score.judged) {
-    if (details) std::printf("  %-8s %-44s %s\n", what, ids.c_str(), to_string(score.refusal));
+    std::printf("  %-8s %-44s %s\n", what, ids.c_str(), to_string(score.refusal));
     return;
   }
   std::printf("  %-8s %-44s %5.1f %% (train %5.1f)  gain %7.2f +- %6.2f of %zu", what, ids.c_str(),
@@ -61,50 +69,92 @@ void print(const char* what, const InverseScore& score, const Model& model, bool
   std::printf("\n");
 }
 
+/// Says what is told of a case. @return the ids, in the order told
+std::vector<std::string> tell(const fs::path& folder, bool details) {
+  const auto& catalogue = thermopower::plant::standard_catalogue();
+  const Model model = thermopower::io::read_model((folder / "model.json").string(), catalogue);
+  CheckedRecordings checked =
+      check(model, recordings(folder, "train"), recordings(folder, "heldout"), CheckOptions{}, catalogue);
+  const std::vector<Inputs> train = inputs_of(checked.train), held = inputs_of(checked.held_out);
+  Eigen::Index rows = 0;
+  for (const Inputs& one : train) rows += one.rows();
+  const std::clock_t start = std::clock();
+  EffortProblem problem(model, catalogue, train, held);
+  const std::vector<InverseProposal> proposals = problem.proposals();
+  const InverseScore told = problem.told();
+  const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  std::vector<std::string> list;
+  std::string ids;
+  for (const auto* effect : told.effects) {
+    list.push_back(effect->info.id);
+    ids += (ids.empty() ? "" : " + ") + effect->info.id;
+  }
+  std::printf("%-18s %4.0f %% -> %3.0f %%  %-45s loop %s (%.4f), up to %.3g Hz, %.2f s of %ld rows\n",
+              fs::absolute(folder).lexically_normal().filename().string().c_str(),
+              100.0 * problem.nothing().share, 100.0 * told.share,
+              !problem.is_judged() ? to_string(problem.refusal())
+              : ids.empty()        ? "nothing"
+                                   : ids.c_str(),
+              to_string(problem.loop().kind), problem.loop().roughness, problem.low_pass_Hz(), took_s,
+              static_cast<long>(rows));
+  if (!details) return list;
+  print("nothing", problem.nothing(), model);
+  for (const InverseScore& one : problem.singles()) print("single", one, model);
+  constexpr std::size_t most = 8;
+  std::size_t shown = 0;
+  for (const InverseProposal& one : proposals)
+    if (one.score.effects.size() > 1 && shown++ < most)
+      print(one.is_told ? "told" : "tried", one.score, model);
+  return list;
+}
+
+/// How many cases of a kind are right.
+struct Tally {
+  int cases = 0, right = 0, false_named = 0;
+};
+
+/// Scores a directory of the benchmark: right is the kind of what is told first, or nothing where nothing is missing.
+void score_benchmark(const fs::path& directory) {
+  std::ifstream file(directory / "sealed/labels.json");
+  if (!file) throw std::runtime_error("no sealed/labels.json in it: draw it with gap_benchmark_generate");
+  const nlohmann::json labels = nlohmann::json::parse(file);
+  std::map<std::string, Tally> tallies;
+  for (const auto& [name, label] : labels.at("cases").items()) {
+    if (label.at("kind") != "axis" || !label.at("unknown").is_null()) continue;
+    const std::vector<std::string> told = tell(directory / "cases" / name, false);
+    const auto causes = label.at("effects").get<std::vector<std::string>>();
+    const auto family = label.value("family", causes);
+    const bool right = causes.empty()
+                           ? told.empty()
+                           : !told.empty() && std::count(family.begin(), family.end(), told.front()) > 0;
+    for (const std::string& key :
+         {causes.empty() ? std::string("nothing") : causes.front(), std::string("all")}) {
+      Tally& tally = tallies[key];
+      ++tally.cases;
+      tally.right += right;
+      tally.false_named += !right && !told.empty();
+    }
+  }
+  for (const auto& [key, tally] : tallies)
+    std::printf("%-24s %3d of %3d right, %d told falsely\n", key.c_str(), tally.right, tally.cases,
+                tally.false_named);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   bool details = false;
+  int failed = 0;
   for (int k = 1; k < count; ++k) {
     const std::string argument = arguments[k];
-    if (argument == "--all") {
-      details = true;
-      continue;
-    }
     try {
-      const fs::path folder = argument;
-      const auto& catalogue = thermopower::plant::standard_catalogue();
-      const Model model = thermopower::io::read_model((folder / "model.json").string(), catalogue);
-      CheckedRecordings checked =
-          check(model, recordings(folder, "train"), recordings(folder, "heldout"), CheckOptions{}, catalogue);
-      const std::vector<Inputs> train = inputs_of(checked.train), held = inputs_of(checked.held_out);
-      Eigen::Index rows = 0;
-      for (const Inputs& one : train) rows += one.rows();
-      const std::clock_t start = std::clock();
-      EffortProblem problem(model, catalogue, train, held);
-      const std::vector<InverseProposal> proposals = problem.proposals();
-      const InverseScore told = problem.told();
-      const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-      const std::string name = fs::path(fs::absolute(folder).lexically_normal()).filename().string();
-      std::string ids;
-      for (const auto* effect : told.effects) ids += (ids.empty() ? "" : " + ") + effect->info.id;
-      std::printf("%-18s %5.0f %% -> %3.0f %%  %-55s loop %s (%.2f)  %.3g Hz  %.2f s of %ld rows\n",
-                  name.c_str(), 100.0 * problem.nothing().share, 100.0 * told.share,
-                  !problem.is_judged() ? to_string(problem.refusal())
-                  : ids.empty()        ? "nothing"
-                                       : ids.c_str(),
-                  to_string(problem.loop().kind), problem.loop().followed_share, problem.low_pass_Hz(), took,
-                  static_cast<long>(rows));
-      if (!details) continue;
-      print("nothing", problem.nothing(), model, true);
-      for (const InverseScore& one : problem.singles()) print("single", one, model, true);
-      std::size_t shown = 0;
-      for (const InverseProposal& one : proposals)
-        if (one.score.effects.size() > 1 && shown++ < 8)
-          print(one.is_told ? "told" : "tried", one.score, model, true);
+      if (argument == "--all") details = true;
+      else if (argument == "--benchmark" && k + 1 < count) score_benchmark(arguments[++k]);
+      else tell(argument, details);
     } catch (const std::exception& error) {
-      std::printf("%s: %s\n", argument.c_str(), error.what());
+      std::fprintf(stderr, "gap_inverse_table: %s: %s\n", arguments[k], error.what());
+      failed = 1;
     }
   }
-  return 0;
+  return failed;
 }

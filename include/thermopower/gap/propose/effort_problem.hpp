@@ -49,8 +49,8 @@ public:
                 const std::vector<Inputs>& held_out)
       : model_(model), catalogue_(catalogue) {
     if (!model.axis || model.own) return;
-    loop_ = loop_of(model, catalogue, train);
     const SampledMotion sampled(model, catalogue, train, propose_thresholds.most_samples);
+    loop_ = loop_of(model, train);
     double cutoff = propose_thresholds.motion_cutoff;
     train_rows_.emplace(sampled, cutoff, propose_thresholds.most_train_rows);
     if (train_rows_->pieces.empty()) return;
@@ -132,12 +132,13 @@ public:
     InverseScore now = nothing_;
     for (int step = 0; step < propose_thresholds.most_causes; ++step) {
       std::vector<InverseProposal> tried;
-      const auto last_place = [&](const InverseProposal& one) {
-        std::ptrdiff_t place = 0;
+      // Of equals the one with the fewest parameters comes first, then the first of the catalogue.
+      const auto place = [&](const InverseProposal& one) {
+        std::ptrdiff_t last = 0;
         for (const plant::CatalogueEntry* effect : one.score.effects)
           if (std::find(now.effects.begin(), now.effects.end(), effect) == now.effects.end())
-            place = effect - catalogue_.entries().data();
-        return place;
+            last = effect - catalogue_.entries().data();
+        return std::make_pair(parameter_count(one.score), last);
       };
       for (const plant::CatalogueEntry& entry : catalogue_.entries()) {
         if (!entry.hooks.any_axis() || model_.effects.count(entry.info.id) > 0) continue;
@@ -152,11 +153,11 @@ public:
       std::stable_sort(tried.begin(), tried.end(), [](const InverseProposal& a, const InverseProposal& b) {
         return a.weighed < b.weighed;
       });
-      if (!tried.empty()) {  // of equals the first of the catalogue
+      if (!tried.empty()) {
         const double tied = tried.front().weighed * (1.0 + propose_thresholds.tied);
         const auto first = std::min_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) {
           const bool a_tied = a.weighed <= tied, b_tied = b.weighed <= tied;
-          return a_tied != b_tied ? a_tied : a_tied && last_place(a) < last_place(b);
+          return a_tied != b_tied ? a_tied : a_tied && place(a) < place(b);
         });
         std::rotate(tried.begin(), first, first + 1);
       }
@@ -351,6 +352,14 @@ private:
     score.gain = gains.mean();
     score.gain_error = n > 1.0 ? std::sqrt((gains.array() - score.gain).square().sum() / (n - 1.0) / n) : 0.0;
     if (score.refusal == InverseRefusal::none) least_share_ = std::min(least_share_, score.share);
+  }
+
+  /// Whether an effect is a delay so short that stamps may be off by as much.
+  bool is_of_stamps(const plant::CatalogueEntry& entry, const std::vector<double>& parameters) const {
+    const plant::AxisStructure<double> shape = structure_of(entry, parameters);
+    const EffortPiece& piece = train_rows_->pieces.front();
+    return shape.delayed && shape.delay_s < propose_thresholds.least_delay_samples * 2.0 * piece.half_sample *
+                                                piece.interval_s;
   }
 
   /// Why an effect cannot be asked after at all.

@@ -41,10 +41,16 @@ inline std::vector<double> first_starts(const plant::CatalogueEntry& entry) {
 }
 
 /// What an effect makes of the structure of an axis.
-inline plant::AxisStructure<double> structure_of(const plant::CatalogueEntry& entry) {
-  plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, 0.0, false, false, false};
-  if (entry.hooks.axis_structure) entry.of<double>().call(first_starts(entry).data(), shape);
+inline plant::AxisStructure<double> structure_of(const plant::CatalogueEntry& entry,
+                                                 const std::vector<double>& parameters) {
+  plant::AxisStructure<double> shape = {};
+  if (entry.hooks.axis_structure) entry.of<double>().call(parameters.data(), shape);
   return shape;
+}
+
+/// The same where a fit begins.
+inline plant::AxisStructure<double> structure_of(const plant::CatalogueEntry& entry) {
+  return structure_of(entry, first_starts(entry));
 }
 
 /// Whether it hangs part of the inertia on a spring.

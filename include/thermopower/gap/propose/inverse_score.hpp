@@ -16,9 +16,9 @@ namespace thermopower::gap::engine {
 /// Who makes the effort.
 enum class LoopKind {
   unknown,          ///< too little data, or no effort recorded
-  open,             ///< effort comes from outside and does not follow the motion
+  open,             ///< effort comes from outside, and knows nothing of the motion
   closed_recorded,  ///< a target is recorded: a controller makes the effort of it and of the motion
-  closed_found      ///< no target is recorded, and the effort follows the motion
+  closed_found  ///< no target is recorded, and the effort is as rough as what a controller makes of measured motion
 };
 
 /// As reports print it.

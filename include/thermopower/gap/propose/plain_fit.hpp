@@ -42,7 +42,7 @@ public:
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(columns);
       const Eigen::VectorXd found = solver.solve(compared.effort);
       const double square = (compared.effort - columns * found).squaredNorm() / static_cast<double>(n);
-      if (is_known_ && square >= residual_square_) continue;
+      if (is_known_ && square >= (1.0 - propose_thresholds.stamped) * residual_square_) continue;
       is_known_ = true;
       early_samples_ = candidate;
       residual_square_ = square;

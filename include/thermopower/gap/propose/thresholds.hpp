@@ -30,8 +30,12 @@ struct ProposeThresholds {
   int least_residuals = 24;             ///< of the training data; fewer determine nothing
   int blocks_in_run = 8;                ///< of held-out data, at most
   int residuals_in_block = 8;           ///< at least
-  double longest_delay_rows = 8.0;      ///< from effort to torque
-  double longest_delay_s = 0.02;        ///< the same, where rows are rare: the larger counts
+  /// Share of the residual's variance by which an effort must fit better as a measurement at its stamp than as a value that holds
+  /// from it on.
+  double stamped = 0.1;
+  double least_delay_samples = 0.5;  ///< a delay that is less than this is one of stamps
+  double longest_delay_rows = 8.0;   ///< from effort to torque
+  double longest_delay_s = 0.02;     ///< the same, where rows are rare: the larger counts
   double flat = 0.1;           ///< of the drive's torque per effort: a drive that gives less has switched off
   double least_effort = 2e-3;  ///< of the effort's RMS: smaller residuals are not compared
   double least_reduction = 0.07;  ///< of the held-out residual, for a proposal
@@ -40,7 +44,11 @@ struct ProposeThresholds {
   double least_promise = 0.04;    ///< share of the squares that one linear step must take away to be fitted
   double least_deviations = 1.5;  ///< of the gain over blocks, for a proposal
   double per_parameter = 0.02;    ///< by which one more parameter must lower the residual
-  int most_causes = 3;            ///< of a proposal
+  double repeats =
+      0.8;  ///< share of rows whose effort is that of the row before: above, it comes from outside
+  double smooth_effort =
+      0.0018;  ///< noise over RMS of an effort that comes from outside; controllers passed on 0.003 and more
+  int most_causes = 3;  ///< of a proposal
 };
 
 /// The values in force.
