@@ -144,6 +144,30 @@ struct Trial {
   bool axis = false;
 };
 
+/// A curve whose values go with u + bend u^3, where u is -1 at the first knot and 1 at the last; with a bend of 0 with u^2.
+inline Trial curve(const std::string& id, double from, double to, double size, double bend, bool axis) {
+  Trial trial{id, {}, axis};
+  const std::vector<Parameter>& list = standard_catalogue().find(id)->info.parameters;
+  trial.parameters[list[0].name] = from;
+  trial.parameters[list[1].name] = to;
+  for (int i = 0; i < curve_knot_count; ++i) {
+    const double u = 2.0 * i / (curve_knot_count - 1) - 1.0;
+    trial.parameters[list[static_cast<std::size_t>(curve_support_count + i)].name] =
+        size * (bend != 0.0 ? u + bend * u * u * u : u * u);
+  }
+  return trial;
+}
+
+/// The standard catalogue, in which the curve of a trial has its range.
+inline Catalogue catalogue_for(const Trial& trial) {
+  Catalogue catalogue = standard_catalogue();
+  const EffectInfo& info = catalogue.find(trial.id)->info;
+  if (info.curve)
+    catalogue.support(trial.id, trial.parameters.at(info.parameters[0].name),
+                      trial.parameters.at(info.parameters[1].name), 1.0);
+  return catalogue;
+}
+
 /// Every effect of the standard catalogue, at a size that shows.
 inline std::vector<Trial> trials() {
   return {
@@ -159,6 +183,7 @@ inline std::vector<Trial> trials() {
       {"neighbour_heating", {{"coupling", 0.03}}, false},
       {"motion_heating", {{"W_s2_per_rad2", 0.02}}, false},
       {"iron_loss", {{"hysteresis_W_s_per_rad", 0.1}, {"eddy_W_s2_per_rad2", 0.01}}, false},
+      {"idle_heat", {{"W", 2.0}}, false},
       {"thermometer_lag", {{"lag_s", 25.0}}, false},
       {"thermometer_gain", {{"gain", 0.85}}, false},
       {"supply_power_heating", {{"share", 1.0}}, false},
@@ -200,17 +225,25 @@ inline std::vector<Trial> trials() {
       {"presliding_friction", {{"Nm", 0.003}, {"bend_rad", 0.03}, {"damping_s", 0.002}}, true},
       {"actuation_delay", {{"s", 0.0173}}, true},
       {"servo_delay", {{"s", 0.0173}}, true},
+      {"target_delay", {{"s", 0.0373}}, true},
       {"torque_saturation", {{"A", 0.2}}, true},
       {"torque_fade", {{"per_K", 0.006}}, true},
       {"constant_torque", {{"Nm", 0.004}}, true},
       {"asymmetric_viscous", {{"forward_Nms_per_rad", 4e-4}, {"backward_Nms_per_rad", 1.2e-3}}, true},
       {"torque_ripple", {{"sin_share", 0.2}, {"cos_share", -0.1}, {"cycles_per_turn", 6.0}}, true},
       {"warm_friction", {{"per_K", 0.02}}, true},
+      {"quadratic_drag", {{"Nm_s2_per_rad2", 2e-4}}, true},
       {"drive_lag", {{"lag_s", 0.03}}, true},
       {"angle_scale", {{"gain", 57.29578}}, true},
       {"angle_bias_drift", {{"deg_per_s", 0.4}}, true},
       {"encoder_eccentricity", {{"sin_deg", 0.8}, {"cos_deg", -0.5}, {"cycles_per_turn", 3.0}}, true},
       {"rate_bias", {{"dps", 1.5}}, true},
+      curve("unknown.load(angle_deg)", -120.0, 120.0, -0.01, 2.0, true),
+      curve("unknown.friction(rate_dps)", -300.0, 300.0, 0.005, 1.0, true),
+      curve("unknown.drive(drive_A)", -0.6, 0.6, 0.05, 0.0, true),
+      curve("unknown.loss(rise_K)", -40.0, 60.0, 2.0, 0.0, false),
+      curve("unknown.heat(current_A)", -2.0, 2.0, 2.0, 0.0, false),
+      curve("unknown.voltage(motor_C)", 0.0, 80.0, 0.4, 0.0, false),
   };
 }
 
@@ -224,7 +257,8 @@ inline Model baseline_of(const Trial& trial) {
   }
   if (trial.id == "third_thermal_mass")
     model.effects["second_thermal_mass"] = {{"winding_share", 0.25}, {"coupling", 0.6}};
-  if (trial.id == "servo_delay") model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};
+  if (trial.id == "servo_delay" || trial.id == "target_delay")
+    model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};
   return model;
 }
 

@@ -179,6 +179,10 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
   const AxisContext& c = setup.context;
   const AxisPlant plant(setup.plant);
   AxisRecording out;
+  out.drive.servo.closed = setup.servo;
+  out.drive.servo.kp_A_per_deg = setup.kp_A_per_deg();
+  out.drive.servo.kd_A_s_per_deg = setup.kd_A_s_per_deg();
+  out.drive.servo.limit_A = setup.top_A;
   std::vector<std::string> labels;
   std::vector<double> board;
   for (int run = 0; run < session.runs; ++run) {
@@ -204,12 +208,15 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
       out.truth.rate_dps.push_back(rate);
       AxisInput u;
       // The loop closes over the sensors' noise; a wrong scale in the log is not in the loop.
-      u.drive_A =
-          source.next(random, t, x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
-                      x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss());
-      u.drive_A = quantise(u.drive_A, 1e-5);
+      const double seen_deg = x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
+                   seen_dps = x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss();
+      u.drive_A = source.next(random, t, seen_deg, seen_dps);
       out.drive.servo.target_deg.push_back(source.goal_deg);
       out.drive.servo.target_dps.push_back(source.goal_dps);
+      if (setup.servo && plant.target_delay() > 0.0)
+        u.drive_A = out.drive.servo.command_A(row_of_target(out.drive.t_s, first, k, plant.target_delay()),
+                                              seen_deg, seen_dps);
+      u.drive_A = quantise(u.drive_A, 1e-5);
       // The motor warms up, and cools in a pause of the bench: both directions in every recording.
       u.motor_C = setup.first_C + setup.rise_K * 0.5 * (1.0 - std::cos(6.283 * t / (0.8 * length_s))) +
                   warmth.next(random, c.dt_s);
@@ -243,10 +250,6 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
   const auto lost = [&](std::size_t k) { return k > 0 && setup.missing_cells && random.chance(0.006); };
   column("t_s", 5, [&](std::size_t k) { return out.drive.t_s[k]; });
   if (session.runs > 1) out.log.run = labels;
-  out.drive.servo.closed = setup.servo;
-  out.drive.servo.kp_A_per_deg = setup.kp_A_per_deg();
-  out.drive.servo.kd_A_s_per_deg = setup.kd_A_s_per_deg();
-  out.drive.servo.limit_A = setup.top_A;
   if (setup.servo) {
     column("target_deg", 4, [&](std::size_t k) { return out.drive.servo.target_deg[k]; });
     column("target_dps", 3, [&](std::size_t k) { return out.drive.servo.target_dps[k]; });

@@ -105,8 +105,9 @@ inline void draw_unknown(AxisSetup& s, AxisUnknown unknown, Random& random) {
     case AxisUnknown::wear:
       s.unknown_size = random.chance(0.6) ? random.uniform(2.0, 4.0) : random.uniform(0.2, 0.45);
       break;
-    case AxisUnknown::quadratic_drag:
-      s.plant[drag_Nm_per_dps2] = c.torque_Nm * random.uniform(0.6, 2.0) / (c.rate_dps * c.rate_dps);
+    case AxisUnknown::hardening_cable:
+      s.plant[hardening_Nm_per_rad3] =
+          c.torque_Nm * random.uniform(0.1, 0.4) / (c.swing_rad * c.swing_rad * c.swing_rad);
       break;
     case AxisUnknown::vibration:
       s.unknown_size = c.torque_Nm * random.uniform(0.1, 0.5);
@@ -200,7 +201,7 @@ inline DrawnCase draw_axis_case(const CaseOrder& order, Random& random) {
   for (int attempt = 0; attempt < most_drawings(order, 80); ++attempt) {
     AxisSetup setup = draw_axis(order.effects, random);
     AxisContext& c = setup.context;
-    setup.servo = order.half == Half::servo;
+    setup.servo = c.servo = order.half == Half::servo;
     if (setup.servo) setup.jitter = false;  // it samples at the rows
     const auto motion = [&] {
       if (!setup.servo) return any_motion(random);

@@ -21,6 +21,7 @@ struct AxisContext {
   double swing_rad = 0.5;                  ///< RMS angle
   double dt_s = 0.01;
   bool has_motor = false;
+  bool servo = false;  ///< the log holds a servo's target, and no current
 };
 
 using AxisEffect = Effect<AxisContext, AxisParameters>;
@@ -109,6 +110,19 @@ inline const std::vector<AxisEffect>& axis_effects() {
        [](Random& r, const Context&, Values& p) { p[thinning_per_K] = r.log_uniform(0.008, 0.04); },
        [](const Context&) {
          return List{{thinning_per_K, -0.03, 0.12, {0.005, 0.02}}};
+       },
+       {}},
+      // J dw/dt = M - b w - c w |w|: a propeller in air, a pump in water.
+      {"quadratic_drag",
+       "mechanical.friction",
+       motion,
+       always,
+       [](Random& r, const Context& c, Values& p) {
+         p[drag_Nm_per_dps2] = c.torque_Nm * r.log_uniform(0.1, 1.5) / (c.rate_dps * c.rate_dps);
+       },
+       [](const Context& c) {
+         const double unit = c.torque_Nm / (c.rate_dps * c.rate_dps);
+         return List{{drag_Nm_per_dps2, 0.0, 5.0 * unit, {0.3 * unit}}};
        },
        {}},
       {"load_friction",
@@ -258,6 +272,18 @@ inline const std::vector<AxisEffect>& axis_effects() {
          return List{{delay_s, 0.0, 0.06, {0.005, 0.015}}};
        },
        {}},
+      // The servo takes the target that was logged s ago: a bus, a PWM frame.
+      {"target_delay",
+       "mechanical.drive",
+       motion,
+       [](const Context& c) { return c.servo; },
+       [](Random& r, const Context& c, Values& p) {
+         p[target_delay_s] = r.uniform(std::max(0.012, 1.5 * c.dt_s), 0.08);
+       },
+       [](const Context&) {
+         return List{{target_delay_s, 0.0, 0.15, {0.01, 0.03, 0.06}}};
+       },
+       {}},
       // J dw/dt = M - b w, lag dM/dt = Kt i - M: the current rises slowly in its winding.
       {"drive_lag",
        "mechanical.drive",
@@ -355,6 +381,9 @@ inline const std::vector<AxisEffect>& axis_effects() {
   return effects;
 }
 
+/// Whether a cause shows only where the log holds a servo's target.
+inline bool needs_servo(const std::string& id) { return id == "target_delay"; }
+
 /// What is the same physics as a cause of the list, by other names: where one is the truth, the other is in its class.
 ///
 /// Dry friction of F (1 + a) forward and F (1 - a) backward is friction of F either way and a torque of a F against
@@ -389,7 +418,7 @@ enum class AxisUnknown {
   warming_grease,
   gusts,
   wear,
-  quadratic_drag,
+  hardening_cable,
   vibration,
   weak_brake,
   end_stop
@@ -403,7 +432,7 @@ inline const std::vector<std::pair<AxisUnknown, std::string>>& axis_unknowns() {
       {AxisUnknown::warming_grease, "grease that thins while it is worked"},
       {AxisUnknown::gusts, "gusts of wind on the load"},
       {AxisUnknown::wear, "a bearing that breaks in mid recording"},
-      {AxisUnknown::quadratic_drag, "air drag, with the square of the rate"},
+      {AxisUnknown::hardening_cable, "a cable that stiffens as it bends"},
       {AxisUnknown::vibration, "a vibration from outside, not logged"},
       {AxisUnknown::weak_brake, "a drive that is weak while it brakes"},
       {AxisUnknown::end_stop, "an elastic end stop"},

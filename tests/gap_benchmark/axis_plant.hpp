@@ -27,9 +27,11 @@ enum AxisParameter : int {
   forward_Nms,   ///< viscous friction besides, while the rate is positive, N m s/rad
   backward_Nms,  ///< and while it is negative
   thinning_per_K,
+  drag_Nm_per_dps2,
   // drive
   deadband_A,
   delay_s,
+  target_delay_s,  ///< from the log's target to the servo that takes it
   torque_limit_Nm,
   fade_per_K,
   lag_s,
@@ -69,10 +71,10 @@ enum AxisParameter : int {
   run_out_count,
   clutch_Nm,
   clutch_dps,
-  drag_Nm_per_dps2,
   warming_share,
   warming_s,
   brake_share,
+  hardening_Nm_per_rad3,
   stop_deg,
   stop_Nm_per_rad,
   axis_parameter_count
@@ -134,6 +136,7 @@ public:
   }
 
   double delay() const { return p_[delay_s]; }
+  double target_delay() const { return p_[target_delay_s]; }
 
   double sensed_angle_deg(const AxisState& x, double run_time_s) const {
     return p_[angle_gain] *
@@ -337,6 +340,7 @@ private:
     double torque = p_[weight_Nm] - p_[cable_Nm_per_rad] * angle - p_[cable_Nm];
     if (p_[unbalance_sin_Nm] != 0.0 || p_[unbalance_cos_Nm] != 0.0)
       torque -= p_[unbalance_sin_Nm] * std::sin(angle) + p_[unbalance_cos_Nm] * std::cos(angle);
+    if (p_[hardening_Nm_per_rad3] > 0.0) torque -= p_[hardening_Nm_per_rad3] * angle * angle * angle;
     if (p_[stop_Nm_per_rad] > 0.0) {
       const double over = std::fabs(angle) - p_[stop_deg] / degrees_per_radian;
       if (over > 0.0)

@@ -23,6 +23,14 @@ struct AxisServo {
   }
 };
 
+/// The row whose target the servo has at a row, when targets are late; before its first one a run had that.
+inline std::size_t row_of_target(const std::vector<double>& t_s, std::size_t run_first, std::size_t row,
+                                 double late_s) {
+  std::size_t from = row;
+  while (from > run_first && t_s[from] > t_s[row] - late_s + 1e-9) --from;
+  return from;
+}
+
 /// Everything that goes into a replay of an axis.
 struct AxisDrive {
   std::vector<double> t_s;
@@ -93,7 +101,8 @@ inline AxisOutput replay(const AxisParameters& parameters, const AxisDrive& give
       for (std::size_t j = k; again && j-- > first && drive.t_s[k] - drive.t_s[j] < longest_delay_s;)
         looped.input[j].drive_A = given.input[j].drive_A;
       looped.input[k].drive_A =
-          given.servo.command_A(k, x.angle * degrees_per_radian, x.rate * degrees_per_radian);
+          given.servo.command_A(row_of_target(drive.t_s, first, k, plant.target_delay()),
+                                x.angle * degrees_per_radian, x.rate * degrees_per_radian);
     }
     if (restarted) restarted->push_back(again);
     out.angle_deg.push_back(plant.sensed_angle_deg(x, run_time_s));

@@ -153,6 +153,16 @@ inline const std::vector<BenchEffect>& bench_effects() {
          return std::vector<Free>{{motion_W_per_dps2, 0.0, c.top_W * 3e-5, {c.top_W * 3e-6}}};
        },
        {}},
+      // C dT/dt = P + W - loss: the electronics' heat is there whatever the motor does.
+      {"idle_heat",
+       "thermal.heating",
+       {"motor_C"},
+       lumped,
+       [](Random& r, const Context&, Values& p) { p[idle_W] = p[conductance] * r.uniform(1.5, 10.0); },
+       [](const Context& c) {
+         return std::vector<Free>{{idle_W, 0.0, 20.0 * c.model[conductance], {2.0 * c.model[conductance]}}};
+       },
+       {}},
       {"iron_loss",
        "thermal.heating",
        {"motor_C"},

@@ -50,6 +50,7 @@ enum BenchParameter : int {
   air_bias_K,
   neighbour_W_per_K,
   motion_W_per_dps2,
+  idle_W,  ///< of the electronics, at all times
   sensor_lag_s,
   sensor_gain,
   supply_heating,
@@ -252,7 +253,7 @@ private:
     }
     Rates d{};
     const double heat_W = heating(u, x),
-                 outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + u.hidden_W;
+                 outside_W = p_[motion_W_per_dps2] * u.rate_dps * u.rate_dps + p_[idle_W] + u.hidden_W;
     const double speed_dps = std::fabs(u.rate_dps);
     const double iron_W = (p_[hysteresis_W_per_dps] + p_[eddy_W_per_dps2] * speed_dps) * speed_dps;
     const double outer_C = two_nodes() ? x.housing_C : x.winding_C;

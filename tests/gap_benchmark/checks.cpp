@@ -10,8 +10,11 @@
 #include <map>
 
 #include "axis_draw.hpp"
+#include "beginner_draw.hpp"
 #include "bench_draw.hpp"
+#include "closed_loop_draw.hpp"
 #include "plan.hpp"
+#include "slow_log_draw.hpp"
 #include "tally.hpp"
 
 using namespace gap_benchmark;
@@ -329,13 +332,14 @@ TEST_CASE("the plan holds every effect, and its order says nothing") {
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis))
       CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
-              return o.half == Half::clean && o.axis == axis && o.effects == std::vector<std::string>{id};
-            }) == 5);
+              return o.half == (needs_servo(id) ? Half::servo : Half::clean) && o.axis == axis &&
+                     o.effects == std::vector<std::string>{id};
+            }) >= 5);
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis))
       CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
               return o.half == Half::dirty && o.axis == axis && o.effects == std::vector<std::string>{id};
-            }) == 1);
+            }) == (needs_servo(id) ? 0 : 1));
   for (const Dirt dirt : all_dirt()) {
     CAPTURE(name(dirt));
     CHECK(std::count_if(orders.begin(), orders.end(), [&](const CaseOrder& o) {
@@ -433,4 +437,79 @@ TEST_CASE("Wilson's interval is that of the tables") {
   CHECK(std::fabs(wilson(0, 10).second - 0.2775) < 1e-4);
   CHECK(std::fabs(wilson(81, 263).first - 0.2553) < 1e-4);
   CHECK(std::fabs(wilson(81, 263).second - 0.3662) < 1e-4);
+}
+
+TEST_CASE("a propeller turns at the rate at which its drag holds the motor") {
+  AxisParameters p = small_axis();
+  p[viscous] = 0.0;
+  p[drag_Nm_per_dps2] = 2e-8;
+  const AxisPlant plant(p);
+  AxisState x;
+  AxisInput u;
+  u.drive_A = 0.4;
+  plant.advance(x, u, 60.0);
+  CHECK(agree(x.rate * degrees_per_radian, std::sqrt(0.15 * 0.4 / 2e-8), 1e-4));
+}
+
+TEST_CASE("a late target is the last one that was logged so long ago") {
+  const std::vector<double> t_s = {0.0, 0.01, 0.02, 0.03, 0.04};
+  CHECK(row_of_target(t_s, 0, 4, 0.0) == 4);
+  CHECK(row_of_target(t_s, 0, 4, 0.015) == 2);
+  CHECK(row_of_target(t_s, 0, 4, 0.02) == 2);
+  CHECK(row_of_target(t_s, 0, 4, 1.0) == 0);
+  CHECK(row_of_target(t_s, 3, 4, 1.0) == 3);
+}
+
+TEST_CASE(
+    "the parts draw the same from the same seed, wrong what they say is wrong, and tell the judge nothing") {
+  for (int number = 0; number < 12; ++number) {
+    CAPTURE(number);
+    Random one(41), other(41);
+    const DrawnCase first = draw_beginner_case(number, one), second = draw_beginner_case(number, other);
+    CHECK(first.model == second.model);
+    CHECK(first.train["t_s"] == second.train["t_s"]);
+    const auto& label = first.label;
+    const int answers = static_cast<int>(!label["accept"].empty()) +
+                        static_cast<int>(label["refuse"].get<bool>()) +
+                        static_cast<int>(label["common_factor"].get<bool>());
+    CHECK(answers == 1);
+    CHECK(first.model.dump().find("calibration") == std::string::npos);
+  }
+}
+
+TEST_CASE("a joint of the closed loops follows its target, and its effort has the noise that it is given") {
+  Random random(7);
+  AxisSetup setup = draw_axis({}, random);
+  setup.noise_angle_deg = setup.noise_rate_dps = 0.0;
+  setup.context.dt_s = 0.005;
+  const AxisParameters& p = setup.context.plant;
+  LoopGains gains;
+  const double omega = 6.283185307179586 * 4.0;
+  gains.kp_A_per_rad = p[inertia] * omega * omega / p[torque_constant];
+  gains.kd_A_s_per_rad = 1.4 * p[inertia] * omega / p[torque_constant];
+  gains.limit_A = 1e3;
+  const LoopTarget target(random, 3.0, 0.8);
+  AxisRecording recording = follow(setup, p, gains, target, 20.0, 5);
+  SquaredError apart;
+  for (std::size_t k = 0; k < recording.drive.t_s.size(); ++k)
+    apart.add(recording.truth.angle_deg[k] - recording.drive.servo.target_deg[k]);
+  CHECK(apart.rms() < 0.1 * 3.0 * degrees_per_radian);
+  write_loop_log(setup, recording, 0.05, true, random);
+  SquaredError noise;
+  for (std::size_t k = 0; k < recording.drive.t_s.size(); ++k)
+    noise.add(recording.log["drive_A"][k] - recording.drive.input[k].drive_A);
+  CHECK(agree(noise.rms(), 0.05, 0.1));
+}
+
+TEST_CASE("a controlled body is logged once a second and stays where power can hold it") {
+  Random random(11);
+  const DrawnCase drawn = draw_slow_log_case(0, random);
+  const auto& t_s = drawn.train["t_s"];
+  for (std::size_t k = 1; k < t_s.size(); ++k) CHECK(t_s[k] - t_s[k - 1] == 1.0);
+  double lowest = 1e9, highest = -1e9;
+  for (const double one : drawn.train["motor_C"])
+    lowest = std::min(lowest, one), highest = std::max(highest, one);
+  CHECK(highest > lowest + 3.0);
+  CHECK(highest < 150.0);
+  CHECK(drawn.label["family"].size() == 1);
 }

@@ -16,8 +16,11 @@
 #include <thread>
 
 #include "axis_draw.hpp"
+#include "beginner_draw.hpp"
 #include "bench_draw.hpp"
+#include "closed_loop_draw.hpp"
 #include "plan.hpp"
+#include "slow_log_draw.hpp"
 
 namespace {
 
@@ -26,6 +29,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string out, only;
+  Part part = Part::none;
   unsigned long long seed = 1;
   int count = 5, threads = 2, one = -1;
   double least_visible = 0.0, most_visible = 0.0;  // 0: as planned
@@ -37,6 +41,7 @@ constexpr const char* usage =
     "  --count N     recordings per single effect (5); the other kinds are scaled along\n"
     "  --only LIST   effect ids, none, pairs, unknown, dirty, dirty_none, dirty_unknown, servo, misspecified,\n"
     "                with commas between\n"
+    "  --part NAME   cases of one part alone: beginner, closed_loops or slow_logs; --count is how many of them\n"
     "  --case N      draw only this case of the plan\n"
     "  --threads N   cases drawn at once (2); the result does not depend on it\n"
     "  --visible LOW,HIGH  only causes whose RMS over the floor is in this range, in whichever recording shows less\n"
@@ -54,7 +59,13 @@ bool parse(int argc, char** argv, Options& options) {
       if (option == "--out") options.out = value();
       else if (option == "--seed") options.seed = std::stoull(value());
       else if (option == "--only") options.only = value();
-      else if (option == "--count") options.count = std::stoi(value());
+      else if (option == "--part") {
+        const std::string text = value();
+        options.part = part_of(text);
+        if (options.part == Part::none)
+          throw std::invalid_argument("--part expects beginner, closed_loops or slow_logs, not '" + text +
+                                      "'");
+      } else if (option == "--count") options.count = std::stoi(value());
       else if (option == "--case") options.one = std::stoi(value());
       else if (option == "--threads") options.threads = std::stoi(value());
       else if (option == "--visible") {
@@ -83,6 +94,15 @@ std::string numbered(const char* format, std::size_t number) {
   return text;
 }
 
+/// A case of the plan, or of a part.
+DrawnCase draw(const Options& options, const CaseOrder& order, std::size_t number, Random& random) {
+  const int i = static_cast<int>(number);
+  if (options.part == Part::beginner) return draw_beginner_case(i, random);
+  if (options.part == Part::closed_loops) return draw_closed_loop_case(i, random);
+  if (options.part == Part::slow_logs) return draw_slow_log_case(i, random);
+  return order.axis ? draw_axis_case(order, random) : draw_bench_case(order, random);
+}
+
 Json complete(DrawnCase& drawn, const CaseOrder& order) {
   const Assessment& a = drawn.assessment;
   Json label = drawn.label;
@@ -101,7 +121,10 @@ Json complete(DrawnCase& drawn, const CaseOrder& order) {
 int main(int argc, char** argv) {
   Options options;
   if (!parse(argc, argv, options)) return 2;
-  std::vector<CaseOrder> orders = plan(options.seed, options.count, options.only, !options.quick);
+  const bool whole = options.part == Part::none;
+  std::vector<CaseOrder> orders =
+      whole ? plan(options.seed, options.count, options.only, !options.quick)
+            : std::vector<CaseOrder>(static_cast<std::size_t>(std::max(0, options.count)));
   if (options.most_visible > 0.0)
     for (CaseOrder& order : orders) {
       order.gate = options.least_visible;
@@ -124,24 +147,28 @@ int main(int argc, char** argv) {
       const auto began = std::chrono::steady_clock::now();
       std::string line;
       try {
-        DrawnCase drawn = order.axis ? draw_axis_case(order, random) : draw_bench_case(order, random);
+        DrawnCase drawn = draw(options, order, i, random);
         const std::string directory = options.out + "/cases/" + numbered("%03d", i);
         std::filesystem::create_directories(directory);
         drawn.train.write(directory + "/train.csv");
         drawn.heldout.write(directory + "/heldout.csv");
         std::ofstream(directory + "/model.json") << drawn.model.dump(1) << "\n";
-        labels[i] = complete(drawn, order);
+        labels[i] = whole ? complete(drawn, order) : drawn.label;
         char text[200];
-        std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s",
-                      drawn.train.rows(), drawn.assessment.visible_train, drawn.assessment.visible_heldout,
-                      drawn.assessment.confusability(), drawn.assessment.confused_with().c_str());
+        if (whole)
+          std::snprintf(text, sizeof text, "%6zu rows, visible %6.1f / %6.1f, confusability %.3f %s",
+                        drawn.train.rows(), drawn.assessment.visible_train, drawn.assessment.visible_heldout,
+                        drawn.assessment.confusability(), drawn.assessment.confused_with().c_str());
+        else std::snprintf(text, sizeof text, "%6zu rows", drawn.train.rows());
         line = text;
       } catch (const std::exception& error) {
         ++failed;
         line = error.what();
       }
       const std::lock_guard<std::mutex> guard(talking);
-      std::printf("%03zu %-45s %s, %.1f s\n", i, title(order).c_str(), line.c_str(),
+      const std::string what =
+          whole || labels[i].is_null() ? title(order) : labels[i]["title"].get<std::string>();
+      std::printf("%03zu %-45s %s, %.1f s\n", i, what.c_str(), line.c_str(),
                   std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
       std::fflush(stdout);
     }

@@ -12,18 +12,25 @@ set -eu
 if [ "$1" = --one ]; then
   program=$2 directory=$3 job=$4 case=$5
   shift 5
-  case=$directory/cases/$case
-  out=$directory/reports/$job
+  case=${GAP_BENCHMARK_CASES:-$directory/cases}/$case
+  out=$directory/${GAP_BENCHMARK_REPORTS:-reports}/$job
   mkdir -p "$out"
   rm -f "$out"/*
   options=""
   for id; do
     options="$options --without $id"
   done
+  logs=""
+  for log in "$case"/train*.csv; do
+    logs="$logs --recording $log"
+  done
+  for log in "$case"/heldout*.csv; do
+    [ -r "$log" ] && logs="$logs --heldout $log"
+  done
   began=$(date +%s.%N)
   status=0
-  # shellcheck disable=SC2086  # the ids hold no blanks
-  timeout 300 "$program" diagnose --model "$case/model.json" --recording "$case/train.csv" --heldout "$case/heldout.csv" \
+  # shellcheck disable=SC2086  # neither ids nor paths hold blanks
+  timeout 300 "$program" diagnose --model "$case/model.json" $logs \
     --report "$out/report.json" --predictions "$out/predictions.csv" $options >"$out/summary.txt" 2>"$out/errors.txt" || status=$?
   ended=$(date +%s.%N)
   # The second line of `times` is what the children took, user and system, as 0m1.23s.
@@ -44,6 +51,6 @@ fi
 program=$1 directory=$2 at_once=${3:-2}
 [ -x "$program" ] || { echo "judge.sh: $program is no program" >&2; exit 2; }
 [ -r "$directory/jobs.txt" ] || { echo "judge.sh: $directory/jobs.txt is missing" >&2; exit 2; }
-mkdir -p "$directory/reports"
+mkdir -p "$directory/${GAP_BENCHMARK_REPORTS:-reports}"
 # One line of jobs.txt is one run; a line's words become arguments.
 xargs -P "$at_once" -L 1 sh "$0" --one "$program" "$directory" <"$directory/jobs.txt"

@@ -122,9 +122,11 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
   for (const bool axis : {false, true})
     for (const auto& id : all_ids(axis)) {
       if (!wanted(id)) continue;
+      const bool servo = needs_servo(id);
       for (int i = 0; i < count; ++i) {
         CaseOrder order;
         order.axis = axis;
+        if (servo) order.half = Half::servo;
         order.effects = {id};
         order.thesis = id == "supply_power_heating";
         order.clear =
@@ -178,7 +180,7 @@ inline std::vector<CaseOrder> plan(unsigned long long seed, int count, const std
   if (dirty_none || dirty_unknown)
     for (const bool axis : {false, true}) {
       for (const auto& id : all_dirty ? all_ids(axis) : std::vector<std::string>())
-        for (int i = 0; i < std::max(1, count / 3); ++i) {
+        for (int i = 0; !needs_servo(id) && i < std::max(1, count / 3); ++i) {
           CaseOrder order;
           order.half = Half::dirty;
           order.axis = axis;

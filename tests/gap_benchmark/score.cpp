@@ -2,15 +2,15 @@
 // Copyright (c) 2026 the thermopower authors
 //
 // Opens what the judge left and what the generator sealed, and says how good the diagnosis is.
-//   gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--require NAME=RATE ...]
+//   gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--brief yes] [--require NAME=RATE ...]
 // Exit status 1 when a required rate is not reached.
 
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 
+#include "answer.hpp"
 #include "tally.hpp"
-#include "verdict.hpp"
 
 namespace {
 
@@ -58,6 +58,8 @@ public:
 
   const Tallies& tallies() const { return tallies_; }
   void print(std::ostream& out) const;
+  /// One screen: rates, times, and what was missed.
+  void print_brief(std::ostream& out) const;
 
 private:
   std::string directory_;
@@ -117,8 +119,11 @@ private:
     const std::string kind = text(label, "kind");
     Explanation truth;
     for (const auto& id : label["effects"]) truth.insert(id.get<std::string>());
-    judge_odds(v, label, truth);
     const std::string half = text(label, "half");
+    if (half == "beginner") return judge_beginner(job, label, v);
+    if (half == "closed_loops") return judge_family(job, label, v, "loops");
+    if (half == "slow_logs") return judge_family(job, label, v, "slow");
+    judge_odds(v, label, truth);
     if (half == "dirty") return judge_dirty(job, label, v, truth);
     if (half == "misspecified") return judge_misspecified(job, label, v, truth);
     if (half == "servo") return judge_servo(job, label, v, truth);
@@ -138,8 +143,10 @@ private:
     }
     judge_where(job, label, v, kind, name);
     if (unknown) {
-      const bool right = v.verdict == "unexplained";
+      const bool curve = names_curves(v.cause);
+      const bool right = v.verdict == "unexplained" || curve;
       tallies_.add("unknown", right);
+      tallies_.add("unknown_curve", curve);
       if (!right) {
         std::string reason =
             "left of it by the catalogue: " + rounded(number(label, "left_over")) + " times the floor";
@@ -205,6 +212,7 @@ private:
   /// What holds for every stated probability and every interval of a parameter, whatever the half.
   void judge_odds(const Verdict& v, const Json& label, const Explanation& truth) {
     if (!v.named() || v.cause.empty()) return;
+    if (names_curves(v.cause)) return;  // no name is stated
     const bool right = v.told(truth) == truth && !label["unknown"].is_string();
     const bool beyond_telling = !right && passes_for_truth(v, label);
     if (beyond_telling) return;  // nobody could know
@@ -280,23 +288,10 @@ private:
            number(label["likeness"], v.cause.begin()->c_str()) >= 0.9;
   }
 
-  /// The truth, or what is the same physics by another name, is part of the cause or of an alternative.
-  static bool in_class(const Verdict& v, const Json& label, const Explanation& truth) {
-    std::vector<Explanation> same = {truth};
-    if (label.contains("same"))
-      for (const auto& ids : label["same"]) same.push_back(ids.get<Explanation>());
-    const auto all = v.everything();
-    return v.named() && std::any_of(all.begin(), all.end(), [&](const Explanation& e) {
-             return std::any_of(same.begin(), same.end(), [&](const Explanation& one) {
-               return std::includes(e.begin(), e.end(), one.begin(), one.end());
-             });
-           });
-  }
-
   /// A name stated with at least 0.9 that is wrong, and could have been known to be.
   static bool confidently_wrong(const Verdict& v, const Json& label, const Explanation& truth) {
     return (v.verdict == "explained" || v.verdict == "partial") && v.cause != truth && v.probability >= 0.9 &&
-           !passes_for_truth(v, label);
+           !names_curves(v.cause) && !passes_for_truth(v, label);
   }
 
   void judge_dirty(const std::string& job, const Json& label, const Verdict& v, const Explanation& truth) {
@@ -311,7 +306,7 @@ private:
     tallies_.add("dirty_confident", wrong);
     bool right = false;
     if (unknown) {
-      right = v.verdict == "unexplained" || v.verdict == "insufficient";
+      right = v.verdict == "unexplained" || v.verdict == "insufficient" || names_curves(v.cause);
       tallies_.add("dirty_unknown", right);
     } else if (truth.empty()) {
       right = v.verdict == "no_gap";
@@ -322,6 +317,29 @@ private:
       if (number(label, "confusability", 0.0) < 0.9) tallies_.add("dirty_named", right);
     }
     if (!right) miss(job, wrong ? "dirty, confident" : "dirty", title, v, why(v, label, truth));
+  }
+
+  void judge_beginner(const std::string& job, const Json& label, const Verdict& v) {
+    const bool right = is_right_for_a_beginner(v, label);
+    const bool wrong = !right && v.named() && v.verdict != "ambiguous" && v.probability >= 0.9;
+    tallies_.add("beginner", right);
+    tallies_.add("beginner_confident", wrong);
+    if (!right) miss(job, wrong ? "beginner, confident" : "beginner", text(label, "title"), v, "");
+  }
+
+  /// @param key  of the tallies
+  void judge_family(const std::string& job, const Json& label, const Verdict& v, const std::string& key) {
+    const FamilyAnswer answer = answer_of_family(v, label);
+    const bool has_cause = !label["family"].empty();
+    tallies_.add(key + "_honest", answer.honest);
+    if (has_cause) tallies_.add(key + "_named", answer.named);
+    tallies_.add(key + "_false", answer.wrong);
+    if (!answer.honest || (has_cause && !answer.named))
+      miss(job,
+           answer.wrong    ? key + ", false"
+           : answer.honest ? key + ", not named"
+                           : key,
+           text(label, "title"), v, "");
   }
 
   void judge_servo(const std::string& job, const Json& label, const Verdict& v, const Explanation& truth) {
@@ -459,6 +477,17 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
+void Score::print_brief(std::ostream& out) const {
+  tallies_.print_brief(out);
+  out << "seconds of a diagnosis: median " << rounded(quantile(seconds_, 0.5)) << ", 95 % "
+      << rounded(quantile(seconds_, 0.95)) << "; missed:\n";
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < misses_.size() && i < most; ++i)
+    out << "  " << misses_[i].job << "  " << misses_[i].what << "  " << misses_[i].truth << "  ->  "
+        << misses_[i].answer << "\n";
+  if (misses_.size() > most) out << "  and " << misses_.size() - most << " more\n";
+}
+
 void Score::print(std::ostream& out) const {
   out << "| what | result | 95 % interval | cases | target |\n|---|---|---|---|---|\n";
   tallies_.print(out);
@@ -512,7 +541,7 @@ void Score::print(std::ostream& out) const {
 
 int usage() {
   std::cerr
-      << "usage: gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--require NAME=RATE ...]\n";
+      << "usage: gap_benchmark_score --dir DIR [--out FILE.md] [--heading FILE] [--brief yes] [--require NAME=RATE ...]\n";
   return 2;
 }
 
@@ -521,12 +550,14 @@ int usage() {
 int main(int argc, char** argv) {
   if (argc % 2 == 0) return usage();
   std::string directory, out_path, heading;
+  bool brief = false;
   std::vector<std::pair<std::string, double>> required;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
     if (option == "--dir") directory = value;
     else if (option == "--out") out_path = value;
     else if (option == "--heading") heading = value;
+    else if (option == "--brief") brief = value == "yes";
     else if (option == "--require" && value.find('=') != std::string::npos)
       required.emplace_back(value.substr(0, value.find('=')), std::stod(value.substr(value.find('=') + 1)));
     else return usage();
@@ -535,7 +566,9 @@ int main(int argc, char** argv) {
   try {
     Score score(directory);
     score.run();
-    if (out_path.empty()) {
+    if (brief) {
+      score.print_brief(std::cout);
+    } else if (out_path.empty()) {
       score.print(std::cout);
     } else {
       std::ofstream out(out_path);

@@ -60,12 +60,24 @@ public:
     }
   }
 
+  /// The same for a screen: a line each.
+  void print_brief(std::ostream& out) const {
+    for (const auto& tally : list_) {
+      if (!tally.total) continue;
+      char text[200];
+      std::snprintf(text, sizeof text, "%6.1f %%  %4d / %-4d  %s%s%s", 100.0 * tally.rate(), tally.hits,
+                    tally.total, tally.title.c_str(), tally.target.empty() ? "" : "  -  ",
+                    tally.target.c_str());
+      out << text << "\n";
+    }
+  }
+
 private:
   std::vector<Tally> list_ = {
       {"top1", "cause named, where no wrong cause passes for it (confusability < 0.9)", "at least 95 %"},
       {"class", "truth inside the reported class", "at least 99 %"},
       {"false_gap", "gap claimed where there is none", "at most 1 %", true},
-      {"unknown", "cause outside the catalogue called unexplained", "at least 90 %"},
+      {"unknown", "cause outside the catalogue called unexplained, or a curve", "at least 90 %"},
       {"both", "both of two causes named", "at least 85 %"},
       {"where", "signal and submodel right, from residuals alone", "at least 95 %"},
       {"coverage", "interval covers the shrinkage over many recordings", "90 to 98 %"},
@@ -82,6 +94,15 @@ private:
       {"refitted", "constants fitted without the effect: effect inside the reported class", ""},
       {"other_form", "effect of another form than the catalogue's: the nearest inside the class", ""},
       {"misspecified_confident", "misspecified: a wrong name stated at 0.9 or more", "below 1 %", true},
+      {"beginner", "beginner's gaps: right", "at least 95 %"},
+      {"beginner_confident", "beginner's gaps: a wrong answer stated at 0.9 or more", "at most 0.5 %", true},
+      {"loops_honest", "closed loops: right or honest", "at least 95 %"},
+      {"loops_named", "closed loops: cause named", "at least 90 %"},
+      {"loops_false", "closed loops: a wrong cause named", "at most 1 %", true},
+      {"slow_honest", "one sample a second of a faster loop: right or honest", "at least 95 %"},
+      {"slow_named", "one sample a second of a faster loop: cause named", ""},
+      {"slow_false", "one sample a second of a faster loop: a wrong cause named", "at most 1 %", true},
+      {"unknown_curve", "cause outside the catalogue: a curve named", ""},
       {"odds_95", "stated with 0.95 or more: right", "at least 97 %"},
       {"odds_80", "stated with 0.8 to 0.95: right", "at least 80 %"},
       {"odds_50", "stated with 0.5 to 0.8: right", "at least 60 %"},

@@ -44,6 +44,8 @@ struct Verdict {
   };
   std::map<std::string, Parameter> parameters;  ///< of the named causes, as `effect.parameter`
   Explanation moved;                            ///< constants listed as moved, as `calibration.<constant>`
+  /// Whether the report says of an output, or of the stamps, that it cannot be believed as it stands.
+  bool has_finding_on_output = false;
   /// Rows [begin, end) of the held-out log that the report does not believe, by column; of all outputs under "".
   std::map<std::string, std::vector<std::pair<std::size_t, std::size_t>>> masked;
 
@@ -119,7 +121,11 @@ inline Verdict read_verdict(const std::string& directory) {
   }
   if (report.contains("constants") && report["constants"].is_object())
     for (const auto& entry : report["constants"].items()) v.moved.insert("calibration." + entry.key());
+  static const std::set<std::string> unbelievable = {"constant_column", "frozen_samples",  "wrong_unit",
+                                                     "wrong_sign",      "swapped_columns", "clock_shift",
+                                                     "never_driven"};
   for (const auto& finding : list("findings")) {
+    v.has_finding_on_output = v.has_finding_on_output || unbelievable.count(text(finding, "kind")) > 0;
     const bool held_out = std::filesystem::path(text(finding, "recording")).filename() == "heldout.csv";
     if (!held_out || text(finding, "action") != "masked" || !finding.contains("rows")) continue;
     for (const auto& range : finding["rows"])

@@ -182,3 +182,84 @@ TEST_CASE("the iron's heat goes with rate and rate squared, into the surface beh
   const double surface_K_per_s = watts / 45.0;
   CHECK(after_a_row - 20.0 == Approx(0.6 / 15.0 * surface_K_per_s * 8.0).epsilon(0.15));
 }
+
+TEST_CASE("a propeller turns as fast as its drag, with the square of the rate, holds its drive") {
+  const double c = 4e-4, drive_A = 0.5;
+  const std::size_t rows = 800;
+  for (const double way : {1.0, -1.0}) {
+    const std::vector<double> rate =
+        simulated("quadratic_drag", {{"Nm_s2_per_rad2", c}}, std::vector<double>(rows, way * drive_A),
+                  std::vector<double>(rows, 0.0));
+    // Kt i = b w + c w^2
+    const double expected =
+        (std::sqrt(viscous * viscous + 4.0 * c * torque_constant * drive_A) - viscous) / (2.0 * c);
+    CHECK(rate.back() == Approx(way * expected).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("electronics warm a resting body by their heat over its conductance") {
+  Model model;
+  model.current = OhmicCurrentModel{6.0, 0.00393, 25.0};
+  model.thermal = LumpedThermalModel{60.0, 0.2};
+  model.effects["idle_heat"] = {{"W", 3.0}};
+  const Eigen::Index rows = 400;
+  Inputs inputs;
+  inputs.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 10.0 * static_cast<double>(rows - 1));
+  inputs.runs = {{0, rows, ""}};
+  inputs.power_param = Eigen::VectorXd::Zero(rows);
+  inputs.ambient_C = Eigen::VectorXd::Constant(rows, 20.0);
+  inputs.heat = HeatSource::law;
+  const Instance<double> instance(model, {}, {}, standard_catalogue());
+  const BenchRollout<double> rollout(instance, inputs);
+  BenchState<double> state = rollout.start(0, 20.0);
+  double last_C = 0.0;
+  rollout.run(0, rows, 0.0, state,
+              [&](Eigen::Index, const BenchReadings<double>& read) { last_C = read.motor_C; });
+  CHECK(last_C == Approx(20.0 + 3.0 / 0.2).epsilon(1e-4));
+}
+
+namespace {
+
+/// Angle in degrees at rows 10 ms apart of an axis under a PID servo, from rest.
+std::vector<double> served(const std::vector<double>& target_deg, bool moves, const EffectParameters& late) {
+  Model model;
+  model.axis = RigidAxisModel{inertia, viscous, torque_constant};
+  model.servo = PositionPidServo{0.02, 0.002, 0.01, 2.0, 0.005, 0.0};
+  if (!late.empty()) model.effects["target_delay"] = late;
+  const auto rows = static_cast<Eigen::Index>(target_deg.size());
+  Inputs inputs;
+  inputs.t_s = Eigen::VectorXd::LinSpaced(rows, 0.0, 0.01 * static_cast<double>(rows - 1));
+  inputs.runs = {{0, rows, ""}};
+  inputs.closed_loop = true;
+  inputs.target_moves = moves;
+  inputs.target_deg = Eigen::Map<const Eigen::VectorXd>(target_deg.data(), rows);
+  inputs.seen_deg = inputs.seen_dps = inputs.servo_A = inputs.servo_integral = Eigen::VectorXd::Zero(rows);
+  const Instance<double> instance(model, {}, {}, standard_catalogue());
+  const AxisRollout<double> rollout(instance, inputs);
+  AxisState<double> state = rollout.start(0, 0.0, 0.0, 0.0);
+  std::vector<double> angle;
+  rollout.window(inputs.runs[0], 0, rows, state,
+                 [&](Eigen::Index, const AxisReadings<double>& read) { angle.push_back(read.angle_deg); });
+  return angle;
+}
+
+}  // namespace
+
+TEST_CASE("a target that is late by some rows moves the axis as one that was logged so much later") {
+  const std::size_t rows = 300, late = 4;
+  std::vector<double> target, later;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const auto at = [](std::size_t k) { return 30.0 * std::sin(0.05 * static_cast<double>(k)); };
+    target.push_back(at(i));
+    later.push_back(i < late ? target.front() : at(i - late));
+  }
+  for (const bool moves : {true, false}) {
+    CAPTURE(moves);
+    const std::vector<double> delayed = served(target, moves, {{"s", 0.01 * late}}),
+                              shifted = served(later, moves, {});
+    // A target that holds is averaged over half a row: an eighth of a step of the servo's target at most.
+    CHECK(furthest(delayed, shifted) < (moves ? 1e-6 : 0.4));
+    CHECK(furthest(served(target, moves, {}), shifted) > 5.0);
+    CHECK(furthest(served(target, moves, {{"s", 0.0}}), served(target, moves, {})) < 1e-12);
+  }
+}

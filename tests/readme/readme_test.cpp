@@ -69,7 +69,7 @@ TEST_CASE("every piece of C++ in the README is compiled by a test") {
     INFO("the block that begins with: " << block.front());
     CHECK((contains(lines_of(root / "tests/readme/axis.cpp"), block) ||
            contains(lines_of(root / "examples/10_own_effect/own_effect.cpp"), block) ||
-           contains(lines_of(root / "examples/10_own_effect/air_drag.hpp"), block)));
+           contains(lines_of(root / "examples/10_own_effect/stiffening_hose.hpp"), block)));
   }
 }
 

@@ -46,6 +46,14 @@ struct Trial {
   double resistance_ohm = 0.0;  ///< of a motor at a voltage
 };
 
+/// The parameters of a curve that goes with u^3, u from -1 at its first knot to 1 at its last.
+EffectParameters knots(const std::string& of_variable, double from, double to, const std::string& unit,
+                       double size) {
+  EffectParameters list{{"from_" + of_variable, from}, {"to_" + of_variable, to}};
+  for (int i = 0; i < 10; ++i) list[unit + "_" + std::to_string(i + 1)] = size * std::pow(i / 4.5 - 1.0, 3.0);
+  return list;
+}
+
 /// Values at which each effect shows in the recordings of this test.
 std::vector<Trial> trials() {
   return {
@@ -57,6 +65,7 @@ std::vector<Trial> trials() {
       {"ambient_bias", {{"ambient_bias", {{"bias_K", 6.0}}}}},
       {"neighbour_heating", {{"neighbour_heating", {{"coupling", 0.08}}}}},
       {"motion_heating", {{"motion_heating", {{"W_s2_per_rad2", 0.05}}}}},
+      {"idle_heat", {{"idle_heat", {{"W", 3.0}}}}},
       {"iron_loss", {{"iron_loss", {{"hysteresis_W_s_per_rad", 0.1}, {"eddy_W_s2_per_rad2", 0.03}}}}},
       {"thermometer_lag", {{"thermometer_lag", {{"lag_s", 25.0}}}}},
       {"thermometer_gain", {{"thermometer_gain", {{"gain", 0.8}}}}},
@@ -127,6 +136,14 @@ std::vector<Trial> trials() {
           {"exponent", 1.3}}}},
        true},
       {"servo_delay", {{"servo_delay", {{"s", 0.023}}}}, true},
+      {"target_delay", {{"target_delay", {{"s", 0.023}}}}, true},
+      {"quadratic_drag", {{"quadratic_drag", {{"Nm_s2_per_rad2", 4e-4}}}}, true},
+      {"unknown_load", {{"unknown.load(angle_deg)", knots("deg", -60.0, 60.0, "Nm", -0.03)}}, true},
+      {"unknown_friction", {{"unknown.friction(rate_dps)", knots("dps", -900.0, 900.0, "Nm", 0.03)}}, true},
+      {"unknown_drive", {{"unknown.drive(drive_A)", knots("A", -0.3, 0.3, "A", -0.1)}}, true},
+      {"unknown_loss", {{"unknown.loss(rise_K)", knots("K", -10.0, 40.0, "W", 3.0)}}},
+      {"unknown_heat", {{"unknown.heat(current_A)", knots("A", 0.0, 2.0, "W", 4.0)}}},
+      {"unknown_voltage", {{"unknown.voltage(motor_C)", knots("C", 15.0, 60.0, "V", 1.0)}}},
       {"torque_saturation", {{"torque_saturation", {{"A", 0.1}}}}, true},
       {"torque_fade", {{"torque_fade", {{"per_K", 0.004}}}}, true},
       {"angle_scale", {{"angle_scale", {{"gain", -1.7}}}}, true},

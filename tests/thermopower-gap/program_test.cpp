@@ -405,7 +405,16 @@ TEST_CASE("the catalogue is listed, with every id of the interface") {
                          "torque_fade",
                          "angle_scale",
                          "angle_bias_drift",
-                         "rate_bias"}) {
+                         "rate_bias",
+                         "quadratic_drag",
+                         "target_delay",
+                         "idle_heat",
+                         "unknown.load(angle_deg)",
+                         "unknown.friction(rate_dps)",
+                         "unknown.drive(drive_A)",
+                         "unknown.loss(rise_K)",
+                         "unknown.heat(current_A)",
+                         "unknown.voltage(motor_C)"}) {
     CAPTURE(id);
     CHECK_THAT(result.out, ContainsSubstring(id));
   }

@@ -3,6 +3,7 @@
 
 #include "expression_text.hpp"
 
+#include <cctype>
 #include <cstdio>
 #include <map>
 
@@ -18,7 +19,8 @@ enum Binding { choice_binds = 1, comparison_binds, sum_binds, product_binds, sig
 
 class Printer {
 public:
-  Printer(const Trace& trace, Spelling spelling) : nodes_(trace.nodes()), spelling_(spelling) {}
+  Printer(const Trace& trace, Spelling spelling)
+      : trace_(trace), nodes_(trace.nodes()), spelling_(spelling) {}
 
   /// Says that a node has a name of its own from here on.
   void name(int node, const std::string& text) { named_[node] = text; }
@@ -87,10 +89,25 @@ private:
                  text(node.c, choice_binds);
         return text(node.b, comparison_binds) + " where " + text(node.a, comparison_binds) + ", else " +
                text(node.c, choice_binds);
+      case Kind::curve:
+      case Kind::curve_slope:
+        return curve(node);
     }
     return "?";
   }
 
+  /// A look-up in a table that the code around it declares under curve_table_name().
+  std::string curve(const Trace::Node& node) const {
+    const bool slope = node.kind == Kind::curve_slope;
+    if (spelling_ == Spelling::formula)
+      return (slope ? "slope of " : "") + node.name + " at (" + text(node.a, choice_binds) + ")";
+    const plant::WrittenCurve& shape = trace_.curve_of(node.name);
+    return std::string("thermopower::curve_") + (slope ? "slope(" : "value(") + curve_table_name(node.name) +
+           ", " + std::to_string(shape.values.size()) + "u, " + number_text(shape.from, spelling_) + ", " +
+           number_text(shape.to, spelling_) + ", " + text(node.a, choice_binds) + ")";
+  }
+
+  const Trace& trace_;
   const std::vector<Trace::Node>& nodes_;
   Spelling spelling_;
   std::map<int, std::string> named_;
@@ -117,6 +134,15 @@ const Trace* trace_of(const std::vector<Expression>& values) {
 }
 
 }  // namespace
+
+std::string curve_table_name(const std::string& id) {
+  std::string name;
+  for (const char c : id)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+    else if (!name.empty() && name.back() != '_') name += '_';
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name + "_table";
+}
 
 std::string number_text(double value, Spelling spelling) {
   char text[40];

@@ -20,6 +20,9 @@ enum class Spelling {
 /// A number as code of that spelling: `0.25f` or `0.25`.
 std::string number_text(double value, Spelling spelling);
 
+/// What the table of a curve is called in code. @param id  of the curve, such as `unknown.load(angle_deg)`
+std::string curve_table_name(const std::string& id);
+
 /// An expression in one line.
 std::string expression_text(const plant::Expression& value, Spelling spelling);
 

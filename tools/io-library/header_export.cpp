@@ -96,6 +96,7 @@ public:
 
   MotorModelHeader write() {
     body_ = "";
+    tables();
     current();
     thermal();
     axis();
@@ -105,6 +106,7 @@ public:
     for (const std::string& one : left_out_) header.text += "// Left out: " + one_line(one) + "\n";
     header.text += "#pragma once\n\n";
     if (m_.has_current() || m_.has_thermal()) header.text += "#include <thermopower/thermopower.hpp>\n";
+    else if (has_curve()) header.text += "#include <thermopower/actuator/curve.hpp>\n";
     header.text += "#include <math.h>\n\nnamespace motor_model {\n\n" + before_ + "/// " +
                    one_line(m_.name.empty() ? "The motor" : m_.name) +
                    ", with what the diagnosis found.\nstruct Motor {\n" + body_ +
@@ -358,6 +360,29 @@ private:
       if (hooked(one.entry->hooks))
         out += "\nWith " + one.entry->info.id + ": " + one.entry->info.equation + ".";
     return out;
+  }
+
+  bool has_curve() const {
+    return std::any_of(written_.begin(), written_.end(),
+                       [](const Written& one) { return one.entry->info.curve.has_value(); });
+  }
+
+  /// The values of curves at their knots, in program memory.
+  void tables() {
+    for (const Written& one : written_) {
+      if (!one.entry->info.curve) continue;
+      const auto name = [&](int i) {
+        return one.entry->info.parameters[static_cast<std::size_t>(i)].name + " " +
+               number_text(one.values[static_cast<std::size_t>(i)], Spelling::formula);
+      };
+      before_ += commented(one.entry->info.id + " at evenly spaced knots, " +
+                               one.entry->info.parameters.back().unit + ": " + name(0) + ", " + name(1) + ".",
+                           "");
+      before_ += "static const float " + curve_table_name(one.entry->info.id) + "[] thermopower_flash = {";
+      for (std::size_t i = plant::curve_support_count; i < one.values.size(); ++i)
+        before_ += (i > plant::curve_support_count ? ", " : "") + literal(one.values[i]);
+      before_ += "};\n\n";
+    }
   }
 
   void constant(const std::string& comment, const std::string& name, double value) {
@@ -656,9 +681,11 @@ private:
     for (const NamedConstant& one : m_.constants())
       if (one.block == "servo")
         constant("Of the servo, in the unit its name ends in.", "servo_" + one.name, one.value);
-    plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, 0.0, false, false, false};
+    plant::AxisStructure<double> shape{0.0, 0.0, 0.0, 0.0, 0.0, false, false, false, 0.0, false};
     for (const Written& one : written_) one.entry->of<double>().call(one.values.data(), shape);
     if (shape.delayed) constant("From command to torque, s.", "delay_s", shape.delay_s);
+    if (shape.target_delayed)
+      constant("From a target to the servo that takes it, s.", "target_delay_s", shape.target_delay_s);
     if (shape.compliant) {
       constant("Share of the inertia behind a spring.", "far_share", shape.far_share);
       constant("Natural frequency of the two inertias against each other, rad/s.", "spring_rad_per_s",

@@ -107,6 +107,8 @@ void visit(plant::ThermalStructure<Scalar>& shape, Visitor&& with) {
 template <class Scalar, class Visitor>
 void visit(plant::AxisStructure<Scalar>& shape, Visitor&& with) {
   with.to_change("delayed", shape.delayed), with.to_change("delay_s", shape.delay_s);
+  with.to_change("target_delayed", shape.target_delayed),
+      with.to_change("target_delay_s", shape.target_delay_s);
   with.to_change("compliant", shape.compliant), with.to_change("far_share", shape.far_share);
   with.to_change("spring_rad_per_s", shape.spring_rad_per_s);
   with.to_change("spring_damping", shape.spring_damping);

@@ -100,13 +100,20 @@ public:
 
   /// What the servo makes of the motion measured around a row, its delay left out.
   double servo_A(Eigen::Index row, const RunSpan& run) const {
+    const auto& shape = instance_.axis_structure;
+    const LateTarget<double> late(inputs_, run, shape.target_delayed ? value_of(shape.target_delay_s) : 0.0,
+                                  instance_.servo.period_s);
+    const bool integrates = shape.target_delayed && std::abs(value_of(instance_.servo.integral)) > 0.0;
     const auto at = [&](Eigen::Index i) {
       const double part = i > row ? 1.0 : 0.0;
       const auto [angle_deg, rate_dps] = seen(i, run, inputs_.seen_deg[i], inputs_.seen_dps[i]);
-      return value_of(instance_.servo.command_A(
-          angle_deg, rate_dps, target_between(inputs_, inputs_.target_deg, run, row, part),
-          target_between(inputs_, inputs_.target_dps, run, row, part),
-          constant<Scalar>(inputs_.servo_integral[std::min(i + 1, run.end - 1)])));
+      double accumulated = inputs_.servo_integral[std::min(i + 1, run.end - 1)];
+      if (integrates)
+        accumulated -= late.missing_integral(
+            instance_.servo.position ? inputs_.target_deg : inputs_.target_dps, std::min(i, run.end - 1));
+      return value_of(instance_.servo.command_A(angle_deg, rate_dps, late(inputs_.target_deg, row, part),
+                                                late(inputs_.target_dps, row, part),
+                                                constant<Scalar>(accumulated)));
     };
     if (row + 1 >= run.end) return at(row);
     const double from_s = inputs_.t_s[row] - inputs_.t_s[run.begin],
@@ -161,7 +168,8 @@ private:
     const double start_s = inputs_.t_s[run.begin];
     const auto& shape = instance_.axis_structure;
     ServoLoop<Scalar> servo(instance_.servo, inputs_, run,
-                            shape.delayed ? shape.delay_s : constant<Scalar>(0.0));
+                            shape.delayed ? shape.delay_s : constant<Scalar>(0.0),
+                            shape.target_delayed ? &shape.target_delay_s : nullptr);
     servo.start(begin, [&](Eigen::Index row, double angle_deg, double rate_dps) {
       return seen(row, run, angle_deg, rate_dps);
     });

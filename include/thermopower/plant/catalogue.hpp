@@ -187,6 +187,13 @@ public:
   /// @throws InvalidInput where its info is unusable or its id is taken
   Catalogue& declare(const EffectInfo& info);
 
+  /// Gives a curve its range and the size that its values are relative to; 0 takes them away. @throws InvalidInput where the
+  /// catalogue has no curve of that id, or from is not below to
+  /// @param from  where its first knot lies
+  /// @param to    where its last knot lies
+  /// @param size  of what its values are relative to (CurveShape)
+  Catalogue& support(std::string_view id, double from, double to, double size);
+
   /// What there is, in the order added.
   const std::vector<EffectInfo>& list() const { return infos_; }
 

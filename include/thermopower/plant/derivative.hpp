@@ -10,7 +10,7 @@
 namespace thermopower::plant {
 
 /// Derivative of an expression by a symbol: as long as the expression, and written down like it. Of a choice
-/// it is the derivative of what is chosen.
+/// it is the derivative of what is chosen; the slope of a curve counts as constant.
 inline Expression derivative(const Expression& of, const Expression& by) {
   if (of.is_constant()) return 0.0;
   Trace& trace = *of.trace();
@@ -61,6 +61,10 @@ inline Expression derivative(const Expression& of, const Expression& by) {
         else result = Trace::choice(a < 0.0, -inner, inner);
         break;
       }
+      case Trace::Kind::curve:
+        result = trace.make(Trace::Kind::curve_slope, a, {}, node.name) * self(self, node.a);
+        break;
+      case Trace::Kind::curve_slope:
       case Trace::Kind::constant:
       case Trace::Kind::less:
       case Trace::Kind::less_or_equal:

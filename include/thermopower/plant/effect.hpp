@@ -81,6 +81,42 @@ enum class Input {
   supply_V      ///< shares of the largest supply voltage
 };
 
+/// A recorded variable that a curve is a function of.
+enum class CurveVariable {
+  angle_deg,  ///< measured angle
+  rate_dps,   ///< measured rate, or the angle's slope
+  drive_A,    ///< command; of a motor at a voltage, the current at standstill
+  rise_K,     ///< measured temperature over that of the air
+  current_A,  ///< measured current
+  motor_C     ///< measured temperature
+};
+
+/// What the values of a curve are relative to, where their likely size is asked for.
+enum class CurveScale {
+  drive_Nm,  ///< largest torque of the drive
+  drive_A,   ///< largest command
+  heat_W,    ///< largest heat
+  supply_V   ///< largest voltage
+};
+
+/// What makes an effect a curve: a smooth function of a recorded variable that nobody has named.
+///
+/// Its first two parameters are where its first and its last knot lie; they are not fitted but taken from the range of the
+/// data. The others are the values at the knots, evenly spaced between these.
+struct CurveShape {
+  CurveVariable variable = CurveVariable::angle_deg;  ///< that it is a function of
+  CurveScale scale = CurveScale::drive_Nm;            ///< what its values are relative to
+  /// Size of that in the data, in the unit of the values; 0 where no data have given the curve its range. Then it cannot be
+  /// judged.
+  double size = 0.0;
+};
+
+/// Parameters of a curve before its knots.
+inline constexpr int curve_support_count = 2;
+
+/// Values at the knots of a curve.
+inline constexpr int curve_knot_count = 10;
+
 /// One parameter of an effect. `parameter()` builds one.
 struct Parameter {
   std::string name;                 ///< as in model files and reports
@@ -112,6 +148,8 @@ struct Parameter {
   /// Id of a constant of the model (`torque_constant`) that does the same where it moves: beside the effect's other parameters
   /// the data tell this one only as well as that constant is known. Empty, or an id that a model has not: none.
   std::string told_by_constant = {};
+  /// The data give it its value, and it is not fitted: an end of the range of a curve (CurveShape).
+  bool given_by_data = false;
   int index = -1;  ///< by which the effect reads it; -1: unchecked, it is read in the order of the list
 };
 
@@ -158,6 +196,8 @@ public:
   ParameterBuilder& refines() { return parameter_.refines = true, *this; }
   /// Two families of shapes meet at its standard.
   ParameterBuilder& two_families() { return parameter_.two_families = true, *this; }
+  /// The data give it its value, and it is not fitted.
+  ParameterBuilder& given_by_data() { return parameter_.given_by_data = true, *this; }
   /// At its bounds the effect is another one: a fit that ends there explains nothing.
   ParameterBuilder& degenerate_at_bounds() { return parameter_.degenerate_at_bounds = true, *this; }
   /// The same at its upper bound alone.
@@ -230,6 +270,8 @@ struct EffectInfo {
   /// Whether sides meet and part in it: each blow moves all later ones, and a fit of its parameters stands in one of many hollows.
   /// The diagnosis looks beside the place where it ended.
   bool strikes = false;
+  /// What makes it a curve; none: it is a cause with a name.
+  std::optional<CurveShape> curve = {};
 };
 
 }  // namespace thermopower::plant

@@ -96,6 +96,13 @@ private:
   bool value_ = false;
 };
 
+/// A curve by its values at evenly spaced knots, as a trace keeps it.
+struct WrittenCurve {
+  double from;                 ///< where the first knot lies
+  double to;                   ///< where the last one lies
+  std::vector<double> values;  ///< at the knots
+};
+
 /// Where expressions are written down.
 ///
 /// @snippet plant_examples.cpp expression
@@ -116,7 +123,9 @@ public:
     less,           ///< is the first less than the second?
     less_or_equal,  ///< is the first not more than the second?
     equal,          ///< are both equal?
-    choice          ///< third argument where the first (a comparison) does not hold, else the second
+    choice,         ///< third argument where the first (a comparison) does not hold, else the second
+    curve,          ///< value of a curve, by its name, at the first
+    curve_slope     ///< its slope there
   };
 
   /// One step of a computation. Arguments are nodes made before it.
@@ -141,6 +150,12 @@ public:
 
   /// `yes` where the condition holds, else `no`.
   static Expression choice(const Condition& condition, const Expression& yes, const Expression& no);
+
+  /// Value of a curve at an expression. @param id  of the curve, by which its table is called in code
+  Expression curve(const std::string& id, WrittenCurve shape, const Expression& at);
+
+  /// A curve that some step looks up. @param name  of that step
+  const WrittenCurve& curve_of(const std::string& name) const { return curves_.at(name); }
 
   /// Runs code once for every way through its branches and joins the results by choices.
   /// @param run  called without arguments, returns a vector of expressions of always the same length
@@ -176,6 +191,7 @@ private:
   using Key = std::tuple<Kind, std::string, double, int, int, int>;
   std::vector<Node> nodes_;
   std::map<Key, int> known_;
+  std::map<std::string, WrittenCurve> curves_;
   std::vector<Decision> path_;
   std::size_t used_ = 0;
   int ways_ = 0;

@@ -79,7 +79,7 @@ struct Instance {
     set_constants(model, factors);
     const Scalar none = constant<Scalar>(0.0);
     thermal_structure = {constant<Scalar>(1.0), none, none, none, none, none, none, none, none};
-    axis_structure = {none, none, none, none, none, false, false, false};
+    axis_structure = {none, none, none, none, none, false, false, false, none, false};
     parameters_.reserve(model.effects.size() + added.size());
     for (const CatalogueEntry* entry : in_catalogue_order(model, added, catalogue)) {
       const auto act = [&](std::vector<Scalar> parameters) {

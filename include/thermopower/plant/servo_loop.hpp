@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/plant/dual.hpp>
+#include <thermopower/plant/late_target.hpp>
 #include <thermopower/plant/model.hpp>
 #include <thermopower/plant/rows.hpp>
 
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace thermopower::plant {
@@ -29,10 +32,11 @@ struct ServoGains {
   double period_s = 1e-3;  ///< between samples, > 0
   Scalar delay_s;          ///< from a sample to its command, >= 0
 
-  /// The command of a sample, within the limits.
+  /// The command of a sample, within the limits. Targets are plain numbers, or vary with their delay.
   /// @param accumulated  what integrate() has made of the errors so far, this sample's included
-  Scalar command_A(const Scalar& angle_deg, const Scalar& rate_dps, double target_deg, double target_dps,
-                   const Scalar& accumulated) const {
+  template <class Target>
+  Scalar command_A(const Scalar& angle_deg, const Scalar& rate_dps, const Target& target_deg,
+                   const Target& target_dps, const Scalar& accumulated) const {
     Scalar command = integral * accumulated;
     if (position) command += proportional * (target_deg - angle_deg) + derivative * (target_dps - rate_dps);
     else command += proportional * (target_dps - rate_dps);
@@ -43,8 +47,9 @@ struct ServoGains {
 
   /// Adds the error of a sample to the integral (deg s of a position servo, deg of a velocity servo), which is
   /// held where it alone asks for the limit.
-  void integrate(Scalar& accumulated, const Scalar& angle_deg, const Scalar& rate_dps, double target_deg,
-                 double target_dps) const {
+  template <class Target>
+  void integrate(Scalar& accumulated, const Scalar& angle_deg, const Scalar& rate_dps,
+                 const Target& target_deg, const Target& target_dps) const {
     if (!(std::abs(value_of(integral)) > 0.0)) return;
     const Scalar error = position ? Scalar(target_deg - angle_deg) : Scalar(target_dps - rate_dps);
     accumulated += error * period_s;
@@ -104,16 +109,6 @@ inline double moving_target_share(double period_s, double interval_s) {
   return 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s, period_s));
 }
 
-/// A servo's target a part of the way from a row to the next one of its run; 0 where none is recorded.
-/// @param values  `target_deg` or `target_dps` of the inputs
-/// @param part    0 at the row, 1 at the next one
-inline double target_between(const Inputs& inputs, const Eigen::VectorXd& values, const RunSpan& run,
-                             Eigen::Index row, double part) {
-  if (values.size() == 0) return 0.0;
-  if (!inputs.target_moves || row + 1 >= run.end) return values[row];
-  return values[row] + (part + inputs.target_lead) * (values[row + 1] - values[row]);
-}
-
 /// What a servo made of the motion that was measured: where a window starts, its memory is known from that.
 ///
 /// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and
@@ -157,12 +152,16 @@ class ServoLoop {
 public:
   /// Keeps references to all arguments.
   /// @param late_s  added to the servo's own delay
-  ServoLoop(const ServoGains<Scalar>& gains, const Inputs& inputs, const RunSpan& run, const Scalar& late_s)
+  /// @param target_delay_s  by which the target reaches the servo late; null: at once
+  ServoLoop(const ServoGains<Scalar>& gains, const Inputs& inputs, const RunSpan& run, const Scalar& late_s,
+            const Scalar* target_delay_s = nullptr)
       : gains_(gains),
         inputs_(inputs),
         run_(run),
         start_s_(inputs.t_s[run.begin]),
-        delay_s_(gains.delay_s + late_s) {}
+        delay_s_(gains.delay_s + late_s) {
+    if (target_delay_s != nullptr) late_target_.emplace(inputs, run, *target_delay_s, gains.period_s);
+  }
 
   /// Sets out at a row with the memory that the measured motion leaves the servo.
   /// @param seen  true angle in deg and rate in deg/s of measured ones: `seen(row, angle_deg, rate_dps)` as a pair
@@ -170,7 +169,8 @@ public:
   void start(Eigen::Index begin, Seen&& seen) {
     const double now_s = inputs_.t_s[begin] - start_s_;
     next_ = first_sample(now_s, gains_.period_s);
-    accumulated_ = constant<Scalar>(inputs_.servo_integral[begin]);
+    const Scalar not_arrived = late_target_ ? missing_integral(begin) : constant<Scalar>(0.0);
+    accumulated_ = inputs_.servo_integral[begin] - not_arrived;
     // Back to the sample whose command acts now; before that of the first one a servo is idle.
     const double acting_s = now_s - value_of(delay_s_);
     const long acting = std::min(next_, samples_until(acting_s, gains_.period_s));
@@ -186,13 +186,14 @@ public:
       const Eigen::Index after = std::min(row + 1, run_.end - 1);
       const double from_s = inputs_.t_s[row] - start_s_, length_s = inputs_.t_s[after] - inputs_.t_s[row];
       const double share = length_s > 0.0 ? std::clamp((sample_s - from_s) / length_s, 0.0, 1.0) : 0.0;
-      const auto [angle_deg, rate_dps] =
+      const std::pair<Scalar, Scalar> was =
           seen(row, inputs_.seen_deg[row] + share * (inputs_.seen_deg[after] - inputs_.seen_deg[row]),
                inputs_.seen_dps[row] + share * (inputs_.seen_dps[after] - inputs_.seen_dps[row]));
-      pending_.push_back(
-          {delay_s_ + sample_s, gains_.command_A(angle_deg, rate_dps, target(inputs_.target_deg, row, share),
-                                                 target(inputs_.target_dps, row, share),
-                                                 constant<Scalar>(inputs_.servo_integral[after]))});
+      const Scalar accumulated = inputs_.servo_integral[after] - not_arrived;
+      with_targets(row, share, [&](const auto& target_deg, const auto& target_dps) {
+        pending_.push_back({delay_s_ + sample_s,
+                            gains_.command_A(was.first, was.second, target_deg, target_dps, accumulated)});
+      });
     }
   }
 
@@ -222,13 +223,13 @@ public:
           advance(value_of(now_s), Scalar(sample_s - now_s));
           now_s = constant<Scalar>(sample_s);
         }
-        const auto [angle_deg, rate_dps] = sense();
+        const std::pair<Scalar, Scalar> seen = sense();
         const double part = std::clamp((sample_s - from_s) / (to_s - from_s), 0.0, 1.0);
-        const double target_deg = target(inputs_.target_deg, row, part),
-                     target_dps = target(inputs_.target_dps, row, part);
-        gains_.integrate(accumulated_, angle_deg, rate_dps, target_deg, target_dps);
-        pending_.push_back({delay_s_ + sample_s,
-                            gains_.command_A(angle_deg, rate_dps, target_deg, target_dps, accumulated_)});
+        with_targets(row, part, [&](const auto& target_deg, const auto& target_dps) {
+          gains_.integrate(accumulated_, seen.first, seen.second, target_deg, target_dps);
+          pending_.push_back({delay_s_ + sample_s, gains_.command_A(seen.first, seen.second, target_deg,
+                                                                    target_dps, accumulated_)});
+        });
         ++next_;
         continue;
       }
@@ -243,8 +244,20 @@ private:
     Scalar from_s, command_A;
   };
 
-  double target(const Eigen::VectorXd& values, Eigen::Index row, double part) const {
-    return target_between(inputs_, values, run_, row, part);
+  /// Hands on the targets, in degrees and in degrees per second, that the servo has a part of the way from a row to the next.
+  template <class Use>
+  void with_targets(Eigen::Index row, double part, Use&& use) const {
+    if (late_target_)
+      use((*late_target_)(inputs_.target_deg, row, part), (*late_target_)(inputs_.target_dps, row, part));
+    else
+      use(target_between(inputs_, inputs_.target_deg, run_, row, part),
+          target_between(inputs_, inputs_.target_dps, run_, row, part));
+  }
+
+  /// What the servo's integral lacks at a row, for the part of the target that has not arrived.
+  Scalar missing_integral(Eigen::Index row) const {
+    if (!(std::abs(value_of(gains_.integral)) > 0.0)) return constant<Scalar>(0.0);
+    return late_target_->missing_integral(gains_.position ? inputs_.target_deg : inputs_.target_dps, row);
   }
 
   const ServoGains<Scalar>& gains_;
@@ -252,6 +265,7 @@ private:
   const RunSpan& run_;
   double start_s_;
   Scalar delay_s_;
+  std::optional<LateTarget<Scalar>> late_target_;
   Scalar accumulated_ = constant<Scalar>(0.0);
   long next_ = 0;
   std::vector<Pending> pending_;  ///< the first acts

@@ -191,14 +191,16 @@ struct FrictionTerms {
 /// The shape of the mechanical model, set once per simulation.
 template <class Scalar>
 struct AxisStructure {
-  Scalar delay_s;           ///< from command to torque
-  Scalar far_share;         ///< of the inertia, behind a spring; 0: rigid
-  Scalar spring_rad_per_s;  ///< natural frequency of the two inertias against each other
-  Scalar spring_damping;    ///< damping ratio of that motion
-  Scalar gap_rad;           ///< free play of the spring, from end to end
-  bool delayed = false;     ///< to be set with the delay
-  bool compliant = false;   ///< to be set with the share: there is a far side
-  bool gapped = false;      ///< to be set with the gap: the spring has free play
+  Scalar delay_s;               ///< from command to torque
+  Scalar far_share;             ///< of the inertia, behind a spring; 0: rigid
+  Scalar spring_rad_per_s;      ///< natural frequency of the two inertias against each other
+  Scalar spring_damping;        ///< damping ratio of that motion
+  Scalar gap_rad;               ///< free play of the spring, from end to end
+  bool delayed = false;         ///< to be set with the delay
+  bool compliant = false;       ///< to be set with the share: there is a far side
+  bool gapped = false;          ///< to be set with the gap: the spring has free play
+  Scalar target_delay_s = 0.0;  ///< from the recorded target to the servo that takes it
+  bool target_delayed = false;  ///< to be set with it
 };
 
 /// What the instruments say of the bench.

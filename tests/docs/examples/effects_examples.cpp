@@ -31,6 +31,7 @@
 #include <thermopower/plant/effects/encoder_eccentricity.hpp>
 #include <thermopower/plant/effects/exchanged_heating_law.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
+#include <thermopower/plant/effects/idle_heat.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/iron_loss.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
@@ -38,6 +39,7 @@
 #include <thermopower/plant/effects/natural_convection.hpp>
 #include <thermopower/plant/effects/neighbour_heating.hpp>
 #include <thermopower/plant/effects/presliding_friction.hpp>
+#include <thermopower/plant/effects/quadratic_drag.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
@@ -46,12 +48,19 @@
 #include <thermopower/plant/effects/stribeck_friction.hpp>
 #include <thermopower/plant/effects/supply_power_heating.hpp>
 #include <thermopower/plant/effects/supply_sag.hpp>
+#include <thermopower/plant/effects/target_delay.hpp>
 #include <thermopower/plant/effects/thermometer_gain.hpp>
 #include <thermopower/plant/effects/thermometer_lag.hpp>
 #include <thermopower/plant/effects/third_thermal_mass.hpp>
 #include <thermopower/plant/effects/torque_fade.hpp>
 #include <thermopower/plant/effects/torque_ripple.hpp>
 #include <thermopower/plant/effects/torque_saturation.hpp>
+#include <thermopower/plant/effects/unknown_drive.hpp>
+#include <thermopower/plant/effects/unknown_friction.hpp>
+#include <thermopower/plant/effects/unknown_heat.hpp>
+#include <thermopower/plant/effects/unknown_load.hpp>
+#include <thermopower/plant/effects/unknown_loss.hpp>
+#include <thermopower/plant/effects/unknown_voltage.hpp>
 #include <thermopower/plant/effects/warm_friction.hpp>
 #include <thermopower/plant/effects/winding_tempco.hpp>
 
@@ -559,5 +568,101 @@ TEST_CASE("iron_loss acts in a simulation") {
   //! [IronLoss]
   model.effects[IronLoss::info().id] = {{"hysteresis_W_s_per_rad", 0.01}, {"eddy_W_s2_per_rad2", 1e-4}};
   //! [IronLoss]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("quadratic_drag acts in a simulation") {
+  Model model = axis();
+  const Model without = model;
+  //! [QuadraticDrag]
+  model.effects[QuadraticDrag::info().id] = {{"Nm_s2_per_rad2", 2e-4}};
+  //! [QuadraticDrag]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("target_delay acts in a simulation") {
+  Model model = axis();
+  model.servo = PositionPidServo{0.02, 0.002, 0.0, 2.0, 0.005, 0.0};
+  const Model without = model;
+  //! [TargetDelay]
+  model.effects[TargetDelay::info().id] = {{"s", 0.04}};
+  //! [TargetDelay]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("idle_heat acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [IdleHeat]
+  model.effects[IdleHeat::info().id] = {{"W", 1.5}};
+  //! [IdleHeat]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownLoad acts in a simulation") {
+  Model model = axis();
+  const Model without = model;
+  //! [UnknownLoad]
+  model.effects[UnknownLoad::info().id] = {{"from_deg", -90.0}, {"to_deg", 90.0}, {"Nm_1", 0.05},
+                                           {"Nm_2", 0.02},      {"Nm_3", 0.01},   {"Nm_4", 0.004},
+                                           {"Nm_5", 0.001},     {"Nm_6", -0.001}, {"Nm_7", -0.004},
+                                           {"Nm_8", -0.01},     {"Nm_9", -0.02},  {"Nm_10", -0.05}};
+  //! [UnknownLoad]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownFriction acts in a simulation") {
+  Model model = axis();
+  const Model without = model;
+  //! [UnknownFriction]
+  model.effects[UnknownFriction::info().id] = {{"from_dps", -900.0}, {"to_dps", 900.0}, {"Nm_1", -0.02},
+                                               {"Nm_2", -0.01},      {"Nm_3", -0.006},  {"Nm_4", -0.004},
+                                               {"Nm_5", -0.002},     {"Nm_6", 0.002},   {"Nm_7", 0.004},
+                                               {"Nm_8", 0.006},      {"Nm_9", 0.01},    {"Nm_10", 0.02}};
+  //! [UnknownFriction]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownDrive acts in a simulation") {
+  Model model = axis();
+  const Model without = model;
+  //! [UnknownDrive]
+  model.effects[UnknownDrive::info().id] = {{"from_A", -0.4}, {"to_A", 0.4},  {"A_1", 0.1},   {"A_2", 0.06},
+                                            {"A_3", 0.03},    {"A_4", 0.01},  {"A_5", 0.0},   {"A_6", 0.0},
+                                            {"A_7", -0.01},   {"A_8", -0.03}, {"A_9", -0.06}, {"A_10", -0.1}};
+  //! [UnknownDrive]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownLoss acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [UnknownLoss]
+  model.effects[UnknownLoss::info().id] = {{"from_K", 0.0}, {"to_K", 60.0}, {"W_1", 0.0}, {"W_2", 0.1},
+                                           {"W_3", 0.2},    {"W_4", 0.4},   {"W_5", 0.7}, {"W_6", 1.0},
+                                           {"W_7", 1.4},    {"W_8", 1.9},   {"W_9", 2.5}, {"W_10", 3.0}};
+  //! [UnknownLoss]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownHeat acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [UnknownHeat]
+  model.effects[UnknownHeat::info().id] = {{"from_A", 0.0}, {"to_A", 2.0}, {"W_1", 0.5}, {"W_2", 0.5},
+                                           {"W_3", 0.6},    {"W_4", 0.8},  {"W_5", 1.0}, {"W_6", 1.3},
+                                           {"W_7", 1.7},    {"W_8", 2.2},  {"W_9", 2.8}, {"W_10", 3.5}};
+  //! [UnknownHeat]
+  CHECK(acts(model, without));
+}
+
+TEST_CASE("UnknownVoltage acts in a simulation") {
+  Model model = bench();
+  const Model without = model;
+  //! [UnknownVoltage]
+  model.effects[UnknownVoltage::info().id] = {{"from_C", 20.0}, {"to_C", 80.0}, {"V_1", 0.0}, {"V_2", 0.1},
+                                              {"V_3", 0.2},     {"V_4", 0.2},   {"V_5", 0.3}, {"V_6", 0.3},
+                                              {"V_7", 0.4},     {"V_8", 0.4},   {"V_9", 0.5}, {"V_10", 0.5}};
+  //! [UnknownVoltage]
   CHECK(acts(model, without));
 }

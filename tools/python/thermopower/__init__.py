@@ -130,10 +130,10 @@ class Effect:
     strikes: sides meet and part in it, so that a fit of its parameters stands in one of many hollows: the diagnosis looks beside it.
     For an effect that a Plant switches on itself, leave act and on out, and say the submodel.
 
-    >>> def drag(p, terms):
-    ...     terms.load_Nm -= p.Nm_s2_per_rad2 * terms.rate_rad_per_s * abs(terms.rate_rad_per_s)
-    >>> Effect("air_drag", drag, on="axis", parameters=[parameter("Nm_s2_per_rad2", starts=[1e-5])]).id
-    'air_drag'
+    >>> def hose(p, terms):
+    ...     terms.load_Nm -= p.Nm_per_rad3 * terms.angle_rad**3
+    >>> Effect("stiffening_hose", hose, on="axis", parameters=[parameter("Nm_per_rad3", starts=[1e-3])]).id
+    'stiffening_hose'
     """
 
     _submodels = {"electrical": "electrical", "air": "thermal.loss", "thermal": "thermal.heating", "thermal_structure": "thermal.storage",

@@ -12,6 +12,7 @@
 #include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/slow_sensors.hpp>
 #include <thermopower/gap/data/under_way.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/samples.hpp>
 
@@ -209,6 +210,7 @@ inline bool PreparedRecording::is_output(const std::string& name) const {
 
 /// Takes the stamps of the clock that the recorded ones jitter around, where the outputs were read by it.
 inline void PreparedRecording::read_the_clock(FindingList& list) {
+  if (!holds(Rule::clock)) return;
   std::vector<const Eigen::VectorXd*> outputs;
   for (const Column& column : believed_.columns)
     if (is_output(column.name)) outputs.push_back(&column.values);

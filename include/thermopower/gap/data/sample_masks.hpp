@@ -7,6 +7,7 @@
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/data/spikes.hpp>
+#include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
 #include <array>
@@ -55,6 +56,7 @@ public:
 
   /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
+    if (!holds(Rule::outlier_rejection)) return empty();
     if (!spikes_)
       spikes_.emplace(values_, runs_, traits_, scale_, quantum_,
                       traits_.integral != nullptr ? position_step() : 0.0);
@@ -133,6 +135,7 @@ public:
   /// other samples come in. A range ends at the same magnitude on both sides: what one side proves, the other need not.
   RowMask clipped() {
     RowMask mask = empty();
+    if (!holds(Rule::clipping)) return mask;
     const std::vector<double> list = finite_samples(values_);
     if (list.size() < 50) return mask;
     const std::array<Extreme, 2> ends{extreme_of(list, true), extreme_of(list, false)};

@@ -173,6 +173,7 @@ inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const
     for (const Parameter& parameter : entry->info.parameters) {
       const std::size_t place = at++;
       if (!was_looked_for(parameter, candidate.list[place]) || candidate.fit.at_bound[place]) continue;
+      if (entry->info.curve) continue;  // a curve may be next to nothing at some of its knots
       const auto i = static_cast<Eigen::Index>(place);
       const double sd = std::sqrt(std::max(covariance.of(i, i), 0.0));
       const double value =

@@ -7,6 +7,7 @@
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/shown.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
@@ -122,7 +123,8 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
     bool all = true;
     const std::size_t first = at;
     for (const Parameter& parameter : entry->info.parameters) {
-      if (!parameter.standard && !is_told(candidate, *entry, first, at - first)) return true;
+      if (!parameter.standard && !entry->info.curve && !is_told(candidate, *entry, first, at - first))
+        return true;
       if (at_bound[at] && parameter.degenerate_at_bounds) return true;
       const Coordinate& coordinate = candidate.list[at];
       const bool in_upper_half =
@@ -322,6 +324,7 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
 /// and such an effect mends what is left of the noise.
 inline void mark_idle(std::vector<Candidate>& candidates) {
   for (Candidate& one : candidates) one.idle = false;
+  if (!holds(Rule::constants_first)) return;
   for (const Candidate& constants : candidates)
     if (constants.explanation.effects.empty() && !constants.explanation.released.empty() &&
         is_at_the_noise(constants))
@@ -342,6 +345,7 @@ inline bool has_the_same(const Candidate& set, const Explanation& alone, const M
 /// Marks candidates that another one says with less (is_in_fact()): all at once, so that a simpler one that is itself marked
 /// still counts. A cause that is so alone and has nothing of its own beside others either is none of a set.
 inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
+  if (!holds(Rule::twins)) return;
   std::vector<Candidate*> twins;
   for (Candidate& one : candidates)
     if (std::any_of(candidates.begin(), candidates.end(),
@@ -444,7 +448,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     if (!in_the_running(one)) continue;
     one.against = 0.5 * (one.deviance - least->deviance);
     const double uncertain = uncertainty(one, *least);
-    if (uncertain > 0.0)
+    if (uncertain > 0.0 && holds(Rule::evidence_bound))
       one.against = std::min(one.against, log_odds_of((one.deviance - least->deviance) / uncertain));
   }
   // The cost of its parameters is no part of that: what is richer than another and fits no better beyond doubt stays

@@ -15,6 +15,7 @@
 #include <thermopower/gap/detail/recordings_together.hpp>
 #include <thermopower/gap/detail/run_units.hpp>
 #include <thermopower/gap/detail/unit_check.hpp>
+#include <thermopower/gap/rule.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
@@ -38,7 +39,7 @@ void for_each_recording(CheckedRecordings& checked, IsAsked&& is_asked, Use&& us
 /// Reads a rate that comes behind its angle in the training recordings, or an angle that comes behind its rate, earlier by as much
 /// where that is less than half a row, or where the two differ by more than the lag; else leaves it out.
 inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::vector<Finding>& findings) {
-  if (!model.has_axis()) return;
+  if (!model.has_axis() || !holds(Rule::lag)) return;
   RateLag rate_lag;
   for (const PreparedRecording& one : checked.train) rate_lag.add(one.inputs());
   const RateLag::Found found = rate_lag.lag_and_others();

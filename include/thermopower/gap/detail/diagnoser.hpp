@@ -6,6 +6,7 @@
 #include <thermopower/gap/detail/cause_search.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/detail/posing.hpp>
+#include <thermopower/gap/fit/curve_ranges.hpp>
 #include <thermopower/gap/localise/localisation.hpp>
 #include <thermopower/gap/localise/occurrence.hpp>
 #include <thermopower/gap/localise/own_plant.hpp>
@@ -205,6 +206,7 @@ private:
       held_out_recordings_.push_back(std::move(one).take_recording());
       held_out_inputs_.push_back(std::move(one).take_inputs());
     }
+    support_curves(catalogue_, model_, train_inputs_);
     std::vector<const Inputs*> all;
     for (const auto* part : {&train_inputs_, &held_out_inputs_})
       for (const Inputs& one : *part) all.push_back(&one);
@@ -295,7 +297,7 @@ private:
 
   const Model model_;
   const Options options_;
-  const Catalogue& catalogue_;
+  Catalogue catalogue_;  ///< its curves have the range of the data
   const Posing posing_{model_, options_, catalogue_};
   Diagnosis result_;
   std::vector<Recording> train_recordings_, held_out_recordings_;

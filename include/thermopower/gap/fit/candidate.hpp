@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/fit/fitter.hpp>
 #include <thermopower/gap/fit/signal_sums.hpp>
+#include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,7 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
 /// @param coordinate  the parameter's
 inline double cost_of_parameter(const plant::Parameter& parameter, const Coordinate& coordinate,
                                 const Model& model, double log_samples) {
+  if (!holds(Rule::parsimony)) return 0.0;
   if (parameter.told_by_constant.empty()) return log_samples;
   for (const CalibratedConstant& constant : model.calibrated()) {
     if (constant.id != parameter.told_by_constant) continue;

@@ -79,7 +79,9 @@ struct Explanation {
   }
 
   /// Whether a parameter of one of its effects counts as free: details of a shape do once they are looked at.
-  bool counts(const Parameter& parameter) const { return refined || !parameter.refines; }
+  bool counts(const Parameter& parameter) const {
+    return (refined || !parameter.refines) && !parameter.given_by_data;
+  }
 
   /// Number of parameters of its own, the other constants not counted.
   int parameter_count() const {
@@ -181,7 +183,10 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
       one.lower = one.coordinate_of(parameter.lower);
       one.upper = one.coordinate_of(parameter.upper);
       one.start = one.coordinate_of(parameter.starts.front());
-      if (parameter.refines && !explanation.refined && !model.own) {
+      if (parameter.given_by_data) {
+        one.still = true;
+        one.lower = one.upper = one.start;
+      } else if (parameter.refines && !explanation.refined && !model.own) {
         one.still = true;
         one.lower = one.upper = one.start =
             one.coordinate_of(parameter.standard.value_or(parameter.starts.front()));
@@ -191,6 +196,29 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
       one.two_families = parameter.two_families && !one.still;
     }
   return list;
+}
+
+/// What is known of combinations of an explanation's coordinates: a curve's values are about as large as what they are relative
+/// to, and it is smooth.
+inline std::vector<CombinedPrior> combined_priors(const Explanation& explanation,
+                                                  const std::vector<Coordinate>& list) {
+  std::vector<CombinedPrior> priors;
+  std::size_t of_effects = 0;
+  for (const CatalogueEntry* entry : explanation.effects) of_effects += entry->info.parameters.size();
+  Eigen::Index at = static_cast<Eigen::Index>(list.size() - of_effects);
+  for (const CatalogueEntry* entry : explanation.effects) {
+    if (const auto& curve = entry->info.curve) {
+      const Eigen::Index first = at + plant::curve_support_count;
+      for (Eigen::Index i = 0; i < plant::curve_knot_count; ++i) {
+        priors.push_back({{{first + i, 1.0}}, {known_constants.curve_value * curve->size}});
+        if (i > 0 && i + 1 < plant::curve_knot_count)
+          priors.push_back({{{first + i - 1, 1.0}, {first + i, -2.0}, {first + i + 1, 1.0}},
+                            {known_constants.curve_bend * curve->size}});
+      }
+    }
+    at += static_cast<Eigen::Index>(entry->info.parameters.size());
+  }
+  return priors;
 }
 
 /// A point of a fit as a plant takes it.

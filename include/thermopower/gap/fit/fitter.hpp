@@ -55,7 +55,10 @@ class Fitter {
 public:
   /// Keeps references to its arguments: they must outlive this object.
   Fitter(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list)
-      : problem_(problem), explanation_(explanation), list_(list) {
+      : problem_(problem),
+        explanation_(explanation),
+        list_(list),
+        combined_(combined_priors(explanation, list)) {
     Eigen::VectorXd from(static_cast<Eigen::Index>(list.size()));
     for (std::size_t i = 0; i < list.size(); ++i) from[static_cast<Eigen::Index>(i)] = list[i].start;
     const auto rollout = problem.plant().rollout(*problem.model, *problem.catalogue,
@@ -266,6 +269,14 @@ private:
       view.priors[i] = weight;
       view.gradient[i] += weight * at[i];
     }
+    for (const CombinedPrior& one : combined_) {
+      const double value = one.value(at), weight = view.per_prior * one.prior.weight(value);
+      for (const auto& [i, by] : one.weights) {
+        for (const auto& [k, with] : one.weights) view.information(i, k) += weight * by * with;
+        view.priors[i] += weight * by * by;
+        view.gradient[i] += weight * by * value;
+      }
+    }
     view.cost = view.chi2 + view.of_starts + view.per_prior * cost_of_priors(at);
     view.projected += view.cost;
   }
@@ -388,6 +399,7 @@ private:
     double sum = 0.0;
     for (std::size_t i = 0; i < list_.size(); ++i)
       sum += list_[i].prior.cost(at[static_cast<Eigen::Index>(i)]);
+    for (const CombinedPrior& one : combined_) sum += one.prior.cost(one.value(at));
     return sum;
   }
 
@@ -420,6 +432,7 @@ private:
   const FitProblem& problem_;
   const Explanation& explanation_;
   const std::vector<Coordinate>& list_;
+  const std::vector<CombinedPrior> combined_;     ///< beside those of the coordinates
   View view_;                                     ///< of the present point
   View ahead_;                                    ///< of a step that was tried
   ResidualsBySignal kept_;                        ///< at the present point

@@ -32,6 +32,7 @@ inline bool can_be_judged(const CatalogueEntry& entry, const Model& model,
   for (const Inputs& inputs : recordings) bench = bench || inputs.bench(), axis = axis || inputs.axis();
   if (!(entry.hooks.any_bench() && bench) && !(entry.hooks.any_axis() && axis)) return false;
   if (model.effects.count(entry.info.id) > 0) return false;
+  if (entry.info.curve && !(entry.info.curve->size > 0.0)) return false;
   for (const Need need : entry.info.needs) {
     bool met = false;
     for (const Inputs& inputs : recordings) {

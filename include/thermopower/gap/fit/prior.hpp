@@ -4,7 +4,11 @@
 
 #include <thermopower/plant/radians.hpp>
 
+#include <Eigen/Core>
+
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace thermopower::gap::engine {
 
@@ -29,6 +33,10 @@ struct KnownConstants {
   double farthest_factor = 10.0;
   /// The same of a place (CalibratedConstant::is_place), in radians: a quarter of a turn away a load pulls the other way.
   double farthest_place_rad = 1.5707963;
+  /// Standard deviation of a curve's value at a knot, as a share of what it is relative to (plant::CurveShape::size).
+  double curve_value = 1.0;
+  /// The same of how far the value at a knot is from the mean of its neighbours', twice: how smooth a curve is before any data.
+  double curve_bend = 0.1;
 };
 
 /// The values in force.
@@ -67,6 +75,19 @@ struct Prior {
     if (!(sd > 0.0)) return 0.0;
     const double degrees = known_constants.degrees_of_freedom;
     return (degrees + 1.0) / (degrees * sd * sd + at * at);
+  }
+};
+
+/// What is known of a combination of coordinates before any data.
+struct CombinedPrior {
+  std::vector<std::pair<Eigen::Index, double>> weights;  ///< coordinates and what they are multiplied with
+  Prior prior = {};                                      ///< of the sum, around 0
+
+  /// The sum.
+  double value(const Eigen::VectorXd& at) const {
+    double sum = 0.0;
+    for (const auto& [coordinate, weight] : weights) sum += weight * at[coordinate];
+    return sum;
   }
 };
 

@@ -108,6 +108,23 @@ THERMOPOWER_GAP_INLINE Catalogue& Catalogue::declare(const EffectInfo& info) {
   return *this;
 }
 
+THERMOPOWER_GAP_INLINE Catalogue& Catalogue::support(std::string_view id, double from, double to,
+                                                     double size) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    EffectInfo& info = entries_[i].info;
+    if (info.id != id || !info.curve) continue;
+    if (!(from < to) || !(size >= 0.0))
+      throw InvalidInput("curve '" + info.id +
+                         "': expected a range from a smaller to a larger value, and a size of 0 or more");
+    info.parameters[0].starts = {from};
+    info.parameters[1].starts = {to};
+    info.curve->size = size;
+    infos_[i] = info;
+    return *this;
+  }
+  throw InvalidInput("the catalogue has no curve '" + std::string(id) + "'");
+}
+
 THERMOPOWER_GAP_INLINE const CatalogueEntry* Catalogue::find(std::string_view id) const {
   for (const CatalogueEntry& entry : entries_)
     if (entry.info.id == id) return &entry;

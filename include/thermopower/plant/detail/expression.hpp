@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace thermopower::plant {
@@ -36,7 +37,8 @@ THERMOPOWER_GAP_INLINE Expression Trace::symbol(const std::string& name) {
 
 THERMOPOWER_GAP_INLINE Expression Trace::make(Kind kind, const Expression& a, const Expression& b,
                                               const std::string& name) {
-  const bool two = kind != Kind::negative && kind != Kind::function;
+  const bool two =
+      kind != Kind::negative && kind != Kind::function && kind != Kind::curve && kind != Kind::curve_slope;
   return {this, intern({kind, name, 0.0, place(a), two ? place(b) : -1, -1})};
 }
 
@@ -47,6 +49,12 @@ THERMOPOWER_GAP_INLINE Expression Trace::choice(const Condition& condition, cons
   const int a = trace.place(yes), b = trace.place(no);
   if (a == b) return yes;
   return {&trace, trace.intern({Kind::choice, "", 0.0, condition.node(), a, b})};
+}
+
+THERMOPOWER_GAP_INLINE Expression Trace::curve(const std::string& id, WrittenCurve shape,
+                                               const Expression& at) {
+  curves_[id] = std::move(shape);
+  return make(Kind::curve, at, {}, id);
 }
 
 THERMOPOWER_GAP_INLINE std::vector<Expression> Trace::every_branch(

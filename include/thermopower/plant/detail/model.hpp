@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/plant/curve_id.hpp>
 #include <thermopower/plant/model.hpp>
 
 #include <cmath>
@@ -173,7 +174,7 @@ THERMOPOWER_GAP_INLINE std::vector<CalibratedConstant> Model::calibrated() const
   if (!own)
     for (const auto& effect : effects)
       for (const auto& parameter : effect.second)
-        if (parameter.second != 0.0 || names_a_place(parameter.first))
+        if (!is_curve(effect.first) && (parameter.second != 0.0 || names_a_place(parameter.first)))
           list.push_back({effect.first + "." + parameter.first,
                           "effects." + effect.first,
                           {parameter.first},

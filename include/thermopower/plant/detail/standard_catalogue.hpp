@@ -26,6 +26,7 @@
 #include <thermopower/plant/effects/encoder_eccentricity.hpp>
 #include <thermopower/plant/effects/exchanged_heating_law.hpp>
 #include <thermopower/plant/effects/forced_airflow.hpp>
+#include <thermopower/plant/effects/idle_heat.hpp>
 #include <thermopower/plant/effects/imbalance.hpp>
 #include <thermopower/plant/effects/iron_loss.hpp>
 #include <thermopower/plant/effects/load_friction.hpp>
@@ -33,6 +34,7 @@
 #include <thermopower/plant/effects/natural_convection.hpp>
 #include <thermopower/plant/effects/neighbour_heating.hpp>
 #include <thermopower/plant/effects/presliding_friction.hpp>
+#include <thermopower/plant/effects/quadratic_drag.hpp>
 #include <thermopower/plant/effects/radiation.hpp>
 #include <thermopower/plant/effects/rate_bias.hpp>
 #include <thermopower/plant/effects/second_thermal_mass.hpp>
@@ -41,12 +43,19 @@
 #include <thermopower/plant/effects/stribeck_friction.hpp>
 #include <thermopower/plant/effects/supply_power_heating.hpp>
 #include <thermopower/plant/effects/supply_sag.hpp>
+#include <thermopower/plant/effects/target_delay.hpp>
 #include <thermopower/plant/effects/thermometer_gain.hpp>
 #include <thermopower/plant/effects/thermometer_lag.hpp>
 #include <thermopower/plant/effects/third_thermal_mass.hpp>
 #include <thermopower/plant/effects/torque_fade.hpp>
 #include <thermopower/plant/effects/torque_ripple.hpp>
 #include <thermopower/plant/effects/torque_saturation.hpp>
+#include <thermopower/plant/effects/unknown_drive.hpp>
+#include <thermopower/plant/effects/unknown_friction.hpp>
+#include <thermopower/plant/effects/unknown_heat.hpp>
+#include <thermopower/plant/effects/unknown_load.hpp>
+#include <thermopower/plant/effects/unknown_loss.hpp>
+#include <thermopower/plant/effects/unknown_voltage.hpp>
 #include <thermopower/plant/effects/warm_friction.hpp>
 #include <thermopower/plant/effects/winding_tempco.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
@@ -67,6 +76,7 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<NeighbourHeating>();
     all.add<MotionHeating>();
     all.add<IronLoss>();
+    all.add<IdleHeat>();
     all.add<ThermometerLag>();
     all.add<ThermometerGain>();
     all.add<SupplyPowerHeating>();
@@ -92,17 +102,25 @@ THERMOPOWER_GAP_INLINE const Catalogue& standard_catalogue() {
     all.add<Backlash>();
     all.add<ActuationDelay>();
     all.add<ServoDelay>();
+    all.add<TargetDelay>();
     all.add<TorqueSaturation>();
     all.add<TorqueFade>();
     all.add<ConstantTorque>();
     all.add<AsymmetricViscous>();
     all.add<TorqueRipple>();
     all.add<WarmFriction>();
+    all.add<QuadraticDrag>();
     all.add<DriveLag>();
     all.add<AngleScale>();
     all.add<AngleBiasDrift>();
     all.add<EncoderEccentricity>();
     all.add<RateBias>();
+    all.add<UnknownLoad>();
+    all.add<UnknownFriction>();
+    all.add<UnknownDrive>();
+    all.add<UnknownLoss>();
+    all.add<UnknownHeat>();
+    all.add<UnknownVoltage>();
     return all;
   }();
   return catalogue;
