@@ -10,11 +10,8 @@
 #include "actuator/cached_current.hpp"
 #include "actuator/cooling.hpp"
 #include "actuator/current_model.hpp"
-<<<<<<< HEAD
-#include "actuator/data_sheet.hpp"
-=======
 #include "actuator/curve.hpp"
->>>>>>> 428835c (Three effects that real recordings asked for, curves that nobody has named, and three parts of the benchmark)
+#include "actuator/data_sheet.hpp"
 #include "actuator/duty.hpp"
 #include "actuator/energy_meter.hpp"
 #include "actuator/field_oriented.hpp"

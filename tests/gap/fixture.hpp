@@ -158,13 +158,16 @@ inline Trial curve(const std::string& id, double from, double to, double size, d
   return trial;
 }
 
-/// The standard catalogue, in which the curve of a trial has its range.
+/// The standard catalogue, in which the curve of a trial has its range, and a size as large as its largest value.
 inline Catalogue catalogue_for(const Trial& trial) {
   Catalogue catalogue = standard_catalogue();
   const EffectInfo& info = catalogue.find(trial.id)->info;
-  if (info.curve)
-    catalogue.support(trial.id, trial.parameters.at(info.parameters[0].name),
-                      trial.parameters.at(info.parameters[1].name), 1.0);
+  if (!info.curve) return catalogue;
+  double largest = 0.0;
+  for (std::size_t i = curve_support_count; i < info.parameters.size(); ++i)
+    largest = std::max(largest, std::abs(trial.parameters.at(info.parameters[i].name)));
+  catalogue.support(trial.id, trial.parameters.at(info.parameters[0].name),
+                    trial.parameters.at(info.parameters[1].name), largest);
   return catalogue;
 }
 
@@ -242,7 +245,7 @@ inline std::vector<Trial> trials() {
       curve("unknown.friction(rate_dps)", -300.0, 300.0, 0.005, 1.0, true),
       curve("unknown.drive(drive_A)", -0.6, 0.6, 0.05, 0.0, true),
       curve("unknown.loss(rise_K)", -40.0, 60.0, 2.0, 0.0, false),
-      curve("unknown.heat(current_A)", -2.0, 2.0, 2.0, 0.0, false),
+      curve("unknown.heat(current_A)", 0.0, 2.0, 5.0, 0.0, false),
       curve("unknown.voltage(motor_C)", 0.0, 80.0, 0.4, 0.0, false),
   };
 }

@@ -132,6 +132,7 @@ TEST_CASE("every effect recovers its own parameters from its own simulation") {
     const Eigen::VectorXd sd =
         fitted.fit.information.completeOrthogonalDecomposition().pseudoInverse().diagonal().cwiseSqrt();
     for (Eigen::Index k = static_cast<Eigen::Index>(model.calibrated().size()); k < truth.size(); ++k) {
+      if (fitted.list[static_cast<std::size_t>(k)].still) continue;  // the range of a curve
       INFO(fitted.list[static_cast<std::size_t>(k)].name << " is " << fitted.fit.point[k] << ", truth "
                                                          << truth[k]);
       CHECK(std::abs(fitted.fit.point[k] - truth[k]) < 5.0 * sd[k] + 1e-4 * std::abs(truth[k]));

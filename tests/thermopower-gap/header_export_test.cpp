@@ -136,7 +136,6 @@ std::vector<Trial> trials() {
           {"exponent", 1.3}}}},
        true},
       {"servo_delay", {{"servo_delay", {{"s", 0.023}}}}, true},
-      {"target_delay", {{"target_delay", {{"s", 0.023}}}}, true},
       {"quadratic_drag", {{"quadratic_drag", {{"Nm_s2_per_rad2", 4e-4}}}}, true},
       {"unknown_load", {{"unknown.load(angle_deg)", knots("deg", -60.0, 60.0, "Nm", -0.03)}}, true},
       {"unknown_friction", {{"unknown.friction(rate_dps)", knots("dps", -900.0, 900.0, "Nm", 0.03)}}, true},
@@ -399,10 +398,20 @@ TEST_CASE("a reading that bends is listed, and an exchanged law is written as it
   CHECK(exchanged.text.find("per_minute(0.0f, 0.125f, 0.2435f, -0.5f, 1.0f)") != std::string::npos);
 }
 
+TEST_CASE(
+    "a target that comes late is a constant of the header, and its torques are those of the axis alone") {
+  const Trial late{"late", {{"target_delay", {{"s", 0.023}}}}, true};
+  const io::MotorModelHeader header = io::motor_model_header(model_of(late), "a test", catalogue());
+  CHECK(header.left_out.empty());
+  CHECK(header.text.find("static float target_delay_s() { return 0.023f; }") != std::string::npos);
+  CHECK(header.text.find("static float delay_s()") == std::string::npos);
+}
+
 TEST_CASE("there is a trial for every effect of the catalogue") {
-  // These are above: they do not write themselves, or have no parameters.
-  std::set<std::string> tried{"third_thermal_mass", "enclosure", "contact_resistance", "encoder_eccentricity",
-                              "law.exchanged_heating"};
+  // These are above: they do not write themselves, have no parameters, or act on a servo that firmware brings itself.
+  std::set<std::string> tried{"third_thermal_mass",    "enclosure",
+                              "contact_resistance",    "encoder_eccentricity",
+                              "law.exchanged_heating", "target_delay"};
   for (const Trial& trial : trials())
     for (const auto& effect : trial.effects) tried.insert(effect.first);
   for (const EffectInfo& info : standard_catalogue().list()) {

@@ -15,7 +15,7 @@ namespace detail {
 
 /// Where a value lies among the knots of a curve, and what each of the four knots around it contributes.
 ///
-/// Between two knots it is the cubic with the slopes of a Catmull-Rom spline, at the ends with those of the outermost pieces.
+/// Between two knots it is the cubic with the slopes of a Catmull-Rom spline.
 /// @tparam Real  float or double
 template <class Real>
 struct CurvePlace {
@@ -25,7 +25,7 @@ struct CurvePlace {
   bool inside;     ///< within the outermost knots; beyond, the curve keeps its value there
 
   /// @param at     in knots: 0 at the first, `count - 1` at the last; a number
-  /// @param count  of the knots, 3 or more
+  /// @param count  of the knots, 4 or more
   CurvePlace(Real at, int count) : inside(at >= Real(0) && at <= Real(count - 1)) {
     if (!(at > Real(0))) at = Real(0);
     if (at > Real(count - 1)) at = Real(count - 1);
@@ -42,10 +42,11 @@ private:
   /// Values and slopes at both ends of a piece, in terms of the four knots.
   void combine(Real h00, Real h10, Real h01, Real h11, int count, Real* to) const {
     const bool starts = first == 0, ends = first == count - 2;
-    to[0] = starts ? Real(0) : -h10 / Real(2);
-    to[1] = h00 - (starts ? h10 : Real(0)) - (ends ? h11 : h11 / Real(2));
-    to[2] = h01 + (starts ? h10 : h10 / Real(2)) + (ends ? h11 : Real(0));
-    to[3] = ends ? Real(0) : h11 / Real(2);
+    // An end's slope is that of the parabola through the three outermost knots.
+    to[0] = (starts ? Real(0) : -h10 / Real(2)) + (ends ? h11 / Real(2) : Real(0));
+    to[1] = h00 - (starts ? Real(1.5) * h10 : Real(0)) - (ends ? Real(2) * h11 : h11 / Real(2));
+    to[2] = h01 + (starts ? Real(2) * h10 : h10 / Real(2)) + (ends ? Real(1.5) * h11 : Real(0));
+    to[3] = (ends ? Real(0) : h11 / Real(2)) - (starts ? h10 / Real(2) : Real(0));
   }
 };
 
@@ -53,7 +54,7 @@ private:
 
 /// Value of a curve, in the unit of its table; NaN where `x` is not a number.
 /// @param table  values at the knots, declared with `thermopower_flash`
-/// @param count  of the knots, 3 or more
+/// @param count  of the knots, 4 or more
 /// @param from   x of the first knot
 /// @param to     x of the last knot, > from; beyond both ends the curve keeps its value
 /// @param x      where it is asked for

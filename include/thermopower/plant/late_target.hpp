@@ -26,6 +26,9 @@ inline double target_between(const Inputs& inputs, const Eigen::VectorXd& values
 ///
 /// Before its first row a run had the target of that row. A target that holds between the rows is averaged over a servo's
 /// period or a row's interval, whichever is shorter: delays that differ by less look alike, and a fit needs a slope.
+///
+/// @snippet plant_examples.cpp bench rollout
+/// How to: @ref gap_method, @ref servo_on_a_pendulum.
 template <class Scalar>
 class LateTarget {
 public:

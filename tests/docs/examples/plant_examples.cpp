@@ -205,7 +205,7 @@ TEST_CASE("a plant, as a fit sees it: rows, segments, a rollout, readings") {
 
   //! [bench rollout]
   // The equations of a motor on a bench, stepped from row to row; AxisRollout is the same of an axis, by an AxisStep,
-  // with a ServoLoop where the model has a servo.
+  // with a ServoLoop where the model has a servo, and a LateTarget where its target comes late.
   const plant::Instance<double> instance(model, {}, {}, plant::standard_catalogue());
   const plant::BenchRollout<double> bench(instance, inputs);
   plant::BenchState<double> state = bench.start(0, 25.0);  // all nodes at 25 degC
