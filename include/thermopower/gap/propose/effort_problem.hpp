@@ -26,13 +26,12 @@
 
 /// @file effort_problem.hpp
 /// The inverse problem of an axis: which effort does the measured motion need?
-
 namespace thermopower::gap::engine {
 
 /// The inverse problem of an axis, made once from a model and the prepared inputs of a diagnosis.
 ///
-/// Effort (`drive_A`, `voltage_V`, or what a servo makes of its target) is compared with the effort that the plant needs for the
-/// measured motion, both through one low-pass. Rows near rest are left out. Constants are refitted with every explanation.
+/// Effort is `drive_A`, `voltage_V`, or what a servo makes of its target. It is compared with what the plant needs for the measured
+/// motion, both through one low-pass. Rows near rest are left out. Constants are refitted with every explanation.
 ///
 /// How a decision asks it:
 ///
@@ -90,7 +89,6 @@ public:
 
   EffortProblem(const EffortProblem&) = delete;  // its parts refer to each other
   EffortProblem& operator=(const EffortProblem&) = delete;
-
   /// Whether effort and motion can be compared.
   bool is_judged() const { return refusal_ == InverseRefusal::none; }
   /// Why they cannot; `none` where they can.
@@ -99,7 +97,7 @@ public:
   const LoopEvidence& loop() const { return loop_; }
   /// RMS of held-out effort at the rows that are compared, A or V.
   double effort_rms() const { return is_judged() ? held_->compared().effort_rms : 0.0; }
-  /// RMS of what stays of held-out effort with the best of what was asked so far: noise of the effort, at most. A or V.
+  /// RMS of held-out effort that the best explanation asked so far leaves, A or V: its noise, or more.
   double effort_noise() const { return least_share_ * effort_rms(); }
   /// Cutoff of the low-pass that effort and motion go through, Hz; of the first recording.
   double low_pass_Hz() const {
@@ -125,7 +123,7 @@ public:
     return list;
   }
 
-  /// What held-out effort asks for, best first: single effects, and the sets that forward selection comes by.
+  /// What held-out effort asks for: single effects, and sets by forward selection. Those that are told first, then by share.
   std::vector<InverseProposal> proposals() {
     std::vector<InverseProposal> list;
     if (!is_judged()) return list;
@@ -172,7 +170,7 @@ public:
     return list;
   }
 
-  /// The set of effects that forward selection stops at; that of nothing() where it tells none.
+  /// The set that forward selection stops at; that of nothing() where it tells none.
   InverseScore told() {
     InverseScore best = nothing_;
     for (const InverseProposal& one : proposals())
@@ -335,7 +333,7 @@ private:
     for (std::size_t e = 0; e < effects.size(); ++e)
       for (std::size_t p = 0; p < effects[e]->info.parameters.size(); ++p) {
         InverseEstimate one{effects[e], p, fit.point.effects[e].parameters[p], 0.0,
-                            !effects[e]->info.parameters[p].standard};
+                            is_fitted(effects[e]->info.parameters[p])};
         if (one.fitted) one.standard_error = fit.standard_error[static_cast<Eigen::Index>(coordinate++)];
         score.parameters.push_back(one);
       }
@@ -380,7 +378,7 @@ private:
     for (std::size_t e = 0; e < effects.size(); ++e)
       for (std::size_t p = 0; p < effects[e]->info.parameters.size(); ++p) {
         const plant::Parameter& parameter = effects[e]->info.parameters[p];
-        if (parameter.standard) continue;
+        if (!is_fitted(parameter)) continue;
         BoundedCoordinate one;
         one.at.effect = e;
         one.at.parameter = p;

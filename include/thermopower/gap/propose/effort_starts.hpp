@@ -26,6 +26,10 @@ namespace thermopower::gap::engine {
 /// Whether a parameter counts cycles of the angle in a turn.
 inline bool counts_cycles(const plant::Parameter& parameter) { return parameter.name == "cycles_per_turn"; }
 
+/// Whether effort may tell a parameter, so that a fit moves it. How a friction turns over near rest, and details of a shape, it
+/// does not: they stand at their standard.
+inline bool is_fitted(const plant::Parameter& parameter) { return !parameter.standard; }
+
 /// Whether an effect has such a parameter.
 inline bool counts_cycles(const plant::CatalogueEntry& entry) {
   const auto& all = entry.info.parameters;
@@ -71,8 +75,8 @@ inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Cat
     bool acts = constant.block == "axis" && constant.has_slack;
     if (const plant::CatalogueEntry* effect = catalogue.find(constant.effect()))
       for (const plant::Parameter& parameter : effect->info.parameters)
-        acts = acts ||
-               (effect->hooks.any_axis() && parameter.name == constant.fields.front() && !parameter.standard);
+        acts = acts || (effect->hooks.any_axis() && parameter.name == constant.fields.front() &&
+                        is_fitted(parameter));
     if (!acts) continue;
     BoundedCoordinate one;
     one.at.is_constant = true;
@@ -101,8 +105,8 @@ inline std::vector<std::vector<double>> starts_of(const plant::CatalogueEntry& e
   std::vector<std::vector<double>> all = {{}};
   for (const plant::Parameter& parameter : entry.info.parameters) {
     std::vector<double> starts = parameter.starts;
-    if (parameter.standard) {
-      starts = {*parameter.standard};
+    if (!is_fitted(parameter)) {
+      starts = {parameter.standard.value_or(starts.front())};
     } else if (counts_cycles(parameter)) {
       Eigen::VectorXd angle(compared.size());
       for (Eigen::Index i = 0; i < angle.size(); ++i)
@@ -142,7 +146,7 @@ inline InverseRefusal why_not_with(const plant::CatalogueEntry& entry, const std
   bool has_size = false, is_absent = true;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const plant::Parameter& one = entry.info.parameters[p];
-    if (one.standard) continue;
+    if (!is_fitted(one)) continue;
     const double range = one.upper - one.lower, at = parameters[p];
     const bool low = at <= one.lower + near * range, high = at >= one.upper - near * range;
     if ((one.degenerate_at_bounds && (low || high)) || (one.degenerate_at_upper && high))
