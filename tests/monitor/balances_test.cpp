@@ -279,8 +279,11 @@ TEST_CASE("a disagreement stays until it is acknowledged, and cuts only where it
   CHECK(telling.limit(200).power == 200);
   CHECK(telling.limit(200).reason == LimitReason::none);
   CHECK(telling.reason() != LimitReason::none);
+  const uint8_t suspects = cutting.suspects();
   cutting.restart();
+  cutting.step(MonitorInputs::heater(0.0f, 20.0f, 20.0f), detail::not_a_number());
   CHECK(cutting.limit(200).power == least_power());
+  CHECK(cutting.suspects() == suspects);
   cutting.acknowledge();
   CHECK(cutting.limit(200).power == 200);
   CHECK(cutting.record().suspects == 0);

@@ -173,8 +173,9 @@ public:
     found_ = 0;
     restart();
   }
-  /// Forgets everything but a disagreement: after a pause of unknown length.
+  /// Forgets everything but a disagreement and its record: after a pause of unknown length.
   void restart() noexcept {
+    if (disagreement() != Disagreement::none) return;
     heat_.restart();
     winding_.restart();
     motion_.restart();

@@ -97,3 +97,31 @@ TEST_CASE("a motor with shorted turns is told from one that brakes") {
   CHECK(braked.disagreement() == tp::Disagreement::drag_high);
   CHECK(braked.suspects() == static_cast<uint8_t>(tp::Suspect::friction));
 }
+
+namespace axis_page {
+struct MyMotor {
+  typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
+  typedef tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>> Thermal;
+  static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+  static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
+};
+}  // namespace axis_page
+
+TEST_CASE("an axis takes what the monitor says as its fault") {
+  using motor_page::Motor;
+  tp::AxisController<axis_page::MyMotor> axis(
+      tp::AxisController<axis_page::MyMotor>::Config::with_gain({24.0f, 4.0f}));
+  tp::ModelMonitor<Motor> monitor;
+  const auto cycle = [&](float volt) {
+    const tp::MonitorInputs measured = tp::MonitorInputs::motor(8.0f, 25.0f, 25.0f, volt, 2.0f, 25.0f, 0.0f);
+    //! [monitor of an axis]
+    monitor.step(measured, 0.05f);
+    const auto& now = axis.step({5.0f, 13.0f, 25.0f, monitor.limit(255).reason}, 0.05f);
+    //! [monitor of an axis]
+    return now;
+  };
+  CHECK(cycle(4.0f).reason == tp::LimitReason::none);
+  for (int i = 0; i < 3000; ++i) cycle(3.0f);
+  CHECK(cycle(3.0f).reason == tp::LimitReason::winding_disagrees);
+  CHECK(cycle(3.0f).power == tp::least_power());
+}
