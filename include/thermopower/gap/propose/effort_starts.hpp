@@ -27,8 +27,10 @@ namespace thermopower::gap::engine {
 inline bool counts_cycles(const plant::Parameter& parameter) { return parameter.name == "cycles_per_turn"; }
 
 /// Whether effort may tell a parameter, so that a fit moves it. How a friction turns over near rest, and details of a shape, it
-/// does not: they stand at their standard.
-inline bool is_fitted(const plant::Parameter& parameter) { return !parameter.standard; }
+/// does not: they stand at their standard. The range of a curve comes from the data.
+inline bool is_fitted(const plant::Parameter& parameter) {
+  return !parameter.standard && !parameter.given_by_data;
+}
 
 /// Whether an effect has such a parameter.
 inline bool counts_cycles(const plant::CatalogueEntry& entry) {
