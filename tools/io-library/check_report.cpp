@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -27,6 +28,17 @@ std::string percent(double share) {
                               : "%.0f %%",
                 100.0 * share);
   return text;
+}
+
+// Constants that these data only determine in their ratio: a minus in front of a name says that it moves the other way.
+std::string together(const std::vector<std::string>& constants, double sd) {
+  constexpr double no_limit = 10.0;  // as percent() has it
+  const bool opposed =
+      std::any_of(constants.begin(), constants.end(), [](const std::string& one) { return one[0] == '-'; });
+  return joined(constants, ", ") +
+         (sd <= no_limit ? ": these data do not notice when they move together by " + percent(sd)
+                         : ": these data do not notice when they move together, by any amount") +
+         (opposed ? " (those with a minus the other way)" : "");
 }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -68,8 +80,7 @@ std::string check_text(const DataReport& report) {
       out += row;
     }
     for (const auto& one : report.only_together)
-      out += summary_line("together", joined(one.constants, ", ") + ": move by " + percent(one.sd) +
-                                          " together unnoticed (a minus: the other way)");
+      out += summary_line("together", together(one.constants, one.sd));
   }
   std::vector<std::string> shown, hidden, absorbed;
   std::string alike;
