@@ -22,6 +22,10 @@ inline Gimbal new_gimbal() {
                 Large::Config::with_gain({40.0f, 2.0f}));
 }
 
+// What happens to the motors while the chip has no power? Here one switch feeds it and the board. A board with a supply of
+// its own keeps its last command: thermopower::DrivenOn<110>, where 110 degC is what its largest POWER makes of the motors.
+typedef thermopower::OffTogether WhileOff;
+
 // Without a record of what was, the motors may be as hot as their limit.
 inline int16_t hottest_start_C() { return 60; }
 
@@ -31,10 +35,20 @@ inline void start(Gimbal& gimbal, float motor_C) {
   gimbal.axis<2>().start(motor_C);
 }
 
-// The hottest motor, to whole degC and not below it. No temperature at all is the hottest there is.
-inline int16_t hottest_C(const Gimbal& gimbal) {
+// The largest POWER of all axes that may be in force.
+inline uint8_t largest_power(const Gimbal& gimbal) {
+  uint8_t largest = 0;
+  for (uint8_t axis = 0; axis < 3; ++axis) {
+    const uint8_t power = gimbal.force().expected(axis, gimbal.state().command.power[axis]);
+    if (power > largest) largest = power;
+  }
+  return largest;
+}
+
+// The hottest motor in 1/128 degC and not below it. No temperature at all is the hottest there is.
+inline int16_t hottest(const Gimbal& gimbal) {
   float hottest = gimbal.axis<0>().state().motor_C;
   if (!(hottest > gimbal.axis<1>().state().motor_C)) hottest = gimbal.axis<1>().state().motor_C;
   if (!(hottest > gimbal.axis<2>().state().motor_C)) hottest = gimbal.axis<2>().state().motor_C;
-  return static_cast<int16_t>(hottest < 190.0f ? hottest + 1.0f : 190.0f);
+  return static_cast<int16_t>(hottest < 190.0f ? hottest * 128.0f + 1.0f : 190.0f * 128.0f);
 }

@@ -23,24 +23,34 @@ struct Eeprom {
   static uint8_t read(size_t at) { return eeprom_read_byte(reinterpret_cast<const uint8_t*>(at)); }
   static void write(size_t at, uint8_t value) { eeprom_write_byte(reinterpret_cast<uint8_t*>(at), value); }
 };
-typedef tp::HottestJournal<Eeprom> Journal;
+typedef tp::HottestJournal<Eeprom, WhileOff> Journal;
 
 Gimbal gimbal = new_gimbal();
-tp::SbgcCodec<> codec;
+tp::SbgcCodec<255, sbgc::ProtocolAuto> codec;
 sbgc::Poller poller;
 Eeprom eeprom;
 Journal journal(eeprom);
 tp::fixed_point::Clock journal_clock;
+tp::RetainedHottest retained __attribute__((section(".noinit")));  // a reset leaves it as it was
+const uint32_t reset_us = 3000000;  // the watchdog's second, the boot loader's, and one to spare
 
 uint32_t stepped_us;
 bool has_telemetry;
 
-// As warm as the hottest motor of the newest record may be by now, after a reset or a loss of power; without a
-// record as hot as the limit. What the board did meanwhile nobody knows: the first step heats at any power,
-// for as long as the record leaves open.
+// After a reset the motors are as warm as they were, and heated on by the POWER that was told for as long as a reset takes.
+// After a loss of power they are as warm as the hottest of the newest record may be by now; without a record as hot as
+// the limit. What the board did meanwhile nobody knows: the first step heats at any power, for as long as the
+// record leaves open.
 void restore() {
-  int16_t hottest_C = hottest_start_C();
-  if (journal.load(hottest_C)) journal.write_now(hottest_C);
+  if (retained.recall()) {
+    journal.resume(retained.hottest_C());
+    start(gimbal, static_cast<float>(retained.hottest) / 128.0f);
+    gimbal.assume_driven(retained.power);
+    stepped_us = micros() - retained.resets * reset_us;
+    return;
+  }
+  int16_t hottest_C = hottest_start_C() > WhileOff::settled_C() ? hottest_start_C() : WhileOff::settled_C();
+  journal.load(hottest_C);
   start(gimbal, static_cast<float>(hottest_C));
   gimbal.assume_driven();
   stepped_us = micros() - Journal::open_us();
@@ -63,7 +73,10 @@ float seconds_since_step() {
 }
 
 void send_command() { codec.send(sbgc::power_and_gain(gimbal.state().command), Serial); }
-void keep() { journal.step(hottest_C(gimbal), journal_clock.elapsed(micros())); }
+void keep() {
+  retained.keep(hottest(gimbal), largest_power(gimbal));
+  journal.step(retained.hottest_C(), journal_clock.elapsed(micros()));
+}
 
 // Everything that has come is taken at once: an answer is twice as long as the core's buffer. Whether the
 // board obeyed is in the next telemetry; a board that reports no power there is asked to confirm.
@@ -72,8 +85,7 @@ void receive() {
     for (bool got = codec.receive(static_cast<uint8_t>(Serial.read()), micros()); got; got = codec.next()) {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
       if (telemetry == nullptr) {
-        if (codec.frame().id == sbgc::command::confirm) gimbal.confirmed();
-        if (codec.frame().id == sbgc::command::error) gimbal.refused();
+        sbgc::hear_answer(codec.frame(), gimbal);
         continue;
       }
       gimbal.step(*telemetry, seconds_since_step());
@@ -92,6 +104,8 @@ void miss_answer() {
   if (has_telemetry) {
     gimbal.step_silent(seconds_since_step());
     keep();
+  } else {
+    codec.protocol().try_other();  // does the board speak the other version?
   }
   send_command();
 }

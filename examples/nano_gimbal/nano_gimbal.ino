@@ -35,24 +35,35 @@ struct Eeprom {
   static uint8_t read(size_t at) { return eeprom_read_byte(reinterpret_cast<const uint8_t*>(at)); }
   static void write(size_t at, uint8_t value) { eeprom_write_byte(reinterpret_cast<uint8_t*>(at), value); }
 };
-typedef tp::HottestJournal<Eeprom> Journal;
+// What happens to the motors while this chip has no power? Here one switch feeds it and the board. A board with a supply of
+// its own keeps its last command: tp::DrivenOn<110>, where 110 degC is what its largest POWER makes of the motors.
+typedef tp::OffTogether WhileOff;
+typedef tp::HottestJournal<Eeprom, WhileOff> Journal;
 
 // Until the air is read, nothing cools in it.
 const fixed::CoarseTemperature warmest_air = 60 * 128;
 
 Gimbal gimbal;
 fixed::Clock step_clock;
-tp::SbgcCodec<> codec;
+tp::SbgcCodec<255, sbgc::ProtocolAuto> codec;
 sbgc::Poller poller;
 Eeprom eeprom;
 Journal journal(eeprom);
+tp::RetainedHottest retained __attribute__((section(".noinit")));  // a reset leaves it as it was
+const uint32_t reset_us = 3000000;  // the watchdog's second, the boot loader's, and one to spare
 
-// As warm as the hottest motor of the newest record may be by now, after a reset or a loss of power. Without a
-// record the motors start as warm as the air, as the original does.
+// After a reset the motors are as warm as they were, and heated on by the POWER that was told for as long as a reset takes.
+// After a loss of power they are as warm as the hottest of the newest record may be by now; without a record as warm
+// as the air, as the original starts.
 void restore() {
+  if (retained.recall()) {
+    journal.resume(retained.hottest_C());
+    gimbal.restore(retained.hottest, warmest_air, retained.power);
+    step_clock.start(micros() - (retained.resets < 5 ? retained.resets : 5) * reset_us);
+    return;
+  }
   int16_t hottest_C;
   if (!journal.load(hottest_C)) return;
-  journal.write_now(hottest_C);
   gimbal.restore(static_cast<fixed::CoarseTemperature>(hottest_C * 128), warmest_air);
   // The first step heats at any power for as long as the record leaves open.
   step_clock.start(micros() - Journal::open_us());
@@ -70,6 +81,11 @@ void send_command() {
   gimbal.prepare();
 }
 
+void keep(fixed::Ticks ticks) {
+  retained.keep(gimbal.hottest(), gimbal.largest_power());
+  journal.step(gimbal.hottest_C(), ticks);
+}
+
 // Everything that has come is taken at once: an answer is twice as long as the core's buffer.
 void receive() {
   while (Serial.available() > 0) {
@@ -78,16 +94,14 @@ void receive() {
       const sbgc::RealtimeData* telemetry = codec.realtime_data();
       if (telemetry == nullptr) {
         // Asked of a board that reports no power; whether another obeyed is in the next telemetry.
-        const uint8_t id = codec.frame().id;
-        if (id == sbgc::command::confirm) gimbal.confirmed();
-        else if (id == sbgc::command::error) gimbal.refused();
+        sbgc::hear_answer(codec.frame(), gimbal);
         continue;
       }
       const fixed::Ticks ticks = step_clock.elapsed(now_us);
       gimbal.step(*telemetry, ticks);
       send_command();
       poller.answered();
-      journal.step(gimbal.hottest_C(), ticks);
+      keep(ticks);
     }
   }
 }
@@ -98,12 +112,13 @@ void receive() {
 void miss_answer(uint32_t now_us) {
   const tp::LimitReason reason = gimbal.command().reason[0];
   const bool is_unheard = reason == tp::LimitReason::no_telemetry_yet;
+  if (is_unheard) codec.protocol().try_other();  // does the board speak the other version?
   if (!is_unheard && reason != tp::LimitReason::link_silent && step_clock.waiting_us(now_us) <= silence_us)
     return;
   if (!is_unheard || gimbal.is_restored()) {
     const fixed::Ticks ticks = step_clock.elapsed(now_us);
     gimbal.step_silent(ticks);
-    journal.step(gimbal.hottest_C(), ticks);
+    keep(ticks);
   }
   send_command();
 }

@@ -128,10 +128,18 @@ TEST_CASE("the journal spreads the wear, counts past its wrap, and survives a wr
 TEST_CASE("nothing is written that has not changed, nor too often") {
   Eeprom memory;
   StateJournal<Eeprom> journal(memory, StateJournal<Eeprom>::Config::standard());
-  CHECK_FALSE(journal.step(warm(), 59.0f));
-  CHECK(journal.step(warm(), 2.0f));
-  CHECK_FALSE(journal.step(warm(61.0f), 500.0f));  // less than 2 K
-  CHECK(journal.step(warm(70.0f), 1.0f));
+  CHECK(journal.step(warm(), 0.0f));  // the first of this run: what it started with
+  CHECK_FALSE(journal.step(warm(70.0f), 59.0f));
+  CHECK(journal.step(warm(70.0f), 2.0f));
+  CHECK_FALSE(journal.step(warm(71.0f), 500.0f));  // less than 2 K
+  CHECK(journal.step(warm(80.0f), 1.0f));
+  // After a reset that was no loss of power the newest record still counts.
+  StateJournal<Eeprom> reset(memory, StateJournal<Eeprom>::Config::standard());
+  StoredState newest;
+  REQUIRE(reset.load(newest));
+  reset.resume(10);
+  CHECK_FALSE(reset.step(warm(90.0f), 49.0f));
+  CHECK(reset.step(warm(90.0f), 2.0f));
 }
 
 TEST_CASE("what does not change is written all the same, once in a while, and before a planned stop") {

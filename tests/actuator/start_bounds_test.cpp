@@ -92,7 +92,7 @@ struct Outcome {
 /// One session: starts, runs at a demand for a while, and ends. @return the power that acted last
 double run(Chip& chip, TrueMotor& motor, double& clock_s, double seconds, bool is_reset, double demand,
            bool is_planned, double air_C, Outcome& outcome) {
-  StartFacts facts = {};
+  StartFacts facts = {false, StoredState(), RecordPromise(), 0.0f, {}, false};
   Journal journal(chip.eeprom, Journal::Config::standard());
   const std::uint32_t now = chip.has_clock ? static_cast<std::uint32_t>(clock_s) : StoredState::no_clock();
   StoredState found = {};
@@ -288,7 +288,7 @@ TEST_CASE("estimates after an outage are as sure as they say: few are colder tha
     clock_s += off_s;
 
     Journal after(eeprom, Journal::Config::standard());
-    StartFacts facts = {};
+    StartFacts facts = {false, StoredState(), RecordPromise(), 0.0f, {}, false};
     REQUIRE((facts.has_stored = after.load(facts.stored)));
     facts.promise = after.promise();
     facts.age_s = record_age_s(facts.stored, static_cast<std::uint32_t>(clock_s));

@@ -62,11 +62,7 @@ TEST_CASE("start bounds: without a record or an air the limits count, or where i
 }
 
 TEST_CASE("start bounds: air that is left out is not 0 degC") {
-  StartFacts forgotten = {};
-  forgotten.has_stored = true;
-  forgotten.stored = record();
-  forgotten.promise = {60.0f, 2.0f, 600.0f};
-  forgotten.age_s = 3600.0f;
+  StartFacts forgotten = {true, record(), {60.0f, 2.0f, 600.0f}, 3600.0f, {}, false};
   CHECK(assumptions().start(forgotten).winding_upper_C == 110.0f);
   CHECK(assumptions().start(forgotten).body_upper_C == 60.0f);
   // Nor does it say that nothing warmed: then all heat stays inside.

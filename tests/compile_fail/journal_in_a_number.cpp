@@ -13,8 +13,8 @@ struct Memory {
 
 #if defined(MISUSE)
 int memory;
-tp::HottestJournal<int> journal(memory);
+tp::HottestJournal<int, tp::OffTogether> journal(memory);
 #else
 Memory memory;
-tp::HottestJournal<Memory> journal(memory);
+tp::HottestJournal<Memory, tp::OffTogether> journal(memory);
 #endif

@@ -7,49 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <thermopower/thermopower.hpp>
 
 #include "../catch.hpp"
+#include "failing_board.hpp"
 
 namespace {
 
-namespace tp = thermopower;
-namespace fixed = thermopower::fixed_point;
-using tp::LimitReason;
-
-constexpr double air_C = 25.0, limit_C = 60.0, cycle_s = 0.03;
-
-/// The roll motor: regression of Table 4.1 (current), Table 4.9 (heating), k = 0.11 per minute.
-struct Motor {
-  double now_C = air_C;
-  void spend(int power, double supply_V) {
-    const double volt = supply_V * std::sqrt(power / 255.0);
-    double rate_per_min = -0.11 * (now_C - air_C);
-    if (volt > 1.0) {
-      const double slope_mA_per_K = -0.013445 * volt * volt + 0.015576 * volt + 0.016839;
-      const double current_A = (slope_mA_per_K * now_C + 0.155098 * std::pow(volt, 3.459071)) / 1000.0;
-      rate_per_min += volt * std::max(0.0, current_A) /
-                      ((-0.00024249 * volt + 0.00620096) * now_C + 0.02545869 * volt - 0.10495822);
-    }
-    now_C += rate_per_min / 60.0 * cycle_s;
-  }
-};
-
-/// What the board says.
-struct Telemetry {
-  double error = 5.0;
-  int camera = static_cast<int>(air_C), frame = static_cast<int>(air_C);
-  double supply_V = 13.0;
-  int reported = 0;
-  float error_deg(std::uint8_t) const { return static_cast<float>(error); }
-  std::int16_t target_angle(std::uint8_t) const { return static_cast<std::int16_t>(error * 45.5111); }
-  std::int16_t imu_angle(std::uint8_t) const { return 0; }
-  std::int8_t imu_C() const { return static_cast<std::int8_t>(camera); }
-  std::int8_t frame_imu_C() const { return static_cast<std::int8_t>(frame); }
-  float battery_V() const { return static_cast<float>(supply_V); }
-  std::uint16_t battery_cV() const { return static_cast<std::uint16_t>(supply_V * 100.0 + 0.5); }
-  std::uint8_t motor_power(std::uint8_t) const { return static_cast<std::uint8_t>(reported); }
-};
+using namespace failing;
 
 /// A board at the other end, with what may be wrong with it.
 struct Board {
@@ -62,38 +26,6 @@ struct Run {
   double power = 0;                         ///< Granted last.
   LimitReason reason = LimitReason::none;
   double first_reason_s = -1;  ///< When the reason asked for came first.
-};
-
-/// The controllers under test behind one face.
-struct FloatGimbal {
-  typedef tp::BasicGimbalController<tp::MeasuredSupply, tp::AxisController<tp::motors::Bgm2606_90t>> Gimbal;
-  Gimbal gimbal{tp::GimbalConfig::standard(),
-                tp::AxisController<tp::motors::Bgm2606_90t>::Config::with_gain({24.0f, 4.0f})};
-  const Gimbal::Command& step(const Telemetry& telemetry) {
-    return gimbal.step(telemetry, static_cast<float>(cycle_s));
-  }
-  const Gimbal::Command& step_silent() { return gimbal.step_silent(static_cast<float>(cycle_s)); }
-  double motor_C() { return static_cast<double>(gimbal.axis<0>().state().motor_C); }
-};
-struct FixedGimbal {
-  typedef fixed::GimbalController<
-      fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t>>>>
-      Gimbal;
-  Gimbal gimbal;
-  fixed::Clock clock;
-  std::uint32_t now_us = 0;
-  fixed::Ticks elapsed() { return clock.elapsed(now_us += static_cast<std::uint32_t>(cycle_s * 1e6)); }
-  const Gimbal::Command& step(const Telemetry& telemetry) {
-    gimbal.step(telemetry, elapsed());
-    gimbal.prepare();
-    return gimbal.command();
-  }
-  const Gimbal::Command& step_silent() {
-    gimbal.step_silent(elapsed());
-    gimbal.prepare();
-    return gimbal.command();
-  }
-  double motor_C() { return static_cast<double>(gimbal.axis<0>().thermal().motor_C()); }
 };
 
 /// @param happens  called before every cycle with the time
@@ -109,7 +41,7 @@ Run run(double seconds, Gimbal& under_test, Motor& motor, Board& board,
     const auto& command = board.is_dead ? under_test.step_silent() : under_test.step(telemetry);
     if (!board.ignores && !board.is_dead) {
       board.power = command.power[0];
-      if (board.confirms) under_test.gimbal.confirmed();
+      if (board.confirms) under_test.gimbal.confirmed(confirm_of(tp::sbgc::command::set_adj_vars_val));
     }
     motor.spend(board.power, 13.0);
     result.hottest_C = std::max(result.hottest_C, motor.now_C);

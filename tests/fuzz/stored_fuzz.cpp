@@ -109,14 +109,15 @@ void after_a_reset(const std::uint8_t* data, std::size_t size) {
 
 void hottest(const std::uint8_t* data, std::size_t size) {
   Memory memory(data, size);
-  HottestJournal<Memory> journal(memory);
+  HottestJournal<Memory, OffTogether> journal(memory);
   std::int16_t hottest_C = 999;
   if (journal.load(hottest_C))
     require(hottest_C >= -60 && hottest_C <= 255 - 60 + 1, "a record's temperature is what a byte holds");
   else require(hottest_C == 999, "without a record nothing changes");
+  while (!journal.is_idle()) journal.work();
   journal.write_now(100);
   while (!journal.is_idle()) journal.work();
-  HottestJournal<Memory> next(memory);
+  HottestJournal<Memory, OffTogether> next(memory);
   require(next.load(hottest_C), "what was written is found");
 }
 
@@ -156,7 +157,7 @@ std::vector<std::string> fuzz_seeds() {
   kept.recall(found);
   kept.keep({61.0f, 48.0f, 65.0f, 52.0f, 6.0f, 1.5f, 1000000, 41}, 3);
   Memory memory(nullptr, 0);
-  HottestJournal<Memory> journal(memory);
+  HottestJournal<Memory, OffTogether> journal(memory);
   for (std::int16_t hottest_C = 40; hottest_C < 60; ++hottest_C) {
     journal.write_now(hottest_C);
     while (!journal.is_idle()) journal.work();

@@ -136,6 +136,32 @@ TEST_CASE("known bug: a payload longer than the buffer") {
   }
 }
 
+TEST_CASE("known bug: telemetry of newer firmware is longer than the buffer and never read") {
+  const Data payload = load_hex("payload_rt4_real.hex");
+  for (const std::uint8_t start : {std::uint8_t(0x3E), std::uint8_t(0x24)})
+    for (std::size_t size = 124; size <= 255; ++size) {
+      CAPTURE(int(start), size);
+      Data longer = payload;
+      for (std::size_t at = payload.size(); at < size; ++at)
+        longer.push_back(static_cast<std::uint8_t>(at * 7));
+      const Data frame = reference::make_frame(start, 25, longer);
+      thermopower::SbgcCodec<255, sbgc::ProtocolAuto> codec;
+      int telemetry = 0;
+      for (int repeat = 0; repeat < 20; ++repeat)
+        for (const std::uint8_t byte : frame)
+          for (bool got = codec.receive(byte, 0); got; got = codec.next()) {
+            const sbgc::RealtimeData* data = codec.realtime_data();
+            REQUIRE(data != nullptr);
+            CHECK(int(data->motor_power(2)) == 250);
+            CHECK(int(data->frame_imu_C()) == -7);
+            CHECK(codec.frame().size == size);
+            ++telemetry;
+          }
+      CHECK(telemetry == 20);
+      CHECK(codec.counters().skipped_bytes == 0);
+    }
+}
+
 TEST_CASE("known bug: the checksum leaves out the last payload byte") {
   for (const std::uint8_t start : {std::uint8_t(0x3E), std::uint8_t(0x24)}) {
     for (std::size_t size = 1; size <= 124; ++size) {

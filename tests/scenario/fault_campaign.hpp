@@ -150,7 +150,7 @@ struct Firmware {
     tp::StoredState found = {}, newest = {};
     const bool is_retained = retained.recall(found);
     const bool is_recorded = journal.load(newest);
-    tp::StartFacts facts = {};
+    tp::StartFacts facts = {false, tp::StoredState(), tp::RecordPromise(), 0.0f, {}, false};
     facts.has_stored = is_retained || is_recorded;
     facts.stored = is_retained ? found : newest;
     facts.promise =
@@ -324,7 +324,11 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
     const bool is_taken = is_board_up && fault != board_refuses && fault != board_deaf && fault != link_dead;
     if (is_taken) force = sent;
     // Who reports no power confirms, or refuses; a deaf board does neither.
-    if (!reports && is_heard && is_taken) chip.gimbal.confirmed();
+    if (!reports && is_heard && is_taken) {
+      thermopower::sbgc::Confirm confirm;
+      confirm.confirmed_id = thermopower::sbgc::command::set_adj_vars_val;
+      chip.gimbal.confirmed(confirm);
+    }
     if (is_heard && fault == board_refuses) chip.gimbal.refused();
 
     // What must hold.
@@ -332,7 +336,8 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
     is_cold = is_cold || motor.winding_C > static_cast<double>(limiter.winding_upper_C()) + 1e-3 ||
               motor.body_C > static_cast<double>(limiter.body_upper_C()) + 1e-3;
     const tp::LimitReason reason = command.reason[0];
-    differs_s = fault >= 0 && force != sent ? differs_s + dt_s : 0.0;
+    // Two counts of difference are a board's own way of counting, and two hundredths pass for its scale.
+    differs_s = fault >= 0 && std::abs(force - int(sent)) > 2 + 0.02 * 255 ? differs_s + dt_s : 0.0;
     if (fault >= 0 && now_s > fault_began_s + 1.0) {
       const bool is_it =
           ((fault == board_refuses || fault == board_deaf) && reason == tp::LimitReason::not_obeyed) ||

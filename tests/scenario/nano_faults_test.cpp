@@ -8,6 +8,7 @@
 #include <rig.hpp>
 
 #include "../catch.hpp"
+#include "journal_record.hpp"
 #include "nano_original.hpp"
 
 namespace {
@@ -28,7 +29,8 @@ Rig make_rig(
     const std::string& program, Rig::World world = [](double, Rig::Board&) { return steady(26); }) {
   // Without a record gimbal_controller starts as hot as the limit: it is told that the motors were cool.
   const bool is_corrected = program == "gimbal_controller.elf";
-  const std::vector<std::uint8_t> cool = {1, 10 + 60, static_cast<std::uint8_t>(~(1 + 10 + 60))};
+  const auto record = journal_record(1, 10 + 60);
+  const std::vector<std::uint8_t> cool(record.begin(), record.end());
   return Rig(std::string(NANO_PROGRAMS "/") + program, {}, std::move(world),
              is_corrected ? cool : std::vector<std::uint8_t>());
 }

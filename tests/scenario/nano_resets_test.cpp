@@ -10,6 +10,7 @@
 #include <rig.hpp>
 
 #include "../catch.hpp"
+#include "journal_record.hpp"
 
 namespace {
 
@@ -89,9 +90,8 @@ TEST_CASE(
   for (const int hottest_C : {42, 59, 75}) {
     Gimbal gimbal(program);
     const int code = hottest_C + 60;
-    const std::uint8_t record[3] = {9, static_cast<std::uint8_t>(code),
-                                    static_cast<std::uint8_t>(~(9 + code))};
-    for (std::uint16_t at = 0; at < 3; ++at)
+    const auto record = journal_record(9, code);
+    for (std::uint16_t at = 0; at < 5; ++at)
       gimbal.rig.chip().set_eeprom(static_cast<std::uint16_t>(30 + at), record[at]);
     gimbal.rig.run_until(2.0);
     INFO(program << " after " << hottest_C << " degC");

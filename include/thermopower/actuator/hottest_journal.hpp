@@ -5,16 +5,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "../detail/crc16.hpp"
 #include "../fixed_point/units.hpp"
 #include "detail/memory.hpp"
+#include "while_off.hpp"
 
 /// @file hottest_journal.hpp
 /// The hottest of several actuators through resets and losses of power, for a small chip without a clock:
-/// three bytes a record, a few hundred bytes of program. Where there is room, StateJournal keeps more.
+/// five bytes a record, a few hundred bytes of program. Where there is room, StateJournal keeps more.
 ///
-/// A record is a sequence number, the temperature in whole degC plus 60, rounded up, and the complement of
-/// their sum. A write that was cut off between bytes is never a record: the slot's old sequence number is
-/// older by the number of slots, which no change of temperature within one turn of the ring makes up for.
+/// A record is a sequence number, the temperature in whole degC plus 60, rounded up, the complement of their sum, and a
+/// CRC-16. A write that was cut off between bytes is never a record. Bytes that another program left are a record with a
+/// probability of 2^-24, so that a ring of 120 slots finds one among them with less than 2^-17.
 
 namespace thermopower {
 
@@ -40,12 +42,18 @@ struct StandardJournal {
 /// largest power for the former.
 /// @tparam Memory     has `uint8_t read(size_t)`, `void write(size_t, uint8_t)` and `bool is_ready()`: nothing
 ///                    is written before it says so, and nobody waits for it
+/// @tparam WhileOff   what happens to the actuators while this controller has no power: OffTogether, or DrivenOn. You have
+///                    to say it: nothing can be taken for granted
 /// @tparam Constants  StandardJournal, or your own
 ///
 /// @snippet actuator_examples.cpp hottest journal
 /// How to: @ref explain_observer.
-template <class Memory, class Constants = StandardJournal>
+template <class Memory, class WhileOff, class Constants = StandardJournal>
 class HottestJournal {
+  static_assert(
+      detail::IsWhileOff<WhileOff>::value,
+      "thermopower: the second parameter of HottestJournal says what happens to the actuators while the "
+      "controller has no power: OffTogether, or DrivenOn<settled_C>");
   static_assert(
       detail::IsMemory<Memory>::value,
       "thermopower: the first parameter of HottestJournal must be a memory: a type with uint8_t read(size_t) "
@@ -60,26 +68,23 @@ public:
   /// `interval_s()` in microseconds.
   static constexpr uint32_t open_us() { return static_cast<uint32_t>(Constants::interval_s() * 1e6); }
 
-  /// Finds the newest whole record. Call once, at power-up.
+  /// Finds the newest whole record, and begins the first one of this run. Call once, when power came.
   /// @param hottest_C  not below the hottest then, nor as long as nothing was heated for longer than the
-  ///                   interval since; unchanged without a record
+  ///                   interval since; not below where the largest power settles, if the actuators are driven on; unchanged without a record
   /// @return false when there is no record
   bool load(int16_t& hottest_C) noexcept {
-    bool is_found = false;
-    uint16_t at = Constants::start();
-    for (uint8_t slot = 0; slot < Constants::slots(); ++slot) {
-      const uint8_t sequence = memory_.read(at), code = memory_.read(at + 1u), check = memory_.read(at + 2u);
-      at = static_cast<uint16_t>(at + 3);
-      if (check != complement(sequence, code)) continue;
-      // Newer by less than half a turn of the counter: right across the wrap.
-      if (is_found && static_cast<uint8_t>(sequence - sequence_) >= 0x80u) continue;
-      is_found = true;
-      sequence_ = sequence;
-      code_ = code;
-      at_ = at;
-    }
-    if (is_found) hottest_C = static_cast<int16_t>(code_ + Constants::change_K() - 60);
-    return is_found;
+    if (!find()) return false;
+    hottest_C = static_cast<int16_t>(code_ + Constants::change_K() - 60);
+    if (hottest_C < WhileOff::settled_C()) hottest_C = WhileOff::settled_C();
+    write_now(hottest_C);
+    return true;
+  }
+
+  /// Goes on after a reset that was no loss of power. Call it once, instead of `load()`. @param hottest_C  what
+  /// RetainedHottest recalled, rounded up; -60 .. 195: the first record of this run
+  void resume(int16_t hottest_C) noexcept {
+    find();
+    write_now(hottest_C);
   }
 
   /// Begins a record when one is due. @param hottest_C  rounded up; -60 .. 195  @param ticks  time since the
@@ -100,15 +105,16 @@ public:
     if (left_ != 0) return;
     code_ = static_cast<uint8_t>(hottest_C + 60);
     ++sequence_;
-    if (at_ >= Constants::start() + 3u * Constants::slots()) at_ = Constants::start();
-    left_ = 3;
+    if (at_ >= Constants::start() + static_cast<uint16_t>(size()) * Constants::slots())
+      at_ = Constants::start();
+    left_ = size();
     since_ = 0;
   }
 
   /// Writes as much as the memory takes now. Call it often.
   void work() noexcept {
     if (left_ == 0 || !memory_.is_ready()) return;
-    const uint8_t byte = left_ == 3 ? sequence_ : (left_ == 2 ? code_ : complement(sequence_, code_));
+    const uint8_t byte = byte_of(sequence_, code_, static_cast<uint8_t>(size() - left_));
     memory_.write(at_, byte);
     ++at_;
     --left_;
@@ -117,8 +123,35 @@ public:
   bool is_idle() const noexcept { return left_ == 0; }
 
 private:
-  static uint8_t complement(uint8_t sequence, uint8_t code) noexcept {
-    return static_cast<uint8_t>(~static_cast<uint8_t>(sequence + code));
+  // The newest whole record, and where the next one goes.
+  bool find() noexcept {
+    bool is_found = false;
+    uint16_t at = Constants::start();
+    for (uint8_t slot = 0; slot < Constants::slots(); ++slot) {
+      const uint8_t sequence = memory_.read(at), code = memory_.read(at + 1u);
+      bool is_whole = true;
+      for (uint8_t byte = 2; byte < size(); ++byte)
+        is_whole = is_whole && memory_.read(at + byte) == byte_of(sequence, code, byte);
+      at = static_cast<uint16_t>(at + size());
+      if (!is_whole) continue;
+      // Newer by less than half a turn of the counter: right across the wrap.
+      if (is_found && static_cast<uint8_t>(sequence - sequence_) >= 0x80u) continue;
+      is_found = true;
+      sequence_ = sequence;
+      code_ = code;
+      at_ = at;
+    }
+    return is_found;
+  }
+
+  static constexpr uint8_t size() { return 5; }
+  static uint8_t byte_of(uint8_t sequence, uint8_t code, uint8_t byte) noexcept {
+    if (byte == 0) return sequence;
+    if (byte == 1) return code;
+    if (byte == 2) return static_cast<uint8_t>(~static_cast<uint8_t>(sequence + code));
+    const uint8_t kept[2] = {sequence, code};
+    const uint16_t sum = detail::crc16(kept, 2, 0x5448u);
+    return static_cast<uint8_t>(byte == 3 ? sum : sum >> 8);
   }
 
   Memory& memory_;

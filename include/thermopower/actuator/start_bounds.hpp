@@ -4,6 +4,7 @@
 
 #include "../air_celsius.hpp"
 #include "stored_state.hpp"
+#include "while_off.hpp"
 
 /// @file start_bounds.hpp
 /// How hot an actuator can be at most when power comes back: bounds, not estimates. The estimates are in
@@ -40,8 +41,9 @@ struct StartFacts {
   float age_s;            ///< Age of the record: `record_age_s()`. NaN or negative: not known.
   AirCelsius<float>
       air_upper_C;  ///< The air was never warmer than this since the record; NaN, or left out: not known.
-  bool is_driven_while_off;  ///< The actuator may go on being driven while this controller is off: a board
-                             ///< with a supply of its own that keeps its last command.
+  DrivenWhileOff
+      is_driven_while_off;  ///< The actuator may go on being driven while this controller is off: a board
+                            ///< with a supply of its own that keeps its last command. Has to be given.
 };
 
 /// Bounds of the actuator that the start bounds are computed with; heat capacities, conductances and coupling

@@ -125,7 +125,7 @@ struct RecordPromise {
 /// Keeps records in a ring of slots, so that no byte is written more often than it bears.
 /// @tparam Memory  as RecordRing takes it: an EEPROM, a file, an FRAM
 ///
-/// Liveness: a record is written at power-up (`write_now()` with what the actuator was started with), when
+/// Liveness: a record is written at power-up (the first `step()`, with what the actuator was started with), when
 /// something has changed but at most once in `interval_s`, at least once in `longest_s`, and before a planned
 /// stop (`write_now()`). What that makes certain is `promise()`. A record that was cut off by the loss of
 /// power fails its check sum, and the one before it counts.
@@ -212,6 +212,8 @@ public:
     if (is_error(config_.validate())) return false;
     if (dt_s > 0.0f) since_s_ += dt_s;
     ring_.work();
+    // The first record of this run says what it started with, or a power lost early would leave the last run's.
+    if (is_first_) return write_now(now);
     if (since_s_ < config_.interval_s) return false;
     if (since_s_ < config_.longest_s && !now.differs(last_, config_.change_K)) return false;
     return write_now(now);
@@ -223,6 +225,7 @@ public:
     if (is_error(config_.validate()) || !ring_.begin(now)) return false;
     last_ = now;
     since_s_ = 0.0f;
+    is_first_ = false;
     ring_.work();
     return true;
   }
@@ -233,7 +236,10 @@ public:
   }
   /// Goes on after a reset that was no loss of power, without a record: the promise still counts from the
   /// newest one. @param since_s  `Retained::since_s`
-  void resume(uint16_t since_s) noexcept { since_s_ = static_cast<float>(since_s); }
+  void resume(uint16_t since_s) noexcept {
+    since_s_ = static_cast<float>(since_s);
+    is_first_ = false;
+  }
 
   /// Goes on writing to a memory that takes a byte at a time. @return true when nothing is left to be written
   bool work() noexcept { return ring_.work(); }
@@ -243,6 +249,7 @@ private:
   Config config_;
   StoredState last_;
   float since_s_ = 0.0f;
+  bool is_first_ = true;  // no record was written in this run
 };
 
 }  // namespace thermopower

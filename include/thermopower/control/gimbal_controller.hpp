@@ -4,6 +4,7 @@
 
 #include "air_temperature.hpp"
 #include "axis_controller.hpp"
+#include "detail/gimbal_axes.hpp"
 #include "power_in_force.hpp"
 
 /// @file control/gimbal_controller.hpp
@@ -29,15 +30,20 @@ struct GimbalConfigError {
   ConfigError field;  ///< `ConfigError::none` when all is well.
 };
 
-/// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate
-/// to compute with.
+/// The supply the motors are assumed to run on: the thesis found the board's own measurement too inaccurate to compute
+/// with. A measurement above it heats the estimate all the same, and one above it by more than the margin is another
+/// battery than the one configured: `LimitReason::supply_above_nominal`.
 ///
 /// @snippet control_examples.cpp gimbal
 /// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct NominalSupply {
-  /// @return V
-  static float supply_V(float nominal_V, float) noexcept { return nominal_V; }
+  /// @return the larger of both; the nominal one when nothing is measured. V
+  static float supply_V(float nominal_V, float measured_V) noexcept {
+    return measured_V > nominal_V ? measured_V : nominal_V;
+  }
+  /// By how much of the nominal supply a measurement may exceed it.
+  static constexpr float margin() { return 0.1f; }
 };
 
 /// The supply as the board measures it: take it when the measurement has been checked, or the battery sags.
@@ -92,103 +98,6 @@ struct GimbalInputs {
   float frame_C;                ///< Thermometer of the frame's IMU; NaN when there is none.
   float supply_V;               ///< Measured supply.
 };
-
-namespace detail {
-
-/// Where an axis stands, from a telemetry that says so; NaN from one that does not.
-template <class Telemetry>
-auto pose_of(const Telemetry& telemetry, uint8_t axis, int) noexcept
-    -> decltype(telemetry.imu_angle_deg(axis)) {
-  return telemetry.imu_angle_deg(axis);
-}
-template <class Telemetry>
-float pose_of(const Telemetry&, uint8_t, long) noexcept {
-  return not_a_number();
-}
-
-/// Whether an axis has a law that asks for its pose; what is no axis is refused in a sentence further down.
-template <class Axis, bool = IsAxis<Axis>::value>
-struct AsksForPose {
-  static constexpr bool value = false;
-};
-template <class Axis>
-struct AsksForPose<Axis, true> {
-  static constexpr bool value = Axis::takes_pose();
-};
-
-/// Whether any axis has a law that asks for its pose.
-template <class... Axes>
-struct AnyTakesPose {
-  static constexpr bool value = false;
-};
-template <class First, class... Rest>
-struct AnyTakesPose<First, Rest...> {
-  static constexpr bool value = AsksForPose<First>::value || AnyTakesPose<Rest...>::value;
-};
-
-/// The poses of a gimbal's axes; nothing at all where no law asks for them.
-template <uint8_t axis_count, bool is_asked>
-struct GimbalPoses {
-  template <class Telemetry>
-  void read_poses(const Telemetry&) noexcept {}
-  void clear_poses() noexcept {}
-  template <class Axis>
-  const typename Axis::State& step_axis(Axis& axis, const typename Axis::Inputs& inputs, uint8_t,
-                                        float dt_s) noexcept {
-    return axis.step(inputs, dt_s);
-  }
-};
-template <uint8_t axis_count>
-struct GimbalPoses<axis_count, true> {
-  float pose_deg[axis_count];
-  template <class Telemetry>
-  void read_poses(const Telemetry& telemetry) noexcept {
-    for (uint8_t index = 0; index < axis_count; ++index) pose_deg[index] = pose_of(telemetry, index, 0);
-  }
-  void clear_poses() noexcept {
-    for (uint8_t index = 0; index < axis_count; ++index) pose_deg[index] = not_a_number();
-  }
-  template <class Axis>
-  const typename Axis::State& step_axis(Axis& axis, const typename Axis::Inputs& inputs, uint8_t index,
-                                        float dt_s) noexcept {
-    return axis.step(inputs, pose_deg[index], dt_s);
-  }
-};
-
-/// The axes one after the other; a tuple that C++11 without a standard library can have.
-template <uint8_t index, class... Axes>
-struct AxisChain {
-  AxisChain() noexcept {}
-  template <class Visitor>
-  void visit(Visitor&) noexcept {}
-};
-
-template <uint8_t index, class First, class... Rest>
-struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
-  static_assert(IsAxis<First>::value,
-                "thermopower: every parameter of GimbalController must be an AxisController");
-  typedef AxisChain<index + 1, Rest...> Next;
-  AxisChain() noexcept {}
-  explicit AxisChain(const typename First::Config& first, const typename Rest::Config&... rest) noexcept
-      : Next(rest...), axis(first) {}
-  template <class Visitor>
-  void visit(Visitor& visitor) noexcept {
-    visitor(index, axis);
-    Next::visit(visitor);
-  }
-  First axis;
-};
-
-template <uint8_t index, class First, class... Rest>
-First& axis_at(AxisChain<index, First, Rest...>& chain) noexcept {
-  return chain.axis;
-}
-template <uint8_t index, class First, class... Rest>
-const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
-  return chain.axis;
-}
-
-}  // namespace detail
 
 /// The controller of a whole gimbal.
 /// @tparam Supply  `NominalSupply` or `MeasuredSupply`
@@ -249,6 +158,7 @@ public:
     axes_.visit(visitor);
     count_disobeyed(force_.decided(), dt_s);
     this->read_poses(telemetry);
+    is_board_overheated_ = detail::is_board_overheated(telemetry, 0);
     return decide(inputs, dt_s);
   }
 
@@ -260,6 +170,7 @@ public:
     HeardVisitor<NothingReported> visitor = {*this, nothing};
     axes_.visit(visitor);
     count_disobeyed(force_.decided(), dt_s);
+    is_board_overheated_ = false;
     return decide(inputs, dt_s);
   }
 
@@ -279,12 +190,27 @@ public:
   }
 
   /// The board has confirmed a command. Needed of a board whose telemetry does not report the power in force.
-  void confirmed() noexcept { force_.confirmed(); }
+  /// @param confirm  says by `is_of_power()` whether the command was one that sets POWER, as sbgc::Confirm does; any
+  /// other changes nothing
+  template <class Confirm>
+  void confirmed(const Confirm& confirm) noexcept {
+    static_assert(
+        detail::IsConfirm<Confirm>::value,
+        "thermopower: confirmed() needs the board's answer, with is_of_power(), such as sbgc::Confirm");
+    force_.confirmed(confirm);
+  }
+  /// Your program has set a variable of the board by a command of its own: PowerInForce::other_sent().
+  void other_sent() noexcept { force_.other_sent(); }
   /// The board has answered with an error: the power it was told may not be in force.
   void refused() noexcept { force_.refused(); }
+  /// What was learned of the board: how late it obeys, and by what factor.
+  const PowerInForce<sizeof...(Axes)>& force() const noexcept { return force_; }
   /// Any power may be in force until the board says another: after a restart of this controller beside a board
   /// that went on.
-  void assume_driven() noexcept { force_.lost(); }
+  /// @param largest  no larger POWER is in force, unless the board says so: what RetainedHottest recalled
+  void assume_driven(uint8_t largest = 255) noexcept {
+    for (uint8_t index = 0; index < axis_count(); ++index) force_.lost(index, largest);
+  }
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
 
@@ -391,10 +317,14 @@ private:
     if (!detail::is_finite(inputs.supply_V)) telemetry_fault_ = LimitReason::supply_not_finite;
     else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
     else if (inputs.supply_V > config_.maximum_supply_V) telemetry_fault_ = LimitReason::supply_implausible;
-    else if (disobeyed_s_ > config_.timeout_s) telemetry_fault_ = LimitReason::not_obeyed;
-    // A reading that cannot be must not heat the estimate: one cycle of it would take an hour to cool.
-    if (telemetry_fault_ == LimitReason::supply_implausible)
+    // A reading that cannot be must not heat the estimate: one cycle of it would take an hour to cool. Nor must one of
+    // no supply cool it: a board that is told the least power may have another in force.
+    if (is_fault(telemetry_fault_))
       last_.supply_V = detail::is_finite(known_supply_V) ? known_supply_V : config_.supply_V;
+    else if (inputs.supply_V > detail::highest_nominal_V<Supply>(config_.supply_V, 0))
+      telemetry_fault_ = LimitReason::supply_above_nominal;
+    else if (is_board_overheated_) telemetry_fault_ = LimitReason::board_overheated;
+    else if (disobeyed_s_ > config_.timeout_s) telemetry_fault_ = LimitReason::not_obeyed;
     return step_axes(telemetry_fault_, dt_s);
   }
 
@@ -445,6 +375,7 @@ private:
   float known_air_s_ = 0.0f;  // since the first plausible air; stops at settling_s()
   bool has_telemetry_ = false;
   bool is_air_unknown_ = true;
+  bool is_board_overheated_ = false;
 };
 
 /// The controller of a gimbal whose motors run on a known, stiff supply, as the thesis assumes.

@@ -24,6 +24,8 @@ enum class LimitReason : uint8_t {
   body_limit = 5,             ///< More would bring the body (or the only node) to its limit within the horizon.
   node_limit = 6,             ///< More would bring one of several nodes to its limit; the limiter's state says which.
 
+  supply_headroom = 16,       ///< The supply is above the nominal: more POWER would heat more than the motor's table knows.
+
   no_telemetry_yet = 64,      ///< Nothing valid was ever received.
   link_silent = 65,           ///< No telemetry for longer than the time-out.
   error_not_finite = 66,      ///< The position error is NaN, infinite, or too large to be an angle (a million degrees).
@@ -36,6 +38,8 @@ enum class LimitReason : uint8_t {
   not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
   supply_implausible = 74,    ///< The supply reads higher than it can be.
   sensor_missing = 75,        ///< The motor has to be measured, and is not.
+  supply_above_nominal = 80,  ///< The supply reads above what was configured by more than the margin: another battery.
+  board_overheated = 81,      ///< The board has stopped its motors because something is too hot, or was loaded too long.
 
   heat_disagrees = 90,        ///< A `ModelMonitor`: less or more heat shows than was put in, by more than the bounds explain.
   thermometer_disagrees = 91, ///< The same, and no constant change of heat, loss or air explains it: the thermometer.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdint.h>
+#include <string.h>
 
 #include "frame.hpp"
 #include "ids.hpp"
@@ -20,6 +21,19 @@ namespace sbgc {
 struct AdjVar {
   uint8_t id;     ///< see variable::Id
   int32_t value;  ///< for the variables listed there 0..255
+
+  /// @brief A variable whose value is a float: its four bytes are sent.
+  static AdjVar of_float(uint8_t id, float value) noexcept {
+    AdjVar var = {id, 0};
+    memcpy(&var.value, &value, sizeof(value));
+    return var;
+  }
+  /// @brief The value of a variable that is a float.
+  float as_float() const noexcept {
+    float number;
+    memcpy(&number, &value, sizeof(number));
+    return number;
+  }
 };
 
 /// @brief Sets adjustable variables in the board's RAM; the board answers Confirm. Board to host: the answer

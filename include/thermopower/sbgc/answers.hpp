@@ -35,6 +35,9 @@ struct Confirm {
     data = Bytes{frame.payload + 1, static_cast<uint8_t>(frame.size - 1)};
     return true;
   }
+  /// @brief Whether it was a command that sets adjustable variables, as POWER is set: no other CONFIRM says that a
+  /// POWER is in force.
+  bool is_of_power() const noexcept { return confirmed_id == command::set_adj_vars_val; }
   /// @brief CONFIRM.
   static constexpr uint8_t id() noexcept { return command::confirm; }
   /// @brief 1 byte and the data.
@@ -75,6 +78,23 @@ struct Error {
     put_bytes(sink, data, 4);
   }
 };
+
+/// @brief Tells a gimbal controller what the board answered to its commands. A CONFIRM of another command than one that
+/// sets POWER changes nothing.
+/// @param frame   any frame  @param gimbal  has `confirmed(const Confirm&)` and `refused()`, as GimbalController
+/// @return was it an answer?
+/// @ingroup sbgc
+template <class Gimbal>
+bool hear_answer(const Frame& frame, Gimbal& gimbal) noexcept {
+  if (frame.id == command::error) {
+    gimbal.refused();
+    return true;
+  }
+  Confirm confirm;
+  if (!confirm.read(frame)) return false;
+  gimbal.confirmed(confirm);
+  return true;
+}
 
 /// @brief What board it is. Asked for with `Request(command::board_info)`.
 /// Source: SimpleBGC serial protocol specification 2.5, CMD_BOARD_INFO.

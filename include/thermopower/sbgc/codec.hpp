@@ -7,10 +7,14 @@
 #include <stdint.h>
 
 #include "adj_vars.hpp"
+#include "angles.hpp"
 #include "answers.hpp"
+#include "board_errors.hpp"
 #include "commands.hpp"
 #include "control.hpp"
 #include "frame.hpp"
+#include "params.hpp"
+#include "realtime_custom.hpp"
 #include "realtime_data.hpp"
 #include "realtime_fields.hpp"
 #include "receiver.hpp"
@@ -36,14 +40,14 @@ namespace thermopower {
 /// messages, so an emulated board is a codec as well. There is one buffer and no other memory; instances are
 /// independent.
 ///
-/// @tparam payload_capacity longest payload to be received, 0..255. The default holds every message that has
-/// a type here up to REALTIME_DATA_4.
+/// @tparam payload_capacity longest payload to be received, 0..255. The default holds whatever a board can send. 124 holds
+/// REALTIME_DATA_4 as it is today and saves 131 bytes; a firmware that appends a field to it is then never heard.
 /// @tparam Protocol sbgc::ProtocolV1, sbgc::ProtocolV2 or sbgc::ProtocolAuto (a menu: see sbgc::ProtocolV1).
 ///
 /// @snippet sbgc_examples.cpp codec
 /// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
-template <size_t payload_capacity = 124, class Protocol = sbgc::ProtocolV1>
+template <size_t payload_capacity = 255, class Protocol = sbgc::ProtocolV1>
 class SbgcCodec : public sbgc::Receiver<payload_capacity, Protocol> {
   typedef sbgc::Receiver<payload_capacity, Protocol> Base;
 

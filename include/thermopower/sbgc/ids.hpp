@@ -19,18 +19,21 @@ namespace sbgc {
 namespace command {
 /// @brief One byte of the frame header; see the namespace for the rules.
 enum Id : uint8_t {
-  realtime_data_3 = 23,       ///< request: empty; answer: 63 bytes, see RealtimeData
-  realtime_data_4 = 25,       ///< request: empty; answer: 124 bytes, see RealtimeData
+  read_params_3 = 21,    ///< asks for a profile's parameters, see ReadParams3; answer: 134 bytes, see Params3
+  write_params_3 = 22,   ///< keeps a profile's parameters, see Params3
+  realtime_data_3 = 23,  ///< request: empty; answer: 63 bytes, see RealtimeData
+  realtime_data_4 = 25,  ///< request: empty; answer: 124 bytes, see RealtimeData
   set_adj_vars_val = 31,      ///< sets variables in RAM, see SetAdjVars; also the answer to get_adj_vars_val
   save_params_3 = 32,         ///< writes adjustable variables to the board's EEPROM
+  get_angles_ext = 61,        ///< request: empty; answer: 54 bytes, see AnglesExt
   get_adj_vars_val = 64,      ///< asks for variables, see GetAdjVars
   confirm = 67,               ///< board to host: a command was executed, see Confirm
   control = 67,               ///< host to board: move the gimbal, see Control (same number as confirm)
-  get_angles = 73,            ///< request: empty
+  get_angles = 73,            ///< request: empty; answer: 18 bytes, see Angles
   motors_on = 77,             ///< see MotorsOn
   data_stream_interval = 85,  ///< have the board send data regularly, see DataStreamInterval
   board_info = 86,            ///< see BoardInfo
-  realtime_data_custom = 88,  ///< answer made of chosen fields
+  realtime_data_custom = 88,  ///< answer made of chosen fields, see RealtimeCustom
   motors_off = 109,           ///< see MotorsOff
   reset = 114,                ///< see Reset
   error = 255                 ///< board to host: a command failed, see Error

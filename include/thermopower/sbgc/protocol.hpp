@@ -161,6 +161,9 @@ public:
   Version sending() const noexcept { return sending_; }
   /// @brief Sends in this version until a frame of the other one arrives.
   void send_in(Version version) noexcept { sending_ = version; }
+  /// @brief Sends in the other version until a frame arrives: call it while a board does not answer, to find the version
+  /// that it speaks.
+  void try_other() noexcept { sending_ = sending_ == Version::v1 ? Version::v2 : Version::v1; }
 
 private:
   ProtocolV1 v1_;

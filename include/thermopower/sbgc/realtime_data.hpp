@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "board_errors.hpp"
 #include "frame.hpp"
 #include "ids.hpp"
 #include "units.hpp"
@@ -71,6 +72,8 @@ public:
   float target_angle_deg(uint8_t axis) const noexcept { return angle_deg(target_angle(axis)); }
   /// @brief Battery voltage in volts.
   float battery_V() const noexcept { return static_cast<float>(battery_cV()) * 0.01f; }
+  /// @brief Has the board stopped its motors because something is too hot? is_overheated().
+  bool is_overheated() const noexcept { return sbgc::is_overheated(system_error(), system_sub_error()); }
   /// @brief Are the motors powered? Bit 0 of flags().
   bool motors_on() const noexcept { return (flags() & 1) != 0; }
   /// @brief Temperature of the camera IMU in degC; extended, else -128.

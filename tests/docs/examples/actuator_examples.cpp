@@ -317,16 +317,27 @@ TEST_CASE("what is kept over a reset, and records of one's own") {
 TEST_CASE("the journal of whole numbers") {
   //! [hottest journal]
   Eeprom eeprom;
-  tp::HottestJournal<Eeprom, tp::StandardJournal> journal(eeprom);
+  typedef tp::HottestJournal<Eeprom, tp::OffTogether> Journal;  // tp::DrivenOn<110>: the board drives on
+  Journal journal(eeprom);
   journal.step(61, 31250);  // 61 degC, 8 s in ticks of 256 us: a record is due
   while (!journal.is_idle()) journal.work();
 
   int16_t hottest_C = 0;  // after the next power-up
-  tp::HottestJournal<Eeprom> next(eeprom);
+  Journal next(eeprom);
   const bool is_found = next.load(hottest_C);
   //! [hottest journal]
   REQUIRE(is_found);
   CHECK(hottest_C == 61 + tp::StandardJournal::change_K());  // not below what it may have become unrecorded
+
+  tp::RetainedHottest retained = {};
+  CHECK_FALSE(retained.recall());
+  //! [retained hottest]
+  retained.keep(61 * 128, 250);              // in every cycle: 61 degC, and POWER 250 was told
+  const bool was_reset = retained.recall();  // at the start: was this a reset?
+  const float motor_C = retained.hottest / 128.0f;
+  //! [retained hottest]
+  CHECK(was_reset);
+  CHECK(motor_C == 61.0f)
 }
 
 TEST_CASE("in whole numbers: a motor, its heating and its temperature") {

@@ -211,3 +211,33 @@ TEST_CASE("a receiver and its protocol, a poller, check sums") {
   CHECK(sum.value() == (0x31 + 0x39) * 9 / 2 % 256);
   CHECK(crc.value() == 0xBCDD);
 }
+
+TEST_CASE("angles alone, chosen fields, a profile's parameters") {
+  struct Wire {
+    size_t write(const uint8_t*, size_t size) { return size; }
+  } serial;
+  tp::SbgcCodec<> codec;
+  //! [angles]
+  codec.send(sbgc::Request(sbgc::command::get_angles), serial);  // or get_angles_ext
+  sbgc::Angles angles;
+  sbgc::AnglesExt with_frame;
+  if (codec.read(angles) && angles.error_deg(0) > 10.0f) return;
+  if (codec.read(with_frame) && with_frame.frame_cam_angle(2) > 16384) return;  // yaw is a turn away
+  //! [angles]
+  //! [custom telemetry]
+  sbgc::RealtimeCustomRequest request;
+  request.fields = sbgc::custom::imu_angles | sbgc::custom::power_state;
+  codec.send(request, serial);
+  sbgc::RealtimeCustom custom(request.fields);  // the answer does not say what is in it
+  const bool is_hot = codec.read(custom) && custom.motor_C(0) > 80;
+  //! [custom telemetry]
+  //! [parameters]
+  codec.send(sbgc::ReadParams3(), serial);
+  sbgc::Params3 params;
+  if (codec.read(params)) {
+    params.set_power(0, 100);    // what roll starts with
+    codec.send(params, serial);  // kept in the board's EEPROM
+  }
+  //! [parameters]
+  CHECK_FALSE(is_hot);
+}

@@ -97,6 +97,8 @@ class ThermalModel : public ThermalCore {
 
 public:
   typedef ThermalCore Core;  ///< What models of all motors share.
+  /// The supply that the motor's table was made for, V.
+  static constexpr double supply_V() { return Source::supply_V(); }
   /// k in 2^-32 per tick: what `Core::step()` needs to know of the motor.
   static constexpr uint16_t cooling_factor = static_cast<uint16_t>(detail::nearest(
       detail::lesser(Source::cooling_per_s() / detail::ticks_per_s() * 4294967296.0, 32767.0)));

@@ -123,6 +123,8 @@ public:
 
   /// Send this as P.
   uint8_t p_gain() const noexcept { return Gain::gain(axis_.granted.power); }
+  /// The supply that the motor's table was made for, V; 600 where its model does not say.
+  static constexpr double supply_V() { return detail::supply_of<Thermal>(0); }
   /// P at the least power.
   static constexpr uint8_t first_gain() { return Gain::gain(least_power()); }
 

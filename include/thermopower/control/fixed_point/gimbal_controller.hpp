@@ -25,6 +25,9 @@ struct StandardGimbal {
   typedef StandardAir Air;  ///< When a thermometer is believed.
   /// Below this the battery counts as empty or missing. 0 .. 600.
   static constexpr double minimum_supply_V() { return 3.0; }
+  /// By how much of the supply that the motors' tables were made for a measurement may exceed it, 0 .. 0.4; above that it
+  /// is another battery.
+  static constexpr double supply_margin() { return 0.1; }
   /// Silence of the link that is tolerated, 0.01 .. 16 s.
   static constexpr double timeout_s() { return 0.5; }
 };
@@ -60,6 +63,17 @@ struct AxisChain<index, First, Rest...> : AxisChain<index + 1, Rest...> {
   First axis;
 };
 
+/// The lowest supply that a motor's table was made for, V.
+template <class Axis>
+constexpr double least_supply_V() {
+  return Axis::supply_V();
+}
+template <class First, class Second, class... Rest>
+constexpr double least_supply_V() {
+  return First::supply_V() < least_supply_V<Second, Rest...>() ? First::supply_V()
+                                                               : least_supply_V<Second, Rest...>();
+}
+
 template <uint8_t index, class First, class... Rest>
 const First& axis_at(const AxisChain<index, First, Rest...>& chain) noexcept {
   return chain.axis;
@@ -90,6 +104,8 @@ class BasicGimbalController {
                 "thermopower: a GimbalController needs at least one AxisController");
   static_assert(Constants::minimum_supply_V() >= 0.0 && Constants::minimum_supply_V() <= 600.0,
                 "thermopower: minimum_supply_V must be within 0 .. 600 V");
+  static_assert(Constants::supply_margin() >= 0.0 && Constants::supply_margin() <= 0.4,
+                "thermopower: supply_margin must be within 0 .. 0.4");
   static_assert(Constants::timeout_s() >= 0.01 && Constants::timeout_s() <= 16.0,
                 "thermopower: timeout_s must be within 0.01 .. 16 s for a fixed-point gimbal");
 
@@ -101,7 +117,8 @@ public:
   /// Every axis at the least power. A constant: the object is ready before any constructor runs.
   constexpr BasicGimbalController() noexcept
       : command_{{first_power<Axes>()...}, {Axes::first_gain()...}, {first_reason<Axes>()...}},
-        error_units_{} {}
+        error_units_{},
+        foreseen_{} {}
 
   /// One control cycle from a telemetry message.
   /// @param telemetry  offers `target_angle(axis)`, `imu_angle(axis)` in units of 360/16384 degree, `imu_C()`,
@@ -115,17 +132,21 @@ public:
       const int16_t error = position_error_units(telemetry.target_angle(index), telemetry.imu_angle(index));
       error_units_[index] = static_cast<uint16_t>(error < 0 ? -error : error);
     }
+    const uint16_t supply_cV = telemetry.battery_cV();
+    measure(supply_cV);
     const bool has_air = follow_air(telemetry.imu_C(), telemetry.frame_imu_C(), ticks);
     uint8_t acted[axis_count()];
     for (uint8_t index = 0; index < axis_count(); ++index) {
-      const uint8_t sent = command_.power[index], expected = force_.expected(index, sent);
-      acted[index] = unless(
-          expected, force_.heard(index, thermopower::detail::reported_power(telemetry, index, 0), sent));
+      const uint8_t reported = thermopower::detail::reported_power(telemetry, index, 0);
+      acted[index] = unless(foreseen_[index], force_.heard(index, reported, command_.power[index]));
     }
     // Before the first air there was no estimate to be heated.
     if (has_telemetry_ || is_restored_) heat(acted, most_in_time());
     disobeyed_ = force_.decided() ? static_cast<uint16_t>(0) : saturating_sum(disobeyed_, ticks);
-    if (telemetry.battery_cV() < minimum_cV) telemetry_fault_ = LimitReason::supply_low;
+    if (supply_cV < minimum_cV) telemetry_fault_ = LimitReason::supply_low;
+    else if (supply_cV > highest_cV()) telemetry_fault_ = LimitReason::supply_above_nominal;
+    else if (thermopower::detail::is_board_overheated(telemetry, 0))
+      telemetry_fault_ = LimitReason::board_overheated;
     else if (!has_air) telemetry_fault_ = LimitReason::air_implausible;
     else telemetry_fault_ = disobeyed_ > tolerated() ? LimitReason::not_obeyed : LimitReason::none;
     silent_ = 0;
@@ -140,9 +161,8 @@ public:
     const bool is_lost = silent_ > tolerated();
     uint8_t acted[axis_count()];
     for (uint8_t index = 0; index < axis_count(); ++index) {
-      const uint8_t sent = command_.power[index], expected = force_.expected(index, sent);
       if (is_lost) force_.lost(index);
-      acted[index] = unless(expected, force_.unheard(index, sent));
+      acted[index] = unless(foreseen_[index], force_.unheard(index, command_.power[index]));
     }
     // Nobody waits for an answer.
     heat(acted, axis_count());
@@ -151,29 +171,53 @@ public:
   }
 
   /// The board has confirmed a command. Needed of a board whose telemetry does not report the power in force.
-  void confirmed() noexcept { force_.confirmed(); }
+  /// @param confirm  says by `is_of_power()` whether the command was one that sets POWER, as sbgc::Confirm does; any
+  /// other changes nothing
+  template <class Confirm>
+  void confirmed(const Confirm& confirm) noexcept {
+    static_assert(
+        thermopower::detail::IsConfirm<Confirm>::value,
+        "thermopower: confirmed() needs the board's answer, with is_of_power(), such as sbgc::Confirm");
+    force_.confirmed(confirm);
+  }
+  /// Your program has set a variable of the board by a command of its own: PowerInForce::other_sent().
+  void other_sent() noexcept { force_.other_sent(); }
   /// The board has answered with an error: the power it was told may not be in force.
   void refused() noexcept { force_.refused(); }
+  /// What was learned of the board: how late it obeys, and by what factor.
+  const PowerInForce<sizeof...(Axes)>& force() const noexcept { return force_; }
 
   /// Starts from temperatures that are known, after a restart of this controller beside a board that may have
   /// gone on: any power may be in force until the board says another. Before the first step.
   /// @param hottest  no axis is hotter
   /// @param air      the warmest there can be: until it is read, nothing cools below that
-  void restore(CoarseTemperature hottest, CoarseTemperature air) noexcept {
+  /// @param largest  no larger POWER is in force, unless the board says so: what RetainedHottest recalled
+  void restore(CoarseTemperature hottest, CoarseTemperature air, uint8_t largest = 255) noexcept {
     NotBelowVisitor visitor = {hottest};
     axes_.visit(visitor);
     air_.assume(air);
     is_restored_ = true;
-    for (uint8_t index = 0; index < axis_count(); ++index) force_.lost(index);
+    for (uint8_t index = 0; index < axis_count(); ++index) force_.lost(index, largest);
     prepare();
   }
   /// Was it restored?
   bool is_restored() const noexcept { return is_restored_; }
   /// The temperature of the hottest axis, rounded up to a whole degC.
-  int16_t hottest_C() noexcept {
+  int16_t hottest_C() noexcept { return static_cast<int16_t>((hottest() >> 7) + 1); }
+  /// The same, not rounded to a degree.
+  CoarseTemperature hottest() noexcept {
     HottestVisitor visitor = {-128 * 128};
     axes_.visit(visitor);
-    return static_cast<int16_t>((visitor.hottest >> 7) + 1);
+    return visitor.hottest;
+  }
+  /// The largest POWER of all axes that may be in force.
+  uint8_t largest_power() const noexcept {
+    uint8_t largest = 0;
+    for (uint8_t index = 0; index < axis_count(); ++index) {
+      const uint8_t power = force_.expected(index, command_.power[index]);
+      if (power > largest) largest = power;
+    }
+    return largest;
   }
 
   /// Computes the heating by the last command, or by what else may be in force. Call it after every step, when
@@ -202,12 +246,14 @@ private:
     void operator()(uint8_t index, Axis& controller) noexcept {
       const AxisInputs inputs = {gimbal.error_units_[index], gimbal.air_.state().air, fault};
       const typename Axis::State& decided = controller.step(inputs, ticks);
-      gimbal.command_.power[index] = decided.power;
-      gimbal.command_.reason[index] = decided.reason;
+      const bool is_within = decided.power <= gimbal.highest_power_;
+      gimbal.command_.power[index] = is_within ? decided.power : gimbal.highest_power_;
+      gimbal.command_.reason[index] = is_within ? decided.reason : LimitReason::supply_headroom;
       gimbal.command_.p_gain[index] = controller.p_gain();
     }
   };
   struct ActedVisitor {
+    const BasicGimbalController& gimbal;
     const uint8_t* acted;
     uint8_t in_time;
     template <class Axis>
@@ -218,7 +264,7 @@ private:
         return;
       }
       --in_time;
-      controller.prepare(acted[index]);
+      controller.prepare(gimbal.as_nominal(acted[index]));
     }
   };
   struct WarmVisitor {
@@ -247,7 +293,8 @@ private:
     BasicGimbalController& gimbal;
     template <class Axis>
     void operator()(uint8_t index, Axis& controller) noexcept {
-      controller.prepare(gimbal.force_.expected(index, gimbal.command_.power[index]));
+      gimbal.foreseen_[index] = gimbal.force_.expected(index, gimbal.command_.power[index]);
+      controller.prepare(gimbal.as_nominal(gimbal.foreseen_[index]));
     }
   };
 
@@ -265,6 +312,38 @@ private:
   // that cycle alone: never less than it was, and the time of a step has a bound.
   static constexpr uint8_t most_in_time() { return 2; }
 
+  static constexpr double nominal_V() { return detail::least_supply_V<Axes...>(); }
+  static constexpr uint16_t nominal_cV() {
+    return static_cast<uint16_t>(detail::nearest(nominal_V() * 100.0));
+  }
+  static constexpr uint16_t highest_cV() {
+    return static_cast<uint16_t>(
+        detail::nearest(detail::lesser(nominal_V() * (1.0 + Constants::supply_margin()) * 100.0, 65535.0)));
+  }
+
+  // Above the nominal supply a POWER drives as a larger one would at the nominal: by the square of both, in 1/128. No
+  // more is granted than the tables know.
+  void measure(uint16_t supply_cV) noexcept {
+    if (supply_cV <= nominal_cV()) {
+      strength_ = 128;
+      highest_power_ = 255;
+      return;
+    }
+    const uint16_t above_cV =
+        static_cast<uint16_t>((supply_cV < highest_cV() ? supply_cV : highest_cV()) - nominal_cV());
+    // (1 + x)^2 <= 1 + (2 + margin) x
+    constexpr uint32_t factor = static_cast<uint32_t>(
+        detail::nearest((2.0 + Constants::supply_margin()) * 128.0 * 65536.0 / (nominal_V() * 100.0)));
+    strength_ = static_cast<uint8_t>(129u + static_cast<uint16_t>(above_cV * factor >> 16));
+    highest_power_ = static_cast<uint8_t>(32640u / strength_ - 1u);
+  }
+  uint8_t as_nominal(uint8_t power) const noexcept {
+    if (strength_ == 128) return power;
+    const uint16_t scaled = static_cast<uint16_t>(
+        (static_cast<uint16_t>(static_cast<uint16_t>(power) * strength_) >> 7) + (power != 0 ? 1 : 0));
+    return scaled < 255 ? static_cast<uint8_t>(scaled) : static_cast<uint8_t>(255);
+  }
+
   // What `prepare()` foresaw needs nothing more.
   static uint8_t unless(uint8_t expected, uint8_t acted) noexcept {
     return acted == expected ? static_cast<uint8_t>(0) : acted;
@@ -272,7 +351,7 @@ private:
 
   // Once for all callers: what it takes is a copy for each motor.
   [[gnu::noinline]] void heat(const uint8_t* acted, uint8_t in_time) noexcept {
-    ActedVisitor visitor = {acted, in_time};
+    ActedVisitor visitor = {*this, acted, in_time};
     axes_.visit(visitor);
   }
 
@@ -315,10 +394,13 @@ private:
   detail::AxisChain<0, Axes...> axes_;
   Command command_;
   uint16_t error_units_[sizeof...(Axes)];
+  uint8_t foreseen_[sizeof...(Axes)];  // what `prepare()` computed the heating for
   PowerInForce<sizeof...(Axes)> force_;
   uint16_t silent_ = 0;
-  uint16_t disobeyed_ = 0;  // how long the board has had another power in force than it was told
-  uint16_t known_air_ = 0;  // ticks since the first plausible air, at least 1 then
+  uint16_t disobeyed_ = 0;       // how long the board has had another power in force than it was told
+  uint16_t known_air_ = 0;       // ticks since the first plausible air, at least 1 then
+  uint8_t strength_ = 128;       // of a POWER, by the supply above the nominal, in 1/128
+  uint8_t highest_power_ = 255;  // that the tables know at that supply
   LimitReason telemetry_fault_ = LimitReason::none;
   bool has_telemetry_ = false;
   bool is_restored_ = false;

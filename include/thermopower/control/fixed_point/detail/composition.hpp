@@ -73,15 +73,26 @@ struct IsAxis<Candidate, typename thermopower::detail::Exists<
   static constexpr bool value = true;
 };
 
-/// Constants of a gimbal: `minimum_supply_V()`, `timeout_s()` and `Air`.
+/// The supply that a thermal model was made for, V; beyond any where it does not say.
+template <class Thermal>
+constexpr auto supply_of(int) noexcept -> decltype(Thermal::supply_V()) {
+  return Thermal::supply_V();
+}
+template <class Thermal>
+constexpr double supply_of(long) noexcept {
+  return 600.0;
+}
+
+/// Constants of a gimbal: `minimum_supply_V()`, `supply_margin()`, `timeout_s()` and `Air`.
 template <class Candidate, class = int>
 struct IsGimbalConstants {
   static constexpr bool value = false;
 };
 template <class Candidate>
-struct IsGimbalConstants<Candidate, typename thermopower::detail::Exists<
-                                        typename Candidate::Air, decltype(Candidate::minimum_supply_V()),
-                                        decltype(Candidate::timeout_s())>::Type> {
+struct IsGimbalConstants<Candidate,
+                         typename thermopower::detail::Exists<
+                             typename Candidate::Air, decltype(Candidate::minimum_supply_V()),
+                             decltype(Candidate::supply_margin()), decltype(Candidate::timeout_s())>::Type> {
   static constexpr bool value = true;
 };
 
