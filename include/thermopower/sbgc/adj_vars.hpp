@@ -17,6 +17,9 @@ namespace thermopower {
 namespace sbgc {
 
 /// @brief One adjustable variable and its value.
+///
+/// @snippet sbgc_examples.cpp adjustable variables
+/// How to: @ref wire_up_sbgc.
 /// @ingroup sbgc
 struct AdjVar {
   uint8_t id;     ///< see variable::Id

@@ -34,8 +34,7 @@ enum Field : uint32_t {
   imu_angles_rad = 1u << 12,   ///< 3 x float, radians
   script_floats = 1u << 13,    ///< 10 x float
   script_integers = 1u << 14,  ///< 10 x int16
-  power_state =
-      1UL << 15  ///< motors and battery, firmware 2.70b6 and later: RealtimeCustom::motor_C() and others
+  power_state = 0x8000u        ///< motors and battery, firmware 2.70b6 and later
 };
 /// @brief Bytes of a field in the answer; 0 for one that is not listed.
 inline uint8_t size_of(uint32_t field) noexcept {

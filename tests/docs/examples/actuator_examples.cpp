@@ -317,7 +317,7 @@ TEST_CASE("what is kept over a reset, and records of one's own") {
 TEST_CASE("the journal of whole numbers") {
   //! [hottest journal]
   Eeprom eeprom;
-  typedef tp::HottestJournal<Eeprom, tp::OffTogether> Journal;  // tp::DrivenOn<110>: the board drives on
+  typedef tp::HottestJournal<Eeprom, tp::OffTogether, tp::StandardJournal> Journal;  // or tp::DrivenOn<110>
   Journal journal(eeprom);
   journal.step(61, 31250);  // 61 degC, 8 s in ticks of 256 us: a record is due
   while (!journal.is_idle()) journal.work();
@@ -329,15 +329,14 @@ TEST_CASE("the journal of whole numbers") {
   REQUIRE(is_found);
   CHECK(hottest_C == 61 + tp::StandardJournal::change_K());  // not below what it may have become unrecorded
 
-  tp::RetainedHottest retained = {};
-  CHECK_FALSE(retained.recall());
   //! [retained hottest]
+  tp::RetainedHottest retained;              // in .noinit: a reset leaves it as it was
   retained.keep(61 * 128, 250);              // in every cycle: 61 degC, and POWER 250 was told
   const bool was_reset = retained.recall();  // at the start: was this a reset?
   const float motor_C = retained.hottest / 128.0f;
   //! [retained hottest]
   CHECK(was_reset);
-  CHECK(motor_C == 61.0f)
+  CHECK(motor_C == 61.0f);
 }
 
 TEST_CASE("in whole numbers: a motor, its heating and its temperature") {
