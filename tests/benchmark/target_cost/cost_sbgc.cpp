@@ -50,14 +50,14 @@ extern "C" void write_command() {
 // all are.
 extern "C" void nested_headers() {
   reset_codec();
-  for (uint16_t start = 0; start < 255; start = static_cast<uint16_t>(start + 4)) {
-    const uint8_t size = static_cast<uint8_t>(255 - start);
+  for (uint8_t start = 0; start < 124; start = static_cast<uint8_t>(start + 4)) {
+    const uint8_t size = static_cast<uint8_t>(124 - start);
     codec().receive(0x3E, 0);
     codec().receive(23, 0);
     codec().receive(size, 0);
     codec().receive(static_cast<uint8_t>(23 + size), 0);
   }
-  for (uint8_t count = 0; count < 3; ++count) codec().receive(0, 0);
+  for (uint8_t count = 0; count < 4; ++count) codec().receive(0, 0);
 }
 extern "C" void wrong_last_byte() { small_sink = codec().receive(0, 0); }
 
