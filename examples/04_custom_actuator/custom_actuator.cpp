@@ -17,6 +17,7 @@ struct Solenoid {
   typedef tp::CurrentModel<tp::OhmicCurrent<> > Current;
   typedef tp::TwoNodeThermalModel<> Thermal;
   static Current::Config current() { return {40.0f, 0.00393f, 20.0f}; }
+  static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() { return {25.0f, 160.0f, 0.5f, {0.13f}}; }
 };
 //! [coil]

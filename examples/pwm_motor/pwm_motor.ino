@@ -66,7 +66,7 @@ void loop() {
   motor.step({drawn.winding_power_W, drawn.v_rms_V, {warmest_air_C, 0.0f}}, dt_s);
 
   const uint8_t demand = static_cast<uint8_t>(is_supply_known ? analogRead(demand_pin) / 4 : 0);
-  power = limiter.step({demand, motor.hottest_C(), motor.hottest_rate_K_per_s()}, dt_s).power;
+  power = limiter.step({demand, tp::GuardedCelsius::hottest_of(motor), motor.hottest_rate_K_per_s()}, dt_s).power;
   analogWrite(motor_pin, power);
 
   if (now_ms - last_line_ms < 200) return;

@@ -91,6 +91,8 @@ enum class ConfigError : uint8_t {
   error_percent = 74,         ///< Must be finite and above warning_percent.
   hysteresis_percent = 75,    ///< Must be finite and not negative.
   is_waived = 76,             ///< Must be 0 or 1.
+  stuck_K = 77,               ///< Must be finite and above change_K.
+  lowest_supply_V = 78,       ///< Must be above 0 and below the highest supply.
   user_defined = 128          ///< Codes from here up are free for policies of your own.
 };
 

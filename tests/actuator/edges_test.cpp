@@ -66,7 +66,8 @@ TEST_CASE(
   // 12 V and 0.3 A are 40 ohm, the copper of 8 ohm at 20 + 4 / 0.00393 = 1038 degC.
   CHECK_FALSE(winding.measure(12.0f, 0.3f).is_valid);
   // How warm it is expected to be changes how sure the reading is, not the reading; what cannot be is not used.
-  const MeasuredTemperature plain = winding.measure(12.0f, 1.5f), hot = winding.measure(12.0f, 1.5f, 150.0f),
+  const WindingReading plain = winding.measure(12.0f, 1.5f);
+  const MeasuredTemperature hot = winding.measure(12.0f, 1.5f, 150.0f),
                             absurd = winding.measure(12.0f, 1.5f, 400.0f);
   CHECK(hot.value_C == plain.value_C);
   CHECK(hot.std_K > plain.std_K);
@@ -107,7 +108,7 @@ TEST_CASE(
 TEST_CASE("the count of believed measurements stops at its largest instead of starting again") {
   TemperatureObserver observer(TemperatureObserverConfig::standard(motor()), 110.0f, 25.0f);
   observer.start(50.0f, 50.0f, 1.0f, 1.0f, 0.0f);
-  const MeasuredTemperature measured = {50.0f, 1.0f, 0.0f, true};
+  const MeasuredTemperature measured = MeasuredTemperature::unchecked(50.0f, 1.0f, 0.0f);
   for (long i = 0; i < 65535L; ++i) observer.correct_winding(measured);
   CHECK(observer.state().accepted == 65535u);
   CHECK(observer.correct_winding(measured));

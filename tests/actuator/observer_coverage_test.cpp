@@ -172,7 +172,8 @@ TEST_CASE("a certified limiter that is told the estimate plus three sigma keeps 
   const Bounds ohm = {static_cast<float>(cold_ohm / 1.6), 8.1f}, tempco = {0.00392f, 0.00394f};
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
   config.network = CertifiedTwoNode::Config::around(declared(errors).thermal, 0.01f, 110.0f, 60.0f);
-  config.use = {HeatBounds::ohmic(13.0f, 0.0f, ohm, tempco, 20.0f, 0.0f, 110.0f), 35.0f, 0.1f, 30.0f, 1, 0};
+  config.use = {
+      HeatBounds::ohmic(13.0f, 0.0f, ohm, tempco, 20.0f, 0.0f, 110.0f, 1.0f), 35.0f, 0.1f, 30.0f, 1, 0};
   config.air_error_K = 8.0f;
   REQUIRE(config.validate() == ConfigError::none);
   const WindingResistance winding(sensor(errors));
@@ -191,7 +192,8 @@ TEST_CASE("a certified limiter that is told the estimate plus three sigma keeps 
       for (int i = 0; i < 10000; ++i) {  // a quarter of an hour at full demand
         if (is_told && i % 3 == 0) {
           correct(observer, world, winding, errors, random);
-          limiter.tighten(observer.winding_upper_C(3.0f), observer.body_upper_C(3.0f));
+          limiter.tighten(GuardedCelsius::winding_upper_of(observer, 3.0f),
+                          GuardedCelsius::body_upper_of(observer, 3.0f));
         }
         const uint8_t power =
             limiter

@@ -61,8 +61,7 @@ TEST_CASE("resistance: exact without noise, and its own idea of the noise is rig
   const WindingResistance winding(config);
   REQUIRE(winding.validate() == ConfigError::none);
   const double v_rms_V = 8.0, winding_C = 71.0;
-  const MeasuredTemperature exact =
-      winding.measure(8.0f, static_cast<float>(true_current_A(v_rms_V, winding_C)));
+  const WindingReading exact = winding.measure(8.0f, static_cast<float>(true_current_A(v_rms_V, winding_C)));
   CHECK(exact.is_valid);
   CHECK(exact.value_C == Approx(71.0f).margin(0.01));
   std::mt19937 random(1);
@@ -109,7 +108,7 @@ TEST_CASE("a hot start is found out by resistance") {
       const double v_rms_V = 4.0, current_A = true_current_A(v_rms_V, truth.state().winding_C);
       truth.step({v_rms_V * current_A, 0.0, {25.0, 0.0}}, 0.01);
       observer.step(static_cast<float>(v_rms_V * current_A), 25.0f, 0.01f);
-      if (i % 10 == 0) observer.correct_winding(winding.measure(4.0f, sent_current_A(current_A, random)));
+      if (i % 10 == 0) observer.correct_winding(winding, 4.0f, sent_current_A(current_A, random));
     }
     INFO("really " << start_C << " degC");
     CHECK(observer.state().winding_C ==
@@ -158,7 +157,7 @@ TEST_CASE("measurements help: the error with resistance is a fraction of the err
                0.01);  // a third more heat than the model thinks
     for (TemperatureObserver* observer : {&measured, &blind})
       observer->step(static_cast<float>(v_rms_V * current_A), 25.0f, 0.01f);
-    if (i % 25 == 0) measured.correct_winding(winding.measure(7.0f, sent_current_A(current_A, random)));
+    if (i % 25 == 0) measured.correct_winding(winding, 7.0f, sent_current_A(current_A, random));
     with_K =
         std::max(with_K, std::abs(static_cast<double>(measured.state().winding_C) - truth.state().winding_C));
     without_K =
@@ -171,7 +170,8 @@ TEST_CASE("measurements help: the error with resistance is a fraction of the err
 TEST_CASE("a stray is gated; a run of hot readings is believed, a run of cold ones never") {
   TemperatureObserver observer(TemperatureObserverConfig::standard(motor()), 110.0f, 25.0f);
   observer.start(50.0f, 50.0f, 1.0f, 1.0f, 0.0f);
-  const MeasuredTemperature cold = {0.0f, 1.0f, 0.0f, true}, hot = {90.0f, 1.0f, 0.0f, true};
+  const MeasuredTemperature cold = MeasuredTemperature::unchecked(0.0f, 1.0f, 0.0f),
+                            hot = MeasuredTemperature::unchecked(90.0f, 1.0f, 0.0f);
   for (int i = 0; i < 100; ++i) CHECK_FALSE(observer.correct_winding(cold));
   CHECK(observer.state().winding_C == 50.0f);
   CHECK_FALSE(observer.correct_winding(hot));
@@ -187,9 +187,10 @@ TEST_CASE("the variances stay positive through anything") {
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   for (int i = 0; i < 200000; ++i) {
     observer.step(20.0f * uniform(random), 25.0f, 0.01f + uniform(random));
-    const MeasuredTemperature measured = {100.0f * uniform(random),
-                                          0.001f + 10.0f * uniform(random) * uniform(random),
-                                          5.0f * uniform(random) * uniform(random), uniform(random) < 0.9f};
+    MeasuredTemperature measured = MeasuredTemperature::unchecked(
+        100.0f * uniform(random), 0.001f + 10.0f * uniform(random) * uniform(random),
+        5.0f * uniform(random) * uniform(random));
+    measured.is_valid = uniform(random) < 0.9f;
     if (i % 2) observer.correct_winding(measured);
     else observer.correct_body(measured);
     const TemperatureObserver::State& state = observer.state();
@@ -215,7 +216,7 @@ TEST_CASE("a gap makes the observer no surer than the same time in small steps, 
     CHECK(at_once.winding_std_K() == Approx(in_steps.winding_std_K()).epsilon(0.02).margin(0.02));
     CHECK(at_once.body_std_K() == Approx(in_steps.body_std_K()).epsilon(0.02).margin(0.001));
     // What stands in the estimate is told apart from chance: a measurement afterwards counts alike.
-    const MeasuredTemperature measured = {at_once.state().body_C, 0.1f, 0.1f, true};
+    const MeasuredTemperature measured = MeasuredTemperature::unchecked(at_once.state().body_C, 0.1f, 0.1f);
     CHECK(at_once.correct_body(measured));
     CHECK(in_steps.correct_body(measured));
     CHECK(at_once.winding_std_K() == Approx(in_steps.winding_std_K()).epsilon(0.02).margin(0.02));

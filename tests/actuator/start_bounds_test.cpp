@@ -62,7 +62,7 @@ Limiter::Config limiter_config() {
   Limiter::Config config = Limiter::Config::standard();
   config.network = CertifiedTwoNodeConfig::around(nominal(), tolerance, static_cast<float>(winding_limit_C),
                                                   static_cast<float>(body_limit_C));
-  config.use.heat = {13.0f, 1.0f, -20.0f, full_heat_W, full_heat_W};
+  config.use.heat = {13.0f, 1.0f, -20.0f, full_heat_W, full_heat_W, 0.0f};
   config.use.highest_air_C = static_cast<float>(highest_air_C);
   config.use.hold_s = 0.2f;
   return config;

@@ -20,13 +20,14 @@ struct Motor {
   typedef CachedCurrent<OhmicCurrent<float>> Current;
   typedef ObservedThermal Thermal;
   static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+  static SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() {
     return {TemperatureObserverConfig::standard({8.0f, 80.0f, 1.0f, {0.2f}}), 110.0f, 1, 0};
   }
 };
 
 CertifiedUse use() {
-  return {HeatBounds::ohmic(13.0f, 0.02f, {7.6f, 8.4f}, {0.0038f, 0.0040f}, 20.0f, 0.0f, 110.0f),
+  return {HeatBounds::ohmic(13.0f, 0.02f, {7.6f, 8.4f}, {0.0038f, 0.0040f}, 20.0f, 0.0f, 110.0f, 9.0f),
           35.0f,
           0.1f,
           30.0f,
@@ -133,18 +134,18 @@ TEST_CASE("the configuration of every policy goes through a record") {
   check_component("SagAwareLaw", SagAwareLaw<ReserveLaw<AdaptiveHoldingLaw<>>>::Config::standard(),
                   26 + 17 + 8);
   check_component("SafetyLimiter", SafetyLimiter<>::Config::standard(), 12);
-  check_component("NodeLimiter", NodeLimiter::Config::standard(), 36);
-  check_component("CertifiedLimiter, two nodes", certified(), 32 + 34 + 4);
+  check_component("NodeLimiter", NodeLimiter::Config::standard(), 40);
+  check_component("CertifiedLimiter, two nodes", certified(), 32 + 38 + 4);
   check_component("CertifiedLimiter, two nodes, both ends of their coupling",
                   CertifiedLimiter<CertifiedCoupledTwoNode>::Config{{certified().network, 1.1f}, use(), 5.0f},
-                  36 + 34 + 4);
+                  36 + 38 + 4);
   check_component("CertifiedLimiter, one node",
                   CertifiedLimiter<CertifiedOneNode>::Config{{{70.0f, 90.0f}, 0.18f, 60.0f}, use(), 5.0f},
-                  16 + 34 + 4);
+                  16 + 38 + 4);
   check_component(
       "LimiterChain",
       LimiterChain<NodeLimiter, CertifiedLimiter<>>::Config{NodeLimiter::Config::standard(), {certified()}},
-      36 + 70);
+      40 + 74);
   check_component("GainScheduler", GainConfig{24.0f, 4.0f}, 8);
   VoltageGain::Config gain = VoltageGain::Config::standard();
   gain.gain_low_power = 60.0f;
@@ -163,7 +164,7 @@ TEST_CASE("a whole axis goes through one record") {
   Axis::Config config = Axis::Config::standard();
   config.gain.gain = {24.0f, 4.0f};
   check_component("AxisController", config,
-                  12 + config_record_size(Motor::thermal()) - 10 + 17 + 12 + 36 + 13);
+                  12 + config_record_size(Motor::thermal()) - 10 + 17 + 12 + 40 + 13 + 8);
 }
 
 TEST_CASE("a record is the bytes that the page says, on any machine") {

@@ -5,6 +5,7 @@
 // docs/explain/lessons-from-others.md tells where.
 
 #include "../catch.hpp"
+#include "limiter_inputs.hpp"
 
 #include <cmath>
 
@@ -38,7 +39,7 @@ TEST_CASE("full torque when the root of the limit is negative") {
   // The same for limiters: far beyond the limit, where a budget is negative, the power is the least.
   NodeLimiter nodes;
   for (const float body_C : {60.0f, 61.0f, 100.0f, 1000.0f})
-    CHECK(nodes.step({255, body_C, body_C, 20.0f}).power == 1);
+    CHECK(nodes.step(told::parts(255, body_C, body_C, 20.0f), 0.0f).power == 1);
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
   config.network = {{8.0f, 8.0f}, {80.0f, 80.0f}, 1.0f, 0.2f, 110.0f, 60.0f};
   config.use.heat = HeatBounds::ohmic(13.0f, 1.0f, {8.0f, 8.0f}, {0.0039f, 0.0039f}, 20.0f, 0.0f, 110.0f);
@@ -58,9 +59,9 @@ TEST_CASE("a disconnected sensor read as cold") {
   CHECK(std::isnan(air.step(-99.0f, -99.0f).air_C));
   NodeLimiter nodes;
   for (const float gone_C : {nan_C, -300.0f, static_cast<float>(INFINITY), -static_cast<float>(INFINITY)}) {
-    CHECK(nodes.step({255, gone_C, 30.0f, 20.0f}).power == 1);
-    CHECK(nodes.step({255, 30.0f, gone_C, 20.0f}).power == 1);
-    CHECK(is_fault(nodes.step({255, 30.0f, gone_C, 20.0f}).reason));
+    CHECK(nodes.step(told::parts(255, gone_C, 30.0f, 20.0f), 0.0f).power == 1);
+    CHECK(nodes.step(told::parts(255, 30.0f, gone_C, 20.0f), 0.0f).power == 1);
+    CHECK(is_fault(nodes.step(told::parts(255, 30.0f, gone_C, 20.0f), 0.0f).reason));
   }
   // An air thermometer that is gone makes the air as warm as it may ever be, not cold.
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
@@ -81,9 +82,9 @@ TEST_CASE("a disconnected sensor read as cold") {
 
 TEST_CASE("a jump at the derating threshold") {
   NodeLimiter nodes;
-  int last = nodes.step({255, 30.0f, 30.0f, 20.0f}).power;
+  int last = nodes.step(told::parts(255, 30.0f, 30.0f, 20.0f), 0.0f).power;
   for (float body_C = 30.0f; body_C < 62.0f; body_C += 0.002f) {
-    const int power = nodes.step({255, body_C, body_C, 20.0f}).power;
+    const int power = nodes.step(told::parts(255, body_C, body_C, 20.0f), 0.0f).power;
     if (last - power > 1) FAIL("jump from " << last << " to " << power << " at " << body_C << " degC");
     last = power;
   }
@@ -98,7 +99,7 @@ TEST_CASE("all-zero parameters accepted") {
   CHECK(CertifiedLimiter<CertifiedOneNode>(one_node).step({255, 13.0f, 25.0f}, 0.01f).power == 1);
   NodeLimiter::Config nodes = {};
   CHECK(is_error(nodes.validate()));
-  CHECK(NodeLimiter(nodes).step({255, 25.0f, 25.0f, 25.0f}).power == 1);
+  CHECK(NodeLimiter(nodes).step(told::parts(255, 25.0f, 25.0f, 25.0f), 0.0f).power == 1);
   TemperatureObserverConfig observer = {};
   CHECK(is_error(observer.validate()));
   WindingResistance::Config winding = {};

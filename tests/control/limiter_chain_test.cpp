@@ -4,6 +4,7 @@
 // Several limiters over one actuator, and limiters of either kind of step().
 
 #include "../catch.hpp"
+#include "limiter_inputs.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -57,7 +58,7 @@ Three three(Puppet<0>::Config first, Puppet<1>::Config second, Puppet<2>::Config
 AxisFacts at(float motor_C, uint8_t demand = 255) {
   AxisFacts facts = AxisFacts::unknown();
   facts.demand = demand;
-  facts.motor_C = facts.body_C = motor_C;
+  facts.motor_C = facts.body_C = told::degrees(motor_C);
   facts.rate_K_per_s = 0.0f;
   facts.air_C = 25.0f;
   facts.supply_V = 13.0f;
@@ -143,6 +144,7 @@ TEST_CASE(
     typedef CurrentModel<OhmicCurrent<float>> Current;
     typedef TwoNodeThermalModel<float> Thermal;
     static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+    static SupplyRange supply() { return {1.0f, 30.0f}; }
     static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
   };
   typedef LimiterChain<CertifiedLimiter<>, NodeLimiter> Chain;
@@ -150,8 +152,8 @@ TEST_CASE(
   Axis::Config config = Axis::Config::standard();
   auto& certified = config.limiter.first;
   certified.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
-  certified.use.heat =
-      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  certified.use.heat = HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f,
+                                         0.0f, 110.0f, 5.0f);
   certified.use.highest_air_C = 35.0f;
   REQUIRE(config.validate() == ConfigError::none);
   Axis axis(config);
@@ -184,11 +186,11 @@ TEST_CASE("what is not a number counts as hot for the whole chain") {
     REQUIRE(chain.validate() == ConfigError::none);
     CHECK(chain.step(at(30.0f), 0.01f).power == 255);
     AxisFacts facts = at(30.0f);
-    facts.motor_C = bad;
+    facts.motor_C = told::degrees(bad);
     CHECK(chain.step(facts, 0.01f).power == 1);
     CHECK(is_fault(chain.step(facts, 0.01f).reason));
     facts = at(30.0f);
-    facts.body_C = bad;  // the second limiter's alone
+    facts.body_C = told::degrees(bad);  // the second limiter's alone
     CHECK(chain.step(facts, 0.01f).power == 1);
     CHECK(is_fault(chain.step(facts, 0.01f).reason));
     CHECK(chain.step(at(30.0f), bad < 0.0f || bad != bad || bad > 1e30f ? bad : -1.0f).power == 1);
@@ -201,6 +203,7 @@ TEST_CASE(
     typedef CurrentModel<OhmicCurrent<float>> Current;
     typedef TwoNodeThermalModel<float> Thermal;
     static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+    static SupplyRange supply() { return {1.0f, 30.0f}; }
     static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
   };
   typedef LimiterChain<NodeLimiter, CertifiedLimiter<>> Chain;
@@ -208,8 +211,8 @@ TEST_CASE(
   Axis::Config config = Axis::Config::standard();
   auto& certified = config.limiter.rest.first;
   certified.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
-  certified.use.heat =
-      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  certified.use.heat = HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f,
+                                         0.0f, 110.0f, 5.0f);
   certified.use.highest_air_C = 35.0f;
   REQUIRE(config.validate() == ConfigError::none);
   Axis axis(config);
@@ -274,7 +277,8 @@ TEST_CASE("a chain in which nobody limits grants all, and one of a single limite
   NodeLimiter limiter;
   for (float body_C = 30.0f; body_C < 70.0f; body_C += 0.25f) {
     AxisFacts facts = at(body_C);
-    const LimitedPower granted = alone.step(facts, 0.01f), own = limiter.step(NodeLimiter::read(facts));
+    const LimitedPower granted = alone.step(facts, 0.01f),
+                       own = limiter.step(NodeLimiter::read(facts), 0.01f);
     CHECK(granted.power == own.power);
     CHECK(granted.reason == own.reason);
     CHECK(alone.ceiling() == limiter.ceiling());

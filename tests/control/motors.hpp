@@ -18,6 +18,7 @@ struct Servo {
   typedef tp::CurrentModel<tp::OhmicCurrent<float> > Current;
   typedef tp::ThermalModel<tp::HeatCapacityHeating<float>, tp::NewtonCooling<float>, tp::ExactStep> Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+  static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
 };
 
@@ -25,6 +26,7 @@ struct ServoWithWinding {
   typedef tp::CurrentModel<tp::OhmicCurrent<float> > Current;
   typedef tp::TwoNodeThermalModel<float> Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+  static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() { return {2.0f, 16.0f, 0.4f, {0.05f}}; }
 };
 

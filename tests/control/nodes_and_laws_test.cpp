@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "../catch.hpp"
+#include "limiter_inputs.hpp"
 
 #include <cmath>
 
@@ -25,11 +26,13 @@ struct Motor {
   typedef CurrentModel<OhmicCurrent<float>> Current;
   typedef TwoNodeThermalModel<float> Thermal;
   static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+  static SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 };
 
 AxisFacts at_supply(float supply_V) {
-  return {1, 25.0f, 25.0f, 0.0f, 25.0f, supply_V, 0.0f, detail::not_a_number(), LimitReason::none};
+  return {1,    told::degrees(25.0f),   told::degrees(25.0f), 0.0f, 25.0f, supply_V,
+          0.0f, detail::not_a_number(), LimitReason::none};
 }
 AxisFacts at_pose(float pose_deg, LimitReason last_reason = LimitReason::none) {
   AxisFacts facts = at_supply(13.0f);
@@ -56,16 +59,16 @@ struct Joint {
 TEST_CASE("each node limits at its own temperature, and the state says which") {
   NodeLimiter limiter;
   REQUIRE(limiter.validate() == ConfigError::none);
-  CHECK(limiter.step({255, 40.0f, 35.0f, 20.0f}).reason == LimitReason::none);
+  CHECK(limiter.step(told::parts(255, 40.0f, 35.0f, 20.0f), 0.0f).reason == LimitReason::none);
   CHECK(limiter.state().node == NodeLimiter::none);
-  CHECK(limiter.step({255, 70.0f, 56.0f, 20.0f}).reason == LimitReason::node_limit);
+  CHECK(limiter.step(told::parts(255, 70.0f, 56.0f, 20.0f), 0.0f).reason == LimitReason::node_limit);
   CHECK(limiter.state().node == NodeLimiter::bracket);
-  CHECK(limiter.step({255, 118.0f, 40.0f, 20.0f}).reason == LimitReason::node_limit);
+  CHECK(limiter.step(told::parts(255, 118.0f, 40.0f, 20.0f), 0.0f).reason == LimitReason::node_limit);
   CHECK(limiter.state().node == NodeLimiter::winding);
   NodeLimiter::Config glass = NodeLimiter::Config::standard();
   glass.node[NodeLimiter::bracket] = {150.0f, 0.5f};  // metal, half way to the air
   NodeLimiter magnets(glass);
-  CHECK(magnets.step({255, 90.0f, 77.0f, 20.0f}).reason == LimitReason::node_limit);
+  CHECK(magnets.step(told::parts(255, 90.0f, 77.0f, 20.0f), 0.0f).reason == LimitReason::node_limit);
   CHECK(magnets.state().node == NodeLimiter::magnets);
   CHECK(magnets.state().node_C[NodeLimiter::bracket] == Approx(48.5f));
 }
@@ -87,17 +90,18 @@ TEST_CASE(
   } line[] = {{52.0f, 255}, {56.0f, 128}, {59.0f, 32}, {60.0f, 1}, {70.0f, 1}};
   for (const auto& at : line) {
     CAPTURE(at.body_C);
-    limiter.step({255, at.body_C, at.body_C, 20.0f});
+    limiter.step(told::parts(255, at.body_C, at.body_C, 20.0f), 0.0f);
     CHECK(static_cast<int>(limiter.ceiling()) == at.ceiling);
     CHECK(limiter.state().margin_K == 60.0f - at.body_C);
   }
-  CHECK(limiter.step({255, 52.0f, 52.0f, 20.0f}).reason == LimitReason::none);
+  CHECK(limiter.step(told::parts(255, 52.0f, 52.0f, 20.0f), 0.0f).reason == LimitReason::none);
   CHECK(limiter.state().node == NodeLimiter::none);  // at the band's lower end it is not inside
-  CHECK(limiter.step({255, 60.0f, 60.0f, 20.0f}).reason ==
+  CHECK(limiter.step(told::parts(255, 60.0f, 60.0f, 20.0f), 0.0f).reason ==
         LimitReason::node_limit);  // not above the limit yet
-  CHECK(limiter.step({255, 60.01f, 60.01f, 20.0f}).reason == LimitReason::over_temperature);
-  CHECK(limiter.step({128, 56.0f, 56.0f, 20.0f}).reason == LimitReason::none);  // as much as is granted
-  CHECK(limiter.step({0, 90.0f, 90.0f, 20.0f}).power == 0);
+  CHECK(limiter.step(told::parts(255, 60.01f, 60.01f, 20.0f), 0.0f).reason == LimitReason::over_temperature);
+  CHECK(limiter.step(told::parts(128, 56.0f, 56.0f, 20.0f), 0.0f).reason ==
+        LimitReason::none);  // as much as is granted
+  CHECK(limiter.step(told::parts(0, 90.0f, 90.0f, 20.0f), 0.0f).power == 0);
 }
 
 TEST_CASE("a node limiter before its first step, after a cut, and with what is no temperature") {
@@ -110,7 +114,7 @@ TEST_CASE("a node limiter before its first step, after a cut, and with what is n
   CHECK(limiter.state().node == NodeLimiter::none);
   CHECK(std::isnan(limiter.state().margin_K));
   for (int i = 0; i < NodeLimiter::count; ++i) CHECK(std::isnan(limiter.state().node_C[i]));
-  CHECK(limiter.step({255, 30.0f, 30.0f, 20.0f}).power == 255);
+  CHECK(limiter.step(told::parts(255, 30.0f, 30.0f, 20.0f), 0.0f).power == 255);
   CHECK(limiter.cut(LimitReason::link_silent).power == least_power());
   CHECK(limiter.cut(LimitReason::link_silent).reason == LimitReason::link_silent);
   CHECK(limiter.cut(LimitReason::link_silent, 0).power == 0);
@@ -118,14 +122,16 @@ TEST_CASE("a node limiter before its first step, after a cut, and with what is n
   const float none = detail::not_a_number();
   for (const float bad : {none, -274.0f, -273.15f, 1.0e4f, 1.0e9f}) {
     CAPTURE(bad);
-    CHECK(limiter.step({255, bad, 30.0f, 20.0f}).reason == LimitReason::temperature_not_finite);
-    CHECK(limiter.step({255, 30.0f, bad, 20.0f}).reason == LimitReason::temperature_not_finite);
+    CHECK(limiter.step(told::parts(255, bad, 30.0f, 20.0f), 0.0f).reason ==
+          LimitReason::temperature_not_finite);
+    CHECK(limiter.step(told::parts(255, 30.0f, bad, 20.0f), 0.0f).reason ==
+          LimitReason::temperature_not_finite);
     // Air that is no temperature counts as as warm as the body.
-    CHECK(limiter.step({255, 30.0f, 30.0f, bad}).power == 255);
+    CHECK(limiter.step(told::parts(255, 30.0f, 30.0f, bad), 0.0f).power == 255);
     CHECK(limiter.state().node_C[NodeLimiter::bracket] == 30.0f);
   }
-  CHECK(limiter.step({255, 9999.0f, 30.0f, 20.0f}).reason == LimitReason::over_temperature);
-  CHECK(limiter.step({255, -273.0f, -273.0f, -273.0f}).power == 255);
+  CHECK(limiter.step(told::parts(255, 9999.0f, 30.0f, 20.0f), 0.0f).reason == LimitReason::over_temperature);
+  CHECK(limiter.step(told::parts(255, -273.0f, -273.0f, -273.0f), 0.0f).power == 255);
 }
 
 TEST_CASE("a node limit out of its range is refused by name and keeps the power at its least") {
@@ -139,7 +145,8 @@ TEST_CASE("a node limit out of its range is refused by name and keeps the power 
     for (const float bad : {-0.001f, 250.01f, detail::not_a_number()}) {
       config.node[i].maximum_C = bad;
       CHECK(config.validate() == ConfigError::maximum_C);
-      CHECK(NodeLimiter(config).step({255, 30.0f, 30.0f, 20.0f}).reason == LimitReason::config_invalid);
+      CHECK(NodeLimiter(config).step(told::parts(255, 30.0f, 30.0f, 20.0f), 0.0f).reason ==
+            LimitReason::config_invalid);
     }
     config = NodeLimiter::Config::standard();
     for (const float good : {0.0f, 2.0f}) {
@@ -163,7 +170,7 @@ TEST_CASE("authority falls continuously with temperature: no threshold, no jump,
   int last = 255;
   for (int i = 0; i <= 40000; ++i) {
     const float body_C = 30.0f + 0.001f * static_cast<float>(i);
-    const int power = limiter.step({255, body_C + 5.0f, body_C, 20.0f}).power;
+    const int power = limiter.step(told::parts(255, body_C + 5.0f, body_C, 20.0f), 0.0f).power;
     if (power > last || last - power > 1) FAIL("from " << last << " to " << power << " at " << body_C);
     last = power;
   }
@@ -192,8 +199,8 @@ TEST_CASE("a certified limiter composes with an axis, faults and all") {
   Axis::Config config = Axis::Config::standard();
   CHECK(is_error(config.validate()));  // no bounds declared
   config.limiter.network = CertifiedTwoNode::Config::around(Motor::thermal(), 0.1f, 110.0f, 60.0f);
-  config.limiter.use.heat =
-      HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f}, 20.0f, 0.0f, 110.0f);
+  config.limiter.use.heat = HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(8.0f, 0.03f), {0.0038f, 0.004f},
+                                              20.0f, 0.0f, 110.0f, 5.0f);
   config.limiter.use.highest_air_C = 35.0f;
   REQUIRE(config.validate() == ConfigError::none);
   Axis axis(config);
@@ -336,7 +343,7 @@ TEST_CASE("gain times authority stays constant over power, supply and temperatur
       for (const float winding_C : {0.0f, 25.0f, 100.0f}) {
         const float body_C = 0.5f * (winding_C + 25.0f);
         AxisFacts facts = at_supply(supply_V);
-        facts.motor_C = winding_C, facts.body_C = body_C;
+        facts.motor_C = told::degrees(winding_C), facts.body_C = told::degrees(body_C);
         const int p = gain.step(static_cast<uint8_t>(power), facts);
         const double exact = tuned / authority(power, static_cast<double>(supply_V),
                                                static_cast<double>(winding_C), static_cast<double>(body_C));
@@ -357,7 +364,7 @@ TEST_CASE("behind a sine's amplitude the gain is inverse to POWER, and all else 
   CHECK(gain.step(10) == 255);
   AxisFacts facts = at_supply(6.5f);
   CHECK(gain.step(200, facts) == 60);
-  facts.motor_C = facts.body_C = 125.0f;
+  facts.motor_C = facts.body_C = told::degrees(125.0f);
   // 60 (1 + 0.00393 * 100) / (1 - 0.0011 * 100)
   CHECK(gain.step(200, facts) == 94);
 }

@@ -4,6 +4,7 @@
 // Laws and gains at the ends of what they are made for: constants that are refused, inputs that are none.
 
 #include "../catch.hpp"
+#include "limiter_inputs.hpp"
 
 #include <cmath>
 #include <limits>
@@ -34,8 +35,8 @@ void refused(const Config& good, Field Config::*field, const std::vector<Field>&
 AxisFacts facts_at(float supply_V, float motor_C = 25.0f, float body_C = 25.0f) {
   AxisFacts facts = AxisFacts::unknown();
   facts.supply_V = supply_V;
-  facts.motor_C = motor_C;
-  facts.body_C = body_C;
+  facts.motor_C = told::degrees(motor_C);
+  facts.body_C = told::degrees(body_C);
   return facts;
 }
 VoltageGain::Config voltage_gain() {
@@ -208,17 +209,19 @@ TEST_CASE("a record of a field of each width comes back as it was") {
 
 TEST_CASE("air that is left out of what an axis or a gimbal is told is not 0 degC") {
   // Said to be nothing among facts in braces: warnings as errors refuse a list that ends before it.
-  const AxisFacts facts = {255, 60.0f, 50.0f, 0.0f, {}, 13.0f, 0.0f, 0.0f, LimitReason::none};
+  const AxisFacts facts = {255,  told::degrees(60.0f), told::degrees(50.0f), 0.0f, {}, 13.0f, 0.0f,
+                           0.0f, LimitReason::none};
   CHECK(std::isnan(static_cast<float>(facts.air_C)));
   // Glass between body and air: at 0 degC it would be taken for colder than it may be.
   NodeLimiter::Config glass = NodeLimiter::Config::standard();
   glass.node[NodeLimiter::bracket] = {55.0f, 0.5f};
   NodeLimiter told(glass), left_out(glass);
-  told.step({255, 60.0f, 50.0f, 0.0f});
-  left_out.step(NodeLimiter::read(facts));
+  told.step(told::parts(255, 60.0f, 50.0f, 0.0f), 0.0f);
+  left_out.step(NodeLimiter::read(facts), 0.0f);
   CHECK(told.state().node_C[NodeLimiter::bracket] == 25.0f);
   CHECK(left_out.state().node_C[NodeLimiter::bracket] == 50.0f);  // as warm as the body
-  CHECK(left_out.step(NodeLimiter::read(facts)).power < told.step({255, 60.0f, 50.0f, 0.0f}).power);
+  CHECK(left_out.step(NodeLimiter::read(facts), 0.0f).power <
+        told.step(told::parts(255, 60.0f, 50.0f, 0.0f), 0.0f).power);
   // Thermometers that never said anything but 0 are none that were read.
   typedef AxisController<motors::Bgm2606_90t> Axis;
   typedef GimbalController<Axis> Gimbal;

@@ -3,6 +3,7 @@
 
 #include <thermopower/control/safety_limiter.hpp>
 
+#include "limiter_inputs.hpp"
 #include "near.hpp"
 
 #include <limits>
@@ -33,7 +34,8 @@ TEST_CASE("per cycle, the ceiling is the thesis's, decision by decision") {
       ceiling = 1;
     else if (motor_C > 60.0f - 30.0f * rate_K_per_s) ceiling -= ceiling > 1;
     else ceiling += ceiling < 255;
-    const auto granted = limiter.step({static_cast<uint8_t>(asked), motor_C, rate_K_per_s}, 0.03f);
+    const auto granted = limiter.step(
+        told::motor_of<decltype(limiter)>(static_cast<uint8_t>(asked), motor_C, rate_K_per_s), 0.03f);
     REQUIRE(limiter.ceiling() == ceiling);
     REQUIRE(granted.power == std::min(asked, ceiling));
     REQUIRE((granted.reason == LimitReason::none) == (asked <= ceiling && motor_C <= 60.0f));
@@ -42,12 +44,14 @@ TEST_CASE("per cycle, the ceiling is the thesis's, decision by decision") {
 
 TEST_CASE("the limiter says why") {
   tp::SafetyLimiter<tp::PerCycle> limiter;
-  CHECK(limiter.step({250, 30.0f, 0.1f}, 0.03f).reason == LimitReason::none);
-  for (int i = 0; i < 20; ++i) limiter.step({250, 59.0f, 0.5f}, 0.03f);
-  CHECK(limiter.step({250, 59.0f, 0.5f}, 0.03f).reason == LimitReason::safety_temperature);
-  CHECK(limiter.step({100, 59.0f, 0.5f}, 0.03f).reason == LimitReason::none);
-  CHECK(limiter.step({250, 59.0f, -0.1f}, 0.03f).reason == LimitReason::recovering);
-  const auto hot = limiter.step({250, 60.01f, -0.1f}, 0.03f);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(250, 30.0f, 0.1f), 0.03f).reason == LimitReason::none);
+  for (int i = 0; i < 20; ++i) limiter.step(told::motor_of<decltype(limiter)>(250, 59.0f, 0.5f), 0.03f);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(250, 59.0f, 0.5f), 0.03f).reason ==
+        LimitReason::safety_temperature);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(100, 59.0f, 0.5f), 0.03f).reason == LimitReason::none);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(250, 59.0f, -0.1f), 0.03f).reason ==
+        LimitReason::recovering);
+  const auto hot = limiter.step(told::motor_of<decltype(limiter)>(250, 60.01f, -0.1f), 0.03f);
   CHECK(hot.reason == LimitReason::over_temperature);
   CHECK(hot.power == tp::least_power());
   CHECK_FALSE(tp::is_fault(hot.reason));
@@ -56,8 +60,8 @@ TEST_CASE("the limiter says why") {
 
 TEST_CASE("at the limit and at the safety temperature itself the actuator is still safe, as programmed") {
   tp::SafetyLimiter<tp::PerCycle> limiter;
-  CHECK(limiter.step({250, 60.0f, 0.0f}, 0.03f).reason == LimitReason::none);
-  CHECK(limiter.step({250, 45.0f, 0.5f}, 0.03f).reason == LimitReason::none);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(250, 60.0f, 0.0f), 0.03f).reason == LimitReason::none);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(250, 45.0f, 0.5f), 0.03f).reason == LimitReason::none);
   CHECK(limiter.ceiling() == 255);
 }
 
@@ -77,8 +81,8 @@ TEMPLATE_TEST_CASE("a hotter history never gets more power", "[law]", tp::PerCyc
       }
       const uint8_t asked = static_cast<uint8_t>(demand(random));
       const float dt_s = step_s(random);
-      const auto less = hot.step({asked, motor_C + extra_K, rate_K_per_s}, dt_s);
-      const auto more = cool.step({asked, motor_C, rate_K_per_s}, dt_s);
+      const auto less = hot.step(told::motor_of<decltype(hot)>(asked, motor_C + extra_K, rate_K_per_s), dt_s);
+      const auto more = cool.step(told::motor_of<decltype(cool)>(asked, motor_C, rate_K_per_s), dt_s);
       REQUIRE(hot.ceiling() <= cool.ceiling());
       REQUIRE(less.power <= more.power);
       REQUIRE(more.power <= asked);
@@ -94,8 +98,8 @@ TEMPLATE_TEST_CASE("a faster rise never gets more power", "[law]", tp::PerCycle,
     tp::SafetyLimiter<TestType> slow, fast;
     for (int i = 0; i < 300; ++i) {
       const float motor_C = temperature(random), rate_K_per_s = rate(random);
-      slow.step({255, motor_C, rate_K_per_s}, 0.03f);
-      fast.step({255, motor_C, rate_K_per_s + more_rate(random)}, 0.03f);
+      slow.step(told::motor_of<decltype(slow)>(255, motor_C, rate_K_per_s), 0.03f);
+      fast.step(told::motor_of<decltype(fast)>(255, motor_C, rate_K_per_s + more_rate(random)), 0.03f);
       REQUIRE(fast.ceiling() <= slow.ceiling());
     }
   }
@@ -104,7 +108,7 @@ TEMPLATE_TEST_CASE("a faster rise never gets more power", "[law]", tp::PerCycle,
 TEST_CASE("per second, the ceiling does not depend on the loop rate; per cycle it does") {
   const auto ceiling_after = [](auto limiter, float dt_s) {
     const int steps = static_cast<int>(3.0f / dt_s + 0.5f);
-    for (int i = 0; i < steps; ++i) limiter.step({255, 55.0f, 0.5f}, dt_s);
+    for (int i = 0; i < steps; ++i) limiter.step(told::motor_of<decltype(limiter)>(255, 55.0f, 0.5f), dt_s);
     return static_cast<int>(limiter.ceiling());
   };
   const int expected = 255 - 100;  // 33.3 counts per second for three seconds
@@ -124,8 +128,8 @@ TEST_CASE("at the thesis's 30 ms both rules decide the same, to one count") {
   float motor_C = 50.0f;
   for (int i = 0; i < 20000; ++i) {
     if (i % 131 == 0) motor_C = temperature(random);
-    cycle.step({255, motor_C, 0.3f}, 0.03f);
-    second.step({255, motor_C, 0.3f}, 0.03f);
+    cycle.step(told::motor_of<decltype(cycle)>(255, motor_C, 0.3f), 0.03f);
+    second.step(told::motor_of<decltype(second)>(255, motor_C, 0.3f), 0.03f);
     // The fraction that a whole count hides shows at the ends of the range only.
     REQUIRE(std::abs(cycle.ceiling() - second.ceiling()) <= 1);
   }
@@ -135,20 +139,22 @@ TEMPLATE_TEST_CASE("what is no temperature, rate or time cuts the power and says
                    tp::PerCycle, tp::PerSecond) {
   for (const float bad : {nan_, infinite, -infinite, -300.0f}) {
     tp::SafetyLimiter<TestType> limiter;
-    const auto granted = limiter.step({200, bad, 0.0f}, 0.03f);
+    const auto granted = limiter.step(told::motor_of<decltype(limiter)>(200, bad, 0.0f), 0.03f);
     CHECK(granted.power == tp::least_power());
     CHECK(granted.reason == LimitReason::temperature_not_finite);
     CHECK(limiter.ceiling() == tp::least_power());
   }
   for (const float bad : {nan_, infinite, -infinite}) {
     tp::SafetyLimiter<TestType> limiter;
-    CHECK(limiter.step({200, 30.0f, bad}, 0.03f).power == tp::least_power());
-    CHECK(limiter.step({200, 30.0f, bad}, 0.03f).reason == LimitReason::temperature_not_finite);
+    CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, 30.0f, bad), 0.03f).power == tp::least_power());
+    CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, 30.0f, bad), 0.03f).reason ==
+          LimitReason::temperature_not_finite);
   }
   for (const float bad : {nan_, infinite, -infinite, -0.01f}) {
     tp::SafetyLimiter<TestType> limiter;
-    CHECK(limiter.step({200, 30.0f, 0.0f}, bad).power == tp::least_power());
-    CHECK(limiter.step({200, 30.0f, 0.0f}, bad).reason == LimitReason::time_invalid);
+    CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, 30.0f, 0.0f), bad).power == tp::least_power());
+    CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, 30.0f, 0.0f), bad).reason ==
+          LimitReason::time_invalid);
   }
 }
 
@@ -157,7 +163,7 @@ TEMPLATE_TEST_CASE("after a cut the power returns gradually", "", tp::PerCycle, 
   limiter.cut(LimitReason::link_silent);
   int last = tp::least_power(), cycles = 0;
   for (; limiter.ceiling() < 250; ++cycles) {
-    const auto granted = limiter.step({250, 30.0f, 0.0f}, 0.03f);
+    const auto granted = limiter.step(told::motor_of<decltype(limiter)>(250, 30.0f, 0.0f), 0.03f);
     REQUIRE(granted.power - last <= 2);
     REQUIRE(granted.power >= last);
     if (granted.power < 250) REQUIRE(granted.reason == LimitReason::recovering);
@@ -170,20 +176,20 @@ TEMPLATE_TEST_CASE("after a cut the power returns gradually", "", tp::PerCycle, 
 TEMPLATE_TEST_CASE("nobody gets more than was asked for, not even the least power", "", tp::PerCycle,
                    tp::PerSecond) {
   tp::SafetyLimiter<TestType> limiter;
-  CHECK(limiter.step({0, 30.0f, 0.0f}, 0.03f).power == 0);
-  CHECK(limiter.step({0, 30.0f, 0.0f}, 0.03f).reason == LimitReason::none);
-  CHECK(limiter.step({0, 90.0f, 0.0f}, 0.03f).power == 0);
-  CHECK(limiter.step({0, nan_, 0.0f}, 0.03f).power == 0);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(0, 30.0f, 0.0f), 0.03f).power == 0);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(0, 30.0f, 0.0f), 0.03f).reason == LimitReason::none);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(0, 90.0f, 0.0f), 0.03f).power == 0);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(0, nan_, 0.0f), 0.03f).power == 0);
   CHECK(limiter.cut(LimitReason::supply_low, 0).power == 0);
 }
 
 TEST_CASE("a step as long as a day neither overflows the ceiling nor lets it out of its range") {
   tp::SafetyLimiter<> limiter;
-  limiter.step({255, 55.0f, 0.5f}, 86400.0f);
+  limiter.step(told::motor_of<decltype(limiter)>(255, 55.0f, 0.5f), 86400.0f);
   CHECK(limiter.ceiling() == 1);
-  limiter.step({255, 30.0f, 0.0f}, 3e38f);
+  limiter.step(told::motor_of<decltype(limiter)>(255, 30.0f, 0.0f), 3e38f);
   CHECK(limiter.ceiling() == 255);
-  limiter.step({255, 55.0f, 0.5f}, 3e38f);
+  limiter.step(told::motor_of<decltype(limiter)>(255, 55.0f, 0.5f), 3e38f);
   CHECK(limiter.ceiling() == 1);
 }
 
@@ -204,9 +210,11 @@ TEST_CASE("a wrong constant of the limiter is refused by name") {
 TEMPLATE_TEST_CASE("each bound is where the description puts it", "", tp::PerCycle, tp::PerSecond) {
   tp::SafetyLimiter<TestType> limiter;
   // No time has passed: nothing moves, and it is no fault.
-  CHECK(limiter.step({200, 30.0f, 0.0f}, 0.0f).reason == LimitReason::none);
-  CHECK(limiter.step({200, -273.15f, 0.0f}, 0.03f).reason == LimitReason::none);  // absolute zero
-  CHECK(limiter.step({200, -273.2f, 0.0f}, 0.03f).reason == LimitReason::temperature_not_finite);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, 30.0f, 0.0f), 0.0f).reason == LimitReason::none);
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, -273.15f, 0.0f), 0.03f).reason ==
+        LimitReason::none);  // absolute zero
+  CHECK(limiter.step(told::motor_of<decltype(limiter)>(200, -273.2f, 0.0f), 0.03f).reason ==
+        LimitReason::temperature_not_finite);
   // A cut that nobody asked for any power for leaves the least.
   tp::SafetyLimiter<TestType> unasked;
   CHECK(unasked.cut(LimitReason::link_silent).power == tp::least_power());
@@ -223,7 +231,7 @@ TEST_CASE("the standard is the thesis's: 60 degC, 30 s, one count in 30 ms") {
   tp::SafetyLimiter<> limiter;
   CHECK(limiter.config().maximum_C == 60.0f);
   CHECK(limiter.state().ceiling == 255.0f);
-  limiter.step({255, 55.0f, 0.5f}, 0.015f);  // half a count
+  limiter.step(told::motor_of<decltype(limiter)>(255, 55.0f, 0.5f), 0.015f);  // half a count
   CHECK(std::abs(limiter.state().ceiling - 254.5f) < 1e-4f);
 }
 

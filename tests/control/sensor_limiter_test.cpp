@@ -6,6 +6,7 @@
 #include <thermopower/control/sensor_limiter.hpp>
 
 #include "../catch.hpp"
+#include "limiter_inputs.hpp"
 
 using namespace thermopower;
 
@@ -49,11 +50,12 @@ TEST_CASE("in a chain it asks for the sensor, and the other limiter for the temp
   Chain chain(Chain::Config::standard());
   AxisFacts facts = AxisFacts::unknown();
   facts.demand = 200;
-  facts.motor_C = facts.body_C = facts.air_C = 25.0f;
+  facts.motor_C = facts.body_C = told::degrees(25.0f);
+  facts.air_C = 25.0f;
   CHECK(chain.step(facts, 0.1f).reason == LimitReason::sensor_missing);
   chain.limiter<0>().measured();
   CHECK(chain.step(facts, 0.1f).power == 200);
-  facts.motor_C = facts.body_C = 90.0f;
+  facts.motor_C = facts.body_C = told::degrees(90.0f);
   CHECK(chain.step(facts, 0.1f).reason == LimitReason::over_temperature);
 }
 

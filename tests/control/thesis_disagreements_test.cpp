@@ -5,6 +5,7 @@
 #include <thermopower/control/axis_controller.hpp>
 
 #include "../actuator/thesis.hpp"
+#include "limiter_inputs.hpp"
 
 // Where the thesis's text, its tables and its program disagree, one test each.
 // docs/explain/differences-from-the-thesis.md has the same numbers.
@@ -189,7 +190,8 @@ TEST_CASE(
     "not") {
   const auto seconds_to_half = [](auto limiter, float dt_s) {
     float time_s = 0.0f;
-    for (; limiter.ceiling() > 128; time_s += dt_s) limiter.step({255, 55.0f, 0.5f}, dt_s);
+    for (; limiter.ceiling() > 128; time_s += dt_s)
+      limiter.step(told::motor_of<decltype(limiter)>(255, 55.0f, 0.5f), dt_s);
     return static_cast<double>(time_s);
   };
   CHECK(seconds_to_half(tp::SafetyLimiter<tp::PerCycle>(), 0.03f) == Near(3.81).margin(0.05));

@@ -146,8 +146,9 @@ TEST_CASE("the limiter decides as the floating-point one, but within 0.001 K of 
       continue;
     const auto demand = static_cast<std::uint8_t>(next(1, 255));
     const LimitedPower got = whole.step(demand, motor, rate, 129);
-    const LimitedPower expected =
-        real.step({demand, fixed_point::celsius_of(motor), static_cast<float>(rate_K_per_s)}, 0.033f);
+    const LimitedPower expected = real.step(
+        {demand, GuardedCelsius::unchecked(fixed_point::celsius_of(motor)), static_cast<float>(rate_K_per_s)},
+        0.033f);
     ++decisions;
     different += got.power != expected.power || got.reason != expected.reason;
   }

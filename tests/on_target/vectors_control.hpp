@@ -36,7 +36,8 @@ void run_limiter(Report& report) {
     const float motor_C = step < 100 ? 30.0f + 0.31f * static_cast<float>(step)
                                      : 61.0f - 0.17f * static_cast<float>(step - 100);
     const typename thermopower::SafetyLimiter<Rule>::Inputs inputs = {
-        static_cast<uint8_t>(25 * (1 + step % 10u)), motor_C, step < 100 ? 0.52f : -0.03f};
+        static_cast<uint8_t>(25 * (1 + step % 10u)), thermopower::GuardedCelsius::unchecked(motor_C),
+        step < 100 ? 0.52f : -0.03f};
     const thermopower::LimitedPower granted = limiter.step(inputs, 0.016f);
     report.integer(granted.power);
     report.integer(static_cast<uint8_t>(granted.reason));

@@ -9,6 +9,7 @@ import z3
 
 from header_formulas import function
 from linear import Facts, Linear
+from whole_numbers import require
 
 # What a bound may lie above its limit by rounding: less than half of the 131 units that every limit is kept low.
 INSIDE = 62
@@ -75,6 +76,9 @@ class Decision:
     def fit(self, room, size, _node):
         self.conditions.append((Linear.of(room), Linear.of(size)))
 
+    def keep(self, room, node):
+        self.fit(room, 0, node)
+
 
 class Header:
     """The functions of a network's header over one set of facts."""
@@ -93,6 +97,7 @@ class Header:
         self.functions.update({name: function(other_text, signature, name, arguments, names)
                                for name, signature, arguments in other_signatures})
         self.rooms, self.choices = [], []
+        self.rounding_units = lambda: 64
 
     def __getattr__(self, name):
         if name == "functions" or name not in self.functions:
@@ -250,6 +255,73 @@ def two_node_granted_power(text):
             (acting[net.to_air_now_.single()], step.body.heating.fraction)]:
         facts.product(argument, fraction)
     return facts.counterexample(stays_inside(net, net.carry(acting, step)))
+
+
+def least_power_outside(net, outside):
+    """Where a bound is outside of the safe set, a condition has no room: count_within() then gives 0, the least power."""
+    decision = net.largest()
+    return net.facts.counterexample(
+        z3.Implies(outside(), z3.Or(*[room < 0 for room, _ in decision.conditions])))
+
+
+def anywhere(text, other_text="", other_signatures=()):
+    """The two-node network at any bounds at all, and any constants."""
+    net = Header(text, TWO_NODE, other_text, other_signatures)
+    for name in ["base_", "gap_", "least_mean_", "winding_limit_", "mean_limit_", "lead_now_"]:
+        setattr(net, name, net.facts.variable(name))
+    for name in ["weight_", "hold_winding_", "hold_body_", "hold_mean_", "horizon_winding_", "horizon_body_"]:
+        setattr(net, name, net.facts.fraction(name))
+    sizes = Record()
+    for name in ["slow", "slow_winding", "held_winding", "jump", "held_body", "fed", "held_warmest", "held_coolest"]:
+        setattr(sizes, name, Linear())
+    for name in ["across_now_", "soak_now_", "to_air_now_", "to_air_hot_"]:
+        setattr(net, name, Linear())
+    net.sizes = net.end_sizes = lambda: sizes
+    net.winding_, net.mean_ = Bound(net.facts, "winding"), Bound(net.facts, "mean")
+    return net
+
+
+def two_node_outside(text):
+    net = anywhere(text)
+    return least_power_outside(
+        net, lambda: z3.Or(net.rooms[0].winding_left < -64, net.rooms[0].mean_left < -64))
+
+
+def coupled_outside(text, of_two):
+    net = anywhere(of_two, text, COUPLED)
+    return least_power_outside(
+        net, lambda: z3.Or(net.rooms[0].winding_left < -64, net.rooms[0].mean_left < -64))
+
+
+def one_node_outside(text):
+    net = Header(text, ONE_NODE)
+    for name in ["base_", "limit_", "to_air_now_"]:
+        setattr(net, name, net.facts.variable(name))
+    for name in ["hold_", "horizon_"]:
+        setattr(net, name, net.facts.fraction(name))
+    net.node_ = Bound(net.facts, "node")
+    return least_power_outside(net, lambda: net.limit_ - net.base_ - net.rooms[0] < -64)
+
+
+CHAIN = [("fit_hold", r"void fit_hold\(", ["self", "largest", "k"])]
+
+
+def chain_outside(text):
+    """Of any mean of a chain; largest() asks every one of them, and is_certified() the same of each."""
+    require(text, "for (uint8_t k = node_count; k-- > 0;) { const uint8_t before = largest.count; "
+            "fit_hold(largest, k);",
+            "for (uint8_t k = 0; k < node_count; ++k) if (bounds_[k].below() > fixed_.box[k]) return false; return true;")
+    net = Header(text, CHAIN)
+    box = net.facts.variable("box")
+    net.fixed_ = Record()
+    net.fixed_.box, net.fixed_.hold = {0: box}, {0: net.facts.fraction("hold")}
+    net.bounds_ = {0: Bound(net.facts, "mean")}
+    net.still_end = lambda _k: net.facts.variable("still")
+    net.end_per_count = lambda _k: net.facts.variable("end")
+    decision = Decision()
+    net.fit_hold(decision, 0)
+    return net.facts.counterexample(z3.Implies(
+        net.bounds_[0].below() > box, z3.Or(*[room < 0 for room, _ in decision.conditions])))
 
 
 def hotter(facts, before):

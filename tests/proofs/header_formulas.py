@@ -70,7 +70,7 @@ def prepared(text):
     text = text.replace("detail::", "").replace("this->", "self.").replace("CertifiedNode::", "CertifiedNode.")
     text = re.sub(r"\braise\(", "raise_(", text)
     text = re.sub(r"\b(0x[0-9a-f]+|\d+)[UuLl]+\b", r"\1", text)
-    text = re.sub(r"(?<![\w.])(room|sizes|end_sizes|settled|supply|take|carry|rounding_units|slack_units)\(", r"self.\1(", text)
+    text = re.sub(r"(?<![\w.])(room|sizes|end_sizes|settled|supply|take|carry|rounding_units|slack_units|still_end|end_per_count)\(", r"self.\1(", text)
     return text
 
 

@@ -44,6 +44,10 @@ class Linear:
     def __neg__(self):
         return self.times(-1)
 
+    def __rshift__(self, bits):
+        """Any number: nothing is known of it where only the whole is asked for."""
+        return Linear({"shifted": 1})
+
     def z3(self):
         return z3.Sum([z3.RealVal(0)] + [one * z3.Real(name) for name, one in self.terms.items()]) + self.constant
 

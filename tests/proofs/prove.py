@@ -28,7 +28,7 @@ from header_formulas import NotUnderstood  # noqa: E402
 CONTROL = os.path.join(HERE, "..", "..", "include", "thermopower", "control")
 TWO, ONE, BOUNDS, ARITHMETIC = ("certified/two_node.hpp", "certified/one_node.hpp", "certified/bounds.hpp",
                                 "certified/arithmetic.hpp")
-COUPLED = "certified/coupled_two_node.hpp"
+COUPLED, CHAIN = "certified/coupled_two_node.hpp", "certified/chain.hpp"
 
 
 def header(name, mutation=None):
@@ -92,6 +92,11 @@ CLAIMS = [
     ("both ends: granted power", [COUPLED, TWO], certified_step.coupled_granted_power, "the same for (42)"),
     ("one node: least power", [ONE], certified_step.one_node_least_power, "the same as (15)"),
     ("one node: granted power", [ONE], certified_step.one_node_granted_power, "the same as (23)"),
+    ("two nodes: outside", [TWO], certified_step.two_node_outside,
+     "as long as a bound is outside of the safe set, the answer is the least power"),
+    ("both ends: outside", [COUPLED, TWO], certified_step.coupled_outside, "the same"),
+    ("one node: outside", [ONE], certified_step.one_node_outside, "the same"),
+    ("chain: outside", [CHAIN], certified_step.chain_outside, "the same of every mean of any chain"),
     ("one node: hotter", [ONE], certified_step.one_node_hotter, "at the same heat per count, hotter is never granted more"),
     ("SafetyLimiter: hotter", ["safety_limiter.hpp"], whole_numbers.safety_limiter,
      "of two equal histories and rates the hotter one never has the higher ceiling, whatever the rounding"),
@@ -142,6 +147,10 @@ MUTANTS = [
     ("one node: cooling at the heating's pace",
      (ONE, "node_.advance(distance, distance > 0 ? step.body.heating : step.body.cooling);\n    return",
       "node_.advance(distance + distance, distance > 0 ? step.body.heating : step.body.cooling);\n    return")),
+    ("two nodes: power outside", (TWO, "largest.keep(room.winding_left + rounding_units(), CertifiedNode::winding);", "")),
+    ("both ends: power outside", (COUPLED, "largest.keep(room.mean_left + rounding_units(), CertifiedNode::body);", "")),
+    ("one node: power outside", (ONE, "largest.keep(left + rounding_units(), CertifiedNode::body);", "")),
+    ("chain: power outside", (CHAIN, "largest.keep(box - bounds_[k].below(), CertifiedNode::body);", "")),
     ("a product rounded once less", (ARITHMETIC, "return part_down(value, fraction) + 1;",
                                      "return part_down(value, fraction);")),
     ("a series that ends below", (BOUNDS, "(0.5f - x * (1.0f / 6.0f))", "(0.5f - x * (1.0f / 7.0f))")),

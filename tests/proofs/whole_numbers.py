@@ -151,12 +151,14 @@ def safety_limiter(text):
 
 def node_limiter(text):
     """NodeLimiter: a smaller margin of the nearest part never gives a higher ceiling, in floats."""
-    require(text, "const float above_least = state_.margin_K * slope_;",
+    require(text, "const float above_least = state_.margin_K * 254.0f / state_.band_K;",
+            "state_.band_K = detail::at_least(2.0f * fastest_K_per_s_ * dt_s, config_.derating_K);",
             "above_least >= 254.0f ? 255 : static_cast<uint8_t>(above_least > 0.0f ? "
             "least_power() + static_cast<uint8_t>(above_least) : least_power());",
             "const float margin_K = config_.node[i].maximum_C - state_.node_C[i]; "
             "if (margin_K < state_.margin_K) {")
-    # A product rounded to nearest does not fall when a factor grows: known of the two products, and of nothing else.
+    # A product and a quotient rounded to nearest do not fall when the margin grows, nor when the band shrinks, which is no wider for
+    # smaller rises: known of the two numbers, and of nothing else.
     near, far = z3.Reals("above_least_hot above_least_cold")
     whole = z3.ToInt
     ceiling = lambda v: z3.If(v >= 254, 255, z3.If(v > 0, 1 + whole(v), 1))

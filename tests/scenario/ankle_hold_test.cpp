@@ -83,8 +83,9 @@ struct ContinuousDerating {
   }
   int step(int demand, const Motor& motor) {
     return limiter
-        .step({static_cast<std::uint8_t>(demand), static_cast<float>(motor.winding_C),
-               static_cast<float>(motor.body_C), static_cast<float>(air_C)},
+        .step({static_cast<std::uint8_t>(demand),
+               tp::GuardedCelsius::unchecked(static_cast<float>(motor.winding_C)),
+               tp::GuardedCelsius::unchecked(static_cast<float>(motor.body_C)), static_cast<float>(air_C)},
               static_cast<float>(step_s))
         .power;
   }
@@ -98,7 +99,7 @@ struct Certified {
     config.network = tp::CertifiedTwoNodeConfig::around(model(), 0.1f, static_cast<float>(winding_limit_C),
                                                         static_cast<float>(body_limit_C));
     const auto most_W = static_cast<float>(full_W_at_20_C * (1.0 + per_K * (winding_limit_C - 20.0)));
-    config.use = {{48.0f, 1.0f, 0.0f, most_W, most_W}, static_cast<float>(hottest_air_C), 0.1f, 10.0f, 1, 0};
+    config.use = {{48.0f, 1.0f, 0.0f, most_W, most_W, 0.0f}, static_cast<float>(hottest_air_C), 0.1f, 10.0f, 1, 0};
     config.air_error_K = 2.0f;
     return config;
   }
@@ -119,8 +120,8 @@ struct CertifiedAndMeasured {
   int count = 0;
   int step(int demand, const Motor& motor) {
     if (++count % 20 == 0)
-      inner.limiter.tighten(static_cast<float>(motor.winding_C + 3.0),
-                            static_cast<float>(motor.body_C + 3.0));
+      inner.limiter.tighten(tp::GuardedCelsius::unchecked(static_cast<float>(motor.winding_C + 3.0)),
+                            tp::GuardedCelsius::unchecked(static_cast<float>(motor.body_C + 3.0)));
     return inner.step(demand, motor);
   }
 };

@@ -62,6 +62,7 @@ struct AxisMotor {
   typedef tp::CurrentModel<tp::OhmicCurrent<float>> Current;
   typedef tp::TwoNodeThermalModel<float> Thermal;
   static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+  static tp::SupplyRange supply() { return {8.0f, 13.6f}; }
   static Thermal::Config thermal() { return nominal(); }
 };
 typedef tp::CertifiedLimiter<tp::CertifiedTwoNode, tp::LinearHeat> Limiter;

@@ -52,12 +52,12 @@ static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && si
 // A whole axis and a whole gimbal of three; an ATmega328P has 2048 bytes for everything.
 typedef tp::AxisController<tp::motors::Bgm2606_90t> Axis;
 #if defined(__AVR__)
-static_assert(sizeof(Axis) <= 145, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 554,
+static_assert(sizeof(Axis) <= 162, "an axis");
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 605,
               "a gimbal: little more than a quarter of the RAM");
 #else
-static_assert(sizeof(Axis) <= 160, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 632, "a gimbal");
+static_assert(sizeof(Axis) <= 184, "an axis");
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 720, "a gimbal");
 #endif
 
 /// A motor with every balance: the monitor promises 60 bytes of it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "../measured_temperature.hpp"
 
 /// @file observer_measurement.hpp
 /// A winding as its own thermometer: R(T) = R_ref (1 + a (T - T_ref)), so voltage and current give a
@@ -10,13 +11,13 @@
 
 namespace thermopower {
 
-/// A temperature with how far it may be off.
-struct MeasuredTemperature {
+/// A winding's temperature by its resistance, to look at. An observer does not take it: how sure it is was judged by the reading itself, and
+/// noise that makes a reading colder makes it look surer.
+struct WindingReading {
   float value_C;         ///< NaN when there is none.
-  float std_K;           ///< Standard deviation of what is another in each reading, above 0.
-  float standing_std_K;  ///< Standard deviation of what is the same in all readings of this sensor, >= 0.
-  bool is_valid;  ///< False: too little voltage or current to say anything, or a reading that no winding
-                  ///< gives.
+  float std_K;           ///< As in MeasuredTemperature, judged at `value_C`.
+  float standing_std_K;  ///< As in MeasuredTemperature, judged at `value_C`.
+  bool is_valid;         ///< False: too little voltage or current to say anything, or what no winding gives.
 };
 
 /// Winding temperature from V_rms and current. A lost or broken reading is not valid; it never reads as cold.
@@ -84,13 +85,23 @@ public:
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept { return config_.validate(); }
 
-  /// @param v_rms_V     voltage at the winding  @param current_A  current in this winding alone, RMS
-  /// @param expected_C  about how warm the winding is, for how sure the reading is; NaN: as the reading says.
-  ///                    Who averages readings must say it: noise that makes a current larger makes its reading
-  ///                    colder, and would make it look surer, too
-  MeasuredTemperature measure(float v_rms_V, float current_A,
-                              float expected_C = detail::not_a_number()) const noexcept {
-    MeasuredTemperature measured = {detail::not_a_number(), detail::not_a_number(), 0.0f, false};
+  /// One reading, to look at. @param v_rms_V  voltage at the winding  @param current_A  current in this winding alone, RMS
+  WindingReading measure(float v_rms_V, float current_A) const noexcept {
+    return read(v_rms_V, current_A, detail::not_a_number());
+  }
+  /// One reading for an observer. @param expected_C  how warm the observer takes the winding to be: how sure the reading is must not
+  ///                                                 depend on the reading. Not valid when it is NaN
+  MeasuredTemperature measure(float v_rms_V, float current_A, float expected_C) const noexcept {
+    const WindingReading read = this->read(v_rms_V, current_A, expected_C);
+    return MeasuredTemperature(read.value_C, read.std_K, read.standing_std_K,
+                               read.is_valid && detail::is_finite(expected_C));
+  }
+
+  const Config& config() const noexcept { return config_; }  ///< The constants.
+
+private:
+  WindingReading read(float v_rms_V, float current_A, float expected_C) const noexcept {
+    WindingReading measured = {detail::not_a_number(), detail::not_a_number(), 0.0f, false};
     // Asked this way round so that NaN is not valid. A current under three times its noise could also be a
     // broken wire, and one near its offset makes no temperature whose error is in proportion to it.
     if (!(v_rms_V >= config_.minimum_V_rms && v_rms_V < 1.0e4f) ||
@@ -115,9 +126,6 @@ public:
     return measured;
   }
 
-  const Config& config() const noexcept { return config_; }  ///< The constants.
-
-private:
   Config config_;
   float per_ohm_, per_tempco_, current_std_A_, least_A_;
 };

@@ -141,6 +141,15 @@ public:
   bool correct_winding(const MeasuredTemperature& measured) noexcept {
     return measured.is_valid ? correct(measured, true) : reject();
   }
+  /// A reading whose uncertainty was judged by the reading itself is refused, in a sentence.
+  template <class Reading>
+  bool correct_winding(const Reading&) noexcept {
+    static_assert(
+        sizeof(Reading) == 0,
+        "thermopower: an observer takes the winding's voltage and current: correct_winding(winding, "
+        "v_rms_V, current_A); winding.measure(v_rms_V, current_A) is too sure of noise that looks cold");
+    return false;
+  }
   /// Takes in voltage and current of the winding. @return true when they were believed
   /// @param winding    what makes a temperature of them  @param v_rms_V, current_A  as its `measure()` takes them
   bool correct_winding(const WindingResistance& winding, float v_rms_V, float current_A) noexcept {

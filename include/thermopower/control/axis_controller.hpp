@@ -4,8 +4,10 @@
 
 #include "../air_celsius.hpp"
 #include "../detail/check.hpp"
+#include "../supply_range.hpp"
 #include "detail/composition.hpp"
 #include "detail/policy_call.hpp"
+#include "detail/standing_time.hpp"
 #include "gain_scheduler.hpp"
 #include "position_error.hpp"
 #include "safety_limiter.hpp"
@@ -20,15 +22,16 @@ namespace thermopower {
 /// the power of the last step heats the model, the error asks for a power, the limiter grants it, the gain
 /// follows.
 ///
-/// @tparam Motor     names `Current` and `Thermal` and gives their constants: `motors/`, or a struct of your
-/// own
+/// @tparam Motor     names `Current` and `Thermal` and gives their constants, and may declare its `supply()`: `motors/`, or a struct
+/// of your own
 /// @tparam PowerLaw  how much power an error is worth: control/step_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: control/safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: control/gain_scheduler.hpp
 ///
 /// Until the first valid step, on every fault, and for ever when `validate()` finds an error, the power is
-/// the least there is. The temperature is estimated through a fault with the last valid air and supply: the
-/// motor stays warm even if its sensor is gone.
+/// the least there is. The temperature is estimated through a fault with the last valid air, and with the
+/// highest supply where the reading is outside of the declared range: the motor stays warm even if its sensor is gone.
+/// A time that stands still, step after step for longer than the limiter vouches for (`hold_s`, or a tenth of a second), is a fault.
 ///
 /// @snippet control_examples.cpp axis
 /// How to: @ref first_axis, @ref custom_actuator. Menu: @ref policies.
@@ -60,23 +63,35 @@ public:
     typename PowerLaw::Config power_law;  ///< What an error is worth.
     typename Limiter::Config limiter;     ///< Limit temperature.
     typename Gain::Config gain;           ///< Must be set where the gain rule has one.
+    SupplyRange
+        supply;  ///< Of the motor, or must be set: a reading outside of it is a fault, and its highest heats.
 
     /// The motor's constants and every policy's standard.
     static Config standard() noexcept {
-      Config config = {Motor::current(), Motor::thermal(), PowerLaw::Config::standard(),
-                       Limiter::Config::standard(), Gain::Config::standard()};
+      Config config = {Motor::current(),
+                       Motor::thermal(),
+                       PowerLaw::Config::standard(),
+                       Limiter::Config::standard(),
+                       Gain::Config::standard(),
+                       detail::declared_supply<Motor>(0)};
       return config;
     }
-    /// `standard()` with the axis's gains.
+    /// `standard()` with the axis's gains, of a motor that declares its supply.
     static Config with_gain(const typename Gain::Config& gain) noexcept {
       Config config = standard();
       config.gain = gain;
       return config;
     }
+    /// `standard()` with the axis's gains and supply.
+    static Config with_gain(const typename Gain::Config& gain, const SupplyRange& supply) noexcept {
+      Config config = with_gain(gain);
+      config.supply = supply;
+      return config;
+    }
     /// Hands each field to an archive, in the order of a record: config_record.hpp.
     template <class Self, class Archive>
     static void each_field(Self& self, Archive& archive) {
-      archive(self.current, self.thermal, self.power_law, self.limiter, self.gain);
+      archive(self.current, self.thermal, self.power_law, self.limiter, self.gain, self.supply);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -84,14 +99,15 @@ public:
       if (!is_error(error)) error = thermal.validate();
       if (!is_error(error)) error = power_law.validate();
       if (!is_error(error)) error = limiter.validate();
-      return is_error(error) ? error : gain.validate();
+      if (!is_error(error)) error = gain.validate();
+      return is_error(error) ? error : supply.validate();
     }
   };
 
   /// What the axis decides on.
   struct Inputs {
     float error_deg;          ///< Position error, any number of turns up to a million degrees.
-    float supply_V;           ///< Amplitude of the switched supply, >= 0.
+    float supply_V;           ///< Amplitude of the switched supply, inside its declared range.
     AirCelsius<float> air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault.
     LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
   };
@@ -119,6 +135,8 @@ public:
         power_law_(config.power_law),
         limiter_(config.limiter),
         gain_(config.gain),
+        supply_(config.supply),
+        last_supply_V_(config.supply.highest_V),
         config_error_(config.validate()) {
     const State state = {0.0f,
                          0.0f,
@@ -186,23 +204,30 @@ private:
     const bool is_supply_new = !detail::is_same(inputs.supply_V, last_supply_V_);
     const bool is_air_bad = is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
     const bool is_supply_bad =
-        is_supply_new && !(detail::is_finite_positive(inputs.supply_V) || inputs.supply_V == 0.0f);
+        is_supply_new && !detail::is_within(inputs.supply_V, supply_.lowest_V, supply_.highest_V);
     if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
-    if (is_supply_new && !is_supply_bad) last_supply_V_ = inputs.supply_V;
+    // What cannot be may hide the most there is.
+    if (is_supply_new) last_supply_V_ = is_supply_bad ? supply_.highest_V : inputs.supply_V;
     const bool is_time_positive = detail::is_finite_positive(dt_s);
     state_.error_deg = wrap_deg(inputs.error_deg);
     LimitReason fault = inputs.fault;
     if (is_error(config_error_)) fault = LimitReason::config_invalid;
-    else if (!is_fault(fault))
-      fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, is_time_positive || dt_s == 0.0f);
+    else if (!is_fault(fault)) fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, dt_s);
     if (acted_power_ > state_.power) detail::tell_acted(limiter_, acted_power_, 0);
     else acted_power_ = state_.power;
     estimate_temperature(is_time_positive ? dt_s : 0.0f);
     acted_power_ = 0;
 
-    AxisFacts facts = {least_power(),       state_.motor_C, detail::body_of(thermal_, 0),
-                       state_.rate_K_per_s, last_air_C_,    last_supply_V_,
-                       state_.error_deg,    pose_deg,       state_.reason};
+    // The model's own, taken a moment ago.
+    AxisFacts facts = {least_power(),
+                       GuardedCelsius::unchecked(state_.motor_C),
+                       GuardedCelsius::body_of(thermal_),
+                       state_.rate_K_per_s,
+                       last_air_C_,
+                       last_supply_V_,
+                       state_.error_deg,
+                       pose_deg,
+                       state_.reason};
     state_.demand = detail::demanded_power(power_law_, state_.error_deg, facts, dt_s, 0);
     facts.demand = state_.demand;
     const LimitedPower granted = is_fault(fault)
@@ -215,12 +240,14 @@ private:
     return state_;
   }
 
-  LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad,
-                         bool is_time_good) const noexcept {
-    if (!is_time_good) return LimitReason::time_invalid;
+  LimitReason find_fault(float supply_V, bool is_supply_bad, bool is_air_bad, float dt_s) noexcept {
+    if (!detail::is_finite_positive(dt_s) && !(dt_s == 0.0f)) return LimitReason::time_invalid;
+    if (clock_.is_standing(limiter_, dt_s)) return LimitReason::time_stands_still;
     if (!detail::is_finite(state_.error_deg)) return LimitReason::error_not_finite;
-    if (is_supply_bad)
-      return detail::is_finite(supply_V) ? LimitReason::supply_low : LimitReason::supply_not_finite;
+    if (is_supply_bad) {
+      if (!detail::is_finite(supply_V)) return LimitReason::supply_not_finite;
+      return supply_V < supply_.lowest_V ? LimitReason::supply_low : LimitReason::supply_implausible;
+    }
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
@@ -251,11 +278,13 @@ private:
   Limiter limiter_;
   Gain gain_;
   State state_;
+  SupplyRange supply_;
   float last_air_C_ = detail::not_a_number();
-  float last_supply_V_ = 0.0f;
+  float last_supply_V_;
   bool is_started_ = false;
   uint8_t acted_power_ = 0;  // what heated_by() said
   ConfigError config_error_;
+  detail::AxisClock<Limiter> clock_;
 };
 
 }  // namespace thermopower

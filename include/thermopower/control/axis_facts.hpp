@@ -4,6 +4,7 @@
 
 #include "../air_celsius.hpp"
 #include "../detail/numeric.hpp"
+#include "guarded_celsius.hpp"
 #include "limit_reason.hpp"
 
 /// @file axis_facts.hpp
@@ -20,8 +21,8 @@ namespace thermopower {
 /// @ingroup control
 struct AxisFacts {
   uint8_t demand;           ///< Power parameter asked for; the least power while the law is being asked.
-  float motor_C;            ///< Estimated temperature of the hottest node.
-  float body_C;             ///< Estimated temperature of the coolest node that the thermal model has.
+  GuardedCelsius motor_C;   ///< Temperature of the hottest node; reads as a float.
+  GuardedCelsius body_C;    ///< Temperature of the coolest node that the thermal model has; reads as a float.
   float rate_K_per_s;       ///< dT/dt of the hottest node.
   AirCelsius<float> air_C;  ///< Air temperature; left out: NaN, not known.
   float supply_V;           ///< Supply.
@@ -32,8 +33,9 @@ struct AxisFacts {
   /// An axis of which nothing is known: the least power, NaN, no reason. Set what you know.
   static AxisFacts unknown() noexcept {
     const float unknown = detail::not_a_number();
-    const AxisFacts facts = {least_power(), unknown, unknown, unknown,          unknown,
-                             unknown,       unknown, unknown, LimitReason::none};
+    const GuardedCelsius nobody_knows;
+    const AxisFacts facts = {least_power(), nobody_knows, nobody_knows, unknown,          unknown,
+                             unknown,       unknown,      unknown,      LimitReason::none};
     return facts;
   }
 };

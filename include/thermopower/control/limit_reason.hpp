@@ -38,8 +38,14 @@ enum class LimitReason : uint8_t {
   not_obeyed = 73,            ///< The board has another power in force than it was told, or confirms none.
   supply_implausible = 74,    ///< The supply reads higher than it can be.
   sensor_missing = 75,        ///< The motor has to be measured, and is not.
+  sensor_out_of_range = 76,   ///< A thermometer reads what it cannot read where it sits: torn, shorted, or not a number.
+  sensor_too_fast = 77,       ///< A thermometer's reading jumps faster than its place can warm or cool.
+  sensor_stuck = 78,          ///< A thermometer's reading stands still while heat flows.
+  sensor_disagrees = 79,      ///< A thermometer reads colder than the model by more than declared.
   supply_above_nominal = 80,  ///< The supply reads above what was configured by more than the margin: another battery.
   board_overheated = 81,      ///< The board has stopped its motors because something is too hot, or was loaded too long.
+  sensors_exchanged = 82,     ///< Two thermometers read each other's temperature.
+  time_stands_still = 83,     ///< The time step is 0 in step after step.
 
   heat_disagrees = 90,        ///< A `ModelMonitor`: less or more heat shows than was put in, by more than the bounds explain.
   thermometer_disagrees = 91, ///< The same, and no constant change of heat, loss or air explains it: the thermometer.

@@ -32,11 +32,13 @@ struct NodeLimit {
 
 /// Limits each part of an actuator to its own temperature.
 ///
-/// The ceiling is 255 while every part is `derating_K` or more below its limit, and falls in a straight line
-/// to the least power at the limit: without a threshold, without a jump, without memory. At constant demand
-/// the actuator settles inside the band, on one power. Take it when parts have limits of their own and no
-/// bounds can be declared; with bounds, `CertifiedLimiter` needs no band. A temperature that is NaN or
-/// infinite counts as too hot.
+/// The ceiling is 255 while every part is a band or more below its limit, and falls in a straight line to the least power at the
+/// limit: without a threshold and without a jump. The band is `derating_K`, or twice what a step at full power warms a part by, whichever
+/// is wider: so no step takes more than half of what is left, and at constant demand the actuator settles inside the band, on one power, at
+/// any loop rate. How fast full power warms a part is declared (`fastest_K_per_s`), and raised where a part is seen to warm faster.
+///
+/// Take it when parts have limits of their own and no bounds can be declared; with bounds, `CertifiedLimiter` needs no band. A
+/// temperature that is NaN or infinite counts as too hot, and so does one for which SensorGuard gives a reason.
 ///
 /// @snippet control_examples.cpp node limiter
 /// How to: @ref choose_a_limiter. Menu: @ref policies.
@@ -56,33 +58,35 @@ public:
   /// What one tunes.
   struct Config {
     NodeLimit node[count];  ///< In the order of `Node`.
-    float derating_K;       ///< Width of the band below each limit. Above 0.
+    float derating_K;       ///< Least width of the band below each limit. Above 0.
+    float fastest_K_per_s;  ///< What full power warms a part by at most. Above 0.
 
-    /// Bracket 60, body 80, magnets 80, winding 120 degC; a band of 8 K. The bracket is taken as warm as the
+    /// Bracket 60, body 80, magnets 80, winding 120 degC; a band of 8 K; 25 K/s. The bracket is taken as warm as the
     /// body.
     static Config standard() noexcept {
-      const Config config = {{{60.0f, 1.0f}, {80.0f, 1.0f}, {80.0f, 0.1f}, {120.0f, 1.0f}}, 8.0f};
+      const Config config = {{{60.0f, 1.0f}, {80.0f, 1.0f}, {80.0f, 0.1f}, {120.0f, 1.0f}}, 8.0f, 25.0f};
       return config;
     }
     /// Hands each field to an archive, in the order of a record: config_record.hpp.
     template <class Self, class Archive>
     static void each_field(Self& self, Archive& archive) {
-      archive(self.node, self.derating_K);
+      archive(self.node, self.derating_K, self.fastest_K_per_s);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
       for (uint8_t i = 0; i < count; ++i)
         if (is_error(node[i].validate())) return node[i].validate();
-      return detail::require_positive(derating_K, ConfigError::derating_K);
+      return first_error(detail::require_positive(derating_K, ConfigError::derating_K),
+                         detail::require_positive(fastest_K_per_s, ConfigError::rate_per_s));
     }
   };
 
   /// What the limiter decides on.
   struct Inputs {
-    uint8_t demand;           ///< Power parameter asked for.
-    float winding_C;          ///< Estimated.
-    float body_C;             ///< Estimated; the winding's where a model has one node.
-    AirCelsius<float> air_C;  ///< Left out: NaN, which counts as as warm as the body.
+    uint8_t demand;            ///< Power parameter asked for.
+    GuardedCelsius winding_C;  ///< A model's, or one that SensorGuard let through.
+    GuardedCelsius body_C;     ///< The same; the winding's where a model has one node.
+    AirCelsius<float> air_C;   ///< Left out: NaN, which counts as as warm as the body.
   };
 
   /// What one logs.
@@ -90,21 +94,23 @@ public:
     float node_C[count];  ///< Temperature of each part.
     float margin_K;       ///< Least distance to a limit; negative above it.
     Node node;            ///< The part with that distance, when it is inside its band.
+    float band_K;         ///< Width of the band in this step.
     uint8_t ceiling;      ///< Highest power granted.
   };
 
   /// Grants the least power until the first step.
   /// @param config  constants; ask `validate()` once
-  explicit NodeLimiter(const Config& config = Config::standard()) noexcept : config_(config) {
+  explicit NodeLimiter(const Config& config = Config::standard()) noexcept
+      : config_(config), config_error_(config.validate()), fastest_K_per_s_(config.fastest_K_per_s) {
     for (uint8_t i = 0; i < count; ++i) state_.node_C[i] = detail::not_a_number();
     state_.margin_K = detail::not_a_number();
     state_.node = none;
+    state_.band_K = config.derating_K;
     state_.ceiling = least_power();
-    slope_ = 254.0f / config.derating_K;
   }
 
   /// First constant out of its range, or ConfigError::none.
-  ConfigError validate() const noexcept { return config_.validate(); }
+  ConfigError validate() const noexcept { return config_error_; }
 
   /// What it needs of an axis.
   static Inputs read(const AxisFacts& facts) noexcept {
@@ -112,26 +118,35 @@ public:
     return inputs;
   }
 
-  /// The time does not matter: the rule has no memory.
-  LimitedPower step(const Inputs& inputs, float = 0.0f) noexcept {
-    if (is_error(config_.validate())) return cut(LimitReason::config_invalid, inputs.demand);
+  /// @param dt_s  time since the last step, >= 0; the next one is taken to be as long
+  LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
+    if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
+    if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
+    const LimitReason fault =
+        is_fault(inputs.winding_C.fault()) ? inputs.winding_C.fault() : inputs.body_C.fault();
+    if (is_fault(fault)) return cut(fault, inputs.demand);
     if (!is_possible(inputs.winding_C) || !is_possible(inputs.body_C))
       return cut(LimitReason::temperature_not_finite, inputs.demand);
-    const float told_C = inputs.air_C, air_C = is_possible(told_C) ? told_C : inputs.body_C;
+    const float body_C = inputs.body_C, winding_C = inputs.winding_C, told_C = inputs.air_C,
+                air_C = is_possible(told_C) ? told_C : body_C;
     state_.margin_K = 1.0e9f;
+    float rise_K = 0.0f;
     for (uint8_t i = 0; i < count; ++i) {
       const bool is_outside = i <= body;
-      const float from_C = is_outside ? air_C : inputs.body_C,
-                  to_C = is_outside ? inputs.body_C : inputs.winding_C;
-      state_.node_C[i] = from_C + config_.node[i].fraction * (to_C - from_C);
+      const float from_C = is_outside ? air_C : body_C, to_C = is_outside ? body_C : winding_C;
+      const float node_C = from_C + config_.node[i].fraction * (to_C - from_C);
+      // False before the first step, when there is nothing to compare with.
+      if (node_C - state_.node_C[i] > rise_K) rise_K = node_C - state_.node_C[i];
+      state_.node_C[i] = node_C;
       const float margin_K = config_.node[i].maximum_C - state_.node_C[i];
       if (margin_K < state_.margin_K) {
         state_.margin_K = margin_K;
         state_.node = static_cast<Node>(i);
       }
     }
-    if (state_.margin_K >= config_.derating_K) state_.node = none;
-    const float above_least = state_.margin_K * slope_;
+    widen(rise_K, dt_s);
+    if (state_.margin_K >= state_.band_K) state_.node = none;
+    const float above_least = state_.margin_K * 254.0f / state_.band_K;
     state_.ceiling =
         above_least >= 254.0f
             ? 255
@@ -142,12 +157,13 @@ public:
       granted.power = state_.ceiling;
       granted.reason = state_.margin_K < 0.0f ? LimitReason::over_temperature : LimitReason::node_limit;
     }
+    acting_ = granted.power;
     return granted;
   }
 
   /// Least power, or the demand if that is less, for a reason found elsewhere.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
-    state_.ceiling = least_power();
+    state_.ceiling = acting_ = least_power();
     const LimitedPower least = {demand < least_power() ? demand : least_power(), reason};
     return least;
   }
@@ -161,9 +177,19 @@ private:
     return temperature_C > -273.15f && temperature_C < 1.0e4f;
   }
 
+  // What was seen in the last step, at full power. Of a small power too little is seen to multiply it up.
+  void widen(float rise_K, float dt_s) noexcept {
+    const float counts = acting_ > 32 ? static_cast<float>(acting_) : 32.0f;
+    const float full_K = rise_K * (255.0f / counts);
+    if (full_K > fastest_K_per_s_ * dt_s && dt_s > 0.0f) fastest_K_per_s_ = full_K / dt_s;
+    state_.band_K = detail::at_least(2.0f * fastest_K_per_s_ * dt_s, config_.derating_K);
+  }
+
   Config config_;
   State state_;
-  float slope_;
+  ConfigError config_error_;
+  float fastest_K_per_s_;
+  uint8_t acting_ = least_power();
 };
 
 }  // namespace thermopower

@@ -4,6 +4,7 @@
 
 #include "../detail/check.hpp"
 #include "detail/composition.hpp"
+#include "guarded_celsius.hpp"
 #include "limit_reason.hpp"
 
 /// @file control/safety_limiter.hpp
@@ -98,8 +99,8 @@ struct PerSecond {
 /// @tparam Rule  how the ceiling moves
 ///
 /// Guarantees: the power is never above the demand; above T_max it is the least; a temperature, rate or time
-/// that is NaN, infinite or impossible (below absolute zero, a negative time) counts as too hot; at equal
-/// history a hotter actuator never gets more.
+/// that is NaN, infinite or impossible (below absolute zero, a negative time) counts as too hot, and so does one for
+/// which SensorGuard gives a reason; at equal history a hotter actuator never gets more.
 ///
 /// @snippet control_examples.cpp safety limiter
 /// How to: @ref choose_a_limiter. Menu: @ref policies.
@@ -116,9 +117,9 @@ public:
 
   /// What the limiter decides on.
   struct Inputs {
-    uint8_t demand;      ///< Power parameter asked for.
-    float motor_C;       ///< Estimated temperature.
-    float rate_K_per_s;  ///< dT/dt at the power of the last step.
+    uint8_t demand;          ///< Power parameter asked for.
+    GuardedCelsius motor_C;  ///< Temperature: a model's, or one that SensorGuard let through.
+    float rate_K_per_s;      ///< dT/dt at the power of the last step.
   };
 
   /// @param config  constants; ask `validate()` once
@@ -129,8 +130,8 @@ public:
 
   /// @param dt_s  time since the last step, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
-    if (!detail::is_finite(inputs.motor_C) || inputs.motor_C < -273.15f ||
-        !detail::is_finite(inputs.rate_K_per_s))
+    if (is_fault(inputs.motor_C.fault())) return cut(inputs.motor_C.fault(), inputs.demand);
+    if (!detail::is_finite(inputs.rate_K_per_s))
       return cut(LimitReason::temperature_not_finite, inputs.demand);
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(LimitReason::time_invalid, inputs.demand);
     if (inputs.motor_C > config_.maximum_C) return cut(LimitReason::over_temperature, inputs.demand);

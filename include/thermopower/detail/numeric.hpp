@@ -165,6 +165,14 @@ inline bool is_from_zero_to(float x, float limit) noexcept {
   memcpy(&limit_bits, &limit, sizeof limit_bits);
   return bits < limit_bits;
 }
+/// True from `lowest` to `highest`, both of which must be positive; NaN is not. By bits, which order as positive numbers do.
+inline bool is_within(float x, float lowest, float highest) noexcept {
+  uint32_t bits, lowest_bits, highest_bits;
+  memcpy(&bits, &x, sizeof bits);
+  memcpy(&lowest_bits, &lowest, sizeof lowest_bits);
+  memcpy(&highest_bits, &highest, sizeof highest_bits);
+  return bits - lowest_bits <= highest_bits - lowest_bits;
+}
 /// True when both are the same to the bit: also two NaNs of a kind, but not 0 and -0.
 inline bool is_same(float left, float right) noexcept {
   uint32_t left_bits, right_bits;

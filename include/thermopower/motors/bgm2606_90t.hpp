@@ -5,6 +5,7 @@
 #include "../actuator/current_model.hpp"
 #include "../actuator/thermal_model.hpp"
 #include "../actuator/thesis_current.hpp"
+#include "../supply_range.hpp"
 
 /// @file bgm2606_90t.hpp
 /// iPower BGM2606-90T gimbal motor (roll and pitch axes of the thesis), on a printed PLA bracket, in still
@@ -47,6 +48,11 @@ struct Bgm2606_90t {
 
   /// Constants for `Current`.
   static Current::Config current() noexcept { return current_law<float>(); }
+  /// Three cells that are nearly empty to six that are full.
+  static SupplyRange supply() noexcept {
+    const SupplyRange range = {3.0f, 26.0f};
+    return range;
+  }
   /// Constants for `Thermal`.
   static Thermal::Config thermal() noexcept {
     Thermal::Config config = {heating_law<float>(), cooling_law<float>()};
@@ -79,6 +85,11 @@ struct Bgm2606_90t {
 
     /// Constants for `Current`.
     static Current::Config current() noexcept { return current_law<float>(); }
+    /// Three cells that are nearly empty to six that are full.
+    static SupplyRange supply() noexcept {
+      const SupplyRange range = {3.0f, 26.0f};
+      return range;
+    }
     /// Constants for `Thermal`.
     static Thermal::Config thermal() noexcept {
       Thermal::Config config = {heating_law<float>(), cooling_law<float>()};

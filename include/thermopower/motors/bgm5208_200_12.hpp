@@ -5,6 +5,7 @@
 #include "../actuator/current_model.hpp"
 #include "../actuator/thermal_model.hpp"
 #include "../actuator/thesis_current.hpp"
+#include "../supply_range.hpp"
 
 /// @file bgm5208_200_12.hpp
 /// iPower BGM5208-200-12 gimbal motor (yaw axis of the thesis), on a printed PLA bracket, in still laboratory
@@ -47,6 +48,11 @@ struct Bgm5208_200_12 {
 
   /// Constants for `Current`.
   static Current::Config current() noexcept { return current_law<float>(); }
+  /// Three cells that are nearly empty to six that are full.
+  static SupplyRange supply() noexcept {
+    const SupplyRange range = {3.0f, 26.0f};
+    return range;
+  }
   /// Constants for `Thermal`.
   static Thermal::Config thermal() noexcept {
     Thermal::Config config = {heating_law<float>(), cooling_law<float>()};
@@ -80,6 +86,11 @@ struct Bgm5208_200_12 {
 
     /// Constants for `Current`.
     static Current::Config current() noexcept { return current_law<float>(); }
+    /// Three cells that are nearly empty to six that are full.
+    static SupplyRange supply() noexcept {
+      const SupplyRange range = {3.0f, 26.0f};
+      return range;
+    }
     /// Constants for `Thermal`.
     static Thermal::Config thermal() noexcept {
       Thermal::Config config = {heating_law<float>(), cooling_law<float>()};
@@ -104,6 +115,11 @@ struct Bgm5208_200_12 {
     }
     /// Constants for `Current`.
     static Current::Config current() noexcept { return current_law<float>(); }
+    /// Three cells that are nearly empty to six that are full.
+    static SupplyRange supply() noexcept {
+      const SupplyRange range = {3.0f, 26.0f};
+      return range;
+    }
     /// Constants for `Thermal`.
     static Thermal::Config thermal() noexcept {
       Thermal::Config config = {heating_law<float>(), RateCooling<float>::per_minute(0.05f)};

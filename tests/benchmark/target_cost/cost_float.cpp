@@ -25,8 +25,8 @@ static void step_law() {
 template <class Rule>
 static void step_limiter() {
   static tp::SafetyLimiter<Rule> limiter;
-  const typename tp::SafetyLimiter<Rule>::Inputs inputs = {given.level, given.warm_C,
-                                                           given.power_W * 0.1f - 0.3f};
+  const typename tp::SafetyLimiter<Rule>::Inputs inputs = {
+      given.level, tp::GuardedCelsius::unchecked(given.warm_C), given.power_W * 0.1f - 0.3f};
   small_sink = limiter.step(inputs, given.elapsed_s).power;
 }
 

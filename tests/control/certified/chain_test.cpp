@@ -104,9 +104,12 @@ Declared<n> draw_bounds(Random& random) {
     declared.tempco = 0.0039;
     declared.full_W_at_0 = full_W;
     const double hottest_C = static_cast<double>(config.network.nodes[0].maximum_C);
-    config.use.heat = {12.0f, 1.0f, static_cast<float>(declared.lowest_air_C),
+    config.use.heat = {12.0f,
+                       1.0f,
+                       static_cast<float>(declared.lowest_air_C),
                        static_cast<float>(1.0001 * full_W / (1.0 + declared.tempco * declared.lowest_air_C)),
-                       static_cast<float>(1.0001 * full_W / (1.0 + declared.tempco * hottest_C))};
+                       static_cast<float>(1.0001 * full_W / (1.0 + declared.tempco * hottest_C)),
+                       0.0f};
     config.use.highest_air_C = static_cast<float>(air_C);
     config.use.hold_s = static_cast<float>(hold_s);
     config.use.horizon_s = static_cast<float>(hold_s * log_uniform(random, 1.0, 500.0));

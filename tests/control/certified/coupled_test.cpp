@@ -139,8 +139,8 @@ void run(Random& random, double beyond, Worst& worst) {
     if (is_measured && is_plan && !since.empty() && chance(random, 0.1)) {
       const Actuator& then = since[random() % since.size()];
       const unsigned which = static_cast<unsigned>(random() % 3);
-      limiter.tighten(which == 1 ? std::nanf("") : told(then.winding_C),
-                      which == 0 ? std::nanf("") : told(then.body_C));
+      limiter.tighten(GuardedCelsius::unchecked(which == 1 ? std::nanf("") : told(then.winding_C)),
+                      GuardedCelsius::unchecked(which == 0 ? std::nanf("") : told(then.body_C)));
     }
     int demand = 255;
     if (demands == 1) demand = (step / period) % 2 == 0 ? 255 : 0;
@@ -219,7 +219,7 @@ TEST_CASE("a lead that may be gone is not counted on: told, measured, cut, late,
   CertifiedLimiter<CertifiedTwoNode>::Config known = CertifiedLimiter<CertifiedTwoNode>::Config::standard();
   Coupled::Config config = {
       {{{20.0f, 20.0f}, {50.0f, 50.0f}, 0.6f, 0.2f, 250.0f, 200.0f}, 0.6f}, known.use, 0.0f};
-  config.use.heat = {13.0f, 1.0f, 0.0f, 60.0f, 30.0f};
+  config.use.heat = {13.0f, 1.0f, 0.0f, 60.0f, 30.0f, 0.0f};
   config.use.highest_air_C = 20.0f;
   config.use.hold_s = 0.02f;
   REQUIRE(config.validate() == ConfigError::none);
@@ -257,7 +257,9 @@ TEST_CASE("a lead that may be gone is not counted on: told, measured, cut, late,
       // The board gives nothing, or the clock stands still: the truth is colder than anybody thinks.
       for (int i = 0; i < 10000; ++i) run(0.0, 0.02);
       if (how == "start") limiter.start(told(actuator.winding_C), told(actuator.body_C), 20.0f);
-      else limiter.tighten(told(actuator.winding_C), told(actuator.body_C));
+      else
+        limiter.tighten(GuardedCelsius::unchecked(told(actuator.winding_C)),
+                        GuardedCelsius::unchecked(told(actuator.body_C)));
       step(0.02);
       CHECK(static_cast<double>(limiter.network().lead_K()) < 0.1);
     }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "../../catch.hpp"
+#include "../limiter_inputs.hpp"
 
 #include <cmath>
 #include <random>
@@ -30,8 +31,8 @@ struct Draw {
 CertifiedUse use_of(Draw& draw, float hottest_C) {
   CertifiedUse use;
   const float cold_W = draw.decades(0.1, 2000.0);
-  use.heat = {24.0f, draw.within(0.0, 0.05), draw.within(-30.0, 20.0), cold_W,
-              cold_W * draw.within(0.6, 1.0)};
+  use.heat = {24.0f,  draw.within(0.0, 0.05),         draw.within(-30.0, 20.0),
+              cold_W, cold_W * draw.within(0.6, 1.0), draw.within(0.1, 20.0)};
   use.highest_air_C = draw.within(static_cast<double>(use.heat.coldest_C), static_cast<double>(hottest_C));
   use.hold_s = draw.decades(0.002, 10.0);
   use.horizon_s = use.hold_s * draw.decades(1.0, 100.0);
@@ -53,7 +54,8 @@ int steps_outside(Draw& draw, const typename Limiter::Config& config, int steps)
     inputs.air_C = draw.within(0.0, 1.0) < 0.5f ? config.use.highest_air_C
                                                 : draw.within(static_cast<double>(config.use.heat.coldest_C),
                                                               static_cast<double>(config.use.highest_air_C));
-    if (draw.within(0.0, 50.0) < 1.0f) limiter.tighten(draw.within(20.0, 60.0), draw.within(20.0, 60.0));
+    if (draw.within(0.0, 50.0) < 1.0f)
+      limiter.tighten(told::degrees(draw.within(20.0, 60.0)), told::degrees(draw.within(20.0, 60.0)));
     if (draw.within(0.0, 50.0) < 1.0f)
       limiter.cut_after(LimitReason::temperature_not_finite, 255, config.use.hold_s);
     limiter.step(inputs, config.use.hold_s * (draw.within(0.0, 1.0) < 0.7f ? 1.0f : draw.within(0.0, 1.0)));
@@ -108,7 +110,7 @@ TEST_CASE("one node: the same") {
 TEST_CASE("a cut whose time is not known, said again and again, does not let the bounds creep") {
   CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
   config.network = {Bounds::around(8.0f, 0.1f), Bounds::around(80.0f, 0.1f), 1.0f, 0.2f, 110.0f, 60.0f};
-  config.use.heat = {13.0f, 1.0f, 0.0f, 20.0f, 15.0f};
+  config.use.heat = {13.0f, 1.0f, 0.0f, 20.0f, 15.0f, 0.0f};
   config.use.highest_air_C = 30.0f;
   CertifiedLimiter<> limiter(config);
   limiter.cut(LimitReason::temperature_not_finite);

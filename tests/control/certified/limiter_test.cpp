@@ -244,17 +244,21 @@ TEST_CASE("little is wasted against the best possible with the true actuator kno
 }
 
 TEST_CASE("what is wasted over random motors, the median and the worst of them") {
-  const int told = GENERATE(0, 1, 2, 3, 4);
+  const int told = GENERATE(0, 1, 2, 3, 4, 5);
   // The air is measured at every plan, and where start() is told it, from the start on.
   const bool is_air_told = told > 0;
   // A winding whose resistance does not rise: what is missing then is not the heat taken at the mean (6).
   const bool is_heat_constant = told == 2;
   // Heat and cooling taken at one winding; then also how closely winding and body are coupled at most.
   const bool is_coupled = told >= 3, is_coupling_told = told == 4;
+  // Resistance known no better than the rest; otherwise four times as well, as a meter tells it.
+  const double resistance_part = told == 5 ? 1.0 : 0.25;
   std::printf(
       "%s\ntolerance | heat granted / best possible, random motors: median | worst || best within the bounds / "
       "best possible: median || granted / best within the bounds: median | worst\n",
-      is_heat_constant   ? "air told at the start, resistance does not rise:"
+      told == 5
+          ? "air told at the start, CertifiedCoupledTwoNode, the whole tolerance on the resistance, too:"
+      : is_heat_constant ? "air told at the start, resistance does not rise:"
       : is_coupling_told ? "air told at the start, CertifiedCoupledTwoNode, highest coupling declared:"
       : is_coupled       ? "air told at the start, CertifiedCoupledTwoNode:"
       : is_air_told      ? "air told at the start:"
@@ -286,8 +290,8 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
                         static_cast<float>(winding_C),
                         static_cast<float>(body_C)};
       config.use.heat =
-          HeatBounds::ohmic(13.0f, 1.0f, around(truth.resistance_ohm, 0.25), {tempco_per_K, tempco_per_K},
-                            20.0f, 0.0f, static_cast<float>(winding_C));
+          HeatBounds::ohmic(13.0f, 1.0f, around(truth.resistance_ohm, resistance_part),
+                            {tempco_per_K, tempco_per_K}, 20.0f, 0.0f, static_cast<float>(winding_C));
       config.use.highest_air_C = 35.0f;  // it is measured: that is what bounds it
       config.air_error_K = 0.0f;
       CertifiedLimiter<> limiter(config);
@@ -307,7 +311,7 @@ TEST_CASE("what is wasted over random motors, the median and the worst of them")
       hottest.coupling_W_per_K *= 1.0 - fraction;
       hottest.winding_J_per_K *= 1.0 - fraction;
       hottest.body_J_per_K *= 1.0 - fraction;
-      hottest.resistance_ohm *= 1.0 - 0.25 * fraction;
+      hottest.resistance_ohm *= 1.0 - resistance_part * fraction;
       Truth closest = hottest;  // another: a winding as warm as the body draws more
       closest.coupling_W_per_K *= is_coupling_told ? (1.0 + fraction) / (1.0 - fraction) : 1000.0;
       Plant ours = {truth.air_C, truth.air_C}, best = ours, of_hottest = ours, of_closest = ours,

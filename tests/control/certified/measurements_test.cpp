@@ -6,6 +6,7 @@
 // shares nothing with the library.
 
 #include "../../catch.hpp"
+#include "../limiter_inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -131,8 +132,9 @@ TEST_CASE("a measurement of any instant, told at any instant, never takes a boun
         if (uniform(random, 0.0, 1.0) > often) return;
         const double off = uniform(random, 0.0, 1.0) < 0.5 ? 0.0 : uniform(random, 0.0, error_K);
         const int which = static_cast<int>(random() % 3);
-        limiter.tighten(which == 1 ? not_measured : static_cast<float>(plant.winding_C + off + 1e-4),
-                        which == 0 ? not_measured : static_cast<float>(plant.body_C + off + 1e-4));
+        limiter.tighten(
+            told::degrees(which == 1 ? not_measured : static_cast<float>(plant.winding_C + off + 1e-4)),
+            told::degrees(which == 0 ? not_measured : static_cast<float>(plant.body_C + off + 1e-4)));
       };
       plant.run(power, at_s);
       tell();
@@ -177,16 +179,16 @@ TEST_CASE("a measurement told before a step or after the one before makes no dif
                   body_C = static_cast<float>(uniform(random, -20.0, 90.0));
       const CertifiedLimiter<>::Inputs inputs = {255, 13.0f, static_cast<float>(uniform(random, 0.0, 44.0))};
       const float dt_s = static_cast<float>(d.hold_s * uniform(random, 0.1, 1.0));
-      after.tighten(winding_C, body_C);
+      after.tighten(told::degrees(winding_C), told::degrees(body_C));
       before.ceiling();
-      before.tighten(winding_C, body_C);
+      before.tighten(told::degrees(winding_C), told::degrees(body_C));
       REQUIRE(before.step(inputs, dt_s).power == after.step(inputs, dt_s).power);
       REQUIRE(before.winding_upper_C() == after.winding_upper_C());
       // Told once more after the step: nothing is lowered before time has passed.
       const float bound_C = after.winding_upper_C();
-      after.tighten(-50.0f, -50.0f);
+      after.tighten(told::degrees(-50.0f), told::degrees(-50.0f));
       REQUIRE(after.winding_upper_C() == bound_C);
-      before.tighten(-50.0f, -50.0f);
+      before.tighten(told::degrees(-50.0f), told::degrees(-50.0f));
     }
   }
 }
@@ -275,7 +277,8 @@ TEST_CASE("one node: measurements of any instant, told at any instant") {
     for (int i = 0; i < 300; ++i) {
       const double dt_s = hold_s * uniform(random, 0.2, 1.0), at_s = dt_s * uniform(random, 0.0, 1.0);
       pass(at_s);
-      if (random() % 2 == 0) limiter.tighten(static_cast<float>(T) + 1e-3f, not_measured);
+      if (random() % 2 == 0)
+        limiter.tighten(told::degrees(static_cast<float>(T) + 1e-3f), told::degrees(not_measured));
       pass(dt_s - at_s);
       if (random() % 9 == 0) air_C = uniform(random, -15.0, 40.0);
       power = limiter.step({255, 13.0f, static_cast<float>(air_C)}, static_cast<float>(dt_s)).power;

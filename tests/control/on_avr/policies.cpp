@@ -39,6 +39,7 @@ struct Motor {
   typedef CachedCurrent<OhmicCurrent<float>> Current;
   typedef ObservedThermal Thermal;
   static Current::Config current() { return {8.0f, 0.0039f, 20.0f}; }
+  static SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() {
     return {TemperatureObserverConfig::standard(constants()), 110.0f, 1, 0};
   }
@@ -46,7 +47,7 @@ struct Motor {
 
 inline CertifiedUse use() {
   const Bounds ohm = {7.6f, 8.4f}, tempco = {0.0038f, 0.0040f};
-  return {HeatBounds::ohmic(13.0f, 0.02f, ohm, tempco, 20.0f, 0.0f, 110.0f), 35.0f, 0.1f, 30.0f, 1, 0};
+  return {HeatBounds::ohmic(13.0f, 0.02f, ohm, tempco, 20.0f, 0.0f, 110.0f, 9.0f), 35.0f, 0.1f, 30.0f, 1, 0};
 }
 inline CertifiedLimiter<>::Config bounds() {
   return {CertifiedTwoNode::Config::around(constants(), 0.1f, 110.0f, 60.0f), use(), 5.0f};
@@ -62,6 +63,13 @@ inline WindingResistance::Config copper() {
   return config;
 }
 
+inline GuardedCelsius told(float temperature_C) { return GuardedCelsius::unchecked(temperature_C); }
+inline AxisFacts known() {
+  const AxisFacts facts = {demand, told(winding_C),  told(body_C), 0.0f, air_C, supply_V, 0.0f,
+                           0.0f,   LimitReason::none};
+  return facts;
+}
+
 }  // namespace
 
 #if THERMOPOWER_POLICY == 0  // nothing: what the markers, the loop and the inputs cost
@@ -72,25 +80,25 @@ static void work() { result = law.step(error_deg); }
 #elif THERMOPOWER_POLICY == 2
 static AdaptiveHoldingLaw<8> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
+  const AxisFacts facts = known();
   result = law.step(error_deg * 0.2f, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 3
 static SagAwareLaw<> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
+  const AxisFacts facts = known();
   result = law.step(error_deg, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 4
 static SafetyLimiter<> limiter;
 static void work() {
-  const SafetyLimiter<>::Inputs inputs = {demand, winding_C, 0.01f};
+  const SafetyLimiter<>::Inputs inputs = {demand, told(winding_C), 0.01f};
   result = limiter.step(inputs, cycle_s).power;
 }
 #elif THERMOPOWER_POLICY == 5
 static NodeLimiter limiter;
 static void work() {
-  const NodeLimiter::Inputs inputs = {demand, winding_C, body_C, air_C};
+  const NodeLimiter::Inputs inputs = {demand, told(winding_C), told(body_C), air_C};
   result = limiter.step(inputs, cycle_s).power;
 }
 #elif THERMOPOWER_POLICY == 6
@@ -131,7 +139,7 @@ static void work() { result = gain.step(demand); }
 #elif THERMOPOWER_POLICY == 13
 static VoltageGain gain({60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255});
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
+  const AxisFacts facts = known();
   result = gain.step(demand, facts);
 }
 #elif THERMOPOWER_POLICY == 14
@@ -144,14 +152,14 @@ static void work() {
 #elif THERMOPOWER_POLICY == 15
 static ReserveLaw<AdaptiveHoldingLaw<8>> law;
 static void work() {
-  const AxisFacts facts = {demand, winding_C, body_C, 0.0f, air_C, supply_V, 0.0f, 0.0f, LimitReason::none};
+  const AxisFacts facts = known();
   result = law.step(error_deg * 0.2f, facts, cycle_s);
 }
 #elif THERMOPOWER_POLICY == 16
 static EasedGain<VoltageGain> gain({{60.0f, 100, 13.0f, 25.0f, 0.00393f, 0.0011f, 255}, 1.5f, 3});
 static void work() {
-  const AxisFacts facts = {demand,           winding_C, body_C,           0.0f, air_C, supply_V,
-                           4.0f * error_deg, 0.0f,      LimitReason::none};
+  AxisFacts facts = known();
+  facts.error_deg = 4.0f * error_deg;
   result = gain.step(demand, facts);
 }
 #elif THERMOPOWER_POLICY == 17
@@ -159,6 +167,20 @@ static CertifiedLimiter<CertifiedCoupledTwoNode> limiter({{bounds().network, 1.1
 static void work() {
   const CertifiedLimiter<CertifiedCoupledTwoNode>::Inputs inputs = {demand, supply_V, air_C};
   result = limiter.step(inputs, cycle_s).power;
+}
+#elif THERMOPOWER_POLICY == 18 || THERMOPOWER_POLICY == 19
+static CertifiedLimiter<CertifiedChain<3>>::Config chain() {
+  CertifiedLimiter<CertifiedChain<3>>::Config config = {{}, use(), 5.0f};
+  const CertifiedChainNode nodes[3] = {
+      {{7.2f, 8.8f}, 0.9f, 110.0f}, {{36.0f, 44.0f}, 1.8f, 80.0f}, {{72.0f, 88.0f}, 0.18f, 60.0f}};
+  for (uint8_t k = 0; k < 3; ++k) config.network.nodes[k] = nodes[k];
+  return config;
+}
+static CertifiedLimiter<CertifiedChain<3>> limiter(chain());
+static void work() {  // of the second, no step is as long as another
+  const CertifiedLimiter<CertifiedChain<3>>::Inputs inputs = {demand, supply_V, air_C};
+  const float more_s = THERMOPOWER_POLICY == 19 ? 1.0e-5f * static_cast<float>(call & 15) : 0.0f;
+  result = limiter.step(inputs, cycle_s + more_s).power;
 }
 #else                         // the whole: three axes, each with observer and certified limiter
 struct GainTable {
@@ -169,19 +191,19 @@ struct GainTable {
 const uint8_t GainTable::entries[2] thermopower_flash = {24, 2};
 typedef AxisController<Motor, StepPowerLaw<>, CertifiedLimiter<>, GainScheduler<TableGain<GainTable>>> Axis;
 // What docs/explain/certified-limiter.md says of an axis's RAM.
-static_assert(sizeof(Axis) == 432, "an axis");
-static_assert(sizeof(CertifiedLimiter<>) == 169 && sizeof(CertifiedTwoNode) == 108,
+static_assert(sizeof(Axis) == 454, "an axis");
+static_assert(sizeof(CertifiedLimiter<>) == 182 && sizeof(CertifiedTwoNode) == 118,
               "its limiter, and the bounds in it");
 static_assert(sizeof(Motor::Thermal) == 186 && sizeof(TemperatureObserver) == 151, "and the observer");
 static_assert(sizeof(Motor::Current) == 23 && sizeof(Axis::State) == 29, "its current; what it logs");
 // Temperatures move in seconds: each axis observes in one of its steps of `every`, plans in the next and
 // measures in a third.
-static const uint8_t every = THERMOPOWER_POLICY == 19 ? 9 : 3;
+static const uint8_t every = THERMOPOWER_POLICY == 21 ? 9 : 3;
 static Axis::Config axis_config(uint8_t axis) {
   Axis::Config config = Axis::Config::standard();
   config.limiter = bounds();
   config.limiter.use.every = config.thermal.every = every;
-  config.limiter.use.phase = THERMOPOWER_POLICY == 19 ? static_cast<uint8_t>(3 * axis) : 0;
+  config.limiter.use.phase = THERMOPOWER_POLICY == 21 ? static_cast<uint8_t>(3 * axis) : 0;
   config.thermal.phase = static_cast<uint8_t>(config.limiter.use.phase + 1);
   return config;
 }
@@ -194,7 +216,7 @@ static void step(Axis& axis, float dt_s) {
   result = state.power;
   if (is_fault(state.reason)) GPIOR1 = 1;
 }
-static MeasuredTemperature measured = {0.0f, 1.0f, 0.0f, false};
+static MeasuredTemperature measured = MeasuredTemperature::unchecked(NAN, 1.0f, 0.0f);
 static void measure(const Axis& axis) {
   measured = winding.measure(8.0f, current_A, axis.thermal().observer().state().winding_C);
 }
@@ -204,7 +226,7 @@ static void correct(Axis& axis) {
   measured.is_valid = false;
 }
 static Axis& axis_of(uint8_t index) { return index == 0 ? roll : (index == 1 ? pitch : yaw); }
-#if THERMOPOWER_POLICY == 19  // all three in every cycle of 10 ms
+#if THERMOPOWER_POLICY == 21  // all three in every cycle of 10 ms
 static void work() {
   step(roll, cycle_s);
   step(pitch, cycle_s);

@@ -106,6 +106,7 @@ TEST_CASE("air that is left out is not 0 degC") {
     typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
     typedef tp::ThermalModel<> Thermal;
     static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+    static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
     static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
   };
   typedef tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::NoGain> Axis;
@@ -115,7 +116,10 @@ TEST_CASE("air that is left out is not 0 degC") {
   CHECK(axis.state().power == tp::least_power());
   // To the others air that is not known is the warmest there is: never more power than any air gives.
   tp::NodeLimiter nodes;
-  CHECK(nodes.step({255, 90.0f, 57.0f, {}}).power <= nodes.step({255, 90.0f, 57.0f, 25.0f}).power);
+  const tp::GuardedCelsius winding_C = tp::GuardedCelsius::unchecked(90.0f),
+                           body_C = tp::GuardedCelsius::unchecked(57.0f);
+  CHECK(nodes.step({255, winding_C, body_C, {}}, 0.03f).power <=
+        nodes.step({255, winding_C, body_C, 25.0f}, 0.03f).power);
   const tp::TwoNodeForecast forecast(hoist(), {60.0f, 50.0f, {}}, 5.0f);
   CHECK(std::isnan(forecast.seconds_to({100.0f, 60.0f})));
 }
@@ -218,6 +222,7 @@ TEST_CASE("the observer in the place of a thermal model") {
     typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
     typedef tp::ObservedThermal Thermal;
     static Current::Config current() { return {6.0f, 0.00393f, 20.0f}; }
+    static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
     static Thermal::Config thermal() {
       return {tp::TemperatureObserverConfig::standard(hoist()), 100.0f, 1, 0};  // its limit; in every step
     }

@@ -17,6 +17,7 @@ struct Motor {
   typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
   typedef tp::TwoNodeThermalModel<> Thermal;
   static Current::Config current() { return {6.0f, 0.00393f, 20.0f}; }
+  static tp::SupplyRange supply() { return {1.0f, 30.0f}; }
   static Thermal::Config thermal() { return {8.0f, 80.0f, 1.0f, {0.2f}}; }
 };
 
@@ -100,29 +101,58 @@ TEST_CASE("power laws: levels, and the laws around them") {
   CHECK(learned > 10.0f);
 }
 
+TEST_CASE("the range of a supply") {
+  typedef tp::AxisController<Motor> Axis;
+  //! [supply range]
+  const tp::SupplyRange supply = {11.0f,
+                                  12.6f};  // three cells, empty and full; what reads otherwise is no supply
+  Axis axis(Axis::Config::with_gain({24.0f, 4.0f}, supply));
+  const tp::LimitReason open_pin = axis.step({0.5f, 0.0f, 25.0f, tp::LimitReason::none}, 0.03f).reason;
+  //! [supply range]
+  CHECK(open_pin == tp::LimitReason::supply_low);
+}
+
 TEST_CASE("limiters: the ceiling, the nodes, the sensor, and all of them") {
   //! [safety limiter]
   tp::SafetyLimiter<tp::PerSecond> limiter;  // 60 degC, 30 s: eq 4.23. PerCycle moves by a count per call
-  const tp::LimitedPower granted = limiter.step({200, 61.0f, 0.1f}, 0.03f);  // demand, degC, K/s; s
+  const tp::ThermalModel<> motor({{18.0f}, {0.05f}}, 61.0f);  // its estimate; of a sensor: SensorGuard
+  const tp::LimitedPower granted =
+      limiter.step({200, tp::GuardedCelsius::hottest_of(motor), 0.1f}, 0.03f);  // demand, degC, K/s; s
   // granted.power, and granted.reason where that is less than the demand
   //! [safety limiter]
   CHECK(granted.power == tp::least_power());
   CHECK(granted.reason == tp::LimitReason::over_temperature);
   tp::SafetyLimiter<tp::PerCycle> programmed;
-  CHECK(programmed.step({255, 50.0f, 1.0f}, 0.03f).power ==
-        254);  // 50 + 30 s * 1 K/s is above 60: a count down
+  // 50 + 30 s * 1 K/s is above 60: a count down
+  CHECK(programmed.step({255, tp::GuardedCelsius::unchecked(50.0f), 1.0f}, 0.03f).power == 254);
 
   //! [node limiter]
   tp::NodeLimiter::Config config = tp::NodeLimiter::Config::standard();
   config.node[tp::NodeLimiter::bracket] = {55.0f,
                                            0.7f};  // softens at 55 degC; 70 % of the way from air to body
   tp::NodeLimiter nodes(config);
-  const tp::LimitedPower given = nodes.step({255, 70.0f, 62.0f, 25.0f});  // demand, winding, body, air
+  const tp::GuardedCelsius winding_C = tp::GuardedCelsius::unchecked(70.0f);  // or from a model, or a guard
+  const tp::GuardedCelsius body_C = tp::GuardedCelsius::unchecked(62.0f);
+  const tp::LimitedPower given = nodes.step({255, winding_C, body_C, 25.0f}, 0.03f);
   // nodes.state().node is the part that is nearest to its limit
   //! [node limiter]
   CHECK(nodes.state().node == tp::NodeLimiter::bracket);
   const double margin_K = 55.0 - (25.0 + 0.7 * (62.0 - 25.0));
   CHECK(given.power == static_cast<int>(1.0 + std::floor(254.0 * margin_K / 8.0)));
+
+  //! [sensor guard]
+  tp::SensorGuard guard;                                                         // a thermistor on a housing
+  const tp::TwoNodeThermalModel<> model({120.0f, 900.0f, 1.9f, {0.8f}}, 30.0f);  // not corrected by it
+  const tp::GuardedCelsius housing_C = guard.step({29.5f, model.state().body_C}, 0.1f);
+  const tp::GuardedCelsius torn_C = guard.step({-88.6f, model.state().body_C}, 60.0f);
+  const tp::MeasuredTemperature for_observer =
+      guard.measured(0.5f, 1.0f);  // not valid while the cable is torn
+  // torn_C is NaN, and torn_C.reason() says why; every limiter answers it with the least power
+  //! [sensor guard]
+  CHECK(housing_C == 29.5f);
+  CHECK(std::isnan(torn_C));
+  CHECK_FALSE(for_observer.is_valid);
+  CHECK(torn_C.reason() == tp::LimitReason::sensor_out_of_range);
 
   //! [sensor limiter]
   tp::SensorLimiter sensor;  // no power without a measurement in ten seconds
@@ -216,7 +246,7 @@ TEST_CASE("the certified limiter: bounds instead of constants") {
 
   //! [certified measurement]
   // A reading, and its largest error: the bounds come down to it.
-  limiter.tighten(30.0f + 2.0f, 28.0f + 2.0f);
+  limiter.tighten(tp::GuardedCelsius::unchecked(30.0f + 2.0f), tp::GuardedCelsius::unchecked(28.0f + 2.0f));
   limiter.step({1, 12.0f, 25.0f}, 0.1f);
   //! [certified measurement]
   CHECK(limiter.winding_upper_C() <= 33.0f);

@@ -53,6 +53,8 @@ struct HeatBounds {
   float coldest_C;     ///< The winding is never colder: the coldest air. -60 .. 100 degC.
   float heat_when_cold_W;  ///< Highest heat at `coldest_C`. Above 0.
   float heat_when_hot_W;   ///< Highest heat at the winding's limit. Above 0, not above `heat_when_cold_W`.
+  float
+      lowest_supply_V;  ///< A reading below this is no supply, and counts as the highest. 0: no reading is used.
 
   /// For a winding that follows Ohm's law.
   /// @param highest_supply_V  V
@@ -63,13 +65,17 @@ struct HeatBounds {
   /// @param reference_C       where the resistance was measured
   /// @param coldest_C         see the field
   /// @param hottest_C         the winding's limit
+  /// @param lowest_supply_V   see the field
   static HeatBounds ohmic(float highest_supply_V, float supply_error, const Bounds& resistance_ohm,
-                          const Bounds& tempco_per_K, float reference_C, float coldest_C,
-                          float hottest_C) noexcept {
+                          const Bounds& tempco_per_K, float reference_C, float coldest_C, float hottest_C,
+                          float lowest_supply_V = 0.0f) noexcept {
     const float at_reference_W = highest_supply_V * highest_supply_V / resistance_ohm.lowest;
-    const HeatBounds heat = {highest_supply_V, supply_error, coldest_C,
+    const HeatBounds heat = {highest_supply_V,
+                             supply_error,
+                             coldest_C,
                              at_reference_W / resistance_ratio(tempco_per_K, coldest_C - reference_C),
-                             at_reference_W / resistance_ratio(tempco_per_K, hottest_C - reference_C)};
+                             at_reference_W / resistance_ratio(tempco_per_K, hottest_C - reference_C),
+                             lowest_supply_V};
     return heat;
   }
 
@@ -77,7 +83,7 @@ struct HeatBounds {
   template <class Self, class Archive>
   static void each_field(Self& self, Archive& archive) {
     archive(self.highest_supply_V, self.supply_error, self.coldest_C, self.heat_when_cold_W,
-            self.heat_when_hot_W);
+            self.heat_when_hot_W, self.lowest_supply_V);
   }
   /// First constant out of its range, or ConfigError::none.
   ConfigError validate() const noexcept {
@@ -92,7 +98,9 @@ struct HeatBounds {
     if (is_error(detail::require_positive(heat_when_hot_W, ConfigError::heat_when_hot_W)) ||
         heat_when_hot_W > heat_when_cold_W)
       return ConfigError::heat_when_hot_W;
-    return ConfigError::none;
+    // Asked this way round so that NaN is refused.
+    return lowest_supply_V >= 0.0f && lowest_supply_V < highest_supply_V ? ConfigError::none
+                                                                         : ConfigError::lowest_supply_V;
   }
 
 private:
@@ -193,6 +201,78 @@ struct CertifiedTravel {
   }
 };
 
+/// The same in whole numbers, for steps within a hold: a step length that was never seen before costs an 8-bit chip a quarter of what
+/// it costs in floats. The polynomials are those of CertifiedTravel, each rounding to the safe side.
+///
+/// @snippet control_examples.cpp certified parts
+/// How to: @ref explain_certified_limiter.
+/// @ingroup control
+class CertifiedPace {
+public:
+  /// @param way  the fastest rate times the hold; from one up nothing is known here, and `is_known()` is false
+  void set(float way) noexcept {
+    shift_ = 0;
+    float mantissa = way * 65536.0f;
+    if (!(mantissa > 0.0f && mantissa < 65000.0f)) {
+      shift_ = unknown();
+      return;
+    }
+    while (mantissa < 32000.0f && shift_ < 30) {
+      mantissa += mantissa;
+      ++shift_;
+    }
+    mantissa_ = static_cast<uint16_t>(mantissa * (1.0f + detail::float_margin()) + 1.0f);
+  }
+  /// Whether the hold is shorter than the time constant.
+  bool is_known() const noexcept { return shift_ != unknown(); }
+
+  /// @param part     the step's length in 2^-16 of a hold, not below the truth, and above it by no more than three; at most 65535
+  /// @param slowest  the slowest rate as a part of the fastest, not above the truth
+  CertifiedTravel over(uint16_t part, detail::UnitFraction slowest) const noexcept {
+    const uint32_t fast = shifted(detail::product(mantissa_, part)) + 1u;
+    // Both factors less what they were rounded up by.
+    const uint32_t low =
+        shifted(detail::product(static_cast<uint16_t>(mantissa_ - 2u),
+                                part > 3 ? static_cast<uint16_t>(part - 3u) : static_cast<uint16_t>(0)));
+    const uint32_t slow = detail::product(static_cast<uint16_t>(low >> 16), slowest) +
+                          (detail::product(static_cast<uint16_t>(low), slowest) >> 16);
+    const CertifiedTravel travel = {above(fast), below(slow)};
+    return travel;
+  }
+
+private:
+  static constexpr uint8_t unknown() { return 255; }
+  // Bytes first: an 8-bit chip shifts bit by bit.
+  uint32_t shifted(uint32_t product) const noexcept {
+    return shift_ < 8 ? product >> shift_ : (product >> 8) >> (shift_ - 8);
+  }
+  // x - x^2/2 + x^3/6, not below it.
+  static detail::FineFraction above(uint32_t x) noexcept {
+    const uint16_t floor = static_cast<uint16_t>(x >> 16);
+    if (floor >= 65534u) return 0xffffffffUL;
+    const uint16_t ceiling = static_cast<uint16_t>(floor + 1u);
+    const uint32_t square = detail::product(floor, floor), most = square + floor + ceiling;
+    // Up to 1/64 a sixth of x is less than 1/256.
+    const uint32_t cubed =
+        floor < 1024u
+            ? (most >> 8) + 1u
+            : detail::product(
+                  static_cast<uint16_t>(
+                      (detail::product(static_cast<uint16_t>((most >> 16) + 1u), ceiling) >> 16) + 1u),
+                  10923u);
+    return x - (square >> 1) + cubed;
+  }
+  // x - x^2/2, not above it.
+  static detail::FineFraction below(uint32_t x) noexcept {
+    const uint16_t ceiling = static_cast<uint16_t>((x >> 16) + 1u);
+    const uint32_t half_square = (detail::product(ceiling, ceiling) >> 1) + 1u;
+    return x > half_square ? x - half_square : 0u;
+  }
+
+  uint16_t mantissa_ = 0;
+  uint8_t shift_ = 255;
+};
+
 /// How much less heat a warm winding takes: a chord over 1/R(T), which is convex, so the chord lies above it.
 ///
 /// @snippet control_examples.cpp certified parts
@@ -248,6 +328,12 @@ struct CertifiedCount {
   CertifiedNode node;         ///< `none` at 254.
   detail::KelvinUnits apart;  ///< What the winding has to hand on beyond the least power's; 0 with one node.
 
+  /// Leaves nothing where there is no room. @param room  of what must be inside already
+  void keep(int32_t room, CertifiedNode which) noexcept {
+    if (room >= 0) return;
+    count = 0;
+    node = which;
+  }
   /// Lowers the count to how often `size` goes into `room`.
   void fit(int32_t room, int32_t size, CertifiedNode which) noexcept {
     const uint8_t fitting = detail::count_within(room, size, count);

@@ -138,14 +138,15 @@ public:
   void advance(uint8_t count, const Travel& step, const CertifiedMeasurement&) noexcept {
     carry(count, step);
   }
-  /// Carries the bounds over an unknown time of at most one hold.
-  void advance_unknown(uint8_t count) noexcept {
+  /// Carries bounds that were set at any instant of the step over the rest of it, however long that is.
+  void advance_from_start(uint8_t count, const Travel& step) noexcept {
     detail::UpperBound before[node_count];
     for (uint8_t k = 0; k < node_count; ++k) before[k] = bounds_[k];
-    take_highest_heat();  // the hold for which it was taken may be over
-    carry(count, travel(hold_s_));
+    carry(count, step);
     for (uint8_t k = 0; k < node_count; ++k) bounds_[k].raise(before[k]);
   }
+  /// Carries the bounds over an unknown time of at most one hold.
+  void advance_unknown(uint8_t count) noexcept { advance_from_start(count, travel(hold_s_)); }
 
   /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
   void set_air(float air_C) noexcept {
@@ -170,22 +171,19 @@ public:
     tested_ = 0;
   }
 
-  /// The largest count that is bearable for the horizon, and safe for ever after the next hold. (36)
+  /// The largest count that is bearable for the horizon, and safe for ever after the next hold; 0, the least power, as long as any bound is
+  /// outside of the safe set. (36)
   CertifiedCount largest() noexcept {
     CertifiedCount largest = {254, CertifiedNode::none, 0};
     limiting_ = node_count;
-    if (!ends_in_box(254)) {
-      // Eight halvings; whether the answer is the very largest matters to nobody's safety.
-      uint8_t fits = 0, too_much = 254;
-      while (too_much - fits > 1) {
-        const uint8_t middle = static_cast<uint8_t>((fits + too_much) / 2);
-        if (ends_in_box(middle)) fits = middle;
-        else too_much = middle;
-      }
-      largest.count = fits;
-      ends_in_box(too_much);
-      largest.node = limiting_ == 0 ? CertifiedNode::winding : CertifiedNode::body;
+    Ahead ahead = {air_, 0};
+    for (uint8_t k = node_count; k-- > 0;) {
+      const uint8_t before = largest.count;
+      fit_hold(largest, k);
+      fit_horizon(largest, k, ahead);
+      if (largest.count < before) limiting_ = fixed_.cause[k];
     }
+    if (limiting_ < node_count) largest.node = limiting_ == 0 ? CertifiedNode::winding : CertifiedNode::body;
     tested_ = largest.count;
     return largest;
   }
@@ -361,8 +359,7 @@ private:
     const detail::KelvinUnits profile = settled(k, count) + over;
     if (!is_short) return profile;
     const detail::KelvinUnits gained =
-        bounds_[k].above() +
-        detail::times(detail::part_up(fixed_.gain[k], heat_[k]), static_cast<uint8_t>(count + 1));
+        bounds_[k].above() + detail::times(gained_per_count(k), static_cast<uint8_t>(count + 1));
     return gained < profile ? gained : profile;
   }
 
@@ -374,21 +371,44 @@ private:
            detail::times(detail::part_up(fixed_.towards[k], heat_[k]), static_cast<uint8_t>(count + 1));
   }
 
-  bool ends_in_box(uint8_t count) noexcept {
-    return ends_in_box(count, fixed_.hold, true) && ends_in_box(count, fixed_.horizon, false);
+  // What the count must leave of one mean for one hold: what the proof rests on. Its neighbours are at the most that a hold of the count
+  // makes of them, so that all of it is linear in the count. (36)
+  void fit_hold(CertifiedCount& largest, uint8_t k) const noexcept {
+    const detail::KelvinUnits box = fixed_.box[k], now = bounds_[k].above(), left = box - now;
+    // Outside: the least power, until all are inside.
+    largest.keep(box - bounds_[k].below(), CertifiedNode::body);
+    // A fraction that stands for a whole lacks 2^-16 of the way.
+    const detail::KelvinUnits still = still_end(k);
+    const detail::KelvinUnits held = detail::part_up(end_per_count(k), fixed_.hold[k]);
+    const detail::KelvinUnits kept = left - (left >> 16) - 2 - held;
+    largest.fit(kept + detail::part_down(now - still, fixed_.hold[k]), held, CertifiedNode::body);
   }
-  bool ends_in_box(uint8_t count, const detail::UnitFraction* part, bool is_short) noexcept {
-    const detail::KelvinUnits over = excess(count);
-    detail::KelvinUnits most[node_count];
-    for (uint8_t k = 0; k < node_count; ++k) most[k] = this->most(k, count, over, is_short);
-    for (uint8_t k = 0; k < node_count; ++k) {
-      const detail::KelvinUnits now = bounds_[k].above(), distance = end_of(k, count, most) - now;
-      if (distance > 0 && now + detail::part_up(distance, part[k]) > fixed_.box[k]) {
-        limiting_ = fixed_.cause[k];
-        return false;
-      }
-    }
-    return true;
+  // Where a mean is after the horizon: a temperature, and what each count adds to it.
+  struct Ahead {
+    detail::KelvinUnits still, per_count;
+  };
+  // The same for the horizon, each mean on its way to the one behind it. How authority falls; not needed for safety.
+  void fit_horizon(CertifiedCount& largest, uint8_t k, Ahead& ahead) const noexcept {
+    const detail::KelvinUnits now = bounds_[k].above();
+    const detail::KelvinUnits apart = settle(k) - (k + 1 < node_count ? settle(k + 1) : 0);
+    ahead.still = now - detail::part_down(now - ahead.still, fixed_.horizon[k]);
+    ahead.per_count = detail::part_up(ahead.per_count + apart, fixed_.horizon[k]);
+    largest.fit(fixed_.box[k] - ahead.still - ahead.per_count, ahead.per_count, CertifiedNode::body);
+  }
+  // Where a mean goes while its neighbours stay where they are, without heat.
+  detail::KelvinUnits still_end(uint8_t k) const noexcept {
+    const detail::KelvinUnits after = k + 1 < node_count ? bounds_[k + 1].above() : air_;
+    const detail::KelvinUnits before = k > 0 ? bounds_[k - 1].above() : after;
+    return fixed_.end(k, before, after);
+  }
+  // What a count adds to that: its own heat, and what the neighbours gain in a hold.
+  detail::KelvinUnits end_per_count(uint8_t k) const noexcept {
+    const detail::KelvinUnits after = k + 1 < node_count ? gained_per_count(k + 1) : 0;
+    const detail::KelvinUnits before = k > 0 ? gained_per_count(k - 1) : after;
+    return fixed_.end(k, before, after) + detail::part_up(fixed_.towards[k], heat_[k]);
+  }
+  detail::KelvinUnits gained_per_count(uint8_t k) const noexcept {
+    return detail::part_up(fixed_.gain[k], heat_[k]);
   }
 
   // A node is taken for no colder than the air (13), and a mean for no hotter than the one before it.

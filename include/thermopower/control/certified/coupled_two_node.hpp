@@ -136,6 +136,15 @@ public:
     forget_lead();
   }
 
+  /// Carries bounds that were set at any instant of the step over the rest of it, however long that is. Of the lead nothing is known.
+  void advance_from_start(uint8_t count, const Travel& step) noexcept {
+    const detail::UpperBound winding = winding_, mean = mean_;
+    if (step.is_late) CertifiedTwoNode::advance(count, step, CertifiedMeasurement());
+    else carry(count, step);
+    winding_.raise(winding);
+    mean_.raise(mean);
+    forget_lead();
+  }
   /// Carries the bounds over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
@@ -177,6 +186,9 @@ public:
     const detail::KelvinUnits rise = across_now_ + soak_now_;
     const detail::KelvinUnits spare_warmest = room.mean - room.weighted,
                               spare_coolest = room.mean - detail::part_up(room.mean + lead_now_, weight_);
+    // Outside of the safe set: the least power, until both are inside.
+    largest.keep(room.winding_left + rounding_units(), CertifiedNode::winding);
+    largest.keep(room.mean_left + rounding_units(), CertifiedNode::body);
     // Horizon: how authority falls. Not needed for safety.
     const detail::KelvinUnits lost_warmest =
         detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);

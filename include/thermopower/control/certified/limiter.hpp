@@ -99,8 +99,9 @@ public:
     /// horizon 30 s, air +-5 K.
     static Config standard() noexcept {
       const float unset = detail::not_a_number();
-      const Config config = {
-          Network::Config::standard(), {{unset, 1.0f, unset, unset, unset}, unset, 0.1f, 30.0f, 1, 0}, 5.0f};
+      const Config config = {Network::Config::standard(),
+                             {{unset, 1.0f, unset, unset, unset, 0.0f}, unset, 0.1f, 30.0f, 1, 0},
+                             5.0f};
       return config;
     }
     /// Hands each field to an archive, in the order of a record: config_record.hpp.
@@ -136,7 +137,7 @@ public:
   /// What the limiter decides on.
   struct Inputs {
     uint8_t demand;           ///< Power parameter asked for.
-    float supply_V;           ///< Measured supply; NaN counts as the highest.
+    float supply_V;           ///< Measured supply; outside of its declared range it counts as the highest.
     AirCelsius<float> air_C;  ///< Measured air; NaN, or left out, counts as the highest.
   };
 
@@ -169,16 +170,25 @@ public:
                           ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
                           : detail::not_a_number()),
         count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
+        least_squared_(least_squared(config.use.heat)),
         config_error_(config.validate()),
         every_(config.use.every),
-        turn_(config.use.phase) {}
+        turn_(config.use.phase),
+        is_limiting_(false),
+        is_start_new_(false) {}
 
   /// First constant out of its range, or ConfigError::none. Anything but none keeps the power at its least.
   ConfigError validate() const noexcept { return config_error_; }
 
   /// Says how warm the actuator is, when that is known better than "at its limits".
   /// @param winding_C, body_C  never below the truth. NaN: at the limits. Below the air counts as the air.
-  void start(float winding_C, float body_C) noexcept { network_.start(winding_C, body_C); }
+  /// Call it before or after a step, the result is the same: the time that the next step is told may lie before or after this instant.
+  void start(float winding_C, float body_C) noexcept {
+    network_.start(winding_C, body_C);
+    measured_ = CertifiedMeasurement();
+    forget_time();
+    is_start_new_ = true;
+  }
   /// The same, with the air measured now: as in a step it may be warmer by `air_error_K`, until the first plan.
   /// Without it the air counts as its highest until then, and a cold actuator as warm as that would have made it.
   /// @param air_C  measured air; NaN: its highest
@@ -198,8 +208,10 @@ public:
   /// together; a fault whose time is not known (`cut()`) forgets it.
   /// @param winding_upper_C, body_upper_C  never below the truth: the reading plus its largest error; with an
   ///                                       observer's estimate plus k sigmas the guarantee holds as often as that
-  ///                                       is above the truth. NaN where nothing was measured
-  void tighten(float winding_upper_C, float body_upper_C) noexcept {
+  ///                                       is above the truth: `SensorGuard::upper()`,
+  ///                                       `GuardedCelsius::winding_upper_of()`. `GuardedCelsius()` where nothing was
+  ///                                       measured
+  void tighten(const GuardedCelsius& winding_upper_C, const GuardedCelsius& body_upper_C) noexcept {
     measured_ = CertifiedMeasurement(winding_upper_C, body_upper_C);
   }
 
@@ -209,21 +221,31 @@ public:
         static_cast<uint8_t>(Heat::count(power < least_power() ? least_power() : power) - 1);
     if (count > acted_) acted_ = count;
   }
+  /// An axis need not look whether time stands still: `step()` does.
+  static constexpr bool notices_standing_time() { return true; }
   /// How long a power may act before the next plan, as declared.
   float hold_s() const noexcept { return network_.hold_s(); }
 
   /// @param dt_s  time since the last step, during which the power granted then acted, >= 0
   LimitedPower step(const Inputs& inputs, float dt_s) noexcept {
     if (is_error(config_error_)) return cut(LimitReason::config_invalid, inputs.demand);
-    if (!detail::is_finite_positive(dt_s) && !(dt_s == 0.0f))
-      return cut(LimitReason::time_invalid, inputs.demand);
+    // Asked by bits, which are cheap on a small chip.
+    const bool is_time_told = detail::is_finite_positive(dt_s);
+    if (!is_time_told && !(dt_s == 0.0f)) return cut(LimitReason::time_invalid, inputs.demand);
+    if (is_time_told) stood_ = 0;
+    else if (stands_still()) return cut(LimitReason::time_stands_still, inputs.demand);
     const uint8_t wanted =
         static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
-    pass(dt_s);
+    if (is_time_told) pass(dt_s);
+    if (acting_ > acted_) acted_ = acting_;
+    // A step that is late by itself leaves nothing to wait for, nor does a ceiling that was granted for other bounds.
+    bool is_turn =
+        detail::magnitude_bits(dt_s) > detail::magnitude_bits(hold_s()) || (is_start_new_ && ceiling_ > 0);
     if (++turn_ >= every_) {
       turn_ = 0;
-      plan(inputs, wanted);
+      is_turn = true;
     }
+    if (is_turn) plan(inputs, wanted);
     is_limiting_ = wanted > ceiling_;
     acting_ = is_limiting_ ? ceiling_ : wanted;
 
@@ -239,18 +261,22 @@ public:
   LimitedPower cut_after(LimitReason reason, uint8_t demand, float dt_s) noexcept {
     if (!detail::is_finite(dt_s) || dt_s < 0.0f) return cut(reason, demand);
     if (!is_error(config_error_)) {
-      pass(dt_s);
+      if (dt_s > 0.0f) pass(dt_s);
+      if (acting_ > acted_) acted_ = acting_;
       advance();
     }
     return least(reason, demand);
   }
-  /// The same when the time is not known: the power of the last step is assumed to have acted for `hold_s`,
-  /// and nothing to have cooled.
+  /// The same when the time is not known: the largest power since the last plan is assumed to have acted until `hold_s` after it, and
+  /// nothing to have cooled.
   LimitedPower cut(LimitReason reason, uint8_t demand = 255) noexcept {
     if (!is_error(config_error_)) {
       measured_ = CertifiedMeasurement();
-      if (pending() > 0.0f) advance();
-      network_.advance_unknown(acting_);
+      // What is known already to be more than a hold is late by itself; what is less is a part of the hold.
+      if (pending() > hold_s()) advance();
+      network_.advance_unknown(acting_ > acted_ ? acting_ : acted_);
+      is_start_new_ = false;
+      forget_time();
     }
     return least(reason, demand);
   }
@@ -290,6 +316,11 @@ public:
   const Network& network() const noexcept { return network_; }             ///< The bounds themselves.
 
 private:
+  // Steps that are told no time are taken to be as long as the last that was told one; of none before them, the second is too many.
+  bool stands_still() noexcept {
+    if (stood_ < 255) ++stood_;
+    return each_s_ > 0.0f ? each_s_ * static_cast<float>(stood_) > hold_s() : stood_ > 1;
+  }
   // Between plans only the time and the largest count that acted are kept; of steps of one length only their
   // number, which is never above `turn_`, and that is below `every_`: it fits.
   void pass(float dt_s) noexcept {
@@ -300,10 +331,12 @@ private:
       steps_ = 0;
     }
     ++steps_;
-    if (acting_ > acted_) acted_ = acting_;
   }
   float pending() const noexcept {
-    return steps_ == 0 ? pending_s_ : pending_s_ + each_s_ * static_cast<float>(steps_);
+    if (steps_ == 0) return pending_s_;
+    // Nearly always one step and nothing before it.
+    const float steps_s = steps_ == 1 ? each_s_ : each_s_ * static_cast<float>(steps_);
+    return detail::is_same(pending_s_, 0.0f) ? steps_s : pending_s_ + steps_s;
   }
 
   void advance() noexcept {
@@ -314,8 +347,13 @@ private:
       travel_ = network_.travel(passed_s);
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
-    network_.advance(acted_, travel_, measured_);
+    if (is_start_new_) network_.advance_from_start(acted_, travel_);
+    else network_.advance(acted_, travel_, measured_);
+    is_start_new_ = false;
     measured_ = CertifiedMeasurement();
+    forget_time();
+  }
+  void forget_time() noexcept {
     pending_s_ = 0.0f;
     steps_ = 0;
     acted_ = 0;
@@ -350,8 +388,16 @@ private:
   void observe(float air_C, float supply_V) noexcept {
     observe_air(air_C);
     const float ratio = supply_V * per_supply_V_;
-    const bool is_used = detail::is_from_zero_to(ratio, 1.0f);
-    network_.take_warm_winding(is_used ? detail::fraction_up(ratio * ratio) : detail::whole_fraction());
+    // The square is not below the truth; what it is below is no supply.
+    const detail::UnitFraction squared =
+        detail::is_from_zero_to(ratio, 1.0f) ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
+    network_.take_warm_winding(squared < least_squared_ ? detail::whole_fraction() : squared);
+  }
+
+  // Of a supply that no reading may tell, the whole: none is below it.
+  static detail::UnitFraction least_squared(const HeatBounds& heat) noexcept {
+    const float ratio = heat.lowest_supply_V / heat.highest_supply_V;
+    return ratio > 0.0f ? detail::fraction_down(ratio * ratio) : detail::whole_fraction();
   }
 
   LimitedPower least(LimitReason reason, uint8_t demand) noexcept {
@@ -369,9 +415,11 @@ private:
   typename Network::Travel travel_;
   float highest_air_C_, air_error_K_, per_supply_V_, count_W_;
   float read_air_C_ = detail::not_a_number();
+  detail::UnitFraction least_squared_;
   uint16_t late_steps_ = 0;
   float each_s_ = 0.0f, pending_s_ = 0.0f;  // `steps_` of the one, after the other
   uint8_t steps_ = 0;
+  uint8_t stood_ = 0;      // steps in a row that were told no time
   uint8_t travelled_ = 0;  // steps of this length that `travel_` is for; 0: for others
   uint8_t acting_ = 0;     // count that acts since the last step
   uint8_t acted_ = 0;      // largest count that acted since the last plan
@@ -379,8 +427,8 @@ private:
   ConfigError config_error_;
   uint8_t every_, turn_;
   CertifiedNode node_ = CertifiedNode::none;
-  CertifiedMeasurement measured_;  // since the last plan
-  bool is_limiting_ = false;
+  CertifiedMeasurement measured_;            // since the last plan
+  bool is_limiting_ : 1, is_start_new_ : 1;  // the latter: nothing was carried since
 };
 
 }  // namespace thermopower

@@ -113,6 +113,12 @@ public:
     if (since < node.above()) node_.set(since);
     else node_ = node;
   }
+  /// Carries a bound that was set at any instant of the step over the rest of it, however long that is.
+  void advance_from_start(uint8_t count, const Travel& step) noexcept {
+    const detail::UpperBound before = node_;
+    advance(count, step, CertifiedMeasurement());
+    node_.raise(before);
+  }
   /// Carries the bound over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
@@ -139,6 +145,8 @@ public:
   CertifiedCount largest() const noexcept {
     CertifiedCount largest = {254, CertifiedNode::none, 0};
     const detail::KelvinUnits above = room(), left = limit_ - base_ - above;
+    // Outside of the safe set: the least power, until it is inside.
+    largest.keep(left + rounding_units(), CertifiedNode::body);
     largest.fit(left + detail::part_down(above, horizon_), detail::part_up(to_air_now_, horizon_),
                 CertifiedNode::body);
     largest.fit(left + detail::part_down(above, hold_), detail::part_up(to_air_now_, hold_),
@@ -150,7 +158,7 @@ public:
 
   /// True when the bound is inside the set that the least power never leaves. It stays true once it is,
   /// within the contract.
-  bool is_certified() const noexcept { return limit_ - base_ - room() >= -64; }
+  bool is_certified() const noexcept { return limit_ - base_ - room() >= -rounding_units(); }
   /// Always true: there is no second node that could hand on heat.
   bool is_below(uint8_t, const CertifiedCount&) const noexcept { return true; }
 
@@ -169,6 +177,8 @@ public:
   }
 
 private:
+  // The limit is kept half a millikelvin low; what roundings may add to the bound is a hundredth of that.
+  static constexpr detail::KelvinUnits rounding_units() { return 64; }
   // Returns the highest that the bound was at any instant of the step.
   detail::KelvinUnits carry(uint8_t count, const Travel& step) noexcept {
     node_.raise(base_);

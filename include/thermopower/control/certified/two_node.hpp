@@ -112,6 +112,9 @@ public:
     least_mean_ = derived.least_mean;
 
     hold_s_ = use.hold_s;
+    per_hold_s_ = 65536.0f * (1.0f + detail::float_margin()) / use.hold_s;
+    winding_pace_.set(fastest_winding_per_s_ * use.hold_s);
+    body_pace_.set(fastest_body_per_s_ * use.hold_s);
     hold_winding_ = detail::fraction_up(part_of_hold(fastest_winding_per_s_));
     hold_body_ = detail::fraction_up(part_of_hold(fastest_body_per_s_));
     horizon_winding_ = detail::fraction_down(
@@ -156,8 +159,19 @@ public:
 
   /// Prepares a step length; only a length that changed costs anything.
   Travel travel(float dt_s) const noexcept {
-    Travel travel = {CertifiedTravel::over_part(fastest_winding_per_s_, slowest_winding_, dt_s),
-                     CertifiedTravel::over_part(fastest_body_per_s_, slowest_body_, dt_s), dt_s > hold_s_};
+    const float part = dt_s * per_hold_s_;
+    Travel travel;
+    // Of positive numbers the bits order as the numbers do.
+    travel.is_late = detail::magnitude_bits(dt_s) > detail::magnitude_bits(hold_s_);
+    if (winding_pace_.is_known() && body_pace_.is_known() && detail::is_from_zero_to(part, 65534.0f)) {
+      // In 2^-16 of a hold, upwards, by less than three.
+      const uint16_t whole = static_cast<uint16_t>(static_cast<uint16_t>(part) + 1u);
+      travel.winding = winding_pace_.over(whole, slowest_winding_);
+      travel.body = body_pace_.over(whole, slowest_body_);
+    } else {
+      travel.winding = CertifiedTravel::over_part(fastest_winding_per_s_, slowest_winding_, dt_s);
+      travel.body = CertifiedTravel::over_part(fastest_body_per_s_, slowest_body_, dt_s);
+    }
     if (!travel.is_late) {
       travel.winding.end_at(hold_winding_);
       travel.body.end_at(hold_body_);
@@ -172,13 +186,15 @@ public:
     if (measured.is_any()) take_in(count, step, measured, passed);
   }
 
-  /// Carries both bounds over an unknown time of at most one hold.
-  void advance_unknown(uint8_t count) noexcept {
+  /// Carries bounds that were set at any instant of the step over the rest of it, however long that is.
+  void advance_from_start(uint8_t count, const Travel& step) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
-    carry(count, travel(hold_s_));
+    carry(count, step);
     winding_.raise(winding);
     mean_.raise(mean);
   }
+  /// Carries both bounds over an unknown time of at most one hold.
+  void advance_unknown(uint8_t count) noexcept { advance_from_start(count, travel(hold_s_)); }
 
   /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
   void set_air(float air_C) noexcept {
@@ -202,6 +218,9 @@ public:
     const Sizes size = sizes();
     const Room room = this->room();
     CertifiedCount largest = {254, CertifiedNode::none, room.apart};
+    // Outside of the safe set: the least power, until both are inside.
+    largest.keep(room.winding_left + rounding_units(), CertifiedNode::winding);
+    largest.keep(room.mean_left + rounding_units(), CertifiedNode::body);
     // Horizon: how authority falls. Not needed for safety.
     const detail::KelvinUnits lost =
         detail::part_down(room.mean - detail::part_up(room.mean + gap_, weight_), horizon_body_);
@@ -475,7 +494,8 @@ private:
     to_air_now_ = detail::part_up(to_air_, body);
   }
 
-  float fastest_winding_per_s_, fastest_body_per_s_, hold_s_;
+  float fastest_winding_per_s_, fastest_body_per_s_, hold_s_, per_hold_s_;
+  CertifiedPace winding_pace_, body_pace_;
   detail::UnitFraction slowest_winding_, slowest_body_;     // as parts of the fastest
   detail::KelvinUnits across_, soak_, to_air_;              // kelvin per count, winding at its coldest
   detail::KelvinUnits across_now_, soak_now_, to_air_now_;  // the same until the next step

@@ -124,16 +124,5 @@ void start_thermal(Thermal& thermal, float air_C, long) noexcept {
   thermal.start(air_C);
 }
 
-/// Temperature of the node that a thermometer on the housing would read; the hottest one where a model has
-/// only one.
-template <class Thermal>
-auto body_of(const Thermal& thermal, int) noexcept -> decltype(thermal.state().body_C + 0.0f) {
-  return thermal.state().body_C;
-}
-template <class Thermal>
-float body_of(const Thermal& thermal, long) noexcept {
-  return thermal.hottest_C();
-}
-
 }  // namespace detail
 }  // namespace thermopower
