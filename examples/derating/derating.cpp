@@ -59,7 +59,7 @@ private:
     config.network = {
         tp::Bounds::around(8.0f, 0.05f), tp::Bounds::around(80.0f, 0.05f), 0.95f, 0.19f, 110.0f, 60.0f};
     config.use.heat = tp::HeatBounds::ohmic(12.0f, 0.02f, tp::Bounds::around(2.4f, 0.05f), {0.0038f, 0.0040f},
-                                            25.0f, 0.0f, 110.0f);
+                                            25.0f, 0.0f, 110.0f, 9.0f);
     config.use.highest_air_C = 30.0f;
     config.use.hold_s = 0.2f;
     config.air_error_K = 1.0f;

@@ -91,9 +91,9 @@ struct Safety : Protection {
     thermal_.step({static_cast<float>(known.heat_nominal_W), 0.0f, {static_cast<float>(air_C), 0.0f}},
                   static_cast<float>(dt_s));
     return limiter_
-        .step(
-            {static_cast<std::uint8_t>(known.demand), thermal_.hottest_C(), thermal_.hottest_rate_K_per_s()},
-            static_cast<float>(dt_s))
+        .step({static_cast<std::uint8_t>(known.demand), tp::GuardedCelsius::hottest_of(thermal_),
+               thermal_.hottest_rate_K_per_s()},
+              static_cast<float>(dt_s))
         .power;
   }
   tp::TwoNodeThermalModel<float> thermal_{nominal(), 25.0f};

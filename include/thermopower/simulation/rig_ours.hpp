@@ -71,7 +71,7 @@ typename AdaptiveAxis<Motor>::Config adaptive_axis(std::size_t axis, const Adapt
                      120.0f,
                      60.0f};
   limiter.use.heat = HeatBounds::ohmic(13.0f, 0.02f, Bounds::around(resistance_ohm, 0.10f),
-                                       {0.0038f, 0.0040f}, 25.0f, 0.0f, 120.0f);
+                                       {0.0038f, 0.0040f}, 25.0f, 0.0f, 120.0f, 3.0f);
   limiter.use.heat.heat_when_cold_W *= 1.5f, limiter.use.heat.heat_when_hot_W *= 1.5f;
   limiter.use.highest_air_C = 45.0f;
 
