@@ -34,7 +34,39 @@ private:
   Number air_C_;
 };
 
+/// The declared range of the air around an actuator. A reading outside of it is no air: a thermometer that is torn, asleep, or has drifted
+/// away. The warmest air there is then counts.
+///
+/// @snippet control_examples.cpp air range
+/// How to: @ref first_axis, @ref faults_and_reasons.
+struct AirRange {
+  float lowest_C;   ///< The air is never colder. Not below -100.
+  float highest_C;  ///< The air is never warmer. Above `lowest_C`, at most 200.
+
+  /// Whether a reading may be this air; NaN is not.
+  bool holds(float reading_C) const noexcept { return reading_C >= lowest_C && reading_C <= highest_C; }
+};
+
 namespace detail {
+
+/// Whether a motor declares the range of its air.
+template <class Motor, class = int>
+struct DeclaresAir {
+  static constexpr bool value = false;
+};
+template <class Motor>
+struct DeclaresAir<Motor, typename Exists<decltype(Motor::air().highest_C)>::Type> {
+  static constexpr bool value = true;
+};
+template <class Motor>
+auto declared_air(int) noexcept -> decltype(Motor::air()) {
+  return Motor::air();
+}
+template <class Motor>
+AirRange declared_air(long) noexcept {
+  const AirRange range = {-100.0f, 200.0f};
+  return range;
+}
 
 /// Numbers of several lanes, and those with derivatives, are said by whoever makes them.
 template <class Number>

@@ -20,6 +20,7 @@ struct Motor {
   typedef ThermalModel<HeatCapacityHeating<>, NewtonCooling<>> Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
   static SupplyRange supply() { return {12.5f, 13.0f}; }
+  static AirRange air() { return {20.0f, 40.0f}; }
   static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
 };
 typedef AxisController<Motor> Plain;
@@ -42,8 +43,8 @@ struct Outcome {
 };
 
 /// An hour at full demand on 13 V. @param told  what the axis is told at a time: supply, V, and time step, s
-template <class Axis, class Told>
-Outcome hour(Told told) {
+template <class Axis, class Told, class Thermometer>
+Outcome hour(Told told, Thermometer thermometer) {
   Axis axis(config(static_cast<const Axis*>(nullptr)));
   REQUIRE(axis.validate() == ConfigError::none);
   Outcome outcome;
@@ -57,13 +58,19 @@ Outcome hour(Told told) {
     outcome.peak_C = std::max(outcome.peak_C, motor_C);
     float supply_V = 13.0f, dt_s = 0.02f;
     told(now_s, supply_V, dt_s);
-    const typename Axis::State& state = axis.step({2.0f, supply_V, 25.0f, LimitReason::none}, dt_s);
+    const typename Axis::State& state =
+        axis.step({2.0f, supply_V, thermometer(now_s), LimitReason::none}, dt_s);
     power = state.power;
     outcome.last = state.reason;
     outcome.faults += is_fault(state.reason) ? 1 : 0;
     ++outcome.steps;
   }
   return outcome;
+}
+
+template <class Axis, class Told>
+Outcome hour(Told told) {
+  return hour<Axis>(told, [](double) { return 25.0f; });
 }
 
 // The reading is believed inside its range: a motor at its limit may be warmer by what the range leaves open.
@@ -106,6 +113,32 @@ TEST_CASE("a supply that reads what it cannot be heats with the highest there is
     if (static_cast<int>(now_s * 50.0 + 0.5) % 2 == 0) supply_V = 0.0f;
   });
   CHECK(flickers.peak_C < 60.5);
+}
+
+TEST_CASE(
+    "a thermometer that reads what no air in the declared range can be is named, and the warmest air counts") {
+  const auto nothing = [](double, float&, float&) {};
+  const auto check = [&](const char* name, auto thermometer, double open_air_K) {
+    INFO(name);
+    const Outcome plain = hour<Plain>(nothing, thermometer),
+                  certified = hour<Certified>(nothing, thermometer);
+    CHECK(plain.peak_C < 60.5 + open_air_K);
+    CHECK(certified.peak_C < 60.0);
+    CHECK(plain.last == LimitReason::air_implausible);
+    CHECK(certified.last == LimitReason::air_implausible);
+  };
+  check(
+      "reads 0", [](double) { return 0.0f; }, 0.0);
+  check(
+      "torn", [](double) { return -88.6f; }, 0.0);
+  check(
+      "no number", [](double) { return nan_; }, 0.0);
+  check(
+      "a radiator", [](double) { return 80.0f; }, 0.0);
+  // Inside the range it is believed: 5 K below the truth at most.
+  check(
+      "drifts down by a kelvin a minute",
+      [](double now_s) { return static_cast<float>(25.0 - now_s / 60.0); }, 5.0);
 }
 
 TEST_CASE("one reading that cannot be costs seconds of power, and not an hour") {

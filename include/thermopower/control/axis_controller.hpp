@@ -22,8 +22,8 @@ namespace thermopower {
 /// the power of the last step heats the model, the error asks for a power, the limiter grants it, the gain
 /// follows.
 ///
-/// @tparam Motor     names `Current` and `Thermal` and gives their constants, and may declare its `supply()`: `motors/`, or a struct
-/// of your own
+/// @tparam Motor     names `Current` and `Thermal` and gives their constants, and may declare its `supply()` and `air()`: `motors/`, or
+/// a struct of your own
 /// @tparam PowerLaw  how much power an error is worth: control/step_power_law.hpp
 /// @tparam Limiter   how the temperature is kept below its limit: control/safety_limiter.hpp
 /// @tparam Gain      how the P gain follows the power: control/gain_scheduler.hpp
@@ -206,6 +206,7 @@ private:
     const bool is_supply_bad =
         is_supply_new && !detail::is_within(inputs.supply_V, supply_.lowest_V, supply_.highest_V);
     if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
+    else if (is_air_bad && has_air()) last_air_C_ = detail::declared_air<Motor>(0).highest_C;
     // What cannot be may hide the most there is.
     if (is_supply_new) last_supply_V_ = is_supply_bad ? supply_.highest_V : inputs.supply_V;
     const bool is_time_positive = detail::is_finite_positive(dt_s);
@@ -251,8 +252,10 @@ private:
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
-  // Wider than any sensor's range, which is AirTemperature's business: only what no air can be.
+  static bool has_air() noexcept { return detail::DeclaresAir<Motor>::value; }
+  // As declared, or wider than any sensor's range, which is AirTemperature's business: only what no air can be.
   static bool is_plausible_air(float air_C) noexcept {
+    if (has_air()) return detail::declared_air<Motor>(0).holds(air_C);
     const uint32_t bits = detail::magnitude_bits(air_C);
     return bits <= detail::magnitude_bits(100.0f) || (bits <= detail::magnitude_bits(200.0f) && air_C > 0.0f);
   }

@@ -101,6 +101,22 @@ TEST_CASE("power laws: levels, and the laws around them") {
   CHECK(learned > 10.0f);
 }
 
+namespace {
+//! [air range]
+struct Indoors : Motor {
+  static tp::AirRange air() { return {15.0f, 35.0f}; }  // what reads otherwise is no air
+};
+//! [air range]
+}  // namespace
+
+TEST_CASE("the range of the air") {
+  typedef tp::AxisController<Indoors, tp::StepPowerLaw<>, tp::SafetyLimiter<>, tp::NoGain> Axis;
+  Axis axis;
+  CHECK(axis.step({0.5f, 12.0f, 25.0f, tp::LimitReason::none}, 0.03f).reason == tp::LimitReason::none);
+  CHECK(axis.step({0.5f, 12.0f, 0.0f, tp::LimitReason::none}, 0.03f).reason ==
+        tp::LimitReason::air_implausible);
+}
+
 TEST_CASE("the range of a supply") {
   typedef tp::AxisController<Motor> Axis;
   //! [supply range]
