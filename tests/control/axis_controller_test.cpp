@@ -171,7 +171,9 @@ TEMPLATE_TEST_CASE("through a fault the motor's temperature goes on with the las
   for (int i = 0; i < 2000; ++i) {
     healthy.step(inputs<TestType>(0.0f, 13.0f, 25.0f, LimitReason::link_silent), 0.03f);
     deaf.step(inputs<TestType>(nan_, nan_, nan_), 0.03f);
-    REQUIRE(deaf.state().motor_C == healthy.state().motor_C);
+    // Its supply is not known any more: in the first of these steps the highest heats, for 30 ms.
+    REQUIRE(deaf.state().motor_C >= healthy.state().motor_C);
+    REQUIRE(deaf.state().motor_C < healthy.state().motor_C + 2.0f);
   }
   CHECK(deaf.state().motor_C < hot_C);
   CHECK(deaf.state().motor_C > 25.0f);

@@ -86,16 +86,19 @@ TEST_CASE("an axis that was never started is not warmed: its first air starts it
   CHECK(axis.state().motor_C == 60.0f);
 }
 
-TEST_CASE("a supply of 0 V is a supply: it heats nothing and is no fault; below it there is none") {
+TEST_CASE("a supply of 0 V is no supply: the highest that is declared heats, and it is a fault") {
   Axis axis(axis_config());
   axis.step({0.5f, 12.0f, 25.0f, LimitReason::none}, 0.0f);
-  axis.step({0.5f, 0.0f, 25.0f, LimitReason::none}, 0.03f);
+  axis.step({0.5f, 12.0f, 25.0f, LimitReason::none}, 0.03f);
   CHECK(axis.state().reason == LimitReason::none);
   CHECK(axis.state().power == 125);
-  for (int i = 0; i < 100; ++i) axis.step({0.5f, 0.0f, 25.0f, LimitReason::none}, 0.03f);
-  CHECK(axis.state().motor_C == 25.0f);
+  const float before_C = axis.state().motor_C;
+  axis.step({0.5f, 0.0f, 25.0f, LimitReason::none}, 0.03f);
+  CHECK(axis.state().reason == LimitReason::supply_low);
+  CHECK(axis.state().power == least_power());
+  CHECK(axis.state().motor_C > before_C);
   axis.step({0.5f, -1.0f, 25.0f, LimitReason::none}, 0.03f);
-  CHECK(axis.state().reason != LimitReason::none);
+  CHECK(axis.state().reason == LimitReason::supply_low);
   CHECK(axis.state().power == least_power());
 }
 

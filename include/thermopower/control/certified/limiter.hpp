@@ -319,7 +319,7 @@ private:
   // Steps that are told no time are taken to be as long as the last that was told one; of none before them, the second is too many.
   bool stands_still() noexcept {
     if (stood_ < 255) ++stood_;
-    return each_s_ > 0.0f ? each_s_ * static_cast<float>(stood_) > hold_s() : stood_ > 1;
+    return stood_ > 1 && (!(each_s_ > 0.0f) || each_s_ * static_cast<float>(stood_) > hold_s());
   }
   // Between plans only the time and the largest count that acted are kept; of steps of one length only their
   // number, which is never above `turn_`, and that is below `every_`: it fits.
