@@ -103,6 +103,7 @@ struct MyMotor {
   typedef tp::CurrentModel<tp::OhmicCurrent<>> Current;
   typedef tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>> Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
+  static tp::SupplyRange supply() { return {11.0f, 13.5f}; }
   static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
 };
 }  // namespace axis_page
