@@ -53,7 +53,7 @@ static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && si
 typedef tp::AxisController<tp::motors::Bgm2606_90t> Axis;
 #if defined(__AVR__)
 static_assert(sizeof(Axis) <= 162, "an axis");
-static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 605,
+static_assert(sizeof(tp::GimbalController<Axis, Axis, Axis>) <= 680,
               "a gimbal: little more than a quarter of the RAM");
 #else
 static_assert(sizeof(Axis) <= 184, "an axis");

@@ -283,6 +283,7 @@ TEMPLATE_TEST_CASE(
   typename TestType::Config config;
   set(config);
   config.use.heat.supply_error = 0.02f;
+  config.use.heat.lowest_supply_V = 5.0f;
   TestType measured(config), unknown(config);
   Worst truth = Worst::of(measured);
   truth.supply_V = 6.0 * 1.02;  // of a reading of 6 V

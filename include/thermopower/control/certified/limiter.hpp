@@ -233,7 +233,11 @@ public:
     const bool is_time_told = detail::is_finite_positive(dt_s);
     if (!is_time_told && !(dt_s == 0.0f)) return cut(LimitReason::time_invalid, inputs.demand);
     if (is_time_told) stood_ = 0;
-    else if (stands_still()) return cut(LimitReason::time_stands_still, inputs.demand);
+    else if (stands_still()) {
+      const LimitedPower least = cut(LimitReason::time_stands_still, inputs.demand);
+      stood_ = 255;  // until a time is told
+      return least;
+    }
     const uint8_t wanted =
         static_cast<uint8_t>(Heat::count(inputs.demand < least_power() ? least_power() : inputs.demand) - 1);
     if (is_time_told) pass(dt_s);
@@ -276,6 +280,7 @@ public:
       if (pending() > hold_s()) advance();
       network_.advance_unknown(acting_ > acted_ ? acting_ : acted_);
       is_start_new_ = false;
+      stood_ = 0;  // a hold is counted, whatever the time was
       forget_time();
     }
     return least(reason, demand);
