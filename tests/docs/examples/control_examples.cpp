@@ -272,6 +272,10 @@ TEST_CASE("parts of a certified network, for one of one's own") {
   //! [certified parts]
   // How far a bound goes in 0.1 s towards where it settles, at rates between 0.05 and 0.08 per second:
   const tp::CertifiedTravel travel = tp::CertifiedTravel::over(0.08f, 0.05f, 0.1f);
+  // the same in whole numbers: a third of a hold that is 0.8 of the time constant long, rates up to 1/2 slower,
+  tp::CertifiedPace pace;
+  pace.set(0.8f);
+  const tp::CertifiedTravel third = pace.over(21846, 32768);
   // what a warm winding draws less,
   tp::CertifiedRelief relief;
   relief.set(tp::HeatBounds::ohmic(12.0f, 1.0f, {5.4f, 6.6f}, {0.0038f, 0.0040f}, 20.0f, 0.0f, 110.0f),
@@ -283,6 +287,7 @@ TEST_CASE("parts of a certified network, for one of one's own") {
   const tp::CertifiedMeasurement measured = {61.0f, std::nanf("")};
   //! [certified parts]
   CHECK(travel.heating > travel.cooling);
+  CHECK(third.heating > third.cooling);
   CHECK(relief.at(50 * 262144) < relief.at(0));
   CHECK(largest.count == 100);
   CHECK(largest.node == tp::CertifiedNode::body);
