@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/robot/family.hpp>
+#include <thermopower/robot/joint.hpp>
+#include <thermopower/robot/series.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace thermopower::robot {
+
+/// Columns of the regression of one joint.
+enum class Regressor : int {
+  acceleration,     ///< rad/s2
+  velocity,         ///< rad/s
+  sign,             ///< direction of motion
+  one,              ///< 1
+  position,         ///< rad, from the middle of the travel
+  gravity,          ///< N m that hold the weight
+  moment_a,         ///< N m of 1 kg m off the axis
+  moment_b,         ///< the same a quarter of a turn ahead
+  stribeck_slow,    ///< direction, gone at a tenth of the usual rate
+  stribeck_medium,  ///< direction, gone at a quarter of the usual rate
+  stribeck_fast,    ///< direction, gone at six tenths of the usual rate
+  load,             ///< direction times the torque of the rigid body
+  sign_position,    ///< direction times position
+  drag,             ///< rate times its magnitude
+  model,            ///< the model's own torque
+  ripple_sine,      ///< of the position times the number of cycles
+  ripple_cosine,    ///< likewise
+  effort,           ///< what is explained, less the model's own torque
+};
+
+/// Number of columns, the effort among them.
+inline constexpr int regressor_count = 18;
+
+/// @brief A joint as a linear regression: effort from motion, row by row, with the sums that every fit needs.
+///
+/// The rows near rest are left out: they say nothing of friction. The rest is cut into blocks of equal length; a fit is judged by
+/// the blocks that it was not fitted to.
+class JointProblem {
+public:
+  using Sums = Eigen::Matrix<double, regressor_count, regressor_count>;
+
+  /// Rates of the Stribeck columns, as a share of the joint's usual rate.
+  static constexpr std::array<double, 3> stribeck_shares{0.1, 0.25, 0.6};
+
+  /// @param series  the log
+  /// @param body    what the rigid body asks for, in the same rows
+  /// @param index   of the joint
+  /// @param joint   its constants; kp and kd count where the log has no effort
+  /// @param late_s  delay of the target, or of the measured effort, in s
+  /// @param blocks  number of blocks
+  JointProblem(const Series& series, const BodyRows& body, Eigen::Index index, const Joint& joint,
+               double late_s, int blocks)
+      : joint_(joint), stretches_(series.stretches), cutoff_(series.cutoff_Hz * series.step_s) {
+    const Eigen::Index rows = series.rows();
+    const Eigen::VectorXd w = series.motion.velocity.col(index), q = series.motion.position.col(index),
+                          a = series.motion.acceleration.col(index);
+    usual_rate_ = std::sqrt(w.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows)));
+    const double noise = series.rate_noise.size() > index ? series.rate_noise[index] : 0.0;
+    still_ = std::max(0.03 * usual_rate_, noise) + 1e-9;
+    middle_ = 0.5 * (q.minCoeff() + q.maxCoeff());
+    span_ = q.maxCoeff() - q.minCoeff();
+    const Eigen::ArrayXd sign = (w.array() / still_).tanh();
+    const Eigen::ArrayXd speed = w.array().abs();
+    const Eigen::VectorXd rigid = body.torque.col(index);
+    columns_.resize(rows, regressor_count);
+    const auto put = [&](Regressor which, const Eigen::VectorXd& values) {
+      columns_.col(static_cast<int>(which)) = values;
+    };
+    put(Regressor::acceleration, a);
+    put(Regressor::velocity, w);
+    put(Regressor::sign, smooth(sign));
+    put(Regressor::one, Eigen::VectorXd::Ones(rows));
+    put(Regressor::position, q.array() - middle_);
+    put(Regressor::gravity, body.gravity.col(index));
+    put(Regressor::moment_a, body.moment_a.col(index));
+    put(Regressor::moment_b, body.moment_b.col(index));
+    for (int i = 0; i < 3; ++i)
+      columns_.col(static_cast<int>(Regressor::stribeck_slow) + i) = smooth(
+          sign * (-speed / (stribeck_shares[static_cast<std::size_t>(i)] * usual_rate_ + 1e-12)).exp());
+    put(Regressor::load, smooth(sign * rigid.array().abs()));
+    put(Regressor::sign_position, smooth(sign * (q.array() - middle_)));
+    put(Regressor::drag, smooth(w.array() * speed));
+    const Eigen::VectorXd model = rigid + joint.armature * a + joint.damping * w +
+                                  joint.friction * columns_.col(static_cast<int>(Regressor::sign)) +
+                                  joint.stiffness * (q.array() - joint.spring_rest).matrix();
+    put(Regressor::model, model);
+    set_ripple(0);
+    const Eigen::VectorXd effort = effort_of(series, index, joint, late_s);
+    put(Regressor::effort, effort - model);
+    effort_ = effort;
+    std::vector<Eigen::Index> good;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const bool limited = std::fabs(effort[i]) > 0.98 * joint.effort_limit;
+      if (series.edge[static_cast<std::size_t>(i)] == 0 && speed[i] > 3.0 * still_ && !limited &&
+          std::isfinite(effort[i]) && std::isfinite(model[i]))
+        good.push_back(i);
+    }
+    const auto count = static_cast<Eigen::Index>(good.size());
+    block_of_.assign(static_cast<std::size_t>(rows), -1);
+    block_count_ = blocks;
+    for (Eigen::Index i = 0; i < count; ++i)
+      block_of_[static_cast<std::size_t>(good[static_cast<std::size_t>(i)])] =
+          static_cast<int>(i * blocks / std::max<Eigen::Index>(1, count));
+    moving_rows_ = count;
+    add_up();
+  }
+
+  /// The effort of each row in N m, through the filter of the series: measured, else what the position controller commands.
+  static Eigen::VectorXd effort_of(const Series& series, Eigen::Index index, const Joint& joint,
+                                   double late_s) {
+    const Eigen::Index rows = series.rows();
+    const bool measured = series.effort.rows() > 0 && series.effort.col(index).allFinite();
+    Eigen::VectorXd from = measured ? series.effort.col(index) : series.smooth_target.col(index);
+    if (late_s != 0.0) {
+      Eigen::VectorXd shifted(rows);
+      const double late = late_s / series.step_s;
+      for (const Stretch& one : series.stretches)
+        for (Eigen::Index i = one.begin; i < one.end; ++i) {
+          const double at = std::clamp(static_cast<double>(i) - late, static_cast<double>(one.begin),
+                                       static_cast<double>(one.end - 1));
+          const auto below = std::min(static_cast<Eigen::Index>(std::floor(at)), one.end - 2);
+          const double share = at - static_cast<double>(below);
+          shifted[i] = from[below] + share * (from[below + 1] - from[below]);
+        }
+      from = shifted;
+    }
+    if (measured) return from;
+    return joint.kp * (from - series.motion.position.col(index)) -
+           (std::isfinite(joint.kd) ? joint.kd : 0.0) * series.motion.velocity.col(index);
+  }
+
+  /// @brief Chooses how many cycles a turn the ripple has; 0 takes it out. add_up() makes the sums anew.
+  void set_ripple(int cycles) {
+    cycles_ = cycles;
+    const Eigen::ArrayXd q = columns_.col(static_cast<int>(Regressor::position)).array() + middle_;
+    if (cycles == 0) {
+      columns_.col(static_cast<int>(Regressor::ripple_sine)).setZero();
+      columns_.col(static_cast<int>(Regressor::ripple_cosine)).setZero();
+    } else {
+      columns_.col(static_cast<int>(Regressor::ripple_sine)) = smooth((cycles * q).sin());
+      columns_.col(static_cast<int>(Regressor::ripple_cosine)) = smooth((cycles * q).cos());
+    }
+  }
+
+  /// Makes the sums of products of all columns, block by block.
+  void add_up() {
+    sums_.assign(static_cast<std::size_t>(block_count_), Sums::Zero());
+    rows_of_.assign(static_cast<std::size_t>(block_count_), 0);
+    for (Eigen::Index i = 0; i < columns_.rows(); ++i) {
+      const int block = block_of_[static_cast<std::size_t>(i)];
+      if (block < 0) continue;
+      const Eigen::Matrix<double, regressor_count, 1> row = columns_.row(i).transpose();
+      sums_[static_cast<std::size_t>(block)].selfadjointView<Eigen::Lower>().rankUpdate(row);
+      ++rows_of_[static_cast<std::size_t>(block)];
+    }
+    for (Sums& one : sums_) one = one.selfadjointView<Eigen::Lower>();
+  }
+
+  const Joint& joint() const { return joint_; }
+  const std::vector<Sums>& sums() const { return sums_; }
+  const std::vector<Eigen::Index>& rows_of() const { return rows_of_; }
+  const Eigen::MatrixXd& columns() const { return columns_; }
+  const Eigen::VectorXd& effort() const { return effort_; }
+  /// Block of each row; -1 where the row says nothing.
+  const std::vector<int>& block_of() const { return block_of_; }
+  int ripple_cycles() const { return cycles_; }
+  /// Root mean square of the velocity in rad/s.
+  double usual_rate() const { return usual_rate_; }
+  /// Velocity in rad/s below which the direction is not known.
+  double still() const { return still_; }
+  /// Middle of the travel in rad.
+  double middle() const { return middle_; }
+  /// Travel in rad.
+  double span() const { return span_; }
+  /// Rows in which the joint moves.
+  Eigen::Index moving_rows() const { return moving_rows_; }
+
+private:
+  Eigen::VectorXd smooth(const Eigen::VectorXd& raw) const {
+    const ZeroPhaseFilter filter(cutoff_);
+    Eigen::VectorXd out(raw.size());
+    for (const Stretch& one : stretches_)
+      out.segment(one.begin, one.rows()) = filter(raw.segment(one.begin, one.rows()));
+    return out;
+  }
+
+  Joint joint_;
+  std::vector<Stretch> stretches_;
+  double cutoff_ = 0.12;
+  Eigen::MatrixXd columns_;
+  Eigen::VectorXd effort_;
+  std::vector<int> block_of_;
+  std::vector<Sums> sums_;
+  std::vector<Eigen::Index> rows_of_;
+  int block_count_ = 0, cycles_ = 0;
+  double usual_rate_ = 0.0, still_ = 0.0, middle_ = 0.0, span_ = 0.0;
+  Eigen::Index moving_rows_ = 0;
+};
+
+}  // namespace thermopower::robot

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/robot/body.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace thermopower::robot {
+
+/// @brief A robot in MuJoCo.
+class MujocoBody : public Body {
+public:
+  /// @brief Reads a robot from an MJCF or URDF file; the root element says which it is.
+  /// @throws io::InputError with the file and what MuJoCo says
+  explicit MujocoBody(const std::string& path);
+
+  /// @brief The same from a text in memory; `name` stands in messages where a path would.
+  MujocoBody(const std::string& name, const std::string& text);
+
+  ~MujocoBody() override;
+
+  const Robot& robot() const override;
+  BodyRows ask(const Motion& motion) const override;
+  Eigen::MatrixXd simulate(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& target,
+                           const Eigen::MatrixXd& start, const std::vector<JointDynamics>& joints,
+                           const Motion& base) const override;
+
+  /// @brief Position in m of a body, a site or a geom of that name in the world, for each row of joint positions.
+  /// @return three columns; empty where the model has none of that name
+  Eigen::MatrixXd place_of(const std::string& name, const Eigen::MatrixXd& position,
+                           const Motion& base) const;
+
+  /// @brief Effort in N m at each joint that a force of 1 N straight up at the end of the joint's limb asks for: one row per
+  /// sample. The end is the geom of the limb that is farthest from its first joint. Zero where a limb has no geom.
+  Eigen::MatrixXd upward_force(const Motion& motion, std::vector<int>& limb_of_joint) const;
+
+  /// @brief Whether the file is a URDF file.
+  bool is_urdf() const;
+
+  /// @brief What was left out while the file was read, one sentence each.
+  const std::vector<std::string>& notes() const;
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace thermopower::robot
