@@ -34,4 +34,4 @@ program_packages="g++ cmake ninja-build libeigen3-dev libcli11-dev nlohmann-json
 nano_packages="gcc-avr binutils-avr avr-libc arduino-core-avr libsimavr-dev libelf-dev"
 # ... and what only the tests need.
 test_packages="catch2 clang clang-format-14 libclang-rt-14-dev arduino-builder gcc-arm-none-eabi libnewlib-arm-none-eabi
-  libstdc++-arm-none-eabi-newlib qemu-system-arm doxygen doxygen-awesome-css katex nodejs pkg-config chromium python3-z3 gappa sqlite3 openmpi-bin"
+  libstdc++-arm-none-eabi-newlib qemu-system-arm doxygen doxygen-awesome-css katex nodejs pkg-config chromium python3-z3 gappa sqlite3 openmpi-bin libmujoco-dev"

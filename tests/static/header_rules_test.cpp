@@ -50,7 +50,7 @@ struct Header {
 };
 
 bool is_firmware(const std::string& name) {
-  static const std::regex upstairs("^(simulation|plant|gap|io)/|^(desktop|gap|io)\\.hpp$");
+  static const std::regex upstairs("^(simulation|plant|gap|io|robot)/|^(desktop|gap|io)\\.hpp$");
   return !std::regex_search(name, upstairs);
 }
 

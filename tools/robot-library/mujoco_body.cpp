@@ -90,6 +90,10 @@ std::string name_of(const mjModel& model, int kind, int id) {
   return name == nullptr ? std::string() : std::string(name);
 }
 
+bool has_varying_friction(const JointDynamics& joint) {
+  return joint.stribeck != 0.0 || joint.load_friction != 0.0 || joint.friction_slope != 0.0;
+}
+
 }  // namespace
 
 struct MujocoBody::Parts {
@@ -297,15 +301,14 @@ Eigen::MatrixXd MujocoBody::simulate(const Eigen::VectorXd& t_s, const Eigen::Ma
   mj_resetData(&m, &d);
   m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_ACTUATION;
   m.opt.integrator = mjINT_EULER;
-  std::vector<double> stiffness(joints.size()), rest(joints.size()), rigid(joints.size(), 0.0);
+  std::vector<double> rigid(joints.size(), 0.0);
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const int v = parts_->dof[k], id = parts_->joint_id[k];
     m.dof_armature[v] = joints[k].armature;
-    m.dof_damping[v] = joints[k].damping + joints[k].effort_scale * joints[k].kd;
     m.dof_frictionloss[v] = joints[k].friction;
     // A friction of zero would be left out of the solver's constraints for good.
-    if (joints[k].stribeck != 0.0 || joints[k].load_friction != 0.0) m.dof_frictionloss[v] += 1e-9;
-    stiffness[k] = m.jnt_stiffness[id];
+    if (has_varying_friction(joints[k])) m.dof_frictionloss[v] += 1e-9;
+    m.jnt_stiffness[id] = 0.0;
     d.qpos[parts_->qpos[k]] = start(0, static_cast<Eigen::Index>(k));
     d.qvel[v] = start(1, static_cast<Eigen::Index>(k));
   }
@@ -323,6 +326,10 @@ Eigen::MatrixXd MujocoBody::simulate(const Eigen::VectorXd& t_s, const Eigen::Ma
     const double step = t_s[row + 1] - t_s[row];
     const int parts = std::max(1, static_cast<int>(std::ceil(step / longest_step_s - 1e-6)));
     m.opt.timestep = step / parts;
+    // The position gain acts at the middle of the step: at its beginning, a stiff gain would look like less damping.
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      m.dof_damping[parts_->dof[k]] =
+          joints[k].damping + joints[k].effort_scale * (joints[k].kd + 0.5 * m.opt.timestep * joints[k].kp);
     for (int part = 0; part < parts; ++part) {
       const double now = t_s[row] + part * m.opt.timestep;
       for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -341,9 +348,10 @@ Eigen::MatrixXd MujocoBody::simulate(const Eigen::VectorXd& t_s, const Eigen::Ma
         for (std::size_t i = 0; i + 2 < joint.ripple.size(); i += 3)
           effort -= joint.ripple[i + 1] * std::sin(joint.ripple[i] * q) +
                     joint.ripple[i + 2] * std::cos(joint.ripple[i] * q);
-        if (joint.stribeck != 0.0 || joint.load_friction != 0.0)
+        if (has_varying_friction(joint))
           m.dof_frictionloss[v] =
-              std::max(1e-9, joint.friction + joint.stribeck * std::exp(-std::fabs(w) / joint.stribeck_rate) +
+              std::max(1e-9, joint.friction + joint.friction_slope * (q - joint.friction_middle) +
+                                 joint.stribeck * std::exp(-std::fabs(w) / joint.stribeck_rate) +
                                  joint.load_friction * std::fabs(rigid[k]));
         d.qfrc_applied[v] = effort;
       }
@@ -409,7 +417,10 @@ Eigen::MatrixXd MujocoBody::place_of(const std::string& name, const Eigen::Matri
   return out;
 }
 
-Eigen::MatrixXd MujocoBody::upward_force(const Motion& motion, std::vector<int>& limb_of_joint) const {
+LimbForces MujocoBody::upward_force(const Motion& motion) const {
+  LimbForces forces;
+  std::vector<int>& limb_of_joint = forces.limb_of_joint;
+  Eigen::MatrixXd& out = forces.effort;
   const mjModel& m = *parts_->model;
   const std::size_t joints = parts_->dof.size();
   // A limb begins at a joint whose body hangs on the base or on the world.
@@ -438,7 +449,7 @@ Eigen::MatrixXd MujocoBody::upward_force(const Motion& motion, std::vector<int>&
     const double away = mju_dist3(data->geom_xpos + 3 * geom, data->xanchor + 3 * root_joint[l]);
     if (away > farthest[l]) farthest[l] = away, end[l] = geom;
   }
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(motion.position.rows(), static_cast<Eigen::Index>(joints));
+  out = Eigen::MatrixXd::Zero(motion.position.rows(), static_cast<Eigen::Index>(joints));
   for (Eigen::Index row = 0; row < motion.position.rows(); ++row) {
     for (std::size_t k = 0; k < joints; ++k)
       data->qpos[parts_->qpos[k]] = motion.position(row, static_cast<Eigen::Index>(k));
@@ -459,7 +470,7 @@ Eigen::MatrixXd MujocoBody::upward_force(const Motion& motion, std::vector<int>&
       out(row, static_cast<Eigen::Index>(k)) = -mju_dot3(data->xaxis + 3 * id, cross);
     }
   }
-  return out;
+  return forces;
 }
 
 }  // namespace thermopower::robot

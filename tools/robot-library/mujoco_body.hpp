@@ -33,9 +33,8 @@ public:
   Eigen::MatrixXd place_of(const std::string& name, const Eigen::MatrixXd& position,
                            const Motion& base) const;
 
-  /// @brief Effort in N m at each joint that a force of 1 N straight up at the end of the joint's limb asks for: one row per
-  /// sample. The end is the geom of the limb that is farthest from its first joint. Zero where a limb has no geom.
-  Eigen::MatrixXd upward_force(const Motion& motion, std::vector<int>& limb_of_joint) const;
+  /// The end of a limb is the geom that is farthest from the limb's first joint.
+  LimbForces upward_force(const Motion& motion) const override;
 
   /// @brief Whether the file is a URDF file.
   bool is_urdf() const;

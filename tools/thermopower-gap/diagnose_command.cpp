@@ -5,6 +5,7 @@
 #include "command_options.hpp"
 #include "program.hpp"
 #include "progress.hpp"
+#include "robot_command.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
@@ -80,8 +81,11 @@ int diagnose(const Arguments& arguments) {
 
 Command add_diagnose(CLI::App& program) {
   const auto asked = std::make_shared<Arguments>();
+  const auto robot = std::make_shared<RobotArguments>();
   CLI::App* const app = program.add_subcommand("diagnose", "find the missing effect");
-  app->add_option("--model", asked->model, "the simulation under test (JSON)")->required();
+  app->add_option(
+      "--model", asked->model,
+      "the simulation under test (JSON); a whole robot instead: --mjcf or --urdf without --model");
   add_recordings(*app, *asked, "a recording to find and fit on");
   app->add_option("--heldout", asked->held_out,
                   "a recording to judge on; without it the last 30 % of each recording");
@@ -105,5 +109,11 @@ Command add_diagnose(CLI::App& program) {
   add_as_recorded(*app, *asked);
   add_column_choices(*app, *asked);
   add_simulator_exports(*app, *asked);
-  return {app, [asked] { return diagnose(*asked); }};
+  add_robot_options(*app, *robot);
+  return {app, [asked, robot] {
+            if (is_robot(*asked)) return diagnose_robot(*asked, *robot);
+            if (asked->model.empty())
+              throw UsageError("--model is required, or --mjcf or --urdf for a whole robot");
+            return diagnose(*asked);
+          }};
 }

@@ -40,6 +40,8 @@ struct JointDynamics {
   double stiffness = 0.0;           ///< of a spring, in N m/rad
   double stribeck = 0.0;            ///< friction at rest above `friction`, in N m
   double stribeck_rate = 1.0;       ///< rad/s at which that falls to 1/e
+  double friction_slope = 0.0;      ///< friction per rad of position, in N m/rad
+  double friction_middle = 0.0;     ///< position in rad at which `friction` holds
   double load_friction = 0.0;       ///< friction per N m of load
   double drag = 0.0;                ///< N m s2/rad2
   double moment_a = 0.0;            ///< unbalanced mass in kg m
@@ -51,6 +53,13 @@ struct JointDynamics {
   double kd = 0.0;                  ///< N m s/rad
   double limit = 1e300;             ///< N m
   std::vector<double> ripple = {};  ///< triples: cycles per turn, sine and cosine in N m
+};
+
+/// @brief Effort in N m at each joint that a force of 1 N straight up at the end of its limb asks for.
+struct LimbForces {
+  Eigen::MatrixXd
+      effort;  ///< one row per sample, one column per joint; zero where the limb's end does not hang on the joint
+  std::vector<int> limb_of_joint;  ///< number of the limb of each joint; -1: none
 };
 
 /// @brief A rigid robot that answers for measured motion and that can be simulated.
@@ -74,6 +83,9 @@ public:
   virtual Eigen::MatrixXd simulate(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& target,
                                    const Eigen::MatrixXd& start, const std::vector<JointDynamics>& joints,
                                    const Motion& base) const = 0;
+
+  /// What a force of the ground at the ends of the limbs would ask for. Empty: the robot has no limbs.
+  virtual LimbForces upward_force(const Motion&) const { return {}; }
 };
 
 }  // namespace thermopower::robot

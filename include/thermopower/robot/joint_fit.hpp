@@ -55,18 +55,8 @@ public:
 
   /// @param wanted  families to begin with, whatever they gain
   JointFit fit(const std::vector<Family>& wanted = {}) {
-    JointFit out;
-    out.rows = problem_.moving_rows();
-    total_ = JointProblem::Sums::Zero();
-    for (const auto& one : problem_.sums()) total_ += one;
-    const double n = static_cast<double>(std::max<Eigen::Index>(1, out.rows));
-    double effort = 0.0;
-    for (Eigen::Index i = 0; i < problem_.effort().size(); ++i)
-      if (problem_.block_of()[static_cast<std::size_t>(i)] >= 0)
-        effort += problem_.effort()[i] * problem_.effort()[i];
-    out.effort_rms = std::sqrt(effort / n);
-    out.before = out.after = std::sqrt(total_(last, last) / n);
-    if (out.rows < 20 * options_.blocks) return out;
+    begin();
+    if (problem_.moving_rows() < 20 * options_.blocks) return finish();
     for (const Family family : wanted) add_wanted(family);
     Score now = score(chosen_);
     while (static_cast<int>(chosen_.size()) < options_.most_terms) {
@@ -87,22 +77,58 @@ public:
       now = score(chosen_);
       drop_what_is_not_missed(now, static_cast<int>(wanted.size()));
     }
-    out.after = now.rms;
-    describe(out, now);
+    return finish();
+  }
+
+  /// @brief The fit with exactly these families.
+  JointFit exactly(const std::vector<Family>& families) {
+    begin();
+    for (const Family family : families) add_wanted(family);
+    return finish();
+  }
+
+  /// @brief Logarithm of the held-out effort of each block with exactly these families; empty where they are not physical.
+  std::vector<double> block_errors(const std::vector<Family>& families) {
+    begin();
+    for (const Family family : families) add_wanted(family);
+    std::vector<double> out;
+    if (!families.empty() && !is_physical(chosen_)) return out;
+    for (const double square : score(chosen_).by_block) out.push_back(0.5 * std::log(square));
     return out;
   }
 
   /// Held-out effort in N m with exactly these families.
   double held_out(const std::vector<Family>& families) {
-    chosen_.clear();
-    total_ = JointProblem::Sums::Zero();
-    for (const auto& one : problem_.sums()) total_ += one;
+    begin();
     for (const Family family : families) add_wanted(family);
     return score(chosen_).rms;
   }
 
 private:
   static constexpr int last = static_cast<int>(Regressor::effort);
+
+  void begin() {
+    chosen_.clear();
+    total_ = JointProblem::Sums::Zero();
+    for (const auto& one : problem_.sums()) total_ += one;
+  }
+
+  JointFit finish() const {
+    JointFit out;
+    out.rows = problem_.moving_rows();
+    const double n = static_cast<double>(std::max<Eigen::Index>(1, out.rows));
+    double effort = 0.0;
+    for (Eigen::Index i = 0; i < problem_.effort().size(); ++i)
+      if (problem_.block_of()[static_cast<std::size_t>(i)] >= 0)
+        effort += problem_.effort()[i] * problem_.effort()[i];
+    out.effort_rms = std::sqrt(effort / n);
+    out.before = out.after = std::sqrt(total_(last, last) / n);
+    if (chosen_.empty()) return out;
+    const Score now = score(chosen_);
+    out.after = now.rms;
+    describe(out, now);
+    return out;
+  }
 
   struct Choice {
     Family family;
@@ -342,9 +368,9 @@ private:
     const std::vector<int> columns = columns_of(chosen_);
     const Eigen::VectorXd value = solve(total_, columns);
     const Eigen::MatrixXd& all = problem_.columns();
-    // Fewer cycles than two over the travel are no ripple.
+    // Fewer cycles than four over the travel are no ripple, but a shape that any smooth torque has.
     constexpr double pi = 3.14159265358979323846;
-    const int first = std::max(2, static_cast<int>(std::ceil(4.0 * pi / std::max(0.02, problem_.span()))));
+    const int first = std::max(2, static_cast<int>(std::ceil(8.0 * pi / std::max(0.02, problem_.span()))));
     if (first > options_.most_cycles) return;
     const auto count = static_cast<std::size_t>(options_.most_cycles - first + 1);
     std::vector<double> sine(count, 0.0), cosine(count, 0.0);

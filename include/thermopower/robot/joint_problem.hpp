@@ -120,6 +120,8 @@ public:
     const Eigen::Index rows = series.rows();
     const bool measured = series.effort.rows() > 0 && series.effort.col(index).allFinite();
     Eigen::VectorXd from = measured ? series.effort.col(index) : series.smooth_target.col(index);
+    // A target is held to the next row: on average it is half a row late.
+    if (!measured) late_s += 0.5 * series.step_s;
     if (late_s != 0.0) {
       Eigen::VectorXd shifted(rows);
       const double late = late_s / series.step_s;
@@ -165,13 +167,32 @@ public:
     for (Sums& one : sums_) one = one.selfadjointView<Eigen::Lower>();
   }
 
+  /// The Stribeck column at a rate in rad/s.
+  Eigen::VectorXd stribeck_column(double rate) const {
+    const Eigen::ArrayXd w = columns_.col(static_cast<int>(Regressor::velocity));
+    return smooth((w / still_).tanh() * (-w.abs() / rate).exp());
+  }
+
+  /// A ripple of 1 N m: its sine or its cosine.
+  Eigen::VectorXd ripple_column(double cycles, bool is_cosine) const {
+    const Eigen::ArrayXd angle =
+        cycles * (columns_.col(static_cast<int>(Regressor::position)).array() + middle_);
+    return smooth(is_cosine ? Eigen::VectorXd(angle.cos()) : Eigen::VectorXd(angle.sin()));
+  }
+
+  /// The joint with the constants of the model.
   const Joint& joint() const { return joint_; }
+  /// Sums of products of all columns, for each block.
   const std::vector<Sums>& sums() const { return sums_; }
+  /// Rows of each block.
   const std::vector<Eigen::Index>& rows_of() const { return rows_of_; }
+  /// All columns, row by row, in the order of Regressor.
   const Eigen::MatrixXd& columns() const { return columns_; }
+  /// Effort of each row in N m.
   const Eigen::VectorXd& effort() const { return effort_; }
   /// Block of each row; -1 where the row says nothing.
   const std::vector<int>& block_of() const { return block_of_; }
+  /// Cycles of the ripple per turn; 0: none is chosen.
   int ripple_cycles() const { return cycles_; }
   /// Root mean square of the velocity in rad/s.
   double usual_rate() const { return usual_rate_; }

@@ -28,7 +28,8 @@ struct SingleJoint {
 
 /// @brief Simulates a single joint under its position controller, from its measured start.
 ///
-/// Each step treats the damping implicitly and dry friction as a force that can hold the joint.
+/// Each step treats the damping implicitly, the position gain by its middle position, and dry friction as a force that can hold the
+/// joint: the error is of second order, so that steps of some milliseconds do not look like damping.
 /// @param begin  first row
 /// @param end    one past the last row
 /// @return position in rad of each row from `begin` on
@@ -59,10 +60,10 @@ inline Eigen::VectorXd simulate(const SingleJoint& joint, const JointDynamics& d
         effort -= d.ripple[i + 1] * std::sin(d.ripple[i] * q) + d.ripple[i + 2] * std::cos(d.ripple[i] * q);
       const double rest = between(joint.rest) + d.gravity_error * between(joint.gravity) +
                           d.moment_a * between(joint.moment_a) + d.moment_b * between(joint.moment_b);
-      double friction = d.friction + d.load_friction * load;
+      double friction = d.friction + d.friction_slope * (q - d.friction_middle) + d.load_friction * load;
       if (curved) friction += d.stribeck * std::exp(-std::fabs(w) / d.stribeck_rate);
       friction = std::max(0.0, friction);
-      const double damping = d.damping + d.effort_scale * d.kd;
+      const double damping = d.damping + d.effort_scale * (d.kd + 0.5 * h * d.kp);
       const double free = (inertia * w + h * (effort - rest)) / (inertia + h * damping);
       const double held = h * friction / (inertia + h * damping);
       const double next = std::fabs(free) <= held ? 0.0 : free - std::copysign(held, free);

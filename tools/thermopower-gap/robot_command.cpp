@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "robot_command.hpp"
+
+#include "progress.hpp"
+
+#ifdef THERMOPOWER_HAS_MUJOCO
+#include "mujoco_body.hpp"
+#include "nearest_name.hpp"
+#include "robot_files.hpp"
+#include "robot_log.hpp"
+
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/output_files.hpp>
+#include <thermopower/robot/diagnose.hpp>
+#include <thermopower/robot/table.hpp>
+#endif
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+void add_robot_options(CLI::App& app, RobotArguments& arguments) {
+  app.add_option("--kp", arguments.kp,
+                 "of a robot: position gain in N m/rad, for all joints or as JOINT=NUMBER; may be repeated");
+  app.add_option("--kd", arguments.kd,
+                 "of a robot: rate gain in N m s/rad, for all joints or as JOINT=NUMBER; may be repeated");
+  app.add_option("--joint", arguments.renamed,
+                 "of a robot: LOG=MODEL, a joint's name in the log and in the model; may be repeated");
+  app.add_flag("--in-air", arguments.in_air,
+               "of a robot: nothing touches it, whatever the efforts look like");
+}
+
+#ifdef THERMOPOWER_HAS_MUJOCO
+namespace {
+
+namespace robot = thermopower::robot;
+namespace io = thermopower::io;
+
+std::string whole_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+double number_of(const std::string& option, const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || last != end || !std::isfinite(value) || value < 0.0)
+    throw UsageError(option + ": " + io::excerpt(text) + " is no gain; expected a number from 0 on");
+  return value;
+}
+
+void set_gains(robot::Robot& body, const char* option, const std::vector<std::string>& given,
+               double robot::Joint::*member) {
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+      for (robot::Joint& joint : body.joints) joint.*member = number_of(option, text);
+      continue;
+    }
+    const std::string name = text.substr(0, equals);
+    std::vector<std::string> names;
+    bool found = false;
+    for (robot::Joint& joint : body.joints) {
+      names.push_back(joint.name);
+      if (joint.name != name) continue;
+      joint.*member = number_of(option, text.substr(equals + 1));
+      found = true;
+    }
+    if (found) continue;
+    const std::string nearest = io::nearest_name(name, names);
+    throw UsageError(std::string(option) + ": the robot has no joint " + io::excerpt(name) +
+                     (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  }
+}
+
+}  // namespace
+
+int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
+  if (!arguments.mjcf.empty() && !arguments.urdf.empty())
+    throw UsageError("--mjcf and --urdf are two robots; expected one");
+  for (const std::string* other : {&arguments.predictions, &arguments.header})
+    if (!other->empty())
+      throw UsageError(
+          "--predictions and --header are of a single actuator; a robot has --report and --augmented");
+  const std::string& path = arguments.mjcf.empty() ? arguments.urdf : arguments.mjcf;
+  for (const std::string* output : {&arguments.report, &arguments.html, &arguments.augmented})
+    if (!output->empty() && plain_path(*output) == plain_path(path))
+      throw UsageError("'" + *output + "' is named twice; an output must not be an input");
+  io::OutputFiles outputs;
+  for (const std::string* output : {&arguments.report, &arguments.augmented})
+    if (!output->empty()) outputs.expect(*output);
+  robot::RobotDiagnosis diagnosis;
+  {
+    Progress progress;
+    const robot::MujocoBody body(path);
+    robot::Robot joints = body.robot();
+    set_gains(joints, "--kp", asked.kp, &robot::Joint::kp);
+    set_gains(joints, "--kd", asked.kd, &robot::Joint::kd);
+    std::vector<std::pair<std::string, std::string>> renamed;
+    for (const std::string& text : asked.renamed) {
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos || equals == 0)
+        throw UsageError("--joint " + text + ": expected LOG=MODEL, as in --joint hip_l=FL_hip_joint");
+      renamed.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+    std::vector<robot::Log> logs, held_out;
+    for (const std::string& one : arguments.recordings)
+      logs.push_back(robot::read_robot_log(one, joints, renamed));
+    for (const std::string& one : arguments.held_out)
+      held_out.push_back(robot::read_robot_log(one, joints, renamed));
+    robot::Options options;
+    options.in_the_air = asked.in_air;
+    progress.stage("diagnosing");
+    diagnosis = robot::diagnose(body, joints, robot::together(logs), held_out, options);
+    diagnosis.notes.insert(diagnosis.notes.begin(), body.notes().begin(), body.notes().end());
+    progress.stage("writing");
+    if (!arguments.report.empty()) outputs.put(arguments.report, robot::robot_json(diagnosis));
+    if (!arguments.augmented.empty()) {
+      const std::string text = whole_file(path);
+      const robot::AmendedFile file =
+          body.is_urdf() ? robot::amended_urdf(text, diagnosis) : robot::amended_mjcf(text, diagnosis);
+      for (const std::string& one : file.left_out)
+        std::fprintf(stderr, "%s: left out: %s\n", arguments.augmented.c_str(), one.c_str());
+      outputs.put(arguments.augmented, file.text);
+    }
+    outputs.commit();
+  }
+  std::fputs(robot::table_text(diagnosis).c_str(), stdout);
+  for (const robot::JointDiagnosis& joint : diagnosis.joints)
+    if (joint.verdict != robot::JointVerdict::not_judged) return made;
+  return too_little_data;
+}
+
+#else
+
+int diagnose_robot(const Arguments&, const RobotArguments&) {
+  throw UsageError(
+      "a whole robot needs MuJoCo, which this program was built without: install libmujoco-dev and build it again");
+}
+
+#endif
