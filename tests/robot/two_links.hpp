@@ -93,13 +93,13 @@ struct TwoLinks {
       }
       for (int part = 0; part < parts; ++part) {
         // An effort is measured at some time between two targets: where it is logged, the target moves on all the time.
-        const double now = with_effort ? t + h * part : t;
+        const double now = with_effort ? t + h * (part + 0.5) : t;
         const std::array<double, 2> target = targets(now);
         command = target;
         if (part == 0 && with_effort)
           for (std::size_t j = 0; j < 2; ++j)
             out.effort(row, static_cast<Eigen::Index>(j)) =
-                kp * (command[j] - x[j]) - kd * x[2 + j] + 0.01 * normal(random);
+                kp * (targets(t)[j] - x[j]) - kd * x[2 + j] + 0.01 * normal(random);
         const auto step = [&](const std::array<double, 4>& slope, double share) {
           std::array<double, 4> to = x;
           for (std::size_t i = 0; i < 4; ++i) to[i] += share * h * slope[i];

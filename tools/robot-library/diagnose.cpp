@@ -24,7 +24,7 @@ constexpr double large_share = 0.15;         // of the effort: a gap that somebo
 constexpr double least_moving_share = 0.02;  // of the rows in which a joint must move
 constexpr int folds = 5;                     // of each stretch, for the tracking error
 constexpr double relevant_share =
-    0.05;  // of the effort that causes must account for; less is nobody's question
+    0.03;  // of the effort that causes must account for; less is nobody's question
 constexpr double earlier_wins = 0.03;  // share of the effort that a longer delay must win
 
 Log part_of(const Log& log, bool last, double share) {

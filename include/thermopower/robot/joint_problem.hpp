@@ -51,6 +51,11 @@ public:
   /// Rates of the Stribeck columns, as a share of the joint's usual rate.
   static constexpr std::array<double, 3> stribeck_shares{0.1, 0.25, 0.6};
 
+  /// Rate within which the direction turns round, as a share of the joint's usual rate.
+  static constexpr double sign_share = 0.01;
+  /// Rate below which a row is near rest, as a share of the joint's usual rate.
+  static constexpr double slow_share = 0.09;
+
   /// @param series  the log
   /// @param body    what the rigid body asks for, in the same rows
   /// @param index   of the joint
@@ -65,7 +70,8 @@ public:
                           a = series.motion.acceleration.col(index);
     usual_rate_ = std::sqrt(w.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows)));
     const double noise = series.rate_noise.size() > index ? series.rate_noise[index] : 0.0;
-    still_ = std::max(0.03 * usual_rate_, noise) + 1e-9;
+    still_ = std::max(sign_share * usual_rate_, noise) + 1e-9;
+    const double slow = std::max(slow_share * usual_rate_, 3.0 * noise) + 1e-9;
     middle_ = 0.5 * (q.minCoeff() + q.maxCoeff());
     span_ = q.maxCoeff() - q.minCoeff();
     const Eigen::ArrayXd sign = (w.array() / still_).tanh();
@@ -100,7 +106,7 @@ public:
     std::vector<Eigen::Index> good;
     for (Eigen::Index i = 0; i < rows; ++i) {
       const bool limited = std::fabs(effort[i]) > 0.98 * joint.effort_limit;
-      if (series.edge[static_cast<std::size_t>(i)] == 0 && speed[i] > 3.0 * still_ && !limited &&
+      if (series.edge[static_cast<std::size_t>(i)] == 0 && speed[i] > slow && !limited &&
           std::isfinite(effort[i]) && std::isfinite(model[i]))
         good.push_back(i);
     }
