@@ -161,7 +161,7 @@ TEST_CASE("an axis at a voltage follows its law, back-EMF included") {
     const Diagnosis diagnosis =
         diagnosed(brushed_model(), record({}, 1500, seed), record({}, 900, seed + 100));
     INFO(diagnosis.reason);
-    CHECK(diagnosis.verdict == Verdict::no_gap);
+    CHECK(test::holds(diagnosis));
     for (const GapScore& gap : diagnosis.gap)
       scores[to_string(gap.signal)] += gap.before / gap.noise_floor / draws;
   }
@@ -213,7 +213,7 @@ TEST_CASE("a recorded torque from outside is an input, and without it there is a
   const Recording train = pulled(1.0, 1500, 3), held_out = pulled(1.0, 900, 5);
   const Diagnosis known = diagnosed(axis_model(), train, held_out);
   INFO(known.reason);
-  CHECK(known.verdict == Verdict::no_gap);
+  CHECK(test::holds(known));
   Recording blind = train, blind_held_out = held_out;
   for (Recording* one : {&blind, &blind_held_out}) one->remove("torque_Nm");
   const Diagnosis unknown = diagnosed(axis_model(), blind, blind_held_out);
@@ -241,7 +241,7 @@ TEST_CASE("units and signs of the inputs are checked") {
 TEST_CASE("a recorded heat stands in the place of the winding's") {
   const Diagnosis known = diagnosed(brake_model(), heated(1.0, 600, 3), heated(1.0, 400, 5));
   INFO(known.reason);
-  CHECK(known.verdict == Verdict::no_gap);
+  CHECK(test::holds(known));
   const Diagnosis two = diagnosed(brake_model(), heated(0.25, 600, 3), heated(0.25, 400, 5));
   INFO(two.reason);
   REQUIRE(two.cause.size() == 1);

@@ -15,6 +15,20 @@
 
 namespace test {
 
+/// Whether a simulation holds up to its constants: it passes as configured, or with constants within what is known of them.
+inline bool holds(const thermopower::gap::Diagnosis& diagnosis) {
+  return diagnosis.verdict == thermopower::gap::Verdict::no_gap ||
+         diagnosis.why == thermopower::gap::Reason::constants_within_known;
+}
+
+/// The constants that moved by more than is known of them.
+inline std::vector<thermopower::gap::ConstantEstimate> moved(const thermopower::gap::Diagnosis& diagnosis) {
+  std::vector<thermopower::gap::ConstantEstimate> list;
+  for (const auto& one : diagnosis.constants)
+    if (!one.within_known) list.push_back(one);
+  return list;
+}
+
 /// Reproducible noise that needs no library: a linear congruential generator, twelve uniforms to a normal
 /// number.
 class Noise {

@@ -4,9 +4,7 @@
 #include "plants.hpp"
 
 #include <thermopower/gap/decide/covariance.hpp>
-#include <thermopower/gap/decide/verdict.hpp>
 #include <thermopower/gap/diagnose.hpp>
-#include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
@@ -47,12 +45,6 @@ Candidate candidate(const Model& model, const std::vector<const char*>& ids, dou
 
 Eigen::Index place_of(const Candidate& candidate, const char* id, const char* parameter) {
   return static_cast<Eigen::Index>(candidate.place_of(*standard_catalogue().find(id), parameter));
-}
-
-Conclusion concluded(const std::vector<Candidate>& candidates, double recalibrated,
-                     const Witness& rows = {}) {
-  return conclude(candidates, {level(900.0), level(recalibrated)}, Weight(), Options(), test::axis_model(),
-                  rows);
 }
 
 /// A motor under power steps whose iron warms with the magnitude of the rate, which steps between the given ones.
@@ -102,36 +94,6 @@ TEST_CASE(
   CHECK(diagnosis.verdict == Verdict::explained);
   REQUIRE(diagnosis.cause.size() == 1);
   CHECK(diagnosis.cause.front().effect == "iron_loss");
-}
-
-TEST_CASE("a constant that moves far only beside a cause and a rest gives the cause away as a stand-in") {
-  const Model model = test::axis_model();
-  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"drive_deadband"}, 50.0)};
-  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  const auto moved = [&](const char* constant, double by) {
-    all[1].fit.point.head(static_cast<Eigen::Index>(model.calibrated().size())).setZero();
-    for (std::size_t i = 0; i < model.calibrated().size(); ++i)
-      if (model.calibrated()[i].id == constant) all[1].fit.point[static_cast<Eigen::Index>(i)] = std::log(by);
-  };
-  moved("torque_constant", 2.2);  // what a fit without the cause was bent by, and is put right
-  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  moved("torque_constant", 3.0);
-  CHECK(concluded(all, 850.0).reason == bends_a_constant);
-  // An inertia is told by each acceleration, whatever a joint loses.
-  moved("inertia", 1.0 / 1.8);
-  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  moved("inertia", 1.0 / 2.2);
-  const Conclusion stood_in = concluded(all, 850.0);
-  CHECK(stood_in.verdict == Verdict::unexplained);
-  CHECK(stood_in.reason == bends_a_constant);
-  // A constant that is that far off takes most of the gap away by itself.
-  CHECK(concluded(all, 150.0).verdict == Verdict::partial);
-  // What takes nearly all of the gap is no stand-in: the constant was fitted without it.
-  all[1].train = all[1].held_out = level(30.0);
-  CHECK(concluded(all, 850.0).verdict == Verdict::partial);
-  // Nothing above the noise is left: the constant was that far off, and the cause explains the rest.
-  all[1].train = all[1].held_out = level(1.1);
-  CHECK(concluded(all, 850.0).verdict == Verdict::explained);
 }
 
 TEST_CASE("a set of causes is not named where one of them may as well not be there") {
@@ -193,120 +155,15 @@ TEST_CASE(
   CHECK_FALSE(all[2].idle);
 }
 
-TEST_CASE(
-    "a cause that leaves a rest of what began in the middle of runs stands in for what happened there") {
-  const Model model = test::axis_model();
-  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 50.0)};
-  Witness rows;
-  rows.where.push_back({Signal::rate_dps, plant::SubmodelName(Submodel::mechanical_friction), 0.9, {}, ""});
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, 7.0}};
-  CHECK(concluded(all, 850.0, rows).reason == was_not_there_before);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
-  // It began in one recording, and shows throughout the other one, which asks more of it.
-  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, {}}};
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  // What brings everything to the noise needs no such witness: a bias that drifts shows late.
-  rows.where.back().only_in = {{"train", "", false, 12.0}, {"heldout", "", true, 7.0}};
-  all[1].train = all[1].held_out = level(1.1);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::explained);
-}
-
-TEST_CASE("a cause of a joint that leaves a rest acts in a place that the rows find at fault") {
-  const Model model = test::axis_model();
-  const plant::SubmodelName friction(Submodel::mechanical_friction), drive(Submodel::mechanical_drive);
-  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 50.0)};
-  Witness rows;
-  rows.where = {{Signal::rate_dps, drive, 0.9, {}, ""}, {Signal::rate_dps, friction, 0.02, {}, ""}};
-  CHECK(concluded(all, 850.0, rows).reason == acts_where_nothing_is_wrong);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
-  rows.where.back().share = 0.3;
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  // One of two causes is enough; of a state that nobody measures, and of readings that are bent, balances say little.
-  rows.where.back().share = 0.02;
-  for (const char* beside : {"presliding_friction", "rate_bias"}) {
-    all[1] = candidate(model, {beside}, 50.0);
-    CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  }
-  // Where they blame nothing of the joint, nobody knows.
-  all[1] = candidate(model, {"coulomb_friction"}, 50.0);
-  rows.where = {{Signal::angle_deg, plant::SubmodelName(Submodel::sensing_angle), 0.9, {}, ""}};
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  // And what brings everything to the noise needs no such witness.
-  rows.where = {{Signal::rate_dps, drive, 0.9, {}, ""}};
-  all[1].train = all[1].held_out = level(1.1);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::explained);
-}
-
-TEST_CASE("a cause that leaves a good part of the gap in the place that it should mend is a stand-in") {
-  const Model model = test::axis_model();
-  const plant::SubmodelName friction(Submodel::mechanical_friction), drive(Submodel::mechanical_drive);
-  std::vector<Candidate> all{candidate(model, {}, 850.0), candidate(model, {"coulomb_friction"}, 150.0)};
-  Witness rows;
-  rows.where.push_back({Signal::rate_dps, friction, 0.9, {}, ""});
-  std::vector<Location> left;
-  rows.blamed_beside = [&](const Candidate&) { return left; };
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  left.push_back({Signal::rate_dps, drive, 0.8, {}, ""});  // something else acts, too
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  left.back().submodel = friction;
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
-  left.back().share = 0.0;  // no freedom there helps: the place is a guess
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  left.back().share = 0.8;
-  // Another signal has a fault of its own that no cause mends: what is left may be that one's.
-  rows.where.push_back({Signal::angle_deg, Submodel::sensing_angle, 0.7, {}, ""});
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  rows.where.back().share = 0.0;  // a trace
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
-  // A law of friction that is a little wrong leaves a little in its place.
-  all[1].train = all[1].held_out = level(40.0);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  // What acts elsewhere and leaves the fault where it was mends nothing of it.
-  all[1] = candidate(model, {"torque_ripple"}, 150.0);
-  CHECK(concluded(all, 850.0, rows).reason == does_not_mend_its_place);
-  left.back().submodel = Submodel::mechanical_load;  // but the drive was never at fault
-  CHECK(concluded(all, 850.0, rows).reason == acts_where_nothing_is_wrong);
-  // Of a state that nobody measures the rows know nothing; an instrument bends what they say.
-  left.back().submodel = friction;
-  all[1] = candidate(model, {"presliding_friction"}, 150.0);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-  all[1] = candidate(model, {"compliance"},
-                     150.0);  // but acts elsewhere than where they find the fault, before and after
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::unexplained);
-  all[1] = candidate(model, {"rate_bias"}, 150.0);
-  CHECK(concluded(all, 850.0, rows).verdict == Verdict::partial);
-}
-
-TEST_CASE(
-    "two causes of which each is larger than what is seen are a difference that stands for something else") {
-  test::AxisFault fault;
-  fault.spring_Nm_per_rad = 0.01;
-  fault.coulomb_Nm = 0.004;
-  const Recording recording = test::axis_recording(fault, 1500, 3);
-  const Model model = test::axis_model();
-  const std::vector<Inputs> inputs{prepare(model, recording)};
-  const std::vector<Segment> segments = cut(inputs, 0.5, plant_of(model));
-  Model with = model;
-  with.effects["cable_spring"] = {{"Nm_per_rad", 0.01}, {"centre_rad", 0.0}};
-  with.effects["coulomb_friction"] = {{"Nm", 0.004}};
-  CHECK_FALSE(are_opposites(with, {"cable_spring", "coulomb_friction"}, segments, standard_catalogue()));
-  // The same stiffness as the difference of a spring and a load that falls over.
-  with.effects = {{"cable_spring", {{"Nm_per_rad", 0.11}, {"centre_rad", 0.0}}},
-                  {"imbalance", {{"Nm", 0.1}, {"phase_rad", 3.141592653589793}}}};
-  CHECK(are_opposites(with, {"cable_spring", "imbalance"}, segments, standard_catalogue()));
-  CHECK_FALSE(are_opposites(with, {"cable_spring"}, segments, standard_catalogue()));
-}
-
-TEST_CASE("friction that varies over the turn is no friction of one size, and is not called one") {
+TEST_CASE("friction that varies over the turn does not explain all, and the rows say that it has a course of its own") {
   test::AxisFault bent;
   bent.coulomb_Nm = 0.004;
   bent.run_out_share = 0.9;
   const Diagnosis diagnosis = diagnose(test::axis_model(), {test::axis_recording(bent, 4000, 3)},
                                        {test::axis_recording(bent, 2000, 8)});
   INFO(diagnosis.reason);
-  CHECK(diagnosis.verdict == Verdict::unexplained);
-  CHECK(diagnosis.cause.empty());
+  CHECK(diagnosis.verdict != Verdict::explained);
+  CHECK(diagnosis.verdict != Verdict::no_gap);
   REQUIRE_FALSE(diagnosis.where.empty());
   CHECK(diagnosis.where.front().submodel == plant::SubmodelName(Submodel::mechanical_friction));
   CHECK(diagnosis.where.front().has_own_course);
@@ -336,7 +193,7 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   CHECK(test::causes_in_order(diagnosis) == std::vector<std::string>{"cable_spring", "coulomb_friction"});
   CHECK(test::parameter_of(diagnosis, "Nm_per_rad") == Approx(0.02).epsilon(0.1));
   const auto moved = std::find_if(diagnosis.constants.begin(), diagnosis.constants.end(),
-                                  [](const MovedConstant& one) { return one.name == "viscous"; });
+                                  [](const ConstantEstimate& one) { return one.name == "viscous"; });
   REQUIRE(moved != diagnosis.constants.end());
   CHECK(moved->fitted < 2e-3);  // 1e-3 in truth
   const Diagnosis all = diagnose(model, train, held_out);

@@ -110,6 +110,14 @@ inline Verdict read_verdict(const std::string& directory) {
       parameter.has_interval = interval_of(entry.value(), parameter.low, parameter.high);
     }
   }
+  // Constants that moved within what the model file says is known are no gap, and a curve claims no name.
+  const bool holds = report.contains("decision") && text(report["decision"], "reason") == "constants_within_known";
+  const bool only_curves = !v.cause.empty() && std::all_of(v.cause.begin(), v.cause.end(), [](const std::string& id) {
+    return id.rfind("unknown.", 0) == 0;
+  });
+  if (holds) v.verdict = "no_gap";
+  if (only_curves) v.verdict = "unexplained";
+  if (holds || only_curves) v.cause.clear();
   if (v.cause.empty()) v.probability = 0.0;
   for (const auto& alternative : list("alternatives")) {
     Explanation ids;
@@ -120,7 +128,8 @@ inline Verdict read_verdict(const std::string& directory) {
     if (!ids.empty()) v.alternatives.push_back(ids);
   }
   if (report.contains("constants") && report["constants"].is_object())
-    for (const auto& entry : report["constants"].items()) v.moved.insert("calibration." + entry.key());
+    for (const auto& entry : report["constants"].items())
+      if (!entry.value().value("within_known", false)) v.moved.insert("calibration." + entry.key());
   static const std::set<std::string> unbelievable = {"constant_column", "frozen_samples",  "wrong_unit",
                                                      "wrong_sign",      "swapped_columns", "clock_shift",
                                                      "never_driven"};

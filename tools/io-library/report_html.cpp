@@ -648,7 +648,7 @@ private:
   void constants() {
     if (d_.constants.empty()) return;
     out_ +=
-        "<h2>Constants</h2>\n<p class=\"soft\">Constants of the model that moved by more than two of their uncertainties.</p>\n"
+        "<h2>Constants</h2>\n<p class=\"soft\">Every constant that a fit may move.</p>\n"
         "<table>\n<tr><th class=\"t\">constant</th><th>as con\u00adfigured</th><th>" +
         std::string(d_.cause.empty() ? "re\u00adcalibrated" : "with the effect") +
         "</th><th>moved by</th><th>known to</th></tr>\n";

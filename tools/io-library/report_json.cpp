@@ -163,6 +163,18 @@ std::string report_json(const Diagnosis& diagnosis) {
   if (diagnosis.remaining) root["remaining"] = remaining(*diagnosis.remaining);
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
+  if (!diagnosis.loop.empty()) root["loop"] = diagnosis.loop;
+  const DecisionNumbers& numbers = diagnosis.numbers;
+  root["decision"] = {{"reason", code_of(diagnosis.why)},
+                      {"configured_over_floor", number(numbers.configured)},
+                      {"refitted_over_floor", number(numbers.refitted)},
+                      {"left_over_floor", number(numbers.left)},
+                      {"twice_horizon_over_floor", number(numbers.twice_horizon)},
+                      {"share_closed", number(1.0 - numbers.share.of_configured)},
+                      {"share_closed_at_least", number(1.0 - numbers.share.most)},
+                      {"left_of_refitted_constants", number(numbers.share.of_refitted_constants)},
+                      {"probability", number(numbers.probability)},
+                      {"probability_with_alternatives", number(numbers.together)}};
   root["none_of_these"] = number(diagnosis.none_of_these);
   root["not_judged"] = diagnosis.not_judged;
   root["findings"] = Json::array();
@@ -173,7 +185,11 @@ std::string report_json(const Diagnosis& diagnosis) {
   for (const auto& constant : diagnosis.constants) {
     root["constants"][constant.name] = {{"configured", number(constant.configured)},
                                         {"fitted", number(constant.fitted)},
-                                        {"uncertainty", number(constant.uncertainty)}};
+                                        {"ci95", interval(constant.ci95)},
+                                        {"uncertainty", number(constant.uncertainty)},
+                                        {"determined", constant.determined},
+                                        {"on_bound", constant.on_bound},
+                                        {"within_known", constant.within_known}};
     if (constant.is_place) root["constants"][constant.name]["unit"] = "rad";
   }
   Json matrix = Json::array();

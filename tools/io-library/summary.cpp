@@ -144,12 +144,12 @@ std::string summary(const Diagnosis& diagnosis) {
     const std::string as = plant::calibration_id(constant.name);
     const bool is_cause = std::any_of(diagnosis.cause.begin(), diagnosis.cause.end(),
                                       [&](const Cause& cause) { return cause.effect == as; });
-    if (!is_cause)
+    if (!is_cause && (!constant.within_known || constant.on_bound))
       out += line("with", constant.name + " " + readable(constant.configured) + " -> " +
                               readable(constant.fitted) + " (known to " +
                               (constant.is_place ? readable(constant.uncertainty) + " rad"
                                                  : percent(constant.uncertainty)) +
-                              ")");
+                              (constant.on_bound ? "; on its bound)" : ")"));
   }
   if (diagnosis.remaining) {
     const Remaining& rest = *diagnosis.remaining;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/gap/finding.hpp>
+#include <thermopower/gap/reason.hpp>
 #include <thermopower/gap/verdict.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/simulated_signal.hpp>
@@ -85,9 +86,11 @@ struct GapScore {
   double recalibrated = 0.0;        ///< its own constants refitted, no effect added
   double after = 0.0;               ///< with the causes (equal to `before` where there are none)
   double noise_floor = 0.0;         ///< what a perfect model would score
+  double by_chance = 1.0;           ///< multiple of the floor that noise which remembers comes to by chance, 1 or more
   double shrunk_by = 0.0;           ///< 1 - after / before
   Interval ci95;                    ///< of shrunk_by, by a paired block bootstrap
   Interval beyond_constants = {};   ///< the same of 1 - after / recalibrated
+  Interval by_constants = {};       ///< the same of 1 - recalibrated / before
 };
 
 /// What an explanation that was not chosen makes of a signal.
@@ -163,14 +166,36 @@ struct RankedExplanation {
   Eigen::MatrixXd covariance;  ///< of `fitted`; 0 by 0 where nobody looked at the fit's curvature
 };
 
-/// A constant of the baseline that the explanation moved by more than two of its uncertainties.
-struct MovedConstant {
+/// A constant of the model: as configured, and as the reported explanation has it.
+struct ConstantEstimate {
   std::string name;          ///< id as in `calibration.<id>`
   double configured = 0.0;   ///< as the model file has it, first field where several scale together
   double fitted = 0.0;       ///< as the explanation has it; its ratio to `configured` is that of all fields
+  Interval ci95;             ///< of `fitted`
   double uncertainty = 0.0;  ///< standard deviation that was stated or assumed, as a share of `configured`
-  bool is_place =
-      false;  ///< an angle at which something is: it moved by a difference, and `uncertainty` is in rad
+  bool is_place = false;     ///< an angle: it moves by a difference, and `uncertainty` is in rad
+  bool determined = true;    ///< the data say more about it than the model file does
+  bool on_bound = false;     ///< its fit ended at the end of its range: then the model has another fault
+  bool within_known = true;  ///< it moved by no more than two of its uncertainties
+};
+
+/// What an explanation leaves of the held-out gap: the geometric mean over the signals that have one, 1 where nothing is closed.
+struct ShareLeft {
+  double of_configured = 1.0;          ///< of what the configured model leaves
+  double most = 1.0;                   ///< upper end of its one-sided 95 % interval
+  double of_refitted_constants = 1.0;  ///< of what refitted constants leave
+};
+
+/// Every number that the verdict relies on.
+struct DecisionNumbers {
+  double configured = 0.0;     ///< largest multiple of the noise floor, as configured
+  double by_chance = 1.0;      ///< the same that noise which remembers comes to by chance
+  double refitted = 0.0;       ///< the same with refitted constants
+  double left = 0.0;           ///< the same with the likeliest explanation
+  double twice_horizon = 0.0;  ///< the same as configured, in windows twice as long; 0 where that was not asked
+  ShareLeft share;             ///< what the likeliest explanation leaves
+  double probability = 0.0;    ///< of the likeliest explanation's class
+  double together = 0.0;       ///< of that class and the alternatives
 };
 
 /// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of
@@ -201,6 +226,9 @@ struct StageTiming {
 struct Diagnosis {
   Verdict verdict = Verdict::insufficient;             ///< the conclusion in one word
   std::string reason;                                  ///< one sentence in plain words: why this verdict
+  Reason why = Reason::too_little_data;                ///< the same as a line of the verdict table
+  DecisionNumbers numbers;                             ///< what the verdict was read off
+  std::string loop;                                    ///< of a joint: `open`, `closed` or `unknown`; else empty
   std::vector<Location> where;                         ///< largest share first; empty without a gap
   std::vector<Cause> cause;                            ///< the chosen explanation; empty where none is
   std::vector<std::vector<std::string>> alternatives;  ///< as good on this data, likeliest first; ids of each
@@ -211,7 +239,7 @@ struct Diagnosis {
   std::vector<std::string> not_judged;     ///< one sentence for each signal or block that lacks a column
   std::vector<Finding> findings;           ///< of the data, recording by recording
   std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
-  std::vector<MovedConstant> constants;    ///< those that moved by more than two of their uncertainties
+  std::vector<ConstantEstimate> constants;  ///< every constant that a fit may move, whatever the verdict
   ParameterCorrelation correlation;        ///< of the chosen explanation; empty where none is
   std::optional<Remaining> remaining;      ///< of a partial verdict
   std::string recalibration;  ///< one sentence where refitted constants do worse on held-out data; else empty

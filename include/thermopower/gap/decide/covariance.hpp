@@ -142,45 +142,4 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
   }
 }
 
-/// Whether an effect of a candidate may be anything: the 95 % interval of each of its parameters that was looked for is nine
-/// tenths of its range or more. Then the data show that something is missing, and nothing of what.
-inline bool may_be_anything(const Candidate& candidate, const Model& model, const Weight& weight) {
-  const Covariance covariance = covariance_of(candidate, weight);
-  if (covariance.of.size() == 0) return false;
-  std::size_t at = model.calibrated().size();
-  for (const CatalogueEntry* entry : candidate.explanation.effects) {
-    bool was_asked = false, is_told = false;
-    for (const Parameter& parameter : entry->info.parameters) {
-      const std::size_t place = at++;
-      if (!was_looked_for(parameter, candidate.list[place])) continue;
-      was_asked = true;
-      is_told = is_told || is_narrower(interval_of(candidate, place, covariance), candidate.list[place]);
-    }
-    if (was_asked && !is_told) return true;
-  }
-  return false;
-}
-
-/// Whether the blocks of the training data agree about what the effects of a candidate are like: the standard deviation of
-/// each parameter that was looked for, by how much the blocks differ, is a small share of how far it is from where the effect
-/// would not be there (of the factor that it may be off by, where it is known by its order of magnitude). A parameter on a
-/// bound is not asked about, nor is a detail of a shape.
-inline bool is_agreed_upon(const Candidate& candidate, const Model& model, const Weight& weight) {
-  const Covariance covariance = covariance_of(candidate, weight);
-  if (covariance.of.size() == 0) return true;
-  std::size_t at = model.calibrated().size();
-  for (const CatalogueEntry* entry : candidate.explanation.effects)
-    for (const Parameter& parameter : entry->info.parameters) {
-      const std::size_t place = at++;
-      if (!was_looked_for(parameter, candidate.list[place]) || candidate.fit.at_bound[place]) continue;
-      if (entry->info.curve) continue;  // a curve may be next to nothing at some of its knots
-      const auto i = static_cast<Eigen::Index>(place);
-      const double sd = std::sqrt(std::max(covariance.of(i, i), 0.0));
-      const double value =
-          candidate.list[place].logarithmic ? 1.0 : std::abs(candidate.fit.point[i] - parameter.absent_at);
-      if (sd > decision.size_known * value) return false;
-    }
-  return true;
-}
-
 }  // namespace thermopower::gap::engine

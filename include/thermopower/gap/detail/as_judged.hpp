@@ -114,6 +114,35 @@ public:
     attempt.reference.recalibrated = scored(attempt.recalibrated);
   }
 
+  /// Scores some candidates on held-out data: nothing missing, the chosen one, and the likeliest.
+  void score(Attempt& attempt, std::size_t chosen) const {
+    constexpr std::size_t most = 10;
+    const std::vector<Segment> segments = posing_.judged(held_out_);
+    const Model best = model_of(attempt.candidates[chosen]);
+    const Errors errors = errors_of(best, segments, catalogue_);
+    const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_);
+    const std::array<double, signal_count> floor =
+        floor_of(best, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise);
+    const auto scored = [&](const Model& model) {
+      const Errors own = errors_of(model, segments, catalogue_, &sigma);
+      SignalSums sums;
+      for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
+      return sums;
+    };
+    std::vector<std::size_t> order(attempt.candidates.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    sort_by(order, [&](std::size_t i) {
+      return i == 0 || i == chosen ? -2.0 : -attempt.candidates[i].probability;
+    });
+    order.resize(std::min(order.size(), most));
+    in_parallel(order.size(), posing_.options().threads, [&](std::size_t i) {
+      Candidate& one = attempt.candidates[order[i]];
+      one.held_out = scored(model_of(one));
+    });
+    attempt.reference.as_configured = scored(model_);
+    attempt.reference.recalibrated = scored(attempt.recalibrated);
+  }
+
 private:
   Model model_of(const Candidate& one) const {
     return augmented(model_, one.explanation, one.list, one.fit.point);

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -26,8 +25,6 @@ struct Attempt {
   Weight weight;
   Reference reference;
   Model recalibrated;  ///< the model with its constants refitted
-  /// Where a pair was tried with a third cause: what it came to before, for the case that three are refused.
-  std::shared_ptr<const Attempt> in_pairs = nullptr;
 
   /// The candidate that fits best, whatever its size.
   const Candidate& best() const { return fittest(candidates); }

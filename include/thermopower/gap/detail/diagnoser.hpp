@@ -3,6 +3,10 @@
 #pragma once
 
 #include <thermopower/gap/check.hpp>
+#include <thermopower/gap/compare/choice.hpp>
+#include <thermopower/gap/compare/effort_lead.hpp>
+#include <thermopower/gap/compare/fewest_constants.hpp>
+#include <thermopower/gap/compare/verdict_table.hpp>
 #include <thermopower/gap/detail/cause_search.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/detail/posing.hpp>
@@ -13,17 +17,16 @@
 #include <thermopower/gap/options.hpp>
 #include <thermopower/gap/report/held_out_predictions.hpp>
 #include <thermopower/gap/report/last_fit.hpp>
-#include <thermopower/gap/report/opposites.hpp>
 #include <thermopower/gap/report/parts.hpp>
-#include <thermopower/gap/report/runaway.hpp>
 #include <thermopower/gap/report/score.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/gap/data/splitting.hpp>
-#include <thermopower/gap/decide/places_left.hpp>
-#include <thermopower/gap/decide/verdict.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,138 +54,21 @@ public:
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
+    if (model_.axis && !model_.own) {
+      effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_);
+      result_.loop = to_string(effort_->loop().kind);
+    }
+    if (effort_is_measured() && effort_->loop().is_closed()) {
+      if (auto told = from_effort()) return report_on(told->first, told->second);
+    }
     Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where).run();
-    stage("which");
-    const Witness rows{[this](const Candidate& known, const plant::SubmodelName& submodel) {
-                         return is_blamed(known, submodel);
-                       },
-                       [this](const Candidate& known) { return own_course_in(left_.beside(known)); },
-                       result_.where, [this](const Candidate& known) { return left_.beside(known); },
-                       [this](const Candidate& set) {
-                         return are_opposites(augmented(model_, set.explanation, set.list, set.fit.point),
-                                              set.explanation.ids(model_), posing_.judged(held_out_inputs_),
-                                              catalogue_);
-                       }};
-    Conclusion conclusion =
-        conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
-    if (attempt.in_pairs != nullptr && !is_found_by_a_third(attempt, conclusion)) {
-      attempt = Attempt(*attempt.in_pairs);
-      conclusion = conclude(attempt.candidates, attempt.reference, attempt.weight, options_, model_, rows);
+    if (effort_is_measured() && leave_out_what_effort_denies(attempt.candidates)) {
+      if (auto told = from_effort()) return report_on(told->first, told->second);
     }
-    if (conclusion.second_is_open) {
-      // What is left looks a little like several effects: it is named as a rest.
-      std::vector<Candidate>& all = attempt.candidates;
-      all.erase(std::remove_if(all.begin(), all.end(),
-                               [](const Candidate& one) { return one.explanation.effects.size() > 1; }),
-                all.end());
-      weigh(all, attempt.weight, model_);
-      conclusion = conclude(all, attempt.reference, attempt.weight, options_, model_, rows);
-    }
-    if (conclusion.verdict != Verdict::no_gap && constants_suffice(attempt, conclusion))
-      conclusion = nothing_missing();
-    report(attempt, conclusion);
-    stage("how far");
-    return std::move(result_);
+    return report_on(attempt, choose(attempt.candidates, model_));
   }
 
 private:
-  /// Whether causes are named that only the look for a third one has found: three of them, or a pair that was passed over. What
-  /// is said of others does not depend on that look.
-  static bool is_found_by_a_third(const Attempt& attempt, const Conclusion& conclusion) {
-    const Explanation& found = attempt.candidates[conclusion.chosen].explanation;
-    const bool is_named = conclusion.verdict != Verdict::unexplained && !conclusion.second_is_open;
-    return is_named && !is_known(attempt.in_pairs->candidates, found) &&
-           !(conclusion.leaves_a_rest && are_of_one_place(found));
-  }
-
-  /// Whether there are three causes or more and all of one submodel: spring, weight and cogs are together nearly any load that goes
-  /// with the angle, such as an end stop.
-  static bool are_of_one_place(const Explanation& found) {
-    const auto same = [&](const CatalogueEntry* one) {
-      return one->info.submodel == found.effects.front()->info.submodel;
-    };
-    return found.effects.size() > 2 && std::all_of(found.effects.begin(), found.effects.end(), same);
-  }
-
-  /// Whether the model, its constants within their slack, scores what the noise allows on the data in full.
-  /// The search looks at averages of many rows: what shows there may be too small for anybody to care. And
-  /// training data over a narrow range leave constants open that the held-out data ask for: what fits both
-  /// will do. Where constants are the answer, the model must hold as it is configured.
-  bool constants_suffice(const Attempt& attempt, const Conclusion& conclusion) {
-    const Candidate& empty = attempt.candidates.front();
-    // What an explanation leaves may be less than rows tell of their noise. Where nothing explains, what the best of the
-    // explanations leaves is no noise.
-    const FitProblem* witness = conclusion.verdict == Verdict::unexplained ? nullptr : &attempt.problem;
-    // Where something explains what is left, that is a witness of it; else noise that remembers may be all of it, where
-    // both parts say so: a few readings alone may be anything by chance.
-    const bool chance = witness == nullptr && !follows_the_motion();
-    const auto fit_both_parts = [&](const Model& model) {
-      return is_within_noise_of_both_parts(model, witness, chance);
-    };
-    // Such windows may be longer than those that a gap is judged in: what holds in these as it is configured has none.
-    if (largest_noise_multiple(empty) > decision.far_from_noise)
-      return conclusion.verdict == Verdict::unexplained && fit_both_parts(model_);
-    // A gap is measured on held-out data. Where they show none, what nothing explains is the training data's own.
-    if (conclusion.verdict == Verdict::unexplained &&
-        is_within_noise(model_, held_out_inputs_, nullptr, options_.horizon_s, catalogue_, true))
-      return true;
-    if (conclusion.chosen != 0 && attempt.candidates[conclusion.chosen].explanation.effects.empty())
-      return fit_both_parts(model_);
-    const bool is_cause = conclusion.verdict == Verdict::explained &&
-                          are_dearer(empty, attempt.candidates[conclusion.chosen], model_);
-    if (is_cause) return fit_both_parts(model_);
-    const Model constants = augmented(model_, empty.explanation, empty.list, empty.fit.point);
-    if (is_within_noise(constants, held_out_inputs_, witness, options_.horizon_s, catalogue_) ||
-        (chance && fit_both_parts(constants)))
-      return true;
-    // Where the training data are rough they leave constants open that the held-out data tell: what those ask for may do for both.
-    std::vector<Inputs> all = train_inputs_;
-    all.insert(all.end(), held_out_inputs_.begin(), held_out_inputs_.end());
-    return fit_both_parts(refitted_to(all, attempt)) ||
-           (chance && fit_both_parts(refitted_to(held_out_inputs_, attempt)));
-  }
-
-  /// Whether a model scores what the noise allows on held-out and training data, see is_within_noise().
-  bool is_within_noise_of_both_parts(const Model& model, const FitProblem* witness, bool chance) const {
-    const auto is_within = [&](const std::vector<Inputs>& part) {
-      return is_within_noise(model, part, witness, options_.horizon_s, catalogue_, false, chance);
-    };
-    return is_within(held_out_inputs_) && is_within(train_inputs_);
-  }
-
-  /// Whether what is missing is mostly a torque that goes with rate or angle on rows it was not fitted to. Noise that remembers is
-  /// taken for a drive or a structure, that have an acceleration of their own, and knows of no rate.
-  bool follows_the_motion() const {
-    constexpr double mostly = 0.5;
-    if (result_.where.empty() || result_.where.front().share < mostly) return false;
-    const plant::SubmodelName& place = result_.where.front().submodel;
-    return place == plant::Submodel::mechanical_friction || place == plant::Submodel::mechanical_load;
-  }
-
-  /// Whether noise that remembers may be all that some constants within their slack leave of both parts: where no cause is
-  /// believed, and a few readings may be anything by chance.
-  bool suffice_by_chance(const Attempt& attempt) {
-    const auto may_be_noise = [&](const Model& model) {
-      return is_within_noise_of_both_parts(model, nullptr, true);
-    };
-    const Candidate& empty = attempt.candidates.front();
-    if (largest_noise_multiple(empty) > decision.far_from_noise || follows_the_motion()) return false;
-    return may_be_noise(model_) ||
-           may_be_noise(augmented(model_, empty.explanation, empty.list, empty.fit.point)) ||
-           may_be_noise(refitted_to(held_out_inputs_, attempt));
-  }
-
-  /// The model with its constants, within their slack, fitted to some data; they begin where the search left them.
-  Model refitted_to(const std::vector<Inputs>& inputs, const Attempt& attempt) {
-    FitProblem problem = posing_.pose(inputs, posing_.fitted(posing_.long_window_s()));
-    problem.sigma = attempt.problem.sigma;
-    problem.correlation = attempt.problem.correlation;
-    const Candidate first = Attribution(problem).fit({}, {}, &attempt.candidates.front());
-    measure_noise(problem, first, inputs);
-    const Candidate fitted = Attribution(problem).fit({}, {}, &first);
-    return augmented(model_, fitted.explanation, fitted.list, fitted.fit.point);
-  }
-
   void gather(const std::vector<Recording>& train, const std::vector<Recording>& held_out) {
     if (train.empty()) throw InvalidInput("there is no recording to train on");
     std::vector<Recording> first = train, last = held_out;
@@ -214,79 +100,226 @@ private:
     result_.augmented = result_.recalibrated = model_;
   }
 
-  /// Whether the measured rows say that something is missing in a submodel, as they are or beside known causes. A plant
-  /// of one's own need not say where.
-  bool is_blamed(const Candidate& known, const plant::SubmodelName& submodel) {
-    const auto among = [&](const std::vector<Location>& where) {
-      return std::any_of(where.begin(), where.end(),
-                         [&](const Location& one) { return one.submodel == submodel; });
-    };
-    return model_.own || among(result_.where) || among(left_.beside(known));
+  Diagnosis report_on(Attempt& attempt, const Answer& answer) {
+    stage("which");
+    report(attempt, answer);
+    stage("how far");
+    return std::move(result_);
   }
 
-  /// Whether nothing that has a course of its own in time is missing once the causes of a candidate are in the model. A node
-  /// that nobody measures can hold whatever heat is missing: a balance with one says nothing.
-  bool ends_its_course(const Candidate& chosen) {
-    return !model_.own && chosen.hidden_starts == 0 && own_course_in(left_.beside(chosen)) == 0.0;
+  /// Whether the effort of a joint is recorded. What a model's servo makes of a target is no measurement: then the simulation has
+  /// the loop in it, and motion tells.
+  bool effort_is_measured() const {
+    return effort_ && effort_->is_judged() && !train_inputs_.front().closed_loop;
   }
 
-  void report(Attempt& attempt, const Conclusion& conclusion) {
+  /// What the effort says, given the motion; none where it tells of nothing.
+  std::optional<std::pair<Attempt, Answer>> from_effort() {
+    Attempt attempt = posed();
+    EffortLead lead(*effort_, attempt.problem);
+    if (!lead.is_told()) return std::nullopt;
+    effort_leads_ = true;
+    const Answer answer = lead.answer();
+    take(lead, answer, attempt);
+    return std::make_pair(std::move(attempt), answer);
+  }
+
+  /// Training data in the windows of a fit, with nothing fitted.
+  Attempt posed() const {
+    Attempt attempt;
+    attempt.horizon_s = options_.horizon_s;
+    attempt.problem = posing_.pose(train_inputs_, posing_.fitted(options_.horizon_s), &attempt.all);
+    return attempt;
+  }
+
+  /// Takes the explanations of the effort for those of a search, with their scores as a gap is judged.
+  void take(EffortLead& lead, const Answer& answer, Attempt& attempt) const {
+    attempt.candidates = lead.candidates();
+    const Attribution attribution(attempt.problem);
+    measure_noise(attempt.problem, started(attempt.candidates[answer.chosen], attempt.problem), train_inputs_);
+    for (Candidate& one : attempt.candidates) attribution.adopt(one);
+    attempt.recalibrated = model_with(attempt.candidates.front());
+    AsJudged(posing_, train_inputs_, held_out_inputs_).score(attempt, answer.chosen);
+  }
+
+  /// A candidate whose segments start as measured.
+  static Candidate started(Candidate one, const FitProblem& problem) {
+    one.fit.starts = problem.measured_starts();
+    return one;
+  }
+
+  Model model_with(const Candidate& one) const {
+    return augmented(model_, one.explanation, one.list, one.fit.point);
+  }
+
+  /// One belief: constants and causes that predict the motion must not need another effort than the one that was recorded. In a
+  /// closed loop a flywheel predicts the motion best, and would need many times the effort.
+  /// @return whether the likeliest explanation is denied
+  bool leave_out_what_effort_denies(std::vector<Candidate>& candidates) const {
+    constexpr double hardly = 1e-3, worse = 1.15;
+    const std::size_t best = likeliest(candidates);
+    bool denied_best = false;
+    double left = 0.0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      Candidate& one = candidates[i];
+      if (one.probability > hardly && i > 0) {
+        const ParameterPoint point = point_of(model_, one.explanation, one.list, one.fit.point);
+        if (effort_->times_refitted(point.factors, added(point)) > worse) {
+          one.probability = 0.0;
+          denied_best = denied_best || i == best;
+        }
+      }
+      left += one.probability;
+    }
+    if (left > 0.0)
+      for (Candidate& one : candidates) one.probability /= left;
+    return denied_best;
+  }
+
+  static std::vector<plant::AddedEffect<double>> added(const ParameterPoint& point) {
+    std::vector<plant::AddedEffect<double>> list;
+    std::size_t at = 0;
+    for (const CatalogueEntry* entry : point.effects) {
+      plant::AddedEffect<double> one;
+      one.entry = entry;
+      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i) one.parameters.push_back(point.parameters[at++]);
+      list.push_back(std::move(one));
+    }
+    return list;
+  }
+
+  /// Adds what the effort says to the table, where a controller makes it.
+  void add_effort(const Candidate& chosen) {
+    if (!effort_is_measured() || !(effort_->loop().is_closed() || effort_leads_)) return;
+    const auto vector = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
+    const std::vector<double> before = vector(effort_->held_out_residual_as_configured()),
+                              constants = vector(effort_->held_out_residual({}));
+    std::vector<double> after = vector(effort_->held_out_residual(chosen.explanation.effects));
+    if (after.empty()) after = constants;
+    const bool voltage = model_.axis->voltage_driven();
+    GapScore gap;
+    gap.signal = plant::SignalName(voltage ? "voltage_V" : "drive_A");
+    gap.unit = voltage ? "V" : "A";
+    gap.before = rms_of(before);
+    gap.recalibrated = rms_of(constants);
+    gap.after = rms_of(after);
+    gap.noise_floor = effort_->effort_noise();
+    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
+    gap.ci95 = shrinkage_interval(before, after, options_.seed);
+    gap.beyond_constants = shrinkage_interval(constants, after, options_.seed);
+    gap.by_constants = shrinkage_interval(before, constants, options_.seed);
+    result_.gap.push_back(gap);
+  }
+
+  /// The largest multiple of its floor that a signal reaches as configured, in windows twice as long; 0 where none is.
+  double at_twice_the_horizon() const {
+    const std::vector<Segment> windows = cut(held_out_inputs_, 2.0 * options_.horizon_s, plant_of(model_));
+    const Errors errors = errors_of(model_, windows, catalogue_);
+    const std::array<double, signal_count> floor =
+        floor_of(model_, errors, noise_of(errors, windows, held_out_inputs_), windows, catalogue_,
+                 FirstReadings::as_they_are);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < signal_count; ++i)
+      if (floor[i] > 0.0) worst = std::max(worst, errors.rms(static_cast<Signal>(i)) / floor[i]);
+    return worst;
+  }
+
+  /// What the chosen explanation comes to: the table, the verdict that it says, and what goes with that.
+  void report(Attempt& attempt, const Answer& choice) {
     std::vector<Candidate>& candidates = attempt.candidates;
-    result_.verdict = conclusion.verdict;
-    result_.reason = conclusion.reason;
-    result_.none_of_these = conclusion.none_of_these;
-    Candidate& chosen = candidates[conclusion.chosen];
-    const bool named = conclusion.verdict == Verdict::explained || conclusion.verdict == Verdict::ambiguous ||
-                       conclusion.verdict == Verdict::partial;
+    Candidate chosen = candidates[choice.chosen];
+    const bool only_constants = chosen.explanation.effects.empty();
+    if (only_constants && !effort_leads_) {
+      chosen = likeliest_constants(candidates);
+      Attribution(attempt.problem).survey(chosen);
+    }
     Weight weight = correlation_of(chosen, attempt.problem);
-    rank(result_, candidates, conclusion, attempt.problem, weight);
-    if (named) fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
+    rank(result_, candidates, attempt.problem, weight);
+    if (!effort_leads_) fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
     const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.point);
-    if (named) name_causes(result_, candidates, conclusion, model_, fitted, weight);
-    result_.recalibrated = attempt.recalibrated;
-    if (named) result_.augmented = fitted;
+    result_.recalibrated = only_constants ? fitted : attempt.recalibrated;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
-    const std::vector<Rival> rivals = rivals_of(candidates, conclusion.chosen, model_);
-    score(result_, model_, full, held_out_inputs_, fitted, follows_its_data(chosen), rivals, options_,
-          catalogue_);
-    const bool short_of_noise = constants_fall_short(result_);
-    if (short_of_noise) take_causes_back(result_, model_, nothing_known(constants_leave_a_rest));
-    if (result_.reason == constants_leave_a_rest) note_moved_constants(result_, model_, result_.recalibrated);
+    score(result_, model_, full, held_out_inputs_, fitted, follows_its_data(chosen),
+          rivals_of(candidates, choice.chosen, model_), options_, catalogue_);
+    add_effort(chosen);
+    result_.numbers = numbers_of(result_.gap, choice.probability);
+    if (effort_leads_) result_.numbers.share = share_left({result_.gap.back()});
+    result_.numbers.together = choice.together;
+    if (result_.numbers.configured <= verdict_limits.near_floor) result_.numbers.twice_horizon = at_twice_the_horizon();
+    for (const Candidate& one : candidates)
+      if (has_curve(one.explanation)) result_.none_of_these += one.probability;
+    Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
+    const std::vector<ConstantEstimate> refitted =
+        constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
+    const bool within_known = std::all_of(refitted.begin(), refitted.end(),
+                                          [](const ConstantEstimate& one) { return one.within_known; });
+    const Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                                                    : decide(result_.numbers, only_constants, within_known);
+    result_.verdict = decided.verdict;
+    result_.why = decided.reason;
+    result_.reason = to_string(decided.reason);
+    const bool by_constants =
+        decided.reason == Reason::constants_within_known || decided.reason == Reason::constants_moved;
+    const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
+                       decided.verdict == Verdict::partial;
+    result_.constants = named && !by_constants ? constants_of(chosen, model_, weight) : refitted;
     note_recalibration(result_);
-    const bool leaves_a_rest = admit_a_rest(result_) || (conclusion.leaves_a_rest && !deny_a_rest(result_));
-    const bool unproven = named && take_back_the_unproven(result_, model_, chosen.explanation);
-    const bool on_its_own = named && !unproven && leaves_a_rest &&
-                            !leaves_little(result_, decision.may_leave_a_course) &&
-                            has_own_course(result_, chosen.explanation) && !ends_its_course(chosen);
-    if (on_its_own) take_causes_back(result_, model_, nothing_known(follows_nothing_recorded));
-    // Rows as recorded may tell less than the averages that were searched.
-    const bool of_any_size = named && !unproven && !on_its_own && may_be_anything(chosen, model_, weight);
-    if (of_any_size) take_causes_back(result_, model_, nothing_known(may_be_of_any_size));
-    const bool taken_back = short_of_noise || unproven || on_its_own || of_any_size;
-    if (taken_back && result_.verdict == Verdict::unexplained && suffice_by_chance(attempt))
-      take_causes_back(result_, model_, nothing_missing());
-    if (named && leaves_a_rest && !taken_back)
+    if (!named || by_constants) keep_constants_alone(result_, model_);
+    if (by_constants) {
+      if (within_known) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
+      else constants.explanation.released = beyond_known(refitted);
+      name_causes(result_, candidates, {choice.chosen, only_constants ? choice.probability : 1.0 - choice.probability, 0.0, {}},
+                  constants, model_, weight);
+    } else if (named) {
+      result_.augmented = fitted;
+      name_causes(result_, candidates, choice, chosen, model_, weight);
+    }
+    if (named) draw_what_is_missing();
+    if (decided.verdict == Verdict::partial)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()
                                         : localise(result_.augmented, train_recordings_, {}, catalogue_));
-    if (named && !taken_back) {
-      std::vector<Recording> simulated = std::move(train_recordings_);
-      for (Recording& one : simulated)
-        for (SimulatedSignal& signal :
-             simulate(result_.augmented, one, {SimulationMode::free_running, options_.horizon_s}, catalogue_))
-          one.set(to_string(signal.signal), std::move(signal.values));
-      if (model_.own) {
-        std::vector<Inputs> inputs;
-        for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
-        draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
-      } else {
-        draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
-      }
-    }
-    result_.next_experiment = next_experiment(result_, candidates, conclusion, model_, catalogue_);
-    take_back_a_runaway(result_, model_);
+    result_.next_experiment = next_experiment(result_, candidates, choice, model_, catalogue_);
     result_.predictions =
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);
+  }
+
+  /// The likeliest fit of constants alone: what it leaves, and what its moves cost.
+  const Candidate& likeliest_constants(const std::vector<Candidate>& candidates) const {
+    const auto cost = [&](const Candidate& one) { return fitness(one) + price_of_constants(one, model_); };
+    const Candidate* best = &candidates.front();
+    for (const Candidate& one : candidates)
+      if (one.explanation.effects.empty() && cost(one) < cost(*best)) best = &one;
+    return *best;
+  }
+
+  /// Places of the constants that moved by more than is known of them.
+  static std::vector<int> beyond_known(const std::vector<ConstantEstimate>& constants) {
+    std::vector<int> places;
+    for (std::size_t i = 0; i < constants.size(); ++i)
+      if (!constants[i].within_known) places.push_back(static_cast<int>(i));
+    return places;
+  }
+
+  /// Whether a simulation left the range of numbers, or is so stiff that no noise of its starts can be carried through it.
+  static bool ran_away(const std::vector<GapScore>& table) {
+    constexpr double far_away = 1e8;  // no motor is as hot, and no axis as fast
+    return std::any_of(table.begin(), table.end(), [](const GapScore& gap) {
+      return !std::isfinite(gap.noise_floor) || !(std::min(gap.recalibrated, gap.after) < far_away);
+    });
+  }
+
+  /// Adds to the picture of the missing quantity what the model supplies of it with the causes.
+  void draw_what_is_missing() {
+    std::vector<Recording> simulated = train_recordings_;
+    for (Recording& one : simulated)
+      for (SimulatedSignal& signal :
+           simulate(result_.augmented, one, {SimulationMode::free_running, options_.horizon_s}, catalogue_))
+        one.set(to_string(signal.signal), std::move(signal.values));
+    if (!model_.own) return draw_effect(model_, std::move(simulated), catalogue_, result_.missing_quantities);
+    std::vector<Inputs> inputs;
+    for (const Recording& one : simulated) inputs.push_back(prepare(model_, one));
+    draw_own_effect(model_, catalogue_, inputs, result_.missing_quantities);
   }
 
   void stage(const char* name) {
@@ -303,7 +336,8 @@ private:
   std::vector<Recording> train_recordings_, held_out_recordings_;
   std::vector<Inputs> train_inputs_, held_out_inputs_;
   std::vector<RowsAsGiven> held_out_rows_;
-  PlacesLeft left_{model_, train_recordings_, catalogue_};
+  std::optional<EffortProblem> effort_;  ///< of an axis
+  bool effort_leads_ = false;            ///< the effort names the cause, and the motion must not contradict
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
 

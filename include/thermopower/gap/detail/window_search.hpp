@@ -5,7 +5,7 @@
 #include <thermopower/gap/decide/covariance.hpp>
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
-#include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/gap/compare/choice.hpp>
 #include <thermopower/gap/detail/as_judged.hpp>
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
@@ -143,7 +143,7 @@ public:
       const Candidate& one = attempt_.candidates[place];
       if (one.explanation.effects.size() != 1 || !in_the_running(one) ||
           largest_noise_multiple(one.held_out) > decision.near_floor ||
-          !may_hide_a_cause(one, posing_.model()))
+          !(price_of_constants(one, posing_.model()) > decision.rarity + decision.dear_constants))
         continue;
       if (++found > tried) break;
       for (Promise& set : search_->promising().with_each(attempt_.candidates, place, effects()))
@@ -164,11 +164,9 @@ public:
     if (pair.explanation.effects.size() != 2 || !has_room() ||
         largest_noise_multiple(pair.held_out) < decision.room_for_second)
       return;
-    const auto before = std::make_shared<const Attempt>(attempt_);
     add_sets(search_->promising().with_each(attempt_.candidates, place, effects()));
     search_->add_parts(attempt_.candidates);
     weigh_all();
-    attempt_.in_pairs = before;
   }
 
 private:

@@ -29,8 +29,8 @@ struct KnownConstants {
   /// (with 2: from 23 %), which is where a single cause is what people mean. A fit that leaned on it would lose its way:
   /// constants of a wrong explanation ran off.
   double degrees_of_freedom_of_price = 1.0;
-  /// A constant further away than this factor is a wrong unit, or stands for something else.
-  double farthest_factor = 10.0;
+  /// A fit moves no constant further than this factor: an inertia that was fitted without friction is off by up to twelve.
+  double farthest_factor = 30.0;
   /// The same of a place (CalibratedConstant::is_place), in radians: a quarter of a turn away a load pulls the other way.
   double farthest_place_rad = 1.5707963;
   /// Standard deviation of a curve's value at a knot, as a share of what it is relative to (plant::CurveShape::size).

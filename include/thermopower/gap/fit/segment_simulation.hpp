@@ -22,8 +22,16 @@ inline int largest_start_size(const Plant& plant, const std::vector<Segment>& se
   return largest;
 }
 
-/// The step of one coordinate of a start, in multiples of `trial`, that fits the samples of a segment best (linear least
-/// squares about where it is).
+/// The row up to which a segment tells where it started: of a whole run the first tenth, so that most of what is scored had no part
+/// in it. A window of an axis is too short for that.
+inline Eigen::Index beginning_of(const Segment& segment) {
+  constexpr Eigen::Index shares = 10, fewest = 12;
+  const Eigen::Index rows = segment.end - segment.begin;
+  return segment.axis ? segment.end : segment.begin + std::min(rows, std::max(fewest, rows / shares));
+}
+
+/// The step of one coordinate of a start, in multiples of `trial`, that fits the samples best that tell it (beginning_of();
+/// linear least squares about where it is).
 /// @param start  to step from
 /// @param held   weight of the coordinate itself, in units of the samples: how strongly it stays at 0
 /// @param unit   of each place among the plant's signals: residuals are divided by it; 0 leaves a signal out
@@ -35,11 +43,12 @@ inline double best_step(const Plant& plant, Rollout& rollout, const Segment& seg
   Start moved = start;
   moved[coordinate] += trial;
   rollout.roll(segment, moved, with);
+  const Eigen::Index told_until = beginning_of(segment);
   double product = -held * start[coordinate] / trial, square = held;
   for (std::size_t k = 0; k < signals.size(); ++k) {
     if (!(unit[k] > 0.0) || !segment.inputs->judged(signals[k])) continue;
     const Eigen::VectorXd& measured = segment.inputs->of(signals[k]);
-    for (Eigen::Index row = segment.begin; row < segment.end; ++row) {
+    for (Eigen::Index row = segment.begin; row < told_until; ++row) {
       const double at_0 = without.value(row, static_cast<int>(k));
       const double effect = (with.value(row, static_cast<int>(k)) - at_0) / unit[k],
                    left = (measured[row] - at_0) / unit[k];

@@ -15,6 +15,7 @@
 #include <thermopower/plant/catalogue.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,46 @@ public:
   double low_pass_Hz() const {
     return is_judged() ? propose_thresholds.motion_cutoff / train_rows_->pieces.front().interval_s : 0.0;
   }
+  /// What stays of training effort with a set of effects, A or V, at the rows that are compared; empty where it is not judged.
+  Eigen::VectorXd train_residual(std::vector<const plant::CatalogueEntry*> effects) {
+    score(effects);
+    order(effects);
+    return scores_.at(effects).fit.residual;
+  }
+  /// The same of held-out effort.
+  Eigen::VectorXd held_out_residual(std::vector<const plant::CatalogueEntry*> effects) {
+    if (!score(effects).judged) return {};
+    order(effects);
+    return held_->evaluate(scores_.at(effects).fit.point, {}).effort;
+  }
+  /// What stays of held-out effort with the model as configured, A or V.
+  Eigen::VectorXd held_out_residual_as_configured() const {
+    EffortPoint point;
+    for (const CalibratedConstant& one : model_.calibrated()) point.factors.push_back(one.unmoved());
+    return held_->evaluate(point, {}).effort;
+  }
+  /// How far constants and effects that were fitted to the motion are from the effort that was recorded: what they leave of held-out
+  /// effort, over what refitted constants leave without effects. Where no motion tells an effect, it is left out of both, and any
+  /// dry friction, constant and load may stand in its place.
+  /// @param factors  of Model::calibrated(), as ParameterPoint has them
+  /// @param effects  with their parameters
+  double times_refitted(std::vector<double> factors, const std::vector<plant::AddedEffect<double>>& effects) const {
+    EffortPoint point;
+    point.factors = std::move(factors);
+    bool unread = false;
+    for (const plant::AddedEffect<double>& one : effects) {
+      const bool acts = why_not(*one.entry) == InverseRefusal::none;
+      if (acts) point.effects.push_back(one);
+      unread = unread || !acts;
+    }
+    const auto share = [&](const EffortPoint& at) {
+      Eigen::VectorXd left = held_->evaluate(at, {}).effort;
+      if (!left.allFinite()) return 1e9;
+      if (unread) left = without_plain_torques(left);
+      return std::sqrt(left.squaredNorm() / static_cast<double>(left.size())) / effort_rms() + small_share;
+    };
+    return share(point) / share(scores_.at({}).fit.point);
+  }
   /// Nothing is missing, constants refitted.
   const InverseScore& nothing() const { return nothing_; }
 
@@ -185,6 +226,21 @@ private:
     EffortFit fit;
     Eigen::VectorXd log_density;  ///< of each held-out block
   };
+
+  static constexpr double small_share = 0.02;  ///< of the effort's RMS: less is nobody's loss
+
+  /// What is left of held-out effort once dry friction, a constant and a load of the angle, of any size, are taken out.
+  Eigen::VectorXd without_plain_torques(const Eigen::VectorXd& left) const {
+    const ComparedRows& compared = held_->compared();
+    Eigen::MatrixXd columns(left.size(), 5);
+    for (Eigen::Index i = 0; i < left.size(); ++i) {
+      const Eigen::Index row = compared.rows[static_cast<std::size_t>(i)];
+      const double angle = held_rows_->angle_rad[row];
+      columns.row(i) << std::tanh(held_rows_->rate_rad_per_s[row] / held_->still_rad_per_s()), 1.0, angle, std::sin(angle),
+          std::cos(angle);
+    }
+    return left - columns * columns.completeOrthogonalDecomposition().solve(left);
+  }
 
   /// Whether the model's own effects remember what no motion tells.
   bool has_hidden_states() const {

@@ -9,7 +9,7 @@
 #include <thermopower/gap/report/estimates.hpp>
 #include <thermopower/gap/report/noise_of_errors.hpp>
 #include <thermopower/gap/report/score.hpp>
-#include <thermopower/gap/decide/verdict.hpp>
+#include <thermopower/gap/compare/choice.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
@@ -60,8 +60,8 @@ inline void describe_fit(RankedExplanation& entry, const Candidate& one, const M
 }
 
 /// Every explanation weighed, likeliest first.
-inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const Conclusion& conclusion,
-                 const FitProblem& problem, const Weight& weight) {
+inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, const FitProblem& problem,
+                 const Weight& weight) {
   std::vector<std::size_t> order = by_deviance(candidates);
   sort_by(order, [&](std::size_t i) { return candidates[i].held_out.any() ? 0 : 1; });
   const double least = candidates[order.front()].deviance;
@@ -76,7 +76,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
     const Candidate& one = candidates[order[i]];
     RankedExplanation entry;
     entry.effects = one.explanation.ids(*problem.model);
-    entry.probability = one.probability * (1.0 - conclusion.none_of_these);
+    entry.probability = one.probability;
     entry.delta_score = one.deviance - least;
     double squares = 0.0, samples = 0.0, held_squares = 0.0;
     for (std::size_t k = 0; k < signal_count; ++k) {
@@ -105,31 +105,50 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
   }
 }
 
-/// The constants that moved by more than is known of them, from a model to another one.
-inline void note_moved_constants(Diagnosis& result, const Model& model, const Model& fitted) {
+/// Every constant that a fit may move, as configured and as an explanation has it.
+inline std::vector<ConstantEstimate> constants_of(const Candidate& candidate, const Model& model,
+                                                  const Weight& weight) {
+  constexpr double hardly = 0.9;  // of what the file says is known: then the data say nothing of it
+  const Covariance covariance = covariance_of(candidate, weight);
+  std::vector<ConstantEstimate> list;
+  std::size_t at = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {
-    const std::string name = constant.block + "." + constant.fields.front();
-    const double sd = model.uncertainty_of(constant),
-                 moved = constant.distance(model.get(name), fitted.get(name));
-    if (constant.fields.size() == 1 && std::abs(moved) > known_constants.within * sd)
-      result.constants.push_back({constant.id, model.get(name), fitted.get(name), sd, constant.is_place});
+    const std::size_t place = at++;
+    const Coordinate& one = candidate.list[place];
+    ConstantEstimate entry;
+    entry.name = constant.id;
+    entry.is_place = constant.is_place;
+    entry.uncertainty = model.uncertainty_of(constant);
+    entry.configured = model.get(constant.block + "." + constant.fields.front());
+    const auto moved = [&](double by) { return constant.moved(entry.configured, one.value_of(by)); };
+    const double by = candidate.fit.point[static_cast<Eigen::Index>(place)];
+    entry.fitted = moved(by);
+    if (!(one.upper > one.lower)) {  // it was not fitted
+      entry.determined = false;
+      entry.ci95 = {entry.fitted, entry.fitted};
+      list.push_back(entry);
+      continue;
+    }
+    const Interval interval = interval_of(candidate, place, covariance);
+    const double low = moved(interval.low), high = moved(interval.high);
+    entry.ci95 = {std::min(low, high), std::max(low, high)};
+    entry.determined = interval.high - interval.low < hardly * 2.0 * covariance.quantile * entry.uncertainty;
+    entry.on_bound = place < candidate.fit.at_bound.size() && candidate.fit.at_bound[place];
+    entry.within_known = std::abs(by) <= known_constants.within * entry.uncertainty * (1.0 + 1e-9);
+    list.push_back(entry);
   }
+  return list;
 }
 
-/// The chosen causes with their parameters, and the alternatives. `fitted` is the model with them.
-inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates,
-                        const Conclusion& conclusion, const Model& model, const Model& fitted,
-                        const Weight& weight) {
-  const Candidate& chosen = candidates[conclusion.chosen];
+/// The chosen causes with their parameters.
+/// @param probability  of their class
+inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candidates, const Answer& choice,
+                        const Candidate& chosen, const Model& model, const Weight& weight) {
   const std::vector<ParameterEstimate> all = estimates(chosen, model, weight);
   for (const std::string& id : chosen.explanation.ids(model)) {
     Cause cause;
     cause.effect = id;
-    for (const Candidate& one : candidates) {
-      const std::vector<std::string> ids = one.explanation.ids(model);
-      if (std::find(ids.begin(), ids.end(), id) != ids.end()) cause.probability += one.probability;
-    }
-    cause.probability *= 1.0 - conclusion.none_of_these;
+    cause.probability = choice.probability;
     for (ParameterEstimate estimate : all)
       if (estimate.name.rfind(id + ".", 0) == 0) {
         estimate.name = estimate.name.substr(id.size() + 1);
@@ -137,10 +156,9 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
       }
     result.cause.push_back(std::move(cause));
   }
-  for (std::size_t index : conclusion.alternatives)
+  for (std::size_t index : choice.alternatives)
     result.alternatives.push_back(candidates[index].explanation.ids(model));
   result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
-  note_moved_constants(result, model, fitted);
 }
 
 /// Where constants alone were fitted, those that moved by more than is known of them are its causes: one that was
@@ -180,129 +198,21 @@ inline void note_recalibration(Diagnosis& result) {
     result.recalibration += ": they made up for something on the training data that is not a constant";
 }
 
-/// Whether the printed table shows a signal clearly above the noise.
-inline bool is_above_the_noise(const GapScore& gap) {
-  return gap.noise_floor > 0.0 && gap.after > decision.near_floor * gap.noise_floor;
-}
-
-/// Whether constants alone are said to explain what the printed table shows above the noise: they cannot be a part of an
-/// explanation, so that nothing is explained then.
-inline bool constants_fall_short(const Diagnosis& result) {
-  return result.verdict == Verdict::explained &&
-         std::any_of(result.gap.begin(), result.gap.end(), is_above_the_noise) &&
-         std::all_of(result.cause.begin(), result.cause.end(),
-                     [](const Cause& one) { return plant::is_calibration(one.effect); });
-}
-
-/// Whether the printed table proves that the causes take a part of some signal's gap away: the lower end of its interval is
-/// above nothing, and above what other constants take away without any cause; or what they take away beyond those, in the same
-/// blocks, is material at the lower end of its own. The first is the narrower where constants do better here and worse there, the
-/// second where both do.
-inline bool is_proven_by_the_table(const Diagnosis& result) {
-  return std::any_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
-    const double by_constants = gap.before > 0.0 ? 1.0 - gap.recalibrated / gap.before : 0.0;
-    return gap.ci95.low > 0.0 && (gap.ci95.low > by_constants || gap.beyond_constants.low > decision.proven);
-  });
-}
-
-/// Whether the printed table proves that causes shrink some signal at all.
-inline bool is_shrunk_by_the_table(const Diagnosis& result) {
-  return std::any_of(result.gap.begin(), result.gap.end(),
-                     [](const GapScore& gap) { return gap.ci95.low > 0.0; });
-}
-
-/// Whether every signal of the simulation as configured is as near the noise as one that is called explained.
-inline bool is_near_as_configured(const Diagnosis& result) {
-  return std::all_of(result.gap.begin(), result.gap.end(), [](const GapScore& gap) {
-    return gap.noise_floor > 0.0 && gap.before <= decision.near_floor * gap.noise_floor;
-  });
-}
-
-/// Whether causes leave a signal above the noise in which what is missing follows nothing recorded. A cause of the catalogue
-/// acts through what is recorded, or remembers it; a rest beside a course of its own in time says that the cause only
-/// follows that course as far as it can. One that leaves no rest was hidden, and is known now; and one of the instruments bends
-/// the readings that the course was drawn from. Two causes at once can
-/// look like such a course; whether it is over once the larger is known, the caller asks.
-inline bool has_own_course(const Diagnosis& result, const Explanation& chosen) {
-  for (const CatalogueEntry* entry : chosen.effects)
-    if (is_of_an_instrument(*entry)) return false;
-  return std::any_of(result.where.begin(), result.where.end(), [&](const Location& place) {
-    return place.has_own_course &&
-           std::any_of(result.gap.begin(), result.gap.end(), [&](const GapScore& gap) {
-             return gap.signal == place.signal && gap.after > decision.near_floor * gap.noise_floor;
-           });
-  });
-}
-
-/// Whether causes leave hardly anything in the printed table: of each signal that is above the noise at most a share of the error,
-/// the simulation's and the recalibrated one's alike; of two causes, which follow a course more closely, the square of it.
-inline bool leaves_little(const Diagnosis& result, double share) {
-  const double at_most = std::pow(share, static_cast<double>(result.cause.size()));
-  return std::all_of(result.gap.begin(), result.gap.end(), [&](const GapScore& gap) {
-    return gap.after <= at_most * std::min(gap.before, gap.recalibrated) || !is_above_the_noise(gap);
-  });
-}
-
-/// Takes the causes back: what was found is that none of them is the answer. The noise floor stays, which the best simulation
-/// showed. @param model  as configured  @param instead  what is concluded
-inline void take_causes_back(Diagnosis& result, const Model& model, const Conclusion& instead) {
-  const double kept = (1.0 - instead.none_of_these) / std::max(1.0 - result.none_of_these, 1e-12);
-  for (RankedExplanation& one : result.ranking) one.probability *= std::min(kept, 1.0);
-  result.verdict = instead.verdict;
-  result.reason = instead.reason;
-  result.none_of_these = instead.none_of_these;
-  result.cause.clear();
-  result.alternatives.clear();
-  result.constants.clear();
-  result.correlation = {};
-  result.augmented = model;
-  for (GapScore& gap : result.gap) {
-    gap.after = gap.before;
-    gap.shrunk_by = 0.0;
-    gap.ci95 = gap.beyond_constants = {};
-  }
-  for (SignalSeries& series : result.series) series.augmented = series.baseline;
-}
-
-/// Takes causes back where the printed table does not prove their part. Near the noise that is asked where the simulation was
-/// near it from the start: an effect that brought it there may have acted in a few seconds only, of which few blocks tell.
-/// @return whether it did
-inline bool take_back_the_unproven(Diagnosis& result, const Model& model, const Explanation& chosen) {
-  if (!chosen.effects.empty() && is_near_as_configured(result) && !is_shrunk_by_the_table(result)) {
-    take_causes_back(result, model, nothing_worth_a_cause(is_as_near));
-    return true;
-  }
-  if (result.verdict != Verdict::partial || is_proven_by_the_table(result)) return false;
-  take_causes_back(result, model, nothing_known(nothing_is_proven));
-  return true;
-}
-
-/// Takes back that causes bring every signal near the noise where the printed table shows one above it: the decision is
-/// drawn on a part of the held-out data, and what is said must hold on all of it. @return whether it did
-inline bool admit_a_rest(Diagnosis& result) {
-  if (std::none_of(result.gap.begin(), result.gap.end(), is_above_the_noise)) return false;
-  if (result.verdict == Verdict::explained) {
-    result.verdict = Verdict::partial;
-    result.reason = partly_explained;
-    return true;
-  }
-  if (result.verdict != Verdict::ambiguous || result.reason != several_explain) return false;
-  result.reason = several_leave_a_rest;
-  return true;
-}
-
-/// Takes back that the causes leave a rest where the printed table shows every signal near the noise. @return whether it
-/// did
-inline bool deny_a_rest(Diagnosis& result) {
-  const bool in_part = result.verdict == Verdict::partial ||
-                       (result.verdict == Verdict::ambiguous && result.reason == several_take_a_part);
-  if (!in_part) return false;
+/// The table without causes: what stands beside "as configured" then are the refitted constants, where these predict held-out
+/// data better. @param model  as configured
+inline void keep_constants_alone(Diagnosis& result, const Model& model) {
+  double worse = 0.0;
   for (const GapScore& gap : result.gap)
-    if (!(gap.noise_floor > 0.0) || is_above_the_noise(gap)) return false;
-  const bool alone = result.alternatives.empty();
-  result.verdict = alone ? Verdict::explained : Verdict::ambiguous;
-  result.reason = alone ? wholly_explained : several_explain;
-  return true;
+    if (gap.before > 0.0 && gap.recalibrated > 0.0) worse += std::log(gap.recalibrated / gap.before);
+  const bool refitted = worse < 0.0;
+  result.augmented = refitted ? result.recalibrated : model;
+  for (GapScore& gap : result.gap) {
+    gap.after = refitted ? gap.recalibrated : gap.before;
+    gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
+    gap.ci95 = refitted ? gap.by_constants : Interval();
+    gap.beyond_constants = {};
+  }
+  for (SignalSeries& series : result.series) series.augmented = refitted ? series.recalibrated : series.baseline;
 }
 
 /// What the named causes leave. @param left  of training data, by the augmented model
@@ -348,50 +258,6 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
   return rest;
 }
 
-/// Whether sixths of a sequence of errors, in order, prove that their root mean square is above a level: the lower end of its
-/// one-sided 95 % interval is (Student's t with five degrees of freedom). A few errors that last can be any size by chance.
-inline bool is_proven_above(const std::vector<double>& errors, double level) {
-  constexpr std::size_t blocks = 6;
-  constexpr double student = 2.015;
-  if (errors.size() < blocks) return false;
-  std::array<double, blocks> squares{};
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    squares[i * blocks / errors.size()] += errors[i] * errors[i];
-  double mean = 0.0, scatter = 0.0;
-  for (double& one : squares) mean += (one *= blocks / static_cast<double>(errors.size())) / blocks;
-  for (const double one : squares) scatter += (one - mean) * (one - mean) / (blocks * (blocks - 1.0));
-  return mean - student * std::sqrt(scatter) > level * level;
-}
-
-/// Whether a model scores what the noise allows on some data.
-/// @param witness  a search whose noise counts where it is less; null: there is none
-/// @param proven   whether a signal near its floor counts as above it only where its errors prove that
-/// @param chance   whether a signal counts as above it only where that is more than noise that remembers comes to by chance
-inline bool is_within_noise(const Model& model, const std::vector<Inputs>& inputs, const FitProblem* witness,
-                            double horizon_s, const Catalogue& catalogue, bool proven = false,
-                            bool chance = false) {
-  const std::vector<Segment> full = cut(inputs, horizon_s, plant_of(model));
-  const Errors errors = errors_of(model, full, catalogue);
-  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(errors, full, inputs);
-  std::array<double, signal_count> sigma = sd_of(noise);
-  if (witness != nullptr &&
-      witness->segments.front().inputs->repeats.size() == 0)  // of averages the search knows less
-    for (std::size_t i = 0; i < signal_count; ++i) sigma[i] = std::min(sigma[i], witness->sigma[i]);
-  const std::array<double, signal_count> floor =
-      floor_of(model, errors, sigma, full, catalogue, FirstReadings::as_they_are);
-  for (std::size_t i = 0; i < signal_count; ++i) {
-    const double by_chance = chance && noise[i].sd > 0.0
-                                 ? std::min(noise[i].by_chance / noise[i].sd, decision.most_by_chance)
-                                 : 1.0;
-    const double rms = errors.rms(static_cast<Signal>(i)),
-                 within = std::max(decision.no_gap_in_full, by_chance) * floor[i];
-    const bool may_be_chance =
-        proven && rms <= decision.near_floor * floor[i] && !is_proven_above(errors.of[i], within);
-    if (rms > within && !may_be_chance) return false;
-  }
-  return true;
-}
-
 /// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param fits  whether it follows the data it was
 /// fitted to: else what it makes of the noise of its starts is its own fault, and the floor is that of the model as configured.
 /// @param rivals  drawn beside it
@@ -404,11 +270,10 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   std::vector<Errors> others(rivals.size());
   in_parallel(rivals.size(), options.threads,
               [&](std::size_t i) { others[i] = errors_of(rivals[i].model, segments, catalogue); });
-  // The augmented model is the fitted one where there is a cause, else the model as configured.
-  const Errors& after = result.cause.empty() ? before : best;
+  const Errors& after = best;
+  const std::array<NoiseEstimate, signal_count> noise = noise_estimates_of(best, segments, inputs);
   const std::array<double, signal_count> floor =
-      floor_of(fits ? fitted : model, best, noise_of(best, segments, inputs), segments, catalogue,
-               FirstReadings::as_they_are);
+      floor_of(fits ? fitted : model, best, sd_of(noise), segments, catalogue, FirstReadings::as_they_are);
   for (std::size_t i = 0; i < signal_count; ++i) {
     if (before.of[i].empty()) continue;
     const Signal signal = static_cast<Signal>(i);
@@ -420,9 +285,11 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
     gap.recalibrated = recalibrated.rms(signal);
     gap.after = after.rms(signal);
     gap.noise_floor = floor[i];
+    gap.by_chance = noise[i].sd > 0.0 ? std::max(noise[i].by_chance / noise[i].sd, 1.0) : 1.0;
     gap.shrunk_by = gap.before > 0.0 ? 1.0 - gap.after / gap.before : 0.0;
     gap.ci95 = shrinkage_interval(before.of[i], after.of[i], options.seed);
     gap.beyond_constants = shrinkage_interval(recalibrated.of[i], after.of[i], options.seed);
+    gap.by_constants = shrinkage_interval(before.of[i], recalibrated.of[i], options.seed);
     result.gap.push_back(gap);
     std::size_t at = 0;
     for (const Inputs& one : inputs) {
@@ -454,8 +321,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
 
 /// What to record next: the excitation that shows the rival explanations apart.
 inline std::string next_experiment(const Diagnosis& result, const std::vector<Candidate>& candidates,
-                                   const Conclusion& conclusion, const Model& model,
-                                   const Catalogue& catalogue) {
+                                   const Answer& choice, const Model& model, const Catalogue& catalogue) {
   const auto advice = [&](const std::string& id) {
     const CatalogueEntry* entry = catalogue.find(id);
     return entry != nullptr ? entry->info.experiment
@@ -464,8 +330,8 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
   if (result.verdict == Verdict::ambiguous) {
     std::string text = "To tell the explanations apart, record: ";
     std::vector<std::string> said;
-    std::vector<std::size_t> indices{conclusion.chosen};
-    indices.insert(indices.end(), conclusion.alternatives.begin(), conclusion.alternatives.end());
+    std::vector<std::size_t> indices{choice.chosen};
+    indices.insert(indices.end(), choice.alternatives.begin(), choice.alternatives.end());
     for (std::size_t index : indices)
       for (const std::string& id : candidates[index].explanation.ids(model)) {
         const std::string one = advice(id) + " (" + id + ")";

@@ -318,6 +318,9 @@ inline std::array<double, signal_count> floor_of(const Model& best, const Errors
   return floor;
 }
 
+/// What no single recording can show of the logarithm of a shrinkage: the difference between two days, a standard half-width.
+inline constexpr double between_days = 0.15;
+
 /// 95 % interval of 1 - rms(after) / rms(before), for recordings like this one, by a paired block bootstrap.
 ///
 /// Both simulations' squared errors are drawn in the same six long blocks: how much sixths of a recording
@@ -361,7 +364,7 @@ inline Interval shrinkage_interval(const std::vector<double>& before, const std:
   const auto widened = [&](double quantile) {
     // 2.571 / 1.960: t with five degrees of freedom against the normal; 6/5: a bootstrap of six is too
     // narrow.
-    const double student = 2.571 / 1.960 * std::sqrt(6.0 / 5.0), between_days = 0.15;
+    const double student = 2.571 / 1.960 * std::sqrt(6.0 / 5.0);
     const double by = ratios[static_cast<std::size_t>(quantile * (draws - 1))] - middle;
     return middle + std::copysign(std::hypot(student * by, between_days), quantile - 0.5);
   };

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/compare/bootstrap_weights.hpp>
+#include <thermopower/gap/compare/choice.hpp>
+#include <thermopower/gap/fit/attribution.hpp>
+#include <thermopower/gap/fit/explanation.hpp>
+#include <thermopower/gap/propose/effort_problem.hpp>
+#include <thermopower/gap/report/score.hpp>
+#include <thermopower/plant/signal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file effort_lead.hpp
+/// The answer of a joint in a closed loop: what the effort says, given the motion.
+
+namespace thermopower::gap::engine {
+
+/// An explanation as the effort has it: constants and parameters from effort given motion.
+inline Candidate candidate_of(const InverseScore& score, const FitProblem& problem) {
+  Candidate one;
+  one.explanation.effects = score.effects;
+  one.list = coordinates(*problem.model, one.explanation, *problem.catalogue);
+  const Eigen::Index count = static_cast<Eigen::Index>(one.list.size());
+  one.fit.point = Eigen::VectorXd::Zero(count);
+  one.fit.at_bound.assign(one.list.size(), false);
+  one.fit.priors = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd information = Eigen::VectorXd::Constant(count, 1e-12);
+  const auto set = [&](Eigen::Index place, double value, double standard_error) {
+    const Coordinate& coordinate = one.list[static_cast<std::size_t>(place)];
+    one.fit.point[place] = coordinate.coordinate_of(value);
+    const double error = coordinate.logarithmic ? standard_error / std::max(std::abs(value), 1e-300) : standard_error;
+    if (error > 0.0) information[place] = 1.0 / (error * error);
+  };
+  for (std::size_t i = 0; i < one.list.size(); ++i)
+    one.fit.point[static_cast<Eigen::Index>(i)] = one.list[i].start;
+  for (const InverseConstant& constant : score.constants)
+    set(static_cast<Eigen::Index>(constant.constant), constant.moved_by, constant.standard_error);
+  for (std::size_t i = 0; i < problem.model->calibrated().size(); ++i) {
+    Coordinate& constant = one.list[i];  // an inertia that was fitted without friction may be off by any factor
+    const double at = one.fit.point[static_cast<Eigen::Index>(i)];
+    constant.lower = std::min(constant.lower, at);
+    constant.upper = std::max(constant.upper, at);
+  }
+  Eigen::Index place = static_cast<Eigen::Index>(problem.model->calibrated().size());
+  for (const InverseEstimate& parameter : score.parameters) {
+    if (parameter.fitted) set(place, parameter.value, parameter.standard_error);
+    else one.fit.point[place] = one.list[static_cast<std::size_t>(place)].coordinate_of(parameter.value);
+    ++place;
+  }
+  one.fit.information = information.asDiagonal();
+  return one;
+}
+
+/// The explanations that the effort proposes, weighed by held-out effort, "nothing missing" first.
+class EffortLead {
+public:
+  /// Keeps references: both must outlive this object.
+  EffortLead(EffortProblem& effort, const FitProblem& problem) : effort_(effort), problem_(problem) {
+    std::set<std::vector<const CatalogueEntry*>> seen{{}};
+    std::vector<InverseScore> scores{effort.nothing()};
+    for (const InverseProposal& proposal : effort.proposals()) {
+      const bool counts = proposal.score.judged && proposal.score.refusal == InverseRefusal::none;
+      if (counts && scores.size() < most && seen.insert(sorted(proposal.score.effects)).second)
+        scores.push_back(proposal.score);
+      is_told_ = is_told_ || proposal.is_told;
+    }
+    for (const InverseScore& score : scores) candidates_.push_back(candidate_of(score, problem));
+    weigh_all(scores);
+  }
+
+  /// Whether a set of effects lowers held-out effort materially.
+  bool is_told() const { return is_told_; }
+  /// The explanations, with their probabilities.
+  std::vector<Candidate>& candidates() { return candidates_; }
+
+  /// The answer: the set that forward selection stops at, with the class of what predicts alike.
+  Answer answer() {
+    Answer found;
+    const InverseScore told = effort_.told();
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+      if (sorted(candidates_[i].explanation.effects) == sorted(told.effects)) found.chosen = i;
+    const Explanation& chosen = candidates_[found.chosen].explanation;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const bool alike = candidates_[i].explanation.includes(chosen) ||
+                         likeness(signatures_[i], signatures_[found.chosen]) >= alike_from;
+      (alike ? found.probability : rest_) += candidates_[i].probability;
+      const bool is_rival = i != found.chosen && i > 0 && !candidates_[i].explanation.includes(chosen) &&
+                            candidates_[i].probability > decision.alternative;
+      if (is_rival) found.alternatives.push_back(i);
+    }
+    found.together = found.probability;
+    for (const std::size_t i : found.alternatives)
+      if (likeness(signatures_[i], signatures_[found.chosen]) < alike_from)
+        found.together += candidates_[i].probability;
+    return found;
+  }
+
+private:
+  static constexpr std::size_t most = 40;      ///< explanations that are weighed
+  static constexpr double alike_from = 0.95;   ///< cosine of what two explanations do to the effort
+
+  static std::vector<const CatalogueEntry*> sorted(std::vector<const CatalogueEntry*> list) {
+    std::sort(list.begin(), list.end());
+    return list;
+  }
+
+  void weigh_all(const std::vector<InverseScore>& scores) {
+    const auto count = static_cast<Eigen::Index>(scores.size());
+    const auto blocks = static_cast<Eigen::Index>(scores.front().block_gain.size());
+    Eigen::MatrixXd density(count, blocks);
+    Eigen::VectorXd prior(count);
+    const Eigen::VectorXd nothing = effort_.train_residual({});
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const InverseScore& score = scores[static_cast<std::size_t>(i)];
+      for (Eigen::Index k = 0; k < blocks; ++k) density(i, k) = score.block_gain[static_cast<std::size_t>(k)];
+      const double effects = static_cast<double>(score.effects.size());
+      prior[i] = -0.5 * decision.rarity * std::max(effects - 1.0, 0.0) - static_cast<double>(score.parameters.size());
+      signatures_.push_back(effort_.train_residual(score.effects) - nothing);
+    }
+    const Eigen::VectorXd weight = bootstrap_weights(density, prior);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      Candidate& one = candidates_[static_cast<std::size_t>(i)];
+      one.probability = weight[i];
+      one.deviance = -2.0 * (density.row(i).sum() + prior[i]);
+    }
+  }
+
+  EffortProblem& effort_;
+  const FitProblem& problem_;
+  bool is_told_ = false;
+  double rest_ = 0.0;
+  std::vector<Candidate> candidates_;
+  std::vector<Eigen::VectorXd> signatures_;
+};
+
+}  // namespace thermopower::gap::engine

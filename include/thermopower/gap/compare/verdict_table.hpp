@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/diagnosis.hpp>
+#include <thermopower/gap/report/score.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+/// @file verdict_table.hpp
+/// The verdict, read off few numbers that the report prints. Nothing else sets or changes it.
+
+namespace thermopower::gap::engine {
+
+/// The limits of the verdict table.
+struct VerdictLimits {
+  /// Multiple of the noise floor up to which the configured model passes: what floors are known to in a few hundred samples.
+  double passes = 1.2;
+  /// Multiple of the noise floor up to which a signal counts as near it.
+  double near_floor = 1.5;
+  /// Share of the gap that the lower end of an interval must reach to be material.
+  double material = 0.05;
+  /// Share of what refitted constants leave that a cause may leave: a fifth better than constants alone.
+  double of_constants = 0.8;
+  /// Probability from which one class is the answer.
+  double sure = 0.9;
+  /// Probability from which a class is named beside a rest.
+  double likely = 0.5;
+};
+
+/// The limits in force.
+inline constexpr VerdictLimits verdict_limits{};
+
+/// The largest multiple of its floor that a signal reaches; `error` picks the score of a signal.
+template <class Error>
+double times_floor(const std::vector<GapScore>& table, Error&& error) {
+  double worst = 0.0;
+  for (const GapScore& one : table)
+    if (one.noise_floor > 0.0) worst = std::max(worst, error(one) / one.noise_floor);
+  return worst;
+}
+
+/// The end of a one-sided 95 % interval on these very data, where that of a printed one is known: two-sided, and wider by what no
+/// single recording can show.
+inline double proven_end(double value, double end) {
+  constexpr double narrower = 1.645 / 1.960;
+  const double own = std::sqrt(std::max(std::pow(end - value, 2.0) - std::pow(between_days, 2.0), 0.0));
+  return value + narrower * std::copysign(own, end - value);
+}
+
+/// What an explanation leaves of the gap on held-out data, from the printed table: the geometric mean over the signals that
+/// have a gap. Signals near their floor say nothing.
+inline ShareLeft share_left(const std::vector<GapScore>& table) {
+  double configured = 0.0, constants = 0.0, most = 0.0, count = 0.0;
+  for (const bool any : {false, true}) {  // where no signal has a gap, all of them count
+    for (const GapScore& one : table) {
+      if (!(one.before > 0.0) || !(one.noise_floor > 0.0)) continue;
+      if (!any && !(one.before > verdict_limits.near_floor * one.noise_floor)) continue;
+      const double after = std::max(one.after, one.noise_floor);
+      configured += std::log(after / std::max(one.before, one.noise_floor));
+      constants += std::log(after / std::max(std::min(one.recalibrated, one.before), one.noise_floor));
+      most += proven_end(std::log(after / std::max(one.before, one.noise_floor)), std::log(std::max(1.0 - one.ci95.low, 1e-12)));
+      count += 1.0;
+    }
+    if (count > 0.0) break;
+  }
+  if (!(count > 0.0)) return {};
+  return {std::exp(configured / count), std::exp(most / count), std::exp(constants / count)};
+}
+
+/// The numbers of an explanation, from the printed table and its probability.
+inline DecisionNumbers numbers_of(const std::vector<GapScore>& table, double probability) {
+  DecisionNumbers numbers;
+  numbers.configured = times_floor(table, [](const GapScore& one) { return one.before; });
+  for (const GapScore& one : table) numbers.by_chance = std::max(numbers.by_chance, one.by_chance);
+  numbers.refitted = times_floor(table, [](const GapScore& one) { return one.recalibrated; });
+  numbers.left = times_floor(table, [](const GapScore& one) { return one.after; });
+  numbers.share = share_left(table);
+  numbers.probability = probability;
+  return numbers;
+}
+
+/// A verdict with its reason.
+struct Decision {
+  Verdict verdict = Verdict::unexplained;        ///< in one word
+  Reason reason = Reason::no_explanation_likely;  ///< why
+};
+
+/// The verdict table.
+/// @param numbers         of the likeliest explanation
+/// @param only_constants  whether that explanation has no effect, only moved constants
+/// @param within_known    whether the refitted constants are within what the model file says is known
+inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known) {
+  const VerdictLimits& limit = verdict_limits;
+  const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.near_floor));
+  if (numbers.configured <= passes && numbers.twice_horizon <= limit.near_floor)
+    return {Verdict::no_gap, Reason::configured_model_passes};
+  const bool near = numbers.left <= limit.near_floor;
+  if (only_constants) {
+    if (!near) return {Verdict::unexplained, Reason::constants_leave_a_rest};
+    return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
+  }
+  // What reaches the floor closes the gap. It need not beat constants that do, too: their moves count in its probability.
+  const bool is_proven = 1.0 - numbers.share.most >= limit.material;
+  const bool closes = is_proven && numbers.share.of_refitted_constants <= limit.of_constants;
+  if (!is_proven && numbers.configured <= limit.near_floor && numbers.twice_horizon <= limit.near_floor)
+    return {Verdict::no_gap, Reason::configured_model_passes};
+  if (near && within_known && numbers.probability < limit.sure && numbers.refitted <= limit.near_floor)
+    return {Verdict::explained, Reason::constants_within_known};
+  if (near)
+    return numbers.probability >= limit.sure ? Decision{Verdict::explained, Reason::cause_explains}
+                                             : Decision{Verdict::ambiguous, Reason::several_explain};
+  if (!closes) return {Verdict::unexplained, Reason::closes_too_little};
+  if (numbers.probability >= limit.likely) return {Verdict::partial, Reason::cause_closes_a_part};
+  if (numbers.together >= limit.sure) return {Verdict::ambiguous, Reason::several_close_a_part};
+  return {Verdict::unexplained, Reason::no_explanation_likely};
+}
+
+}  // namespace thermopower::gap::engine
