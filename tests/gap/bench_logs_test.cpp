@@ -255,8 +255,7 @@ TEST_CASE(
   };
   int gaps = 0, named = 0;
   constexpr int draws = 80;
-  for (std::uint64_t seed = 1; seed <= draws; ++seed)
-    gaps += test::holds(answer({}, seed)) ? 0 : 1;
+  for (std::uint64_t seed = 1; seed <= draws; ++seed) gaps += test::holds(answer({}, seed)) ? 0 : 1;
   CHECK(gaps <= 0.02 * draws);
   constexpr int causes = 10;
   test::BenchFault offset;

@@ -155,7 +155,8 @@ TEST_CASE(
   CHECK_FALSE(all[2].idle);
 }
 
-TEST_CASE("friction that varies over the turn does not explain all, and the rows say that it has a course of its own") {
+TEST_CASE(
+    "friction that varies over the turn does not explain all, and the rows say that it has a course of its own") {
   test::AxisFault bent;
   bent.coulomb_Nm = 0.004;
   bent.run_out_share = 0.9;

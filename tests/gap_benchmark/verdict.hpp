@@ -111,10 +111,11 @@ inline Verdict read_verdict(const std::string& directory) {
     }
   }
   // Constants that moved within what the model file says is known are no gap, and a curve claims no name.
-  const bool holds = report.contains("decision") && text(report["decision"], "reason") == "constants_within_known";
-  const bool only_curves = !v.cause.empty() && std::all_of(v.cause.begin(), v.cause.end(), [](const std::string& id) {
-    return id.rfind("unknown.", 0) == 0;
-  });
+  const bool holds =
+      report.contains("decision") && text(report["decision"], "reason") == "constants_within_known";
+  const bool only_curves =
+      !v.cause.empty() && std::all_of(v.cause.begin(), v.cause.end(),
+                                      [](const std::string& id) { return id.rfind("unknown.", 0) == 0; });
   if (holds) v.verdict = "no_gap";
   if (only_curves) v.verdict = "unexplained";
   if (holds || only_curves) v.cause.clear();

@@ -183,13 +183,11 @@ std::string report_json(const Diagnosis& diagnosis) {
   }
   root["constants"] = Json::object();
   for (const auto& constant : diagnosis.constants) {
-    root["constants"][constant.name] = {{"configured", number(constant.configured)},
-                                        {"fitted", number(constant.fitted)},
-                                        {"ci95", interval(constant.ci95)},
-                                        {"uncertainty", number(constant.uncertainty)},
-                                        {"determined", constant.determined},
-                                        {"on_bound", constant.on_bound},
-                                        {"within_known", constant.within_known}};
+    root["constants"][constant.name] = {
+        {"configured", number(constant.configured)}, {"fitted", number(constant.fitted)},
+        {"ci95", interval(constant.ci95)},           {"uncertainty", number(constant.uncertainty)},
+        {"determined", constant.determined},         {"on_bound", constant.on_bound},
+        {"within_known", constant.within_known}};
     if (constant.is_place) root["constants"][constant.name]["unit"] = "rad";
   }
   Json matrix = Json::array();

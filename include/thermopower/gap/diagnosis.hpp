@@ -86,11 +86,11 @@ struct GapScore {
   double recalibrated = 0.0;        ///< its own constants refitted, no effect added
   double after = 0.0;               ///< with the causes (equal to `before` where there are none)
   double noise_floor = 0.0;         ///< what a perfect model would score
-  double by_chance = 1.0;           ///< multiple of the floor that noise which remembers comes to by chance, 1 or more
-  double shrunk_by = 0.0;           ///< 1 - after / before
-  Interval ci95;                    ///< of shrunk_by, by a paired block bootstrap
-  Interval beyond_constants = {};   ///< the same of 1 - after / recalibrated
-  Interval by_constants = {};       ///< the same of 1 - recalibrated / before
+  double by_chance = 1.0;  ///< multiple of the floor that noise which remembers comes to by chance, 1 or more
+  double shrunk_by = 0.0;  ///< 1 - after / before
+  Interval ci95;           ///< of shrunk_by, by a paired block bootstrap
+  Interval beyond_constants = {};  ///< the same of 1 - after / recalibrated
+  Interval by_constants = {};      ///< the same of 1 - recalibrated / before
 };
 
 /// What an explanation that was not chosen makes of a signal.
@@ -188,14 +188,15 @@ struct ShareLeft {
 
 /// Every number that the verdict relies on.
 struct DecisionNumbers {
-  double configured = 0.0;     ///< largest multiple of the noise floor, as configured
-  double by_chance = 1.0;      ///< the same that noise which remembers comes to by chance
-  double refitted = 0.0;       ///< the same with refitted constants
-  double left = 0.0;           ///< the same with the likeliest explanation
-  double twice_horizon = 0.0;  ///< the same as configured, in windows twice as long; 0 where that was not asked
-  ShareLeft share;             ///< what the likeliest explanation leaves
-  double probability = 0.0;    ///< of the likeliest explanation's class
-  double together = 0.0;       ///< of that class and the alternatives
+  double configured = 0.0;  ///< largest multiple of the noise floor, as configured
+  double by_chance = 1.0;   ///< the same that noise which remembers comes to by chance
+  double refitted = 0.0;    ///< the same with refitted constants
+  double left = 0.0;        ///< the same with the likeliest explanation
+  double twice_horizon =
+      0.0;                   ///< the same as configured, in windows twice as long; 0 where that was not asked
+  ShareLeft share;           ///< what the likeliest explanation leaves
+  double probability = 0.0;  ///< of the likeliest explanation's class
+  double together = 0.0;     ///< of that class and the alternatives
 };
 
 /// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of
@@ -224,24 +225,24 @@ struct StageTiming {
 
 /// Everything a diagnosis found.
 struct Diagnosis {
-  Verdict verdict = Verdict::insufficient;             ///< the conclusion in one word
-  std::string reason;                                  ///< one sentence in plain words: why this verdict
-  Reason why = Reason::too_little_data;                ///< the same as a line of the verdict table
-  DecisionNumbers numbers;                             ///< what the verdict was read off
-  std::string loop;                                    ///< of a joint: `open`, `closed` or `unknown`; else empty
-  std::vector<Location> where;                         ///< largest share first; empty without a gap
-  std::vector<Cause> cause;                            ///< the chosen explanation; empty where none is
+  Verdict verdict = Verdict::insufficient;  ///< the conclusion in one word
+  std::string reason;                       ///< one sentence in plain words: why this verdict
+  Reason why = Reason::too_little_data;     ///< the same as a line of the verdict table
+  DecisionNumbers numbers;                  ///< what the verdict was read off
+  std::string loop;                         ///< of a joint: `open`, `closed` or `unknown`; else empty
+  std::vector<Location> where;              ///< largest share first; empty without a gap
+  std::vector<Cause> cause;                 ///< the chosen explanation; empty where none is
   std::vector<std::vector<std::string>> alternatives;  ///< as good on this data, likeliest first; ids of each
   std::vector<GapScore> gap;                           ///< one per judged signal
   std::string next_experiment;                         ///< what to record next to tell more; may be empty
   double none_of_these = 0.0;                          ///< probability of a cause outside the catalogue
 
-  std::vector<std::string> not_judged;     ///< one sentence for each signal or block that lacks a column
-  std::vector<Finding> findings;           ///< of the data, recording by recording
-  std::vector<RankedExplanation> ranking;  ///< everything weighed, likeliest first
+  std::vector<std::string> not_judged;      ///< one sentence for each signal or block that lacks a column
+  std::vector<Finding> findings;            ///< of the data, recording by recording
+  std::vector<RankedExplanation> ranking;   ///< everything weighed, likeliest first
   std::vector<ConstantEstimate> constants;  ///< every constant that a fit may move, whatever the verdict
-  ParameterCorrelation correlation;        ///< of the chosen explanation; empty where none is
-  std::optional<Remaining> remaining;      ///< of a partial verdict
+  ParameterCorrelation correlation;         ///< of the chosen explanation; empty where none is
+  std::optional<Remaining> remaining;       ///< of a partial verdict
   std::string recalibration;  ///< one sentence where refitted constants do worse on held-out data; else empty
   /// One per held-out recording: what `gap` was measured on, restarted where that was. Empty where nothing was simulated.
   std::vector<HeldOutPrediction> predictions;

@@ -63,11 +63,11 @@ TEST_CASE("a cause beside a rest is named where it closes a material part, beyon
   CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.6) == Verdict::partial);
   CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.4) == Verdict::ambiguous);
   CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.4, false, true, 0.5) == Verdict::unexplained);
-  CHECK(verdict_of({row(20.0, 7.0, 6.0)}, 1.0) == Verdict::unexplained);         // constants do nearly as well
+  CHECK(verdict_of({row(20.0, 7.0, 6.0)}, 1.0) == Verdict::unexplained);  // constants do nearly as well
   GapScore unsure = row(20.0, 18.0, 6.0);
   unsure.ci95.low = -0.5;  // the interval holds "nothing"
   CHECK(verdict_of({unsure}, 1.0) == Verdict::unexplained);
-  CHECK(verdict_of({row(20.0, 20.0, 19.5)}, 1.0) == Verdict::unexplained);       // seen, and closes nothing
+  CHECK(verdict_of({row(20.0, 20.0, 19.5)}, 1.0) == Verdict::unexplained);  // seen, and closes nothing
 }
 
 TEST_CASE("the share left is the mean over signals that have a gap, and counts nothing below a floor") {

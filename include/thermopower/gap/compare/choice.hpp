@@ -111,7 +111,8 @@ inline Answer choose(const std::vector<Candidate>& candidates, const Model& mode
   choice.chosen = parsimonious(candidates, best, model);
   const auto class_of = [&](std::size_t i) {
     const Explanation& one = candidates[i].explanation;
-    return one.effects.empty() ? probability_of_constants(candidates) : probability_of_all_with(candidates, one);
+    return one.effects.empty() ? probability_of_constants(candidates)
+                               : probability_of_all_with(candidates, one);
   };
   choice.probability = class_of(choice.chosen);
   if (choice.probability < 0.5) {
@@ -132,7 +133,8 @@ inline Answer choose(const std::vector<Candidate>& candidates, const Model& mode
   for (const std::size_t i : order) {
     const Candidate& one = candidates[i];
     const bool nested = one.explanation.includes(answer) || one.explanation.effects.empty();
-    if (i == choice.chosen || nested || one.probability <= decision.alternative * candidates[best].probability)
+    if (i == choice.chosen || nested ||
+        one.probability <= decision.alternative * candidates[best].probability)
       continue;
     choice.alternatives.push_back(i);
     choice.together += one.probability;

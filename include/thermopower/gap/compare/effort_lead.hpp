@@ -35,7 +35,8 @@ inline Candidate candidate_of(const InverseScore& score, const FitProblem& probl
   const auto set = [&](Eigen::Index place, double value, double standard_error) {
     const Coordinate& coordinate = one.list[static_cast<std::size_t>(place)];
     one.fit.point[place] = coordinate.coordinate_of(value);
-    const double error = coordinate.logarithmic ? standard_error / std::max(std::abs(value), 1e-300) : standard_error;
+    const double error =
+        coordinate.logarithmic ? standard_error / std::max(std::abs(value), 1e-300) : standard_error;
     if (error > 0.0) information[place] = 1.0 / (error * error);
   };
   for (std::size_t i = 0; i < one.list.size(); ++i)
@@ -43,7 +44,8 @@ inline Candidate candidate_of(const InverseScore& score, const FitProblem& probl
   for (const InverseConstant& constant : score.constants)
     set(static_cast<Eigen::Index>(constant.constant), constant.moved_by, constant.standard_error);
   for (std::size_t i = 0; i < problem.model->calibrated().size(); ++i) {
-    Coordinate& constant = one.list[i];  // an inertia that was fitted without friction may be off by any factor
+    Coordinate& constant =
+        one.list[i];  // an inertia that was fitted without friction may be off by any factor
     const double at = one.fit.point[static_cast<Eigen::Index>(i)];
     constant.lower = std::min(constant.lower, at);
     constant.upper = std::max(constant.upper, at);
@@ -103,8 +105,8 @@ public:
   }
 
 private:
-  static constexpr std::size_t most = 40;      ///< explanations that are weighed
-  static constexpr double alike_from = 0.95;   ///< cosine of what two explanations do to the effort
+  static constexpr std::size_t most = 40;     ///< explanations that are weighed
+  static constexpr double alike_from = 0.95;  ///< cosine of what two explanations do to the effort
 
   static std::vector<const CatalogueEntry*> sorted(std::vector<const CatalogueEntry*> list) {
     std::sort(list.begin(), list.end());
@@ -121,7 +123,8 @@ private:
       const InverseScore& score = scores[static_cast<std::size_t>(i)];
       for (Eigen::Index k = 0; k < blocks; ++k) density(i, k) = score.block_gain[static_cast<std::size_t>(k)];
       const double effects = static_cast<double>(score.effects.size());
-      prior[i] = -0.5 * decision.rarity * std::max(effects - 1.0, 0.0) - static_cast<double>(score.parameters.size());
+      prior[i] = -0.5 * decision.rarity * std::max(effects - 1.0, 0.0) -
+                 static_cast<double>(score.parameters.size());
       signatures_.push_back(effort_.train_residual(score.effects) - nothing);
     }
     const Eigen::VectorXd weight = bootstrap_weights(density, prior);

@@ -30,7 +30,8 @@ inline Candidate with_only(const FitProblem& problem, const std::vector<int>& mo
 /// @param all  the fit of all constants
 /// @return     the fit with only those; `all` itself where no constant has slack
 inline Candidate fewest_constants(const FitProblem& problem, const Candidate& all) {
-  constexpr double as_well = 1.05;  // of the root mean square of each signal, or of the noise where that is more
+  constexpr double as_well =
+      1.05;  // of the root mean square of each signal, or of the noise where that is more
   const std::size_t count = problem.model->calibrated().size();
   const auto is_as_good = [&](const Candidate& one) {
     for (std::size_t i = 0; i < signal_count; ++i)
@@ -49,7 +50,8 @@ inline Candidate fewest_constants(const FitProblem& problem, const Candidate& al
       std::vector<int> moving = chosen;
       moving.push_back(i);
       Candidate one = with_only(problem, moving);
-      if (!(one.list[static_cast<std::size_t>(i)].upper > one.list[static_cast<std::size_t>(i)].lower)) continue;
+      if (!(one.list[static_cast<std::size_t>(i)].upper > one.list[static_cast<std::size_t>(i)].lower))
+        continue;
       Fitter fitter(problem, one.explanation, one.list);
       Eigen::VectorXd from = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
       one.fit = fitter.minimise(from, options);
@@ -57,7 +59,8 @@ inline Candidate fewest_constants(const FitProblem& problem, const Candidate& al
       FitResult other = fitter.minimise(from, options);
       if (other.cost < one.fit.cost) one.fit = std::move(other);
       one.train = one.fit.sums;
-      if (with_next.empty() || one.fit.cost < next.fit.cost) next = std::move(one), with_next = std::move(moving);
+      if (with_next.empty() || one.fit.cost < next.fit.cost)
+        next = std::move(one), with_next = std::move(moving);
     }
     if (with_next.empty()) return all;
     best = std::move(next);

@@ -45,7 +45,7 @@ double times_floor(const std::vector<GapScore>& table, Error&& error) {
 /// The end of a one-sided 95 % interval on these very data, where that of a printed one is known: two-sided, and wider by what no
 /// single recording can show.
 inline double proven_end(double value, double end) {
-  constexpr double narrower = 1.645 / 1.960;
+  constexpr double narrower = 2.015 / 2.571;  // Student's t of six blocks, one-sided against two-sided
   const double own = std::sqrt(std::max(std::pow(end - value, 2.0) - std::pow(between_days, 2.0), 0.0));
   return value + narrower * std::copysign(own, end - value);
 }
@@ -61,7 +61,8 @@ inline ShareLeft share_left(const std::vector<GapScore>& table) {
       const double after = std::max(one.after, one.noise_floor);
       configured += std::log(after / std::max(one.before, one.noise_floor));
       constants += std::log(after / std::max(std::min(one.recalibrated, one.before), one.noise_floor));
-      most += proven_end(std::log(after / std::max(one.before, one.noise_floor)), std::log(std::max(1.0 - one.ci95.low, 1e-12)));
+      most += proven_end(std::log(after / std::max(one.before, one.noise_floor)),
+                         std::log(std::max(1.0 - one.ci95.low, 1e-12)));
       count += 1.0;
     }
     if (count > 0.0) break;
@@ -84,7 +85,7 @@ inline DecisionNumbers numbers_of(const std::vector<GapScore>& table, double pro
 
 /// A verdict with its reason.
 struct Decision {
-  Verdict verdict = Verdict::unexplained;        ///< in one word
+  Verdict verdict = Verdict::unexplained;         ///< in one word
   Reason reason = Reason::no_explanation_likely;  ///< why
 };
 

@@ -131,9 +131,8 @@ public:
     };
     std::vector<std::size_t> order(attempt.candidates.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    sort_by(order, [&](std::size_t i) {
-      return i == 0 || i == chosen ? -2.0 : -attempt.candidates[i].probability;
-    });
+    sort_by(order,
+            [&](std::size_t i) { return i == 0 || i == chosen ? -2.0 : -attempt.candidates[i].probability; });
     order.resize(std::min(order.size(), most));
     in_parallel(order.size(), posing_.options().threads, [&](std::size_t i) {
       Candidate& one = attempt.candidates[order[i]];

@@ -58,7 +58,8 @@ public:
       effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_);
       result_.loop = to_string(effort_->loop().kind);
     }
-    if (effort_is_measured() && effort_->loop().is_closed()) {
+    // Where a target is recorded the loop is known to be closed: motion tells next to nothing, and no search is needed.
+    if (effort_is_measured() && effort_->loop().kind == LoopKind::closed_recorded) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
     Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where).run();
@@ -136,7 +137,8 @@ private:
   void take(EffortLead& lead, const Answer& answer, Attempt& attempt) const {
     attempt.candidates = lead.candidates();
     const Attribution attribution(attempt.problem);
-    measure_noise(attempt.problem, started(attempt.candidates[answer.chosen], attempt.problem), train_inputs_);
+    measure_noise(attempt.problem, started(attempt.candidates[answer.chosen], attempt.problem),
+                  train_inputs_);
     for (Candidate& one : attempt.candidates) attribution.adopt(one);
     attempt.recalibrated = model_with(attempt.candidates.front());
     AsJudged(posing_, train_inputs_, held_out_inputs_).score(attempt, answer.chosen);
@@ -182,7 +184,8 @@ private:
     for (const CatalogueEntry* entry : point.effects) {
       plant::AddedEffect<double> one;
       one.entry = entry;
-      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i) one.parameters.push_back(point.parameters[at++]);
+      for (std::size_t i = 0; i < entry->info.parameters.size(); ++i)
+        one.parameters.push_back(point.parameters[at++]);
       list.push_back(std::move(one));
     }
     return list;
@@ -190,7 +193,7 @@ private:
 
   /// Adds what the effort says to the table, where a controller makes it.
   void add_effort(const Candidate& chosen) {
-    if (!effort_is_measured() || !(effort_->loop().is_closed() || effort_leads_)) return;
+    if (!effort_is_measured() || !(effort_->loop().kind == LoopKind::closed_recorded || effort_leads_)) return;
     const auto vector = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
     const std::vector<double> before = vector(effort_->held_out_residual_as_configured()),
                               constants = vector(effort_->held_out_residual({}));
@@ -235,7 +238,8 @@ private:
     }
     Weight weight = correlation_of(chosen, attempt.problem);
     rank(result_, candidates, attempt.problem, weight);
-    if (!effort_leads_) fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
+    if (!effort_leads_)
+      fit_to_rows(result_, chosen, attempt.problem, train_inputs_, attempt.horizon_s, weight);
     const Model fitted = augmented(model_, chosen.explanation, chosen.list, chosen.fit.point);
     result_.recalibrated = only_constants ? fitted : attempt.recalibrated;
     const std::vector<Segment> full = cut(held_out_inputs_, options_.horizon_s, plant_of(model_));
@@ -245,7 +249,8 @@ private:
     result_.numbers = numbers_of(result_.gap, choice.probability);
     if (effort_leads_) result_.numbers.share = share_left({result_.gap.back()});
     result_.numbers.together = choice.together;
-    if (result_.numbers.configured <= verdict_limits.near_floor) result_.numbers.twice_horizon = at_twice_the_horizon();
+    if (result_.numbers.configured <= verdict_limits.near_floor)
+      result_.numbers.twice_horizon = at_twice_the_horizon();
     for (const Candidate& one : candidates)
       if (has_curve(one.explanation)) result_.none_of_these += one.probability;
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
@@ -253,8 +258,9 @@ private:
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
     const bool within_known = std::all_of(refitted.begin(), refitted.end(),
                                           [](const ConstantEstimate& one) { return one.within_known; });
-    const Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                                                    : decide(result_.numbers, only_constants, within_known);
+    const Decision decided = ran_away(result_.gap)
+                                 ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                                 : decide(result_.numbers, only_constants, within_known);
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
@@ -268,7 +274,8 @@ private:
     if (by_constants) {
       if (within_known) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
       else constants.explanation.released = beyond_known(refitted);
-      name_causes(result_, candidates, {choice.chosen, only_constants ? choice.probability : 1.0 - choice.probability, 0.0, {}},
+      name_causes(result_, candidates,
+                  {choice.chosen, only_constants ? choice.probability : 1.0 - choice.probability, 0.0, {}},
                   constants, model_, weight);
     } else if (named) {
       result_.augmented = fitted;

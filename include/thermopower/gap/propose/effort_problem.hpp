@@ -127,7 +127,8 @@ public:
   /// dry friction, constant and load may stand in its place.
   /// @param factors  of Model::calibrated(), as ParameterPoint has them
   /// @param effects  with their parameters
-  double times_refitted(std::vector<double> factors, const std::vector<plant::AddedEffect<double>>& effects) const {
+  double times_refitted(std::vector<double> factors,
+                        const std::vector<plant::AddedEffect<double>>& effects) const {
     EffortPoint point;
     point.factors = std::move(factors);
     bool unread = false;
@@ -236,8 +237,8 @@ private:
     for (Eigen::Index i = 0; i < left.size(); ++i) {
       const Eigen::Index row = compared.rows[static_cast<std::size_t>(i)];
       const double angle = held_rows_->angle_rad[row];
-      columns.row(i) << std::tanh(held_rows_->rate_rad_per_s[row] / held_->still_rad_per_s()), 1.0, angle, std::sin(angle),
-          std::cos(angle);
+      columns.row(i) << std::tanh(held_rows_->rate_rad_per_s[row] / held_->still_rad_per_s()), 1.0, angle,
+          std::sin(angle), std::cos(angle);
     }
     return left - columns * columns.completeOrthogonalDecomposition().solve(left);
   }

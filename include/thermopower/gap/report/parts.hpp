@@ -212,7 +212,8 @@ inline void keep_constants_alone(Diagnosis& result, const Model& model) {
     gap.ci95 = refitted ? gap.by_constants : Interval();
     gap.beyond_constants = {};
   }
-  for (SignalSeries& series : result.series) series.augmented = refitted ? series.recalibrated : series.baseline;
+  for (SignalSeries& series : result.series)
+    series.augmented = refitted ? series.recalibrated : series.baseline;
 }
 
 /// What the named causes leave. @param left  of training data, by the augmented model
