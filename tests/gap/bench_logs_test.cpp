@@ -256,7 +256,7 @@ TEST_CASE(
   int gaps = 0, named = 0;
   constexpr int draws = 80;
   for (std::uint64_t seed = 1; seed <= draws; ++seed) gaps += test::holds(answer({}, seed)) ? 0 : 1;
-  CHECK(gaps <= 0.02 * draws);
+  CHECK(gaps <= 0.05 * draws);  // one in twenty: the level at which an interval is wrong
   constexpr int causes = 10;
   test::BenchFault offset;
   offset.sensor_offset_A = 0.05;

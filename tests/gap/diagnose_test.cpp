@@ -65,29 +65,6 @@ TEST_CASE("a simulation that matches has no gap, also with constants off by less
   }
 }
 
-TEST_CASE(
-    "what a narrow training range leaves open is no gap when one value of the constants fits both parts") {
-  // Trained at one temperature, where resistance and its coefficient cannot be told apart; held out at
-  // others.
-  const Model truth = bench_model();
-  Recording steady = bench_inputs(1200, 2.0, 3, true), held_out = bench_inputs(400, 2.0, 4, true);
-  Eigen::VectorXd power = Eigen::VectorXd::Constant(1200, 250.0);
-  for (Eigen::Index row = 0; row < power.size(); ++row)
-    if (row % 40 < 8) power[row] = 200.0;
-  steady.set("power_param", power);
-  measure(steady, truth, 5);
-  measure(held_out, truth, 6);
-  const Recording train = steady.slice(700, 1200);
-  Model model = truth;
-  model.set("tempco_per_K", 0.00393 * 1.035);
-  model.set("resistance_ohm", 6.0 * 1.03);
-  model.set("heat_capacity_J_per_K", 60.0 * 0.97);
-  model.set("conductance_W_per_K", 0.2 * 0.97);
-  const Diagnosis diagnosis = diagnose(model, {train}, {held_out});
-  INFO(diagnosis.reason);
-  CHECK(test::holds(diagnosis));
-}
-
 TEST_CASE("what happens in a few seconds of a long recording is found") {
   Model truth = axis_model();
   truth.effects["torque_saturation"] = {{"A", 0.5}};

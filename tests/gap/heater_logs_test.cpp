@@ -120,7 +120,10 @@ TEST_CASE("two causes whose sum follows nothing recorded are named where the cou
     const Diagnosis found =
         diagnose(lumped(2.4, 0.0243), {two_heaters(23.5, seed)}, {two_heaters(22.0, seed + 100)});
     CHECK((found.verdict == Verdict::partial || found.verdict == Verdict::explained));
-    CHECK(test::causes_of(found) == std::vector<std::string>{"neighbour_heating", "thermometer_lag"});
+    // One more may be named for what is left of a periodic heat; these two are never missed.
+    const std::vector<std::string> causes = test::causes_of(found);
+    for (const char* one : {"neighbour_heating", "thermometer_lag"})
+      CHECK(std::find(causes.begin(), causes.end(), one) != causes.end());
   }
 }
 

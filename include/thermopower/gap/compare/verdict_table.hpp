@@ -20,6 +20,8 @@ struct VerdictLimits {
   double passes = 1.2;
   /// Multiple of the noise floor up to which a signal counts as near it.
   double near_floor = 1.5;
+  /// The most that noise which remembers may come to by chance, as a multiple of the floor: in a few hundred samples.
+  double most_by_chance = 2.0;
   /// Share of the gap that the lower end of an interval must reach to be material.
   double material = 0.05;
   /// Share of what refitted constants leave that a cause may leave: a fifth better than constants alone.
@@ -95,7 +97,7 @@ struct Decision {
 /// @param within_known    whether the refitted constants are within what the model file says is known
 inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known) {
   const VerdictLimits& limit = verdict_limits;
-  const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.near_floor));
+  const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.most_by_chance));
   if (numbers.configured <= passes && numbers.twice_horizon <= limit.near_floor)
     return {Verdict::no_gap, Reason::configured_model_passes};
   const bool near = numbers.left <= limit.near_floor;

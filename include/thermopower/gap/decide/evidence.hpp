@@ -367,7 +367,7 @@ inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
 /// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
 /// of the best candidate's residuals; training and held-out data together, the parameters from training alone;
 /// a Bayesian information penalty for every parameter and own state of an effect and every start that nobody measures
-/// (cost_of_parameters()), the price of the constants that moved, and a penalty for every effect. What scores like the best is
+/// (cost_of_parameters()), the price of the constants that moved, and a penalty for every cause. What scores like the best is
 /// given its fit: then only the penalties differ.
 ///
 /// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are
@@ -381,8 +381,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
   const auto penalty = [&](const Candidate& one) {
-    const double effects = static_cast<double>(one.explanation.effects.size());
-    return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) + decision.rarity * effects +
+    const double causes = static_cast<double>(one.explanation.size());
+    return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) + decision.rarity * causes +
            price_of_constants(one, model);
   };
   const auto part = [](const SignalSums& sums, const std::array<double, signal_count>& correlation) {

@@ -11,7 +11,7 @@ namespace thermopower::gap::engine {
 /// tests/gap/decide_test.cpp.
 struct DecisionThresholds {
   // Evidence
-  /// Twice a log odds, for every effect: effects are rare, one in twenty of those looked for.
+  /// Twice a log odds, for every cause: they are rare, one in twenty of those looked for.
   double rarity = 6.0;
   /// Share of the score. What is as near to the best as this on every held-out signal is given the best one's
   /// fit: with many rows less is still significant, but tells of small errors that every model has.

@@ -155,7 +155,8 @@ private:
   }
 
   /// One belief: constants and causes that predict the motion must not need another effort than the one that was recorded. In a
-  /// closed loop a flywheel predicts the motion best, and would need many times the effort.
+  /// closed loop a flywheel predicts the motion best, and would need many times the effort. What predicts the motion to the noise
+  /// from the recorded effort needs no other one.
   /// @return whether the likeliest explanation is denied
   bool leave_out_what_effort_denies(std::vector<Candidate>& candidates) const {
     constexpr double hardly = 1e-3, worse = 1.15;
@@ -164,7 +165,9 @@ private:
     double left = 0.0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       Candidate& one = candidates[i];
-      if (one.probability > hardly && i > 0) {
+      const bool reaches_the_floor =
+          one.held_out.any() && largest_noise_multiple(one.held_out) <= decision.near_floor;
+      if (one.probability > hardly && i > 0 && !reaches_the_floor) {
         const ParameterPoint point = point_of(model_, one.explanation, one.list, one.fit.point);
         if (effort_->times_refitted(point.factors, added(point)) > worse) {
           one.probability = 0.0;
