@@ -196,7 +196,8 @@ private:
 
   /// Adds what the effort says to the table, where a controller makes it.
   void add_effort(const Candidate& chosen) {
-    if (!effort_is_measured() || !(effort_->loop().kind == LoopKind::closed_recorded || effort_leads_)) return;
+    if (!effort_is_measured() || !(effort_->loop().kind == LoopKind::closed_recorded || effort_leads_))
+      return;
     const auto vector = [](const Eigen::VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
     const std::vector<double> before = vector(effort_->held_out_residual_as_configured()),
                               constants = vector(effort_->held_out_residual({}));
