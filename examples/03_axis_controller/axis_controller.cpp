@@ -17,7 +17,7 @@ struct MyMotor {
   typedef tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<> > Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }  // 12 ohm at 20 degC, copper
   static tp::SupplyRange supply() { return {11.0f, 13.0f}; }
-  static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }        // 18 J/K, 0.05 W/K to the air
+  static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }  // 18 J/K, 0.05 W/K to the air
 };
 //! [motor]
 

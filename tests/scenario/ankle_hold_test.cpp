@@ -99,7 +99,8 @@ struct Certified {
     config.network = tp::CertifiedTwoNodeConfig::around(model(), 0.1f, static_cast<float>(winding_limit_C),
                                                         static_cast<float>(body_limit_C));
     const auto most_W = static_cast<float>(full_W_at_20_C * (1.0 + per_K * (winding_limit_C - 20.0)));
-    config.use = {{48.0f, 1.0f, 0.0f, most_W, most_W, 0.0f}, static_cast<float>(hottest_air_C), 0.1f, 10.0f, 1, 0};
+    config.use = {
+        {48.0f, 1.0f, 0.0f, most_W, most_W, 0.0f}, static_cast<float>(hottest_air_C), 0.1f, 10.0f, 1, 0};
     config.air_error_K = 2.0f;
     return config;
   }

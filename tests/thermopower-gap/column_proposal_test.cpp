@@ -114,15 +114,15 @@ TEST_CASE("counts of a servo and registers with sign and magnitude") {
           return std::vector<double>{0.1 * i, 9000.0 + i};
         })) == "t_s=time");
   const io::ColumnChoice counts = io::parse_column_choice("rate_dps=speed:4096/s,sign15");
-  CHECK(counts.value_of(1024.0) == 90.0);
-  CHECK(counts.value_of(32768.0 + 1024.0) == -90.0);
+  CHECK(io::value_of(counts, 1024.0) == 90.0);
+  CHECK(io::value_of(counts, 32768.0 + 1024.0) == -90.0);
 }
 
 TEST_CASE("units are scaled by a gear, pole pairs and the size of a count") {
-  CHECK(io::parse_column_choice("rate_dps=erpm:rpm/7").value_of(70.0) == Approx(60.0));
-  CHECK(io::parse_column_choice("drive_A=raw:-A*0.01").value_of(50.0) == Approx(-0.5));
-  CHECK(io::parse_column_choice("angle_deg=motor:rev/50").value_of(25.0) == Approx(180.0));
-  CHECK(io::parse_column_choice("power_param=pwm:127").value_of(127.0) == Approx(255.0));
+  CHECK(io::value_of(io::parse_column_choice("rate_dps=erpm:rpm/7"), 70.0) == Approx(60.0));
+  CHECK(io::value_of(io::parse_column_choice("drive_A=raw:-A*0.01"), 50.0) == Approx(-0.5));
+  CHECK(io::value_of(io::parse_column_choice("angle_deg=motor:rev/50"), 25.0) == Approx(180.0));
+  CHECK(io::value_of(io::parse_column_choice("power_param=pwm:127"), 127.0) == Approx(255.0));
   for (const char* wrong :
        {"rate_dps=x:rpm/0", "rate_dps=x:rpm/", "angle_deg=x:1.5", "angle_deg=x:deg,sign40", "motor_C=x:4096"})
     CHECK_THROWS_AS(io::parse_column_choice(wrong), io::InputError);

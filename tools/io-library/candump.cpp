@@ -216,7 +216,7 @@ RecordingFile candump_as_recording(const std::string& name, const std::string& t
           (signal->first_byte && (frame.bytes.empty() || frame.bytes[0] != *signal->first_byte)))
         continue;
       times.push_back(frame.ns);
-      column.values.push_back(is_of(*signal, frame) ? choice.value_of(value_in(*signal, frame))
+      column.values.push_back(is_of(*signal, frame) ? value_of(choice, value_in(*signal, frame))
                                                     : std::nan(""));
     }
     if (std::none_of(column.values.begin(), column.values.end(),

@@ -116,12 +116,12 @@ std::vector<std::string> units_of(const std::string& name) {
   return list;
 }
 
-double ColumnChoice::value_of(double number) const {
-  if (sign_bit > 0) {
-    const double sign = std::ldexp(1.0, sign_bit);
+double value_of(const ColumnChoice& choice, double number) {
+  if (choice.sign_bit > 0) {
+    const double sign = std::ldexp(1.0, choice.sign_bit);
     if (number >= sign && number < 2.0 * sign) number = sign - number;
   }
-  return (number - offset) * factor;
+  return (number - choice.offset) * choice.factor;
 }
 
 namespace {

@@ -552,7 +552,7 @@ private:
         fail(line_, header_[field_],
              excerpt(text, size) + " follows dates or times of day; expected one of these in every row");
       target.kind = Kind::number;
-      value = target.choice.value_of(value);
+      value = value_of(target.choice, value);
       if (target.power && !(value >= 0.0 && value <= 255.0)) {
         fail(line_ + lines_in_row_, header_[field_],
              excerpt(text, size) + " is outside its range; expected 0..255" + other_power(value));

@@ -328,7 +328,7 @@ RecordingFile to_recording(Capture capture, const std::vector<ColumnChoice>& cho
            std::to_string(samples.size()) +
            (of_board ? " frames of telemetry (only REALTIME_DATA_4 has all fields)" : " frames CONTROL"));
     StreamColumn column{choice.name, samples};
-    for (double& value : column.values) value = choice.value_of(value);
+    for (double& value : column.values) value = value_of(choice, value);
     (of_board ? telemetry : control).columns.push_back(std::move(column));
   }
   std::vector<Stream> streams;

@@ -224,7 +224,7 @@ PYBIND11_MODULE(_thermopower, module) {
       throw io::InputError(
           "columns: " + text +
           ": a torque or a duty becomes a current or a voltage where a file is read; multiply the column of a frame");
-    for (double& value : values) value = choice.value_of(value);
+    for (double& value : values) value = io::value_of(choice, value);
     return values;
   });
   module.def("remedy", [](const std::string& mend, const std::vector<std::string>& choices) {

@@ -24,10 +24,10 @@ struct ColumnChoice {
   std::string unit = {};  ///< as it was given; empty: the unit of the file's row of units, else the format's
   int sign_bit = 0;       ///< of a register that holds sign and magnitude; 0: a number with a sign of its own
   Needs needs = Needs::nothing;  ///< what else makes the format's unit of it
-
-  /// A number of the file in the format's unit, but for what `needs` says.
-  double value_of(double number) const;
 };
+
+/// @brief A number of the file in the format's unit, but for what `choice.needs` says.
+double value_of(const ColumnChoice& choice, double number);
 
 /// @brief Reads `NAME=HEADER[:UNIT]`, such as `motor_C=temp:degF`, `t_s=stamp:ms`, `power_param=duty:1` or
 /// `drive_A=current:-mA`. A header that holds a colon needs a unit after it.

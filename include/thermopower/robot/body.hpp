@@ -63,6 +63,8 @@ struct LimbForces {
 };
 
 /// @brief A rigid robot that answers for measured motion and that can be simulated.
+///
+/// How to: @ref diagnose_a_robot.
 class Body {
 public:
   virtual ~Body() = default;

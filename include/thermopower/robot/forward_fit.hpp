@@ -65,6 +65,8 @@ inline JointDynamics with_terms(const Joint& joint, const JointProblem& problem,
 }
 
 /// @brief Fits the constants of one joint to its tracking: simulated under its controller while all other joints move as measured.
+///
+/// How to: @ref diagnose_a_robot.
 class ForwardFitter {
 public:
   /// @param series  the log; its targets are what the controller was given

@@ -22,6 +22,8 @@ namespace thermopower::robot {
 ///
 /// One family after another is added while it lowers the held-out effort materially and reliably. Then each is taken out once more,
 /// and stays out where it is not missed. A friction that would drive the motion is refused, and so is a negative inertia.
+///
+/// How to: @ref diagnose_a_robot.
 class JointFitter {
 public:
   /// @param problem  the regression; a ripple's number of cycles is chosen in it

@@ -44,8 +44,11 @@ inline constexpr int regressor_count = 18;
 ///
 /// The rows near rest are left out: they say nothing of friction. The rest is cut into blocks of equal length; a fit is judged by
 /// the blocks that it was not fitted to.
+///
+/// How to: @ref diagnose_a_robot.
 class JointProblem {
 public:
+  /// @brief Products of the columns, summed over rows.
   using Sums = Eigen::Matrix<double, regressor_count, regressor_count>;
 
   /// Rates of the Stribeck columns, as a share of the joint's usual rate.

@@ -77,7 +77,7 @@ inline std::string name_of(int column) {
   return "";
 }
 
-/// @brief When a cause is told. The defaults are those that the benchmark of hidden truths was run with.
+/// @brief When a cause is told.
 struct FitOptions {
   int blocks = 12;           ///< of a log, for cross-validation
   double least_gain = 0.05;  ///< a cause must take at least this share of what is left of the held-out effort

@@ -13,6 +13,8 @@ namespace thermopower::robot {
 /// @brief A log of a whole robot: one column per joint of the model, one row per sample.
 ///
 /// A quantity that nobody logged is an empty matrix. A joint that the log lacks has NaN in its column.
+///
+/// How to: @ref diagnose_a_robot.
 struct Log {
   std::string file;                      ///< for messages
   Eigen::VectorXd t_s;                   ///< time in s, strictly increasing inside a run

@@ -41,8 +41,11 @@ struct ColumnMeaning {
 /// `/joint_states.position[FL_hip_joint]`, `pos_FL_hip`. The word "joint" may be left out. Where no column has the name of a
 /// joint, a number counts: `q_0`, `tau[11]`, in the order of the model. The quantity is told by words such as position, velocity,
 /// effort and target, and the unit by a suffix such as `_deg`; without one it is rad, rad/s, N m.
+///
+/// How to: @ref diagnose_a_robot.
 class NameMatcher {
 public:
+  /// @param robot  whose joints are looked for
   explicit NameMatcher(const Robot& robot) {
     for (const Joint& joint : robot.joints) joints_.push_back(name_words(joint.name));
   }

@@ -16,6 +16,8 @@
 namespace thermopower::robot {
 
 /// Rows without a hole between them.
+///
+/// How to: @ref diagnose_a_robot.
 struct Stretch {
   Eigen::Index begin = 0;  ///< first row
   Eigen::Index end = 0;    ///< one past the last row
@@ -34,6 +36,8 @@ struct SmoothingOptions {
 };
 
 /// @brief A log on an even clock, smoothed: one column per joint, one row per step, stretch behind stretch.
+///
+/// How to: @ref diagnose_a_robot.
 struct Series {
   double step_s = 0.0;             ///< between two rows of a stretch
   double cutoff_Hz = 0.0;          ///< of the low-pass filter that all smoothed quantities went through

@@ -14,6 +14,8 @@ namespace thermopower::robot {
 /// The same filter on both sides of an equation leaves the equation true (Gautier 1997).
 /// @par Rules
 /// At both ends the series is continued by its mirror image, as is usual.
+///
+/// How to: @ref diagnose_a_robot.
 class ZeroPhaseFilter {
 public:
   /// @param cutoff  share of the sampling rate, above 0 and below 0.5

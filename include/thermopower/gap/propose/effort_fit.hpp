@@ -19,7 +19,7 @@ namespace thermopower::gap::engine {
 
 /// A coordinate with what is known of it.
 struct BoundedCoordinate {
-  EffortCoordinate at;
+  EffortCoordinate at;                                      ///< which number of the point moves
   double lower = -std::numeric_limits<double>::infinity();  ///< of the number
   double upper = std::numeric_limits<double>::infinity();   ///< of the number
   bool logarithmic = false;                                 ///< it moves by factors
@@ -30,7 +30,7 @@ struct BoundedCoordinate {
 
 /// A point fitted to training effort.
 struct EffortFit {
-  EffortPoint point;
+  EffortPoint point;               ///< constants and parameters where the fit ended
   double mean_square = 0.0;        ///< of what is left over
   Eigen::VectorXd residual;        ///< at the compared rows
   Eigen::VectorXd standard_error;  ///< by coordinate, of the number itself

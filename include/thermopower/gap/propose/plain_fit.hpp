@@ -26,6 +26,7 @@ inline double rest_rate(const EffortRows& rows) {
 /// What inertia, drag, friction, gravity and a constant say of effort: a first look that tells how the data must be filtered.
 class PlainFit {
 public:
+  /// @param rows  of training data; model and catalogue read the instruments
   PlainFit(const Model& model, const Catalogue& catalogue, const EffortRows& rows) {
     for (const double candidate : {0.0, 0.5}) {
       const EffortResidual data(model, catalogue, rows, rest_rate(rows), candidate);

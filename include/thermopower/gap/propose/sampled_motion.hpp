@@ -29,11 +29,15 @@ class SampledMotion {
 public:
   /// A stretch of motion without a hole, as it was sampled.
   struct Stretch {
-    std::size_t recording = 0, run = 0;   ///< it is of
-    double from_s = 0.0;                  ///< since the start of its run
-    double interval_s = 0.0;              ///< between samples
-    Eigen::VectorXd effort, angle, rate;  ///< A or V, rad, rad/s; empty: not measured
-    Eigen::VectorXd torque_Nm, motor_C;   ///< from outside, and as recorded; empty: neither
+    std::size_t recording = 0;  ///< place of its recording among those given
+    std::size_t run = 0;        ///< place of its run in that recording
+    double from_s = 0.0;        ///< since the start of its run
+    double interval_s = 0.0;    ///< between samples
+    Eigen::VectorXd effort;     ///< in A, of a motor at a voltage in V
+    Eigen::VectorXd angle;      ///< in rad; empty: not measured
+    Eigen::VectorXd rate;       ///< in rad/s; empty: not measured
+    Eigen::VectorXd torque_Nm;  ///< from outside; empty: none is recorded
+    Eigen::VectorXd motor_C;    ///< as recorded; empty: it is not
   };
   std::vector<Stretch> stretches;  ///< in the order recorded
   double angle_noise = 0.0;        ///< of a sample, rad
