@@ -43,8 +43,8 @@ Diagnosis example() {
       {Signal::current_A, thermopower::plant::Submodel::electrical, 0.1, std::nullopt, "given the voltage"});
   d.cause.push_back({"radiation", 0.61, {{"emissive_area_m2", 0.1 + 0.2, {0.25, missing}, "m^2"}}});
   d.alternatives = {{"natural_convection"}, {"ambient_bias", "series_resistance"}};
-  d.gap.push_back({Signal::motor_C, "degC", std::nullopt, 4.4, 1.2, 0.14, 0.12, 0.968, {0.96, 0.98}});
-  d.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 3.0, 2.0, 0.3, 0.2, 0.9, {0.88, 0.92}});
+  d.gap.push_back({Signal::motor_C, "degC", std::nullopt, 4.4, 1.2, 0.14, 0.12, 1.0, 0.968, {0.96, 0.98}});
+  d.gap.push_back({Signal::rate_dps, "deg/s", 0.5, 3.0, 2.0, 0.3, 0.2, 1.0, 0.9, {0.88, 0.92}});
   d.next_experiment = "heat <hard> & wait";
   d.not_judged = {"angle_deg: not recorded"};
   d.findings.push_back({FindingKind::coarse_quantum, Severity::note, "a.csv", "motor_C", "steps of 0.1"});
@@ -63,7 +63,7 @@ Diagnosis example() {
                        0,
                        {},
                        {}});
-  d.constants.push_back({"conductance", 0.11, 0.112});
+  d.constants.push_back({"conductance", 0.11, 0.112, {0.1, 0.12}});
   SignalSeries series;
   series.signal = Signal::motor_C;
   series.unit = "degC";

@@ -213,7 +213,7 @@ private:
     if (std::isinf(number))
       throw FieldError("field '" + one.path.substr(1) +
                        "' is infinite; expected a finite number, or nan for a missing sample");
-    const double value = value_of(one.choice, number);
+    const double value = io::value_of(one.choice, number);
     if (one.choice.name == "power_param" && !std::isnan(value) && !(value >= 0.0 && value <= 255.0))
       throw FieldError("field '" + one.path.substr(1) +
                        "' is outside the range of power_param; expected 0..255");
