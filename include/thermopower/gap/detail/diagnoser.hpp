@@ -262,9 +262,15 @@ private:
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
     const bool within_known = std::all_of(refitted.begin(), refitted.end(),
                                           [](const ConstantEstimate& one) { return one.within_known; });
-    const Decision decided = ran_away(result_.gap)
-                                 ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
-                                 : decide(result_.numbers, only_constants, within_known);
+    Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
+                                             : decide(result_.numbers, only_constants, within_known);
+    // Twice as many readings as one parameter wants by the rule of thumb of regression: constants are fitted beside it.
+    constexpr double least_readings = 30.0;
+    const auto& readings = chosen.train.samples;
+    const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
+                          decided.verdict == Verdict::partial;
+    if (is_named && !only_constants && *std::max_element(readings.begin(), readings.end()) < least_readings)
+      decided = {Verdict::unexplained, Reason::no_explanation_likely};
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
