@@ -301,7 +301,7 @@ TEST_CASE("exit statuses and messages, and nothing half-written") {
   };
   const std::vector<Case> cases = {
       {"", 2, "subcommand"},
-      {"diagnose", 2, "--model"},
+      {"diagnose", 2, "--recording"},
       {"diagnose " + inputs + "--horizont 3", 2, "horizont"},
       {"diagnose " + inputs + "--horizon -1", 2, "horizon"},
       {"diagnose " + inputs + "--without gremlins", 2, "no effect 'gremlins'"},

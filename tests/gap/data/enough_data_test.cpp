@@ -58,14 +58,15 @@ TEST_CASE("few rows are too few, and it is said of which part, how many there ar
           longer);
 }
 
-TEST_CASE("some ten readings tell that there is a gap, and name no cause") {
+TEST_CASE("some ten readings tell that there is a gap, and name no effect") {
   test::BenchFault fault;
   fault.sensor_offset_A = 0.05;
   for (const int rows : {16, 20, 28}) {
     CAPTURE(rows);
     const Diagnosis diagnosis = diagnose(test::bench_model(), {test::bench_recording(fault, rows, 1)},
                                          {test::bench_recording(fault, 40, 2)});
-    CHECK(diagnosis.cause.empty());
+    // Constants may be off; no effect is named.
+    for (const Cause& cause : diagnosis.cause) CHECK(cause.effect.rfind("calibration.", 0) == 0);
     CHECK(diagnosis.verdict != Verdict::insufficient);
   }
   const Diagnosis more = diagnose(test::bench_model(), {test::bench_recording(fault, 400, 1)},

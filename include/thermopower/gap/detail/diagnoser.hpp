@@ -264,12 +264,9 @@ private:
                                           [](const ConstantEstimate& one) { return one.within_known; });
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
                                              : decide(result_.numbers, only_constants, within_known);
-    // Twice as many readings as one parameter wants by the rule of thumb of regression: constants are fitted beside it.
-    constexpr double least_readings = 30.0;
-    const auto& readings = chosen.train.samples;
     const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                           decided.verdict == Verdict::partial;
-    if (is_named && !only_constants && *std::max_element(readings.begin(), readings.end()) < least_readings)
+    if (is_named && !only_constants && !has_readings_enough(chosen))
       decided = {Verdict::unexplained, Reason::no_explanation_likely};
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
@@ -308,6 +305,17 @@ private:
     for (const Candidate& one : candidates)
       if (one.explanation.effects.empty() && cost(one) < cost(*best)) best = &one;
     return *best;
+  }
+
+  /// Whether the training data have readings enough for what an explanation leaves free: its effects' parameters, and the constants
+  /// that moved by more than is known of them. The rule of thumb of regression is 10 to 20 for each.
+  bool has_readings_enough(const Candidate& candidate) const {
+    constexpr double per_parameter = 15.0, least = 30.0;
+    const double free = static_cast<double>(candidate.explanation.parameter_count()) +
+                        static_cast<double>(moved_constants(candidate, model_).size());
+    double readings = 0.0, most = 0.0;
+    for (const double samples : candidate.train.samples) readings += samples, most = std::max(most, samples);
+    return readings >= per_parameter * free && most >= least;
   }
 
   /// Places of the constants that moved by more than is known of them.
