@@ -25,12 +25,6 @@ struct Answer {
   std::vector<std::size_t> alternatives;  ///< candidates of other classes, likeliest first
 };
 
-/// Whether an explanation holds a curve: a smooth function that nobody has named.
-inline bool has_curve(const Explanation& explanation) {
-  return std::any_of(explanation.effects.begin(), explanation.effects.end(),
-                     [](const CatalogueEntry* one) { return one->info.id.rfind("unknown.", 0) == 0; });
-}
-
 /// Whether a set keeps the constants where they are known to be, at the noise, while a part of it reaches that with constants
 /// far off alone: a current sensor's gain is a re-scaling of resistance, heat capacity and conductance.
 inline bool spares_the_constants(const Candidate& set, const Candidate& part, const Model& model) {

@@ -255,8 +255,6 @@ private:
     result_.numbers.together = choice.together;
     if (result_.numbers.configured <= verdict_limits.near_floor)
       result_.numbers.twice_horizon = at_twice_the_horizon();
-    for (const Candidate& one : candidates)
-      if (has_curve(one.explanation)) result_.none_of_these += one.probability;
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
     const std::vector<ConstantEstimate> refitted =
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
