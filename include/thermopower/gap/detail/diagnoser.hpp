@@ -286,6 +286,7 @@ private:
       result_.augmented = fitted;
       name_causes(result_, candidates, choice, chosen, model_, weight);
     }
+    if (decided.verdict != Verdict::ambiguous) result_.alternatives.clear();
     if (named) draw_what_is_missing();
     if (decided.verdict == Verdict::partial)
       result_.remaining =
