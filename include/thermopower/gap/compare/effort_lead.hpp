@@ -92,7 +92,7 @@ public:
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const bool alike = candidates_[i].explanation.includes(chosen) ||
                          likeness(signatures_[i], signatures_[found.chosen]) >= alike_from;
-      (alike ? found.probability : rest_) += candidates_[i].probability;
+      if (alike) found.probability += candidates_[i].probability;
       const bool is_rival = i != found.chosen && i > 0 && !candidates_[i].explanation.includes(chosen) &&
                             candidates_[i].probability > decision.alternative;
       if (is_rival) found.alternatives.push_back(i);
@@ -138,7 +138,6 @@ private:
   EffortProblem& effort_;
   const FitProblem& problem_;
   bool is_told_ = false;
-  double rest_ = 0.0;
   std::vector<Candidate> candidates_;
   std::vector<Eigen::VectorXd> signatures_;
 };

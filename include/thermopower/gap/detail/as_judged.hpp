@@ -80,12 +80,7 @@ public:
       if (!errors.of[i].empty()) attempt.weight.held_out[i] = correlation_samples(errors.of[i]);
     // Of two explanations one may fit starts that nobody measures: then both may move the measured one within its
     // noise, or a wrong first reading speaks for hidden nodes.
-    const auto scored = [&](const Model& model) {
-      const Errors own = errors_of(model, segments, catalogue_, &sigma);
-      SignalSums sums;
-      for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
-      return sums;
-    };
+    const auto scored = [&](const Model& model) { return sums_of(model, segments, sigma, floor); };
     const std::vector<std::size_t> order = by_fitness(candidates, 0);
     std::vector<std::size_t> looked_at;
     std::size_t single = 0;
@@ -123,12 +118,7 @@ public:
     const std::array<double, signal_count> sigma = noise_of(errors, segments, held_out_);
     const std::array<double, signal_count> floor =
         floor_of(best, errors, sigma, segments, catalogue_, FirstReadings::within_their_noise);
-    const auto scored = [&](const Model& model) {
-      const Errors own = errors_of(model, segments, catalogue_, &sigma);
-      SignalSums sums;
-      for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
-      return sums;
-    };
+    const auto scored = [&](const Model& model) { return sums_of(model, segments, sigma, floor); };
     std::vector<std::size_t> order(attempt.candidates.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     sort_by(order,
@@ -143,6 +133,16 @@ public:
   }
 
 private:
+  /// What a model leaves of some segments, in units of the noise floor; starts are fitted within the noise.
+  SignalSums sums_of(const Model& model, const std::vector<Segment>& segments,
+                     const std::array<double, signal_count>& sigma,
+                     const std::array<double, signal_count>& floor) const {
+    const Errors own = errors_of(model, segments, catalogue_, &sigma);
+    SignalSums sums;
+    for (std::size_t i = 0; i < signal_count; ++i) sums.set(i, own.of[i], std::max(floor[i], 1e-12));
+    return sums;
+  }
+
   Model model_of(const Candidate& one) const {
     return augmented(model_, one.explanation, one.list, one.fit.point);
   }
