@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../catch.hpp"
+#include "journal_record.hpp"
 
 using namespace thermopower;
 using namespace thermopower::simulation;
@@ -28,11 +29,10 @@ constexpr int recorded_C = 40;
 constexpr float started_C = recorded_C + 1.0f;
 constexpr double open_s = 8.0;
 
-// The first record of a journal: a sequence number, the temperature plus 60, and the complement of their sum.
+// The journal's memory after its first record.
 std::vector<std::uint8_t> journal_memory() {
-  const int sequence = 1, code = recorded_C + 60;
-  return {static_cast<std::uint8_t>(sequence), static_cast<std::uint8_t>(code),
-          static_cast<std::uint8_t>(~(sequence + code))};
+  const auto record = journal_record(1, recorded_C + 60);
+  return {record.begin(), record.end()};
 }
 
 Gimbal restored_gimbal() {
