@@ -168,9 +168,10 @@ std::vector<Case> cases() {
   all.push_back(half);
   Case strange = axis("friction that nobody knows", friction, 55);
   strange.options.without = {
-      "coulomb_friction",    "asymmetric_friction", "stribeck_friction", "load_friction",
-      "presliding_friction", "drive_deadband",      "warm_friction",     "backlash",
-      "asymmetric_viscous",  "torque_saturation",   "friction_film",     "quadratic_drag"};
+      "coulomb_friction",           "asymmetric_friction",     "stribeck_friction",     "load_friction",
+      "presliding_friction",        "drive_deadband",          "warm_friction",         "backlash",
+      "asymmetric_viscous",         "torque_saturation",       "friction_film",         "quadratic_drag",
+      "unknown.friction(rate_dps)", "unknown.load(angle_deg)", "unknown.drive(drive_A)"};
   all.push_back(strange);
   Case idle = axis("never driven", {}, 57);
   idle.train[0] = scaled(idle.train[0], "drive_A", 0.0),

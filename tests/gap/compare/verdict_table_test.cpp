@@ -60,7 +60,10 @@ TEST_CASE("a cause near the floor explains, if it is sure") {
 }
 
 TEST_CASE("a cause beside a rest is named where it closes a material part, beyond what constants do") {
-  CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.6) == Verdict::partial);
+  CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.95) == Verdict::partial);
+  CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.6, false, true, 0.7) == Verdict::partial);
+  // Another class has the rest of the probability: one name would say too much.
+  CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.6) == Verdict::ambiguous);
   CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.4) == Verdict::ambiguous);
   CHECK(verdict_of({row(20.0, 18.0, 6.0)}, 0.4, false, true, 0.5) == Verdict::unexplained);
   CHECK(verdict_of({row(20.0, 7.0, 6.0)}, 1.0) == Verdict::unexplained);  // constants do nearly as well

@@ -116,8 +116,10 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
     return numbers.probability >= limit.sure ? Decision{Verdict::explained, Reason::cause_explains}
                                              : Decision{Verdict::ambiguous, Reason::several_explain};
   if (!closes) return {Verdict::unexplained, Reason::closes_too_little};
+  // Where another class is about as likely, one name says too much, however large the part that is closed.
+  const bool has_rivals = numbers.probability < limit.sure && numbers.together >= limit.sure;
+  if (has_rivals) return {Verdict::ambiguous, Reason::several_close_a_part};
   if (numbers.probability >= limit.likely) return {Verdict::partial, Reason::cause_closes_a_part};
-  if (numbers.together >= limit.sure) return {Verdict::ambiguous, Reason::several_close_a_part};
   return {Verdict::unexplained, Reason::no_explanation_likely};
 }
 

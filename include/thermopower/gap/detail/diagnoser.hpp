@@ -288,7 +288,7 @@ private:
     }
     if (decided.verdict != Verdict::ambiguous) result_.alternatives.clear();
     if (named) draw_what_is_missing();
-    if (decided.verdict == Verdict::partial)
+    if (decided.verdict == Verdict::partial || decided.reason == Reason::several_close_a_part)
       result_.remaining =
           remaining(result_, model_.own ? Localisation()
                                         : localise(result_.augmented, train_recordings_, {}, catalogue_));
