@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Copyright (c) 2026 the thermopower authors
 
-# sh cmake/release.sh [directory]        the release archive of the last commit and its check sum, in build/release-archive or there
+# sh cmake/release.sh [directory]        the release archive of the last commit, its check sum and the notes of its version from CHANGELOG.md,
+#                                        in build/release-archive or there
 # sh cmake/release.sh --try [directory]  the same, made twice and compared, unpacked, installed, and used by a program
 # The same commit gives the same bytes: names, order, times and owners are the commit's, and gzip stores no time.
 set -eu
@@ -29,6 +30,9 @@ archive() {  # archive <file>
 mkdir -p "$directory"
 archive "$directory/$name.tar.gz"
 (cd "$directory" && sha256sum "$name.tar.gz" | tee "$name.tar.gz.sha256")
+# The notes: the first section of the changelog, with its upgrade notes where it has some.
+awk '/^## \[/ { if (seen++) exit; next } seen' CHANGELOG.md >"$directory/$name-notes.md"
+[ -s "$directory/$name-notes.md" ] || { echo "release.sh: CHANGELOG.md has no section of this version" >&2; exit 1; }
 [ -n "$try" ] || exit 0
 
 scratch=$(mktemp -d)

@@ -121,3 +121,16 @@ TEST_CASE("the front page links every page") {
   }
   CHECK(pages > 40);
 }
+
+TEST_CASE("the headers that are called stable exist") {
+  static const std::regex row(R"(^\| `([a-z_/]+\.hpp)` \|.*)");
+  int count = 0;
+  for (const std::string& line : lines_of(fs::path(THERMOPOWER_DOCS_DIR) / "reference/stability.md")) {
+    std::smatch match;
+    if (!std::regex_match(line, match, row)) continue;
+    INFO(match[1]);
+    CHECK(fs::exists(fs::path(THERMOPOWER_INCLUDE) / match[1].str()));
+    ++count;
+  }
+  CHECK(count > 10);
+}
