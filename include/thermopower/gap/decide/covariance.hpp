@@ -118,8 +118,21 @@ inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
 /// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it, or it
 /// is no more than a constant that moved, as each explanation's may. Two that do the same from opposite sides (a friction that
 /// differs by direction, and a constant torque) are told by their sum alone. What is known by its order of magnitude only is
-/// not asked, nor is a detail of a shape.
+/// not asked, nor is a detail of a shape. An interval is one of a valley that is straight. Where the set without the cause was
+/// fitted, and is far behind, the cause is there, however long the valley is along which it trades with a constant.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
+  const auto misfit = [&](const Candidate& one) {
+    return misfit_of(one.train, weight.correlation) + misfit_of(one.held_out, weight.held_out);
+  };
+  const auto is_missed = [&](const Candidate& set, const CatalogueEntry* entry) {
+    return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& part) {
+      return part.held_out.any() && part.explanation.size() + 1 == set.explanation.size() &&
+             set.explanation.includes(part.explanation) &&
+             std::find(part.explanation.effects.begin(), part.explanation.effects.end(), entry) ==
+                 part.explanation.effects.end() &&
+             misfit(part) - misfit(set) > decision.missed_from;
+    });
+  };
   for (Candidate& one : candidates) {
     one.doubtful = false;
     if (one.explanation.effects.size() < 2 || !one.held_out.any()) continue;
@@ -137,7 +150,7 @@ inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model
         is_there = is_there || parameter.absent_at < interval.low || parameter.absent_at > interval.high;
       }
       const bool is_a_constant = in_fact.the_same && plant::is_calibration(in_fact.cause);
-      one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there);
+      one.doubtful = one.doubtful || is_a_constant || (has_a_size && !is_there && !is_missed(one, entry));
     }
   }
 }

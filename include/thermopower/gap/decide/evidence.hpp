@@ -361,6 +361,16 @@ inline void mark_twins(std::vector<Candidate>& candidates, const Model& model) {
       one.idle = one.idle || (one.explanation.effects.size() > 1 && has_the_same(one, *twin, model));
 }
 
+/// Deviance of Gaussian residuals of unknown variance.
+/// @param correlation  samples of each signal that count as one
+inline double misfit_of(const SignalSums& sums, const std::array<double, signal_count>& correlation) {
+  double deviance = 0.0;
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (sums.samples[i] > 0.0)
+      deviance += sums.samples[i] / correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
+  return deviance;
+}
+
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
 /// judged on held-out data.
 ///
@@ -385,18 +395,11 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) + decision.rarity * causes +
            price_of_constants(one, model);
   };
-  const auto part = [](const SignalSums& sums, const std::array<double, signal_count>& correlation) {
-    double deviance = 0.0;
-    for (std::size_t i = 0; i < signal_count; ++i)
-      if (sums.samples[i] > 0.0)
-        deviance += sums.samples[i] / correlation[i] * std::log(std::max(sums.mean(i), 1e-6));
-    return deviance;
-  };
   mark_idle(candidates);
   const Candidate* best = nullptr;
   for (Candidate& one : candidates) {
-    one.train_deviance = part(one.train, weight.correlation);
-    one.held_out_deviance = part(one.held_out, weight.held_out);
+    one.train_deviance = misfit_of(one.train, weight.correlation);
+    one.held_out_deviance = misfit_of(one.held_out, weight.held_out);
     one.deviance = penalty(one) + one.train_deviance + one.held_out_deviance;
     Shown shown = weight.shown;
     shown.by_reaching_the_noise = is_at_the_noise(one);
@@ -414,7 +417,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   const auto standard_error = [&](const SignalSums& a, const SignalSums& b,
                                   const std::array<double, signal_count>& correlation) {
     const auto difference = [&](const SignalSums& x, const SignalSums& y) {
-      return part(x, correlation) - part(y, correlation);
+      return misfit_of(x, correlation) - misfit_of(y, correlation);
     };
     return block_jackknife(a, b, merged(a, correlation), difference).standard_error;
   };

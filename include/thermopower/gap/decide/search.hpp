@@ -130,6 +130,13 @@ public:
     add_fitted(candidates, sets, Attribution(look.some, look.few));
   }
 
+  /// The same, fitted to the end, those that keep states among them even where the best candidate leaves no more than noise.
+  void add_whatever_the_room(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
+    const FirstLook look(fittest(candidates), glimpse_, coarse_);
+    add_all_fitted(candidates, sets, Attribution(look.some, look.few));
+    finish(candidates, sets.size() + fitted_to_the_end);
+  }
+
   /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
   /// stood in for only one is found at a time.
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
@@ -156,6 +163,25 @@ public:
     const FirstLook look(whole, glimpse_, coarse_);
     add_fitted(candidates, parts, Attribution(look.some, look.few));
     finish(candidates, fitted_to_the_end);
+  }
+
+  /// A set with one member after another exchanged for a cause of the same submodel that has fewer parameters.
+  /// @param place  of the set among the candidates
+  std::vector<Promise> simpler_instead_of(const std::vector<Candidate>& candidates, std::size_t place,
+                                          const std::vector<Explanation>& singles) const {
+    const Explanation& set = candidates[place].explanation;
+    std::vector<Promise> sets;
+    for (std::size_t member = 0; member < set.effects.size(); ++member)
+      for (const Explanation& single : singles) {
+        const EffectInfo& now = set.effects[member]->info;
+        if (set.includes(single) || single.effects.front()->info.submodel != now.submodel ||
+            single.effects.front()->info.parameters.size() >= now.parameters.size())
+          continue;
+        Explanation other = set;
+        other.effects[member] = single.effects.front();
+        if (!is_known(candidates, other)) sets.push_back({{}, place, std::move(other)});
+      }
+    return sets;
   }
 
   /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the

@@ -34,6 +34,9 @@ struct DecisionThresholds {
   /// a tenth the best one is right nine times in ten, and its probability says so.
   double alternative = 0.1;
 
+  /// Twice a log odds from which a set is said to miss a cause that it lacks: odds of 20 000.
+  double missed_from = 20.0;
+
   // Verdict
   /// Multiple of the noise floor up to which a held-out signal counts as near it, as printed in the table.
   double near_floor = 1.5;

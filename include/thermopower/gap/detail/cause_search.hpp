@@ -65,9 +65,11 @@ private:
     }
     search.look_at_rows();
     search.try_sets();
+    search.try_curves();
     search.decide();
     search.try_beside_dear_constants();
     search.try_third_causes();
+    search.try_instead_of_bounded();
     return search.take();
   }
 

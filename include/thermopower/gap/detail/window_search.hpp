@@ -55,8 +55,11 @@ public:
     search_.emplace(in_short_windows ? *glimpse_ : *coarse_, *coarse_, in_short_windows ? *longer_ : *coarse_,
                     *fine_, options_.threads, suspects);
     for (Explanation& one : single_causes(posing.model(), posing.catalogue(), options_.without, train_)) {
-      const bool is_costly = !one.effects.empty() && one.effects.front()->info.costly;
-      (is_costly ? costly_ : causes_).push_back(std::move(one));
+      const EffectInfo* info = one.effects.empty() ? nullptr : &one.effects.front()->info;
+      (info == nullptr || !info->costly ? causes_
+       : info->curve                    ? curves_
+                                        : costly_)
+          .push_back(std::move(one));
     }
   }
 
@@ -75,7 +78,7 @@ public:
     search_->add(attempt_.candidates, tried_);
     renew();
     const bool sets_may_do = options_.effects_at_once > 1 && sets_come_near();
-    if (!costly_.empty() && !sets_may_do && !does_for_now(attempt_.best())) add_costly();
+    if (!costly_.empty() && !sets_may_do && !does_for_now(attempt_.best())) add_late(costly_);
     look_closely();
   }
 
@@ -107,12 +110,23 @@ public:
       add_sets(!pairs_.empty() ? pairs_ : promising({}));
       if (!costly_.empty() && !does_for_now(attempt_.best())) {
         const std::vector<Explanation> late = costly_;
-        add_costly();
+        add_late(costly_);
         if (has_room()) add_sets(promising(late));
       }
     }
     if (search_->refine_shapes(attempt_.candidates)) renew();
     look_at_rows();
+  }
+
+  /// Curves, beside everything that has a name: they could bend to what one or two named causes do, and say less. Where one
+  /// named cause does, none is asked for; where two are needed, one curve may be the simpler answer.
+  void try_curves() {
+    if (curves_.empty() || (does_for_now(attempt_.best()) && attempt_.best().explanation.effects.size() < 2))
+      return;
+    const std::vector<Explanation> late = curves_;
+    add_late(curves_);
+    if (options_.effects_at_once > 1 && has_room())
+      add_sets(search_->promising().pairs(attempt_.candidates, effects(), {}, late));
   }
 
   /// Weighs what was found on held-out data.
@@ -124,8 +138,9 @@ public:
     weigh_all();
     // What fits the data it was fitted to, and fails on others, was a stand-in.
     constexpr double near = decision.near_floor;
-    if (!costly_.empty() && !attempt_.best().held_out.within(near * near)) {
-      add_costly();
+    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
+      if (!costly_.empty()) add_late(costly_);
+      if (!curves_.empty()) add_late(curves_);
       weigh_all();
     }
   }
@@ -151,6 +166,27 @@ public:
     }
     if (sets.empty()) return;
     add_sets(sets);
+    weigh_all();
+  }
+
+  /// What ends on a bound and still fits better than all that does not is another explanation: it with one member after another
+  /// exchanged for a simpler one of the same submodel. Friction by direction in a motion one way is a friction.
+  void try_instead_of_bounded() {
+    constexpr std::size_t tried = 2;
+    const Candidate& best = attempt_.candidates[likeliest(attempt_.candidates)];
+    std::vector<Promise> sets;
+    std::size_t found = 0;
+    const auto misfit = [](const Candidate& of) { return of.train_deviance + of.held_out_deviance; };
+    for (const std::size_t place : by_deviance(attempt_.candidates)) {
+      const Candidate& one = attempt_.candidates[place];
+      if (!one.on_bounds || one.explanation.effects.size() < 2 || !(misfit(one) < misfit(best))) continue;
+      if (++found > tried) break;
+      for (Promise& set : search_->simpler_instead_of(attempt_.candidates, place, effects()))
+        sets.push_back(std::move(set));
+    }
+    if (sets.empty()) return;
+    search_->add_whatever_the_room(attempt_.candidates, sets);
+    renew();
     weigh_all();
   }
 
@@ -278,13 +314,14 @@ private:
     }
   }
 
-  void add_costly() {
-    const std::vector<Candidate> further = search_->try_further(costly_, attempt_.candidates);
+  /// Takes causes that waited among those that are tried.
+  void add_late(std::vector<Explanation>& waiting) {
+    const std::vector<Candidate> further = search_->try_further(waiting, attempt_.candidates);
     search_->add(attempt_.candidates, further);
     tried_.insert(tried_.end(), further.begin(), further.end());
-    causes_.insert(causes_.end(), costly_.begin(), costly_.end());
-    if (!pairs_.empty()) late_ = costly_;
-    costly_.clear();
+    causes_.insert(causes_.end(), waiting.begin(), waiting.end());
+    if (!pairs_.empty()) late_ = waiting;
+    waiting.clear();
     renew();
   }
 
@@ -338,10 +375,10 @@ private:
   FitProblem glimpse_problem_, coarse_problem_, longer_problem_;
   std::optional<Attribution> glimpse_, coarse_, longer_, fine_;  ///< once the problems are posed
   std::optional<Search> search_;
-  std::vector<Explanation> causes_, costly_;  ///< those that are tried, and those that wait
-  std::vector<Candidate> tried_;              ///< the singles, as fitted to the first look
-  std::vector<Promise> pairs_;                ///< the most promising ones, where somebody asked
-  std::vector<Explanation> late_;             ///< causes that came after that
+  std::vector<Explanation> causes_, costly_, curves_;  ///< those that are tried, and those that wait
+  std::vector<Candidate> tried_;                       ///< the singles, as fitted to the first look
+  std::vector<Promise> pairs_;                         ///< the most promising ones, where somebody asked
+  std::vector<Explanation> late_;                      ///< causes that came after that
   bool pairs_come_near_ = false;
   TakenForNoise taken_for_noise_ = TakenForNoise::what_looks_like_it;
   Attempt attempt_;
