@@ -505,7 +505,7 @@ void Score::print(std::ostream& out) const {
   line("reported noise floor over the true one, median", quantile(floor_ratios_, 0.5),
        quantile(floor_ratios_, 0.95), "");
 
-  out << "\n## How small a cause is still named\n\nSingle causes by what they change, over the noise floor, in the recording "
+  out << "\n## Smallest causes named\n\nSingle causes by what they change, over the noise floor, in the recording "
          "that shows less of it, once the simulation's own constants have used their slack.\n\n"
          "| RMS over the floor | cases | named | in class | no gap seen | another cause named |\n|---|---|---|---|---|---|\n";
   double from = 0.0;
@@ -526,13 +526,13 @@ void Score::print(std::ostream& out) const {
         << r.clear << " | " << r.in_class << " | " << r.where << " | " << rounded(r.confusability / r.cases)
         << " |\n";
   }
-  out << "\n## What was taken for what\n\n| truth | answers |\n|---|---|\n";
+  out << "\n## Confusions\n\n| truth | answers |\n|---|---|\n";
   for (const auto& entry : confusion_) {
     out << "| " << entry.first << " |";
     for (const auto& answer : entry.second) out << " " << answer.first << " " << answer.second << "x;";
     out << " |\n";
   }
-  out << "\n## What was missed\n\n";
+  out << "\n## Misses\n\n";
   if (misses_.empty()) out << "Nothing.\n";
   else {
     out << "| job | what | truth | answer | reason |\n|---|---|---|---|---|\n";
