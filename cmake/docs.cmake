@@ -59,7 +59,15 @@ if(thermopower_web_script)
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/docs/Doxyfile.in ${PROJECT_BINARY_DIR}/docs/Doxyfile @ONLY)
 
-add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/docs/html
+# Plain English is held here, too: tests/docs/prose.py says which sentence is too long or a riddle.
+find_program(THERMOPOWER_PYTHON_PROGRAM NAMES python3)
+mark_as_advanced(THERMOPOWER_PYTHON_PROGRAM)
+set(prose)
+if(THERMOPOWER_PYTHON_PROGRAM)
+  set(prose COMMAND ${THERMOPOWER_PYTHON_PROGRAM} -B ${PROJECT_SOURCE_DIR}/tests/docs/prose.py check ${PROJECT_SOURCE_DIR})
+endif()
+
+add_custom_target(docs ${prose} COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/docs/html
                        COMMAND Doxygen::doxygen ${PROJECT_BINARY_DIR}/docs/Doxyfile ${typeset}
                        COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/tools/web/try_it_here.js
                                ${PROJECT_SOURCE_DIR}/tools/docs-search/find.js ${PROJECT_BINARY_DIR}/docs/html

@@ -6,6 +6,7 @@
     prose.py check ROOT          README.md, CONTRIBUTING.md and docs/: at most 3 % of all sentences are longer than 25 words, at most
                                  10 % of one page, and no phrase of the list below is used; prints each that is, with file and line
     prose.py words ROOT          the words of prose, page by page
+    prose.py comments ROOT       the long sentences of the comments in include/, file by file, and their share; never fails
     prose.py test                the check notices a bad sample, sentence by sentence, and passes a good one
 
 Prose is what is no code, table, formula, heading, link target or HTML.
@@ -133,6 +134,42 @@ def words(root):
     return 0
 
 
+def comments_of(text):
+    """(line number, paragraph) of each comment of a header."""
+    now, first = [], 0
+    for number, line in enumerate(text.split("\n") + [""], 1):
+        alone, behind = re.match(r"^\s*///?(?!<)\s?(.*)$", line), re.search(r"///<\s*(.*)$", line)
+        said = alone.group(1) if alone else ""
+        tag = re.match(r"^\s*(?:@(?:param|tparam)\s+\S+|@returns?|@throws|- )\s*", said)
+        is_prose = alone and said.strip() and not re.match(r"^(?:    |\||SPDX|Copyright|@file|@snippet|@ingroup|clang-format)", said)
+        if now and (not is_prose or tag):
+            yield first, " ".join(now)
+            now = []
+        if is_prose:
+            first = first if now else number
+            now.append(said[tag.end():] if tag else said.strip())
+        elif behind:
+            yield number, behind.group(1)
+
+
+def comments(root):
+    count = long = 0
+    for folder, _, names in sorted(os.walk(os.path.join(root, "include"))):
+        for name in sorted(names):
+            path = os.path.join(folder, name)
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+            for line, paragraph in comments_of(text):
+                plain = re.sub(r"`[^`]*`", "code", paragraph)
+                for sentence in re.split(r"(?<=[.!?])\s+(?=[A-Z*`(])", plain):
+                    count += 1
+                    if words_in(sentence) > MOST_WORDS:
+                        long += 1
+                        print(f"{os.path.relpath(path, root)}:{line}: {words_in(sentence)} words: {sentence[:90]}")
+    print(f"{long} of {count} sentences of comments have more than {MOST_WORDS} words ({long / max(1, count):.1%})")
+    return 0
+
+
 BAD = """# A page
 
 What scores best is named. A reading that is off is no gap.
@@ -165,8 +202,8 @@ def test():
 def main():
     if sys.argv[1:] == ["test"]:
         return test()
-    if len(sys.argv) == 3 and sys.argv[1] in ("check", "words"):
-        return check(sys.argv[2]) if sys.argv[1] == "check" else words(sys.argv[2])
+    if len(sys.argv) == 3 and sys.argv[1] in ("check", "words", "comments"):
+        return {"check": check, "words": words, "comments": comments}[sys.argv[1]](sys.argv[2])
     print(__doc__, file=sys.stderr)
     return 2
 
