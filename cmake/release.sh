@@ -5,14 +5,18 @@
 # sh cmake/release.sh [directory]        the release archive of the last commit, its check sum and the notes of its version from CHANGELOG.md,
 #                                        in build/release-archive or there
 # sh cmake/release.sh --try [directory]  the same, made twice and compared, unpacked, installed, and used by a program
+# sh cmake/release.sh --all [directory]  the same as without, and from the archive: the Debian package, the Arduino library as a zip
+#                                        file, and the documentation. THERMOPOWER_RELEASE_OPTIONS are further options of the package
 # The same commit gives the same bytes: names, order, times and owners are the commit's, and gzip stores no time.
 set -eu
 cd "$(dirname "$0")/.."
-try=
-if [ "${1-}" = --try ]; then
-  try=yes
+what=
+case ${1-} in
+--try | --all)
+  what=$1
   shift
-fi
+  ;;
+esac
 directory=${1-build/release-archive}
 
 if [ -n "$(git status --porcelain --untracked-files=no)" ]; then
@@ -28,15 +32,36 @@ archive() {  # archive <file>
   rm "$1.tar"
 }
 mkdir -p "$directory"
+directory=$(cd "$directory" && pwd)
 archive "$directory/$name.tar.gz"
 (cd "$directory" && sha256sum "$name.tar.gz" | tee "$name.tar.gz.sha256")
 # The notes: the first section of the changelog, with its upgrade notes where it has some.
 awk '/^## \[/ { if (seen++) exit; next } seen' CHANGELOG.md >"$directory/$name-notes.md"
 [ -s "$directory/$name-notes.md" ] || { echo "release.sh: CHANGELOG.md has no section of this version" >&2; exit 1; }
-[ -n "$try" ] || exit 0
+[ -n "$what" ] || exit 0
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+if [ "$what" = --all ]; then
+  tar -xzf "$directory/$name.tar.gz" -C "$scratch"
+  date=$(git log -1 --format=%cI)
+  cmake -DOUT="$scratch/arduino" -P "$scratch/$name/cmake/arduino_package.cmake"
+  (cd "$scratch/arduino" && cmake -E tar cf "$directory/$name-arduino.zip" --format=zip --mtime="$date" thermopower)
+  cmake -S "$scratch/$name" -B "$scratch/docs" -G Ninja --log-level=WARNING -DTHERMOPOWER_TESTS=OFF -DTHERMOPOWER_TOOLS=OFF \
+    -DTHERMOPOWER_EXAMPLES=OFF -DTHERMOPOWER_DOCS=ON >/dev/null
+  cmake --build "$scratch/docs" --target docs >/dev/null
+  tar --sort=name --mtime="$date" --owner=0 --group=0 --numeric-owner -C "$scratch/docs/docs" --transform "s,^html,$name-docs," \
+    -cf - html | gzip -n -9 >"$directory/$name-docs.tar.gz"
+  # shellcheck disable=SC2086
+  cmake -S "$scratch/$name" -B "$scratch/package" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DTHERMOPOWER_TESTS=OFF \
+    -DTHERMOPOWER_EXAMPLES=OFF ${THERMOPOWER_RELEASE_OPTIONS-} >/dev/null
+  cmake --build "$scratch/package" >/dev/null
+  (cd "$scratch/package" && cpack -G DEB >/dev/null)
+  cp "$scratch/package"/*.deb "$directory"
+  (cd "$directory" && sha256sum "$name"*.tar.gz "$name"*.zip ./*.deb >"$name.sha256")
+  ls "$directory"
+  exit 0
+fi
 TZ=Asia/Tokyo LC_ALL=C archive "$scratch/again.tar.gz"
 cmp "$directory/$name.tar.gz" "$scratch/again.tar.gz"
 tar -xzf "$directory/$name.tar.gz" -C "$scratch"
