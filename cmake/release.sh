@@ -44,7 +44,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 if [ "$what" = --all ]; then
   tar -xzf "$directory/$name.tar.gz" -C "$scratch"
-  date=$(git log -1 --format=%cI)
+  date=$(TZ=UTC git log -1 --date='format-local:%Y-%m-%d %H:%M:%S UTC' --format=%cd)
   cmake -DOUT="$scratch/arduino" -P "$scratch/$name/cmake/arduino_package.cmake"
   (cd "$scratch/arduino" && cmake -E tar cf "$directory/$name-arduino.zip" --format=zip --mtime="$date" thermopower)
   cmake -S "$scratch/$name" -B "$scratch/docs" -G Ninja --log-level=WARNING -DTHERMOPOWER_TESTS=OFF -DTHERMOPOWER_TOOLS=OFF \
