@@ -14,10 +14,10 @@ typedef thermopower::AxisController<thermopower::motors::Bgm2606_90t, PowerLaw, 
 typedef thermopower::AxisController<thermopower::motors::Bgm5208_200_12, PowerLaw, Limiter, Gain> Large;
 typedef thermopower::GimbalController<Small, Small, Large> Gimbal;
 
-// A three-cell battery is empty at 9 V; your rig's supply, limits and gains go here.
+// A three-cell battery is empty at 9 V, and no room of this rig is warmer than 30 degC; your rig's supply, limits and gains go here.
 inline Gimbal new_gimbal() {
   const thermopower::GimbalConfig config = {13.0f, 9.0f, 0.5f,
-                                            thermopower::AirTemperature::Config::standard(), 20.0f};
+                                            thermopower::AirTemperature::Config::declared(30.0f), 20.0f};
   return Gimbal(config, Small::Config::with_gain({24.0f, 4.0f}), Small::Config::with_gain({180.0f, 105.0f}),
                 Large::Config::with_gain({40.0f, 2.0f}));
 }

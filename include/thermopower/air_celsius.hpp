@@ -34,8 +34,32 @@ private:
   Number air_C_;
 };
 
+/// The air among an axis's inputs, degC: a reading, or a bound that somebody vouches for. An axis whose motor declares its air takes a
+/// reading for no more than a sign that the thermometer is alive: the warmest air of the range counts.
+///
+/// @snippet control_examples.cpp air bound
+/// How to: @ref first_axis, @ref faults_and_reasons.
+/// @ingroup control
+class AxisAirCelsius : public AirCelsius<float> {
+public:
+  /// Not said: NaN.
+  constexpr AxisAirCelsius() noexcept = default;
+  /// A reading. @param air_C  degC; NaN: not known
+  constexpr AxisAirCelsius(float air_C) noexcept : AirCelsius<float>(air_C) {}
+  /// A bound. @param air_C  the air is no warmer, as AirTemperature::State::air_C
+  static constexpr AxisAirCelsius bound(float air_C) noexcept { return AxisAirCelsius(air_C, true); }
+  /// Whether it is a bound and no mere reading.
+  constexpr bool is_bound() const noexcept { return is_bound_; }
+
+private:
+  constexpr AxisAirCelsius(float air_C, bool is_bound) noexcept
+      : AirCelsius<float>(air_C), is_bound_(is_bound) {}
+  bool is_bound_ = false;
+};
+
 /// The declared range of the air around an actuator. A reading outside of it is no air: a thermometer that is torn, asleep, or has drifted
-/// away. The warmest air there is then counts.
+/// away, and a fault. Inside of it the warmest air counts all the same: one thermometer that drifts or sticks looks like a room that cools.
+/// `AxisAirCelsius::bound()` tells an axis better.
 ///
 /// @snippet control_examples.cpp air range
 /// How to: @ref first_axis, @ref faults_and_reasons.

@@ -93,6 +93,7 @@ enum class ConfigError : uint8_t {
   is_waived = 76,             ///< Must be 0 or 1.
   stuck_K = 77,               ///< Must be finite and above change_K.
   lowest_supply_V = 78,       ///< Must be above 0 and below the highest supply.
+  declared_C = 79,            ///< Must not be above maximum_plausible_C; -INFINITY believes the readings.
   user_defined = 128          ///< Codes from here up are free for policies of your own.
 };
 

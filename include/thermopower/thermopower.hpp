@@ -38,6 +38,7 @@
 #include "config_record.hpp"
 #include "control/adaptive_holding_law.hpp"
 #include "control/air_temperature.hpp"
+#include "control/air_witness.hpp"
 #include "control/axis_controller.hpp"
 #include "control/axis_facts.hpp"
 #include "control/certified/limiter.hpp"

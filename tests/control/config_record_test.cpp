@@ -155,8 +155,9 @@ TEST_CASE("the configuration of every policy goes through a record") {
   utilisation.maximum_winding_C = 110.0f, utilisation.maximum_body_C = 60.0f;
   check_component("SensorLimiter", SensorLimiter::Config::standard(), 5);
   check_component("Utilisation", utilisation, 20);
-  check_component("AirTemperature", AirTemperature::Config::standard(), 16);
-  check_component("GimbalController", GimbalConfig::standard(), 32);
+  check_component("AirTemperature", AirTemperature::Config::standard(), 20);
+  check_component("AirWitness", AirWitness::Config::standard(), 12);
+  check_component("GimbalController", GimbalConfig::standard(), 36);
 }
 
 TEST_CASE("a whole axis goes through one record") {

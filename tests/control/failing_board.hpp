@@ -52,7 +52,7 @@ struct Telemetry {
 /// The controllers under test behind one face.
 struct FloatGimbal {
   typedef tp::BasicGimbalController<tp::MeasuredSupply, tp::AxisController<tp::motors::Bgm2606_90t>> Gimbal;
-  Gimbal gimbal{tp::GimbalConfig::standard(),
+  Gimbal gimbal{tp::GimbalConfig::believing(),
                 tp::AxisController<tp::motors::Bgm2606_90t>::Config::with_gain({24.0f, 4.0f})};
   const Gimbal::Command& step(const Telemetry& telemetry, double dt_s = cycle_s) {
     return gimbal.step(telemetry, static_cast<float>(dt_s));
@@ -63,7 +63,8 @@ struct FloatGimbal {
   double motor_C() { return static_cast<double>(gimbal.axis<0>().state().motor_C); }
 };
 struct FixedGimbal {
-  typedef fixed::GimbalController<
+  typedef fixed::BasicGimbalController<
+      fixed::BelievingGimbal,
       fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t>>>>
       Gimbal;
   Gimbal gimbal;

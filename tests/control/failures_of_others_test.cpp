@@ -54,7 +54,7 @@ TEST_CASE("full torque when the root of the limit is negative") {
 
 TEST_CASE("a disconnected sensor read as cold") {
   // A pulled-up NTC reads like -100 degC or colder, a missing frame IMU as 0, a digital one as -128 or NaN.
-  AirTemperature air;
+  AirTemperature air(AirTemperature::Config::believing());
   CHECK(std::isnan(air.step(-128.0f, nan_C).air_C));
   CHECK(std::isnan(air.step(-99.0f, -99.0f).air_C));
   NodeLimiter nodes;

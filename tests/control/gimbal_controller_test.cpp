@@ -23,7 +23,7 @@ const Small::Config roll = Small::Config::with_gain({24.0f, 4.0f}),
                     pitch = Small::Config::with_gain({180.0f, 105.0f});
 const Large::Config yaw = Large::Config::with_gain({40.0f, 2.0f});
 
-Gimbal gimbal(const tp::GimbalConfig& config = tp::GimbalConfig::standard()) {
+Gimbal gimbal(const tp::GimbalConfig& config = tp::GimbalConfig::believing()) {
   return Gimbal(config, roll, pitch, yaw);
 }
 

@@ -4,7 +4,9 @@
 #include "../catch.hpp"
 #include "limiter_inputs.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <thermopower/control/adaptive_holding_law.hpp>
 #include <thermopower/control/axis_controller.hpp>
@@ -175,6 +177,37 @@ TEST_CASE("authority falls continuously with temperature: no threshold, no jump,
     last = power;
   }
   CHECK(last == 1);
+}
+
+TEST_CASE("in slow loops, too, a node limiter settles on one power: it does not hunt") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (const double dt_s : {0.02, 0.1, 0.3, 1.0})
+    for (int draw = 0; draw < 20; ++draw) {
+      const double winding_J_per_K = 2.0 + 6.0 * any(random), body_J_per_K = 40.0 + 80.0 * any(random),
+                   coupling_W_per_K = 0.5 + any(random), air_W_per_K = 0.1 + 0.3 * any(random),
+                   full_W = 10.0 + 40.0 * any(random);
+      double winding_C = 25.0, body_C = 25.0;
+      int power = 1, least = 255, most = 0;
+      NodeLimiter limiter;
+      for (double now_s = 0.0; now_s < 6000.0; now_s += dt_s) {
+        const int parts = 1 + static_cast<int>(dt_s / 0.02);
+        for (int i = 0; i < parts; ++i) {
+          const double across_W = coupling_W_per_K * (winding_C - body_C), part_s = dt_s / parts;
+          winding_C += part_s * (full_W * power / 255.0 - across_W) / winding_J_per_K;
+          body_C += part_s * (across_W - air_W_per_K * (body_C - 25.0)) / body_J_per_K;
+        }
+        power = limiter
+                    .step(told::parts(255, static_cast<float>(winding_C), static_cast<float>(body_C), 25.0f),
+                          static_cast<float>(dt_s))
+                    .power;
+        if (now_s < 5400.0) continue;
+        least = std::min(least, power);
+        most = std::max(most, power);
+      }
+      INFO("loop of " << dt_s << " s, draw " << draw);
+      CHECK(most - least <= 1);
+    }
 }
 
 TEST_CASE("per-node limits compose with an axis and hold every limit of its model") {

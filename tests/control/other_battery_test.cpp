@@ -13,7 +13,7 @@ using namespace failing;
 /// FloatGimbal on the supply that was configured, 13 V.
 struct NominalGimbal {
   typedef tp::GimbalController<tp::AxisController<tp::motors::Bgm2606_90t>> Gimbal;
-  Gimbal gimbal{tp::GimbalConfig::standard(),
+  Gimbal gimbal{tp::GimbalConfig::believing(),
                 tp::AxisController<tp::motors::Bgm2606_90t>::Config::with_gain({24.0f, 4.0f})};
   const Gimbal::Command& step(const Telemetry& telemetry) {
     return gimbal.step(telemetry, static_cast<float>(cycle_s));

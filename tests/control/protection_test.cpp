@@ -196,9 +196,9 @@ TEST_CASE("a certified axis has its limiter's time without a plan, whatever the 
   typedef tp::AxisController<tp::motors::Bgm2606_90t, tp::StepPowerLaw<>, Limiter> Axis;
   Axis::Config config = Axis::Config::with_gain({24.0f, 4.0f});
   config.limiter.use.hold_s = 0.1f;
-  tp::GimbalController<Axis> gimbal(tp::GimbalConfig::standard(), config);
+  tp::GimbalController<Axis> gimbal(tp::GimbalConfig::believing(), config);
   config.limiter.use.hold_s = 2.0f;
-  tp::GimbalController<Axis> patient(tp::GimbalConfig::standard(), config);
+  tp::GimbalController<Axis> patient(tp::GimbalConfig::believing(), config);
   // Whatever the limiter itself says: the bounds are not set here, and an axis that is refused stays cut.
   CHECK(gimbal.axis<0>().limiter().hold_s() == 0.1f);
   CHECK(patient.axis<0>().limiter().hold_s() == 2.0f);
@@ -225,7 +225,7 @@ TEST_CASE("in the cold: the corrected laws heat where the programmed law is blin
 
 TEST_CASE("three axes that disobey at once are never believed colder than they are, nor much hotter") {
   typedef fixed::AxisController<fixed::ThermalModel<fixed::ThesisMotor<tp::motors::Bgm2606_90t>>> Axis;
-  fixed::GimbalController<Axis, Axis, Axis> gimbal;
+  fixed::BasicGimbalController<fixed::BelievingGimbal, Axis, Axis, Axis> gimbal;
   fixed::Clock clock;
   std::uint32_t now_us = 0;
   Motor motor;

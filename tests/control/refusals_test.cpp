@@ -176,6 +176,9 @@ TEST_CASE("air that is to fall at no rate is refused") {
   }
   config.fall_per_s = infinite;  // at once
   CHECK(config.validate() == ConfigError::none);
+  for (const float bad : {86.0f, infinite, nan_})
+    CHECK(AirTemperature::Config::declared(bad).validate() == ConfigError::declared_C);
+  CHECK(AirTemperature::Config::believing().validate() == ConfigError::none);
 }
 
 TEST_CASE("what was set can be read back, and an axis knows whether its law wants the pose") {

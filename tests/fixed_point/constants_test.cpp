@@ -128,9 +128,9 @@ TEST_CASE("units: back from a temperature, a rate and a clock") {
   CHECK(clock.waiting_us(1000300u) == kept_us + 44u);
 }
 
-TEST_CASE("the programmed air falls at once, the standard one in 0.2 K a second, and both as they say") {
+TEST_CASE("the programmed air falls at once, a believed one in 0.2 K a second, and both as they say") {
   fixed_point::AirTemperature<fixed_point::ProgrammedAir> at_once;
-  fixed_point::AirTemperature<fixed_point::StandardAir> slow;
+  fixed_point::AirTemperature<fixed_point::BelievedAir> slow;
   const fixed_point::Ticks second = 3906;
   // A thermometer is one once its reading has moved.
   for (const int reading_C : {29, 30}) {
@@ -153,4 +153,5 @@ TEST_CASE("the standard constants of whole numbers are those of the floating-poi
   CHECK(fixed_point::ThesisLevels::hysteresis_deg() == Approx(StepPowerConfig::standard().hysteresis_deg));
   CHECK(fixed_point::StandardGimbal::minimum_supply_V() == Approx(GimbalConfig::standard().minimum_supply_V));
   CHECK(fixed_point::StandardAir::fall_per_s() == Approx(AirTemperature::Config::standard().fall_per_s));
+  CHECK(fixed_point::StandardAir::declared_C() == Approx(AirTemperature::Config::standard().declared_C));
 }

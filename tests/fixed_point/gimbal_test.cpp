@@ -23,14 +23,14 @@ template <class Motor>
 using Real = tp::AxisController<Motor, tp::StepPowerLaw<>, tp::SafetyLimiter<tp::PerCycle>,
                                 tp::GainScheduler<tp::TruncatedGain> >;
 
-typedef fixed::GimbalController<Whole<Small, fixed::TruncatedGain<24, 4> >,
-                                Whole<Small, fixed::TruncatedGain<180, 105> >,
-                                Whole<Large, fixed::TruncatedGain<40, 2> > >
+typedef fixed::BasicGimbalController<fixed::BelievingGimbal, Whole<Small, fixed::TruncatedGain<24, 4> >,
+                                     Whole<Small, fixed::TruncatedGain<180, 105> >,
+                                     Whole<Large, fixed::TruncatedGain<40, 2> > >
     WholeGimbal;
 typedef tp::GimbalController<Real<Small>, Real<Small>, Real<Large> > RealGimbal;
 
 RealGimbal real_gimbal() {
-  return RealGimbal(tp::GimbalConfig::standard(), Real<Small>::Config::with_gain({24, 4}),
+  return RealGimbal(tp::GimbalConfig::believing(), Real<Small>::Config::with_gain({24, 4}),
                     Real<Small>::Config::with_gain({180, 105}), Real<Large>::Config::with_gain({40, 2}));
 }
 

@@ -111,11 +111,17 @@ TEST_CASE("gains are exact for all 256 levels") {
   CHECK(fixed_point::TruncatedGain<40, 2>::gain(250) == 2);
 }
 
-TEST_CASE("both thermometers, every pair of readings: the same air from the same source") {
+namespace {
+struct Indoors : fixed_point::StandardAir {
+  static constexpr std::int8_t declared_C() { return 30; }
+};
+
+template <class Constants>
+void check_air(const AirTemperature::Config& config) {
   for (int camera = -128; camera < 128; ++camera)
     for (int frame = -128; frame < 128; ++frame) {
-      AirTemperature real;
-      fixed_point::AirTemperature<> whole;
+      AirTemperature real(config);
+      fixed_point::AirTemperature<Constants> whole;
       const auto expected = real.step(static_cast<float>(camera), static_cast<float>(frame));
       const auto got = whole.step(static_cast<std::int8_t>(camera), static_cast<std::int8_t>(frame));
       const bool is_same =
@@ -123,6 +129,13 @@ TEST_CASE("both thermometers, every pair of readings: the same air from the same
           (got.source == AirSource::neither || static_cast<float>(got.air) / 128.0f == expected.air_C);
       if (!is_same) FAIL("camera " << camera << ", frame " << frame);
     }
+}
+}  // namespace
+
+TEST_CASE("both thermometers, every pair of readings: the same air from the same source") {
+  check_air<fixed_point::StandardAir>(AirTemperature::Config::standard());
+  check_air<Indoors>(AirTemperature::Config::declared(30.0f));
+  check_air<fixed_point::BelievedAir>(AirTemperature::Config::believing());
 }
 
 TEST_CASE("the limiter decides as the floating-point one, but within 0.001 K of its edges") {
@@ -145,7 +158,7 @@ TEST_CASE("the limiter decides as the floating-point one, but within 0.001 K of 
         std::fabs(60.0 - static_cast<double>(fixed_point::celsius_of(motor))) < 0.001)
       continue;
     const auto demand = static_cast<std::uint8_t>(next(1, 255));
-    const LimitedPower got = whole.step(demand, motor, rate, 129);
+    const LimitedPower got = whole.step(demand, fixed_point::GuardedTemperature::unchecked(motor), rate, 129);
     const LimitedPower expected = real.step(
         {demand, GuardedCelsius::unchecked(fixed_point::celsius_of(motor)), static_cast<float>(rate_K_per_s)},
         0.033f);
@@ -171,8 +184,13 @@ TEST_CASE("the ceiling in counts per second does not depend on the loop rate") {
 TEST_CASE("the power is never above the demand, and a cut leaves the least") {
   fixed_point::SafetyLimiter<> limiter;
   for (int demand = 0; demand < 256; ++demand) {
-    CHECK(limiter.step(static_cast<std::uint8_t>(demand), 0, 0, 100).power <= demand);
-    CHECK(limiter.step(static_cast<std::uint8_t>(demand), fixed_point::detail::temperature_of(61), 0, 100)
+    CHECK(
+        limiter.step(static_cast<std::uint8_t>(demand), fixed_point::GuardedTemperature::unchecked(0), 0, 100)
+            .power <= demand);
+    CHECK(limiter
+              .step(static_cast<std::uint8_t>(demand),
+                    fixed_point::GuardedTemperature::unchecked(fixed_point::detail::temperature_of(61)), 0,
+                    100)
               .power == std::min(demand, 1));
     CHECK(limiter.cut(LimitReason::link_silent, static_cast<std::uint8_t>(demand)).power ==
           std::min(demand, 1));

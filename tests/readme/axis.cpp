@@ -12,6 +12,7 @@ struct MyMotor {                                            // 12 ohm of copper,
   typedef tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>> Thermal;
   static Current::Config current() { return {12.0f, 0.00393f, 20.0f}; }
   static tp::SupplyRange supply() { return {11.0f, 13.0f}; }
+  static tp::AirRange air() { return {0.0f, 40.0f}; }       // one thermometer may lie: the warmest counts
   static Thermal::Config thermal() { return {{18.0f}, {0.05f}}; }
 };
 typedef tp::AxisController<MyMotor> Axis;

@@ -43,8 +43,9 @@ static_assert(sizeof(tp::SafetyLimiter<tp::PerCycle>) == padded(3 * number + 1),
 static_assert(sizeof(tp::SafetyLimiter<tp::PerSecond>) == 4 * number, "three constants and the ceiling");
 static_assert(sizeof(tp::GainScheduler<>) == 2 * number, "two gains");
 static_assert(sizeof(tp::NoGain) == 1, "nothing");
-static_assert(sizeof(tp::AirTemperature) == padded(5 * number + 1) + padded(2),
-              "four constants, the air and its source, and which thermometers are awake");
+static_assert(
+    sizeof(tp::AirTemperature) == padded(7 * number + 2) + padded(2),
+    "five constants, the air, what is read, its source and whether it is witnessed, and which thermometers are awake");
 static_assert(sizeof(tp::LimitedPower) == 2, "power and reason");
 static_assert(sizeof(tp::ConfigError) == 1 && sizeof(tp::LimitReason) == 1 && sizeof(tp::AirSource) == 1,
               "bytes in a log");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../detail/check.hpp"
+#include "air_witness.hpp"
 
 /// @file control/air_temperature.hpp
 /// Air temperature from the two thermometers on a gimbal, eq 4.20, and what to do when one of them is missing
@@ -29,6 +30,9 @@ enum class AirSource : uint8_t {
 /// awake yet. (One in air of 0 degC is warmed by its own chip, and does not stand there.) Where the time is
 /// told, a fall is believed no faster than air can fall; a rise is believed at once.
 ///
+/// Two thermometers that drift together, or both stick, agree with each other. So readings alone take the air to be no colder than
+/// `declared_C`. With an AirWitness, a thermometer on the actuator and its model, they do.
+///
 /// @snippet control_examples.cpp air
 /// How to: @ref wire_up_sbgc, @ref faults_and_reasons.
 /// @ingroup control
@@ -40,17 +44,25 @@ public:
     float maximum_plausible_C;   ///< Above this a reading is rejected.
     float maximum_difference_K;  ///< Further apart than this the two are not averaged. Above 0.
     float fall_per_s;            ///< A fall is believed no faster than this, K/s. Above 0, may be infinite.
+    float
+        declared_C;  ///< The air is never warmer: no reading alone makes it colder. -INFINITY: readings are believed.
 
     /// -40 to 85 degC (the sensor's own range), 15 K apart; 0.2 K/s, which carries a rig from a warm room into
-    /// frost in two minutes.
-    static Config standard() noexcept {
-      Config config = {-40.0f, 85.0f, 15.0f, 0.2f};
+    /// frost in two minutes; the air as warm as 45 degC. Declare your own: each kelvin less is power.
+    static Config standard() noexcept { return declared(45.0f); }
+    /// The same with the warmest air there is. @param warmest_C  the air is never warmer
+    static Config declared(float warmest_C) noexcept {
+      const Config config = {-40.0f, 85.0f, 15.0f, 0.2f, warmest_C};
       return config;
     }
+    /// The same with thermometers that are believed whatever they say inside their range, as the thesis's program does:
+    /// two that drift or stick together are not noticed.
+    static Config believing() noexcept { return declared(-static_cast<float>(INFINITY)); }
     /// Hands each field to an archive, in the order of a record: config_record.hpp.
     template <class Self, class Archive>
     static void each_field(Self& self, Archive& archive) {
-      archive(self.minimum_plausible_C, self.maximum_plausible_C, self.maximum_difference_K, self.fall_per_s);
+      archive(self.minimum_plausible_C, self.maximum_plausible_C, self.maximum_difference_K, self.fall_per_s,
+              self.declared_C);
     }
     /// First constant out of its range, or ConfigError::none.
     ConfigError validate() const noexcept {
@@ -58,20 +70,25 @@ public:
       if (!detail::is_finite(maximum_plausible_C) || maximum_plausible_C <= minimum_plausible_C)
         return ConfigError::maximum_plausible_C;
       if (!(fall_per_s > 0.0f)) return ConfigError::fall_per_s;
+      if (!(declared_C <= maximum_plausible_C)) return ConfigError::declared_C;
       return detail::require_positive(maximum_difference_K, ConfigError::maximum_difference_K);
     }
   };
 
   /// What one logs.
   struct State {
-    float air_C;       ///< NaN when `source` is `neither`.
-    AirSource source;  ///< Which thermometers it rests on.
+    float air_C;  ///< The air is no warmer; NaN when `source` is `neither`.
+    float
+        read_C;  ///< What the thermometers say; NaN when `source` is `neither`. A witness's model stands in this air.
+    AirSource source;   ///< Which thermometers `read_C` rests on.
+    bool is_witnessed;  ///< Whether `air_C` rests on a witness, and not on what is declared.
   };
 
   /// @param config  constants; ask `validate()` once
   explicit AirTemperature(const Config& config = Config::standard()) noexcept : config_(config) {
-    state_.air_C = detail::not_a_number();
+    state_.air_C = state_.read_C = detail::not_a_number();
     state_.source = AirSource::neither;
+    state_.is_witnessed = false;
   }
 
   /// First constant out of its range, or ConfigError::none.
@@ -81,7 +98,29 @@ public:
   /// @param frame_C   thermometer of the frame's IMU; NaN when not fitted
   /// @param dt_s      time since the last reading; infinite: a fall is believed at once
   const State& step(float camera_C, float frame_C, float dt_s = static_cast<float>(INFINITY)) noexcept {
-    const float before_C = state_.air_C;
+    read(camera_C, frame_C, dt_s);
+    declare();
+    return state_;
+  }
+  /// The same beside a witness, stepped before with a model in `read_C` of the last step. @param witness  while it vouches and
+  /// both thermometers agree, the air is the warmer one and its margin, where that is colder than declared
+  const State& step(float camera_C, float frame_C, const AirWitness& witness, float dt_s) noexcept {
+    read(camera_C, frame_C, dt_s);
+    const float warmer_C = state_.read_C + 0.5f * detail::magnitude(camera_C - frame_C) + witness.margin_K();
+    if (state_.source == AirSource::both && witness.is_vouching() && warmer_C < config_.declared_C) {
+      state_.air_C = warmer_C;
+      state_.is_witnessed = true;
+    } else {
+      declare();
+    }
+    return state_;
+  }
+
+  const State& state() const noexcept { return state_; }  ///< After the last step.
+
+private:
+  void read(float camera_C, float frame_C, float dt_s) noexcept {
+    const float before_C = state_.read_C;
     camera_moves_ = camera_moves_ || is_nonzero(camera_C);
     frame_moves_ = frame_moves_ || is_nonzero(frame_C);
     const bool camera = camera_moves_ && is_plausible(camera_C),
@@ -89,21 +128,23 @@ public:
     if (camera && frame) {
       const bool agree =
           is_nonzero(frame_C) && detail::magnitude(camera_C - frame_C) <= config_.maximum_difference_K;
-      state_.air_C = agree ? 0.5f * (camera_C + frame_C) : (camera_C > frame_C ? camera_C : frame_C);
+      state_.read_C = agree ? 0.5f * (camera_C + frame_C) : (camera_C > frame_C ? camera_C : frame_C);
       state_.source = agree ? AirSource::both : AirSource::warmer;
     } else {
-      state_.air_C = camera ? camera_C : (frame ? frame_C : detail::not_a_number());
+      state_.read_C = camera ? camera_C : (frame ? frame_C : detail::not_a_number());
       state_.source = camera ? AirSource::camera : (frame ? AirSource::frame : AirSource::neither);
     }
     // Asked this way round so that no time known, or none before, is no limit.
-    if (dt_s >= 0.0f && detail::is_finite(dt_s) && state_.air_C < before_C - config_.fall_per_s * dt_s)
-      state_.air_C = before_C - config_.fall_per_s * dt_s;
-    return state_;
+    if (dt_s >= 0.0f && detail::is_finite(dt_s) && state_.read_C < before_C - config_.fall_per_s * dt_s)
+      state_.read_C = before_C - config_.fall_per_s * dt_s;
+    state_.air_C = state_.read_C;
+  }
+  // No reading at all stays none.
+  void declare() noexcept {
+    state_.is_witnessed = false;
+    if (state_.air_C < config_.declared_C) state_.air_C = config_.declared_C;
   }
 
-  const State& state() const noexcept { return state_; }  ///< After the last step.
-
-private:
   bool is_plausible(float reading_C) const noexcept {
     return reading_C >= config_.minimum_plausible_C && reading_C <= config_.maximum_plausible_C;
   }

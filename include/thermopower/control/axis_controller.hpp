@@ -106,10 +106,10 @@ public:
 
   /// What the axis decides on.
   struct Inputs {
-    float error_deg;          ///< Position error, any number of turns up to a million degrees.
-    float supply_V;           ///< Amplitude of the switched supply, inside its declared range.
-    AirCelsius<float> air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault.
-    LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
+    float error_deg;       ///< Position error, any number of turns up to a million degrees.
+    float supply_V;        ///< Amplitude of the switched supply, inside its declared range.
+    AxisAirCelsius air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault.
+    LimitReason fault;     ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
   };
 
   /// What one logs: every intermediate of the last step.
@@ -200,12 +200,13 @@ private:
   [[gnu::always_inline]] const State& decide(const Inputs& inputs, float pose_deg, float dt_s) noexcept {
     // What has not changed since the last step is known to be good: comparing bits is cheap on a small chip,
     // comparing floats is not.
-    const bool is_air_new = !detail::is_same(inputs.air_C, last_air_C_);
+    const float air_C = counted_air_C(inputs.air_C);
+    const bool is_air_new = !detail::is_same(air_C, last_air_C_);
     const bool is_supply_new = !detail::is_same(inputs.supply_V, last_supply_V_);
-    const bool is_air_bad = is_air_new ? !is_plausible_air(inputs.air_C) : !detail::is_finite(inputs.air_C);
+    const bool is_air_bad = is_air_new ? !is_plausible_air(air_C) : !detail::is_finite(air_C);
     const bool is_supply_bad =
         is_supply_new && !detail::is_within(inputs.supply_V, supply_.lowest_V, supply_.highest_V);
-    if (is_air_new && !is_air_bad) last_air_C_ = inputs.air_C;
+    if (is_air_new && !is_air_bad) last_air_C_ = air_C;
     else if (is_air_bad && has_air()) last_air_C_ = detail::declared_air<Motor>(0).highest_C;
     // What cannot be may hide the most there is.
     if (is_supply_new) last_supply_V_ = is_supply_bad ? supply_.highest_V : inputs.supply_V;
@@ -252,6 +253,11 @@ private:
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
+  // A reading inside the declared range says no more than that its thermometer lives.
+  static float counted_air_C(const AxisAirCelsius& told_C) noexcept {
+    const bool is_declared = has_air() && !told_C.is_bound() && detail::declared_air<Motor>(0).holds(told_C);
+    return is_declared ? detail::declared_air<Motor>(0).highest_C : static_cast<float>(told_C);
+  }
   static bool has_air() noexcept { return detail::DeclaresAir<Motor>::value; }
   // As declared, or wider than any sensor's range, which is AirTemperature's business: only what no air can be.
   static bool is_plausible_air(float air_C) noexcept {

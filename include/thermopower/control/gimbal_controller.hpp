@@ -57,6 +57,9 @@ struct MeasuredSupply {
 };
 
 /// What one tunes on the gimbal as a whole.
+///
+/// @snippet control_examples.cpp gimbal
+/// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct GimbalConfig {
   float supply_V;              ///< Nominal supply, above 0. The thesis: 13.
@@ -65,9 +68,15 @@ struct GimbalConfig {
   AirTemperature::Config air;  ///< When a thermometer is believed.
   float maximum_supply_V;      ///< Above this a reading is no supply. Above `supply_V`.
 
-  /// 13 V, 3 V, half a second, 60 V.
+  /// 13 V, 3 V, half a second, 60 V; the air as warm as 45 degC.
   static GimbalConfig standard() noexcept {
     GimbalConfig config = {13.0f, 3.0f, 0.5f, AirTemperature::Config::standard(), 60.0f};
+    return config;
+  }
+  /// The same with thermometers that are believed: AirTemperature::Config::believing().
+  static GimbalConfig believing() noexcept {
+    GimbalConfig config = standard();
+    config.air = AirTemperature::Config::believing();
     return config;
   }
   /// Hands each field to an archive, in the order of a record: config_record.hpp.
@@ -125,8 +134,8 @@ public:
   /// What one logs; each axis has its own state.
   struct State {
     Command command;       ///< The last command.
-    float air_C;           ///< NaN when no thermometer is plausible.
-    AirSource air_source;  ///< Which thermometers `air_C` rests on.
+    float air_C;           ///< The air is no warmer; NaN when no thermometer is plausible.
+    AirSource air_source;  ///< Which thermometers are read.
     float silent_s;        ///< Time since the last telemetry.
   };
 
@@ -270,7 +279,7 @@ private:
       const LimitReason found = is_overdue && !is_fault(fault) ? LimitReason::link_silent : fault;
       const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
                                             Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
-                                            gimbal.state_.air_C, found};
+                                            AxisAirCelsius::bound(gimbal.state_.air_C), found};
       gimbal.store(index, gimbal.step_axis(controller, inputs, index, dt_s));
     }
   };
@@ -310,7 +319,6 @@ private:
   const Command& decide(const Inputs& inputs, float dt_s) noexcept {
     follow_air(inputs, dt_s);
     state_.silent_s = 0.0f;
-    const float known_supply_V = last_.supply_V;
     last_ = inputs;
     has_telemetry_ = true;
     telemetry_fault_ = LimitReason::none;
@@ -318,9 +326,9 @@ private:
     else if (inputs.supply_V < config_.minimum_supply_V) telemetry_fault_ = LimitReason::supply_low;
     else if (inputs.supply_V > config_.maximum_supply_V) telemetry_fault_ = LimitReason::supply_implausible;
     // A reading that cannot be must not heat the estimate: one cycle of it would take an hour to cool. Nor must one of
-    // no supply cool it: a board that is told the least power may have another in force.
-    if (is_fault(telemetry_fault_))
-      last_.supply_V = detail::is_finite(known_supply_V) ? known_supply_V : config_.supply_V;
+    // no supply cool it: a board that is told the least power may have another in force. Each axis takes the highest
+    // supply that it declares.
+    if (is_fault(telemetry_fault_)) last_.supply_V = detail::not_a_number();
     else if (inputs.supply_V > detail::highest_nominal_V<Supply>(config_.supply_V, 0))
       telemetry_fault_ = LimitReason::supply_above_nominal;
     else if (is_board_overheated_) telemetry_fault_ = LimitReason::board_overheated;

@@ -113,7 +113,7 @@ public:
   explicit AdaptiveGimbal(const std::array<float, 3>& started_C = {60.0f, 60.0f, 60.0f},
                           const AdaptiveTuning& tuning = {},
                           float air_C = thermopower::detail::not_a_number())
-      : gimbal_(GimbalConfig::standard(), adaptive_axis<motors::Bgm2606_90t>(0, tuning),
+      : gimbal_(GimbalConfig::believing(), adaptive_axis<motors::Bgm2606_90t>(0, tuning),
                 adaptive_axis<motors::Bgm2606_90t>(1, tuning),
                 adaptive_axis<motors::Bgm5208_200_12>(2, tuning)) {
     gimbal_.axis<0>().limiter().start(started_C[0], started_C[0], air_C);

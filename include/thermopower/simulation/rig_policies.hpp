@@ -47,7 +47,7 @@ using CorrectedGimbal =
 /// A gimbal of these axes with the thesis's gains and every policy's standard.
 template <class Gimbal, class Small, class Large>
 Gimbal gimbal_with_thesis_gains() {
-  return Gimbal(GimbalConfig::standard(), Small::Config::with_gain(thesis_gain(0)),
+  return Gimbal(GimbalConfig::believing(), Small::Config::with_gain(thesis_gain(0)),
                 Small::Config::with_gain(thesis_gain(1)), Large::Config::with_gain(thesis_gain(2)));
 }
 

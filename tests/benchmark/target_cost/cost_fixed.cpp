@@ -37,13 +37,19 @@ extern "C" void fixed_hysteresis() {
 extern "C" void fixed_limiter_cycle() {
   static Limiter limiter;
   small_sink =
-      limiter.step(given.level, static_cast<fixed::Temperature>(given.warm) * 65536, given.rate, given.ticks)
+      limiter
+          .step(given.level,
+                fixed::GuardedTemperature::unchecked(static_cast<fixed::Temperature>(given.warm) * 65536),
+                given.rate, given.ticks)
           .power;
 }
 extern "C" void fixed_limiter_second() {
   static fixed::SafetyLimiter<> limiter;
   small_sink =
-      limiter.step(given.level, static_cast<fixed::Temperature>(given.warm) * 65536, given.rate, given.ticks)
+      limiter
+          .step(given.level,
+                fixed::GuardedTemperature::unchecked(static_cast<fixed::Temperature>(given.warm) * 65536),
+                given.rate, given.ticks)
           .power;
 }
 extern "C" void fixed_gain_cut() { small_sink = fixed::TruncatedGain<24, 4>::gain(given.level); }

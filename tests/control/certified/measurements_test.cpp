@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <random>
 
 #include <thermopower/control/certified/limiter.hpp>
@@ -287,4 +288,57 @@ TEST_CASE("one node: measurements of any instant, told at any instant") {
       REQUIRE(T <= 60.0);
     }
   }
+}
+
+namespace {
+
+enum class Measured { nothing, supply, temperatures };
+
+/// How far a winding of 8 J/K passes its limit in half an hour when each power takes effect late, K; negative: it stays below.
+/// @param counted_s  of the delay, how much is counted into hold_s
+double over_limit_K(Measured measured, double delay_s, double counted_s) {
+  CertifiedLimiter<>::Config config = CertifiedLimiter<>::Config::standard();
+  config.network = {{8.0f, 8.0f}, {80.0f, 80.0f}, 2.0f, 0.2f, 110.0f, 100.0f};
+  config.use.heat =
+      HeatBounds::ohmic(24.0f, 0.02f, {2.0f, 2.0f}, {0.0039f, 0.0039f}, 20.0f, 0.0f, 110.0f, 10.0f);
+  config.use.highest_air_C = 40.0f;
+  config.air_error_K = 0.0f;
+  config.use.hold_s = static_cast<float>(0.1 + counted_s);
+  config.use.horizon_s = static_cast<float>(1.0 + counted_s);
+  CertifiedLimiter<> limiter(config);
+  REQUIRE(limiter.validate() == ConfigError::none);
+  limiter.start(25.1f, 25.1f, 25.0f);
+  Plant plant = {8.0, 80.0, 2.0, 0.2, 2.0, 24.0, 25.0, 25.0, 25.0};
+  std::deque<int> line(1 + static_cast<std::size_t>(delay_s / 0.1 + 0.5), 1);
+  const double step_s = 0.0999;
+  double over_K = -1e9;
+  for (int i = 0; i < 18000; ++i) {
+    // A supply that changes stays until every power that was planned with it has ceased to act.
+    plant.supply_V = measured == Measured::supply && i / 400 % 2 == 1 ? 12.0 : 24.0;
+    plant.run(line.front(), step_s);
+    over_K = std::max(over_K, plant.winding_C - 110.0);
+    const bool is_sagging_on = (i + 1) / 400 % 2 == 1 && (i + 1 + 40) / 400 % 2 == 1;
+    const float told_V = measured == Measured::supply && is_sagging_on ? 12.0f : 24.0f;
+    if (measured == Measured::temperatures)
+      limiter.tighten(told::degrees(static_cast<float>(plant.winding_C) + 0.01f),
+                      told::degrees(static_cast<float>(plant.body_C) + 0.01f));
+    line.push_back(limiter.step({255, told_V, 25.0f}, static_cast<float>(step_s)).power);
+    line.pop_front();
+  }
+  return over_K;
+}
+
+}  // namespace
+
+TEST_CASE("a delay that is counted into hold_s passes no limit, whatever is measured") {
+  for (const double delay_s : {0.0, 0.1, 0.5, 2.0})
+    for (const Measured measured : {Measured::nothing, Measured::supply, Measured::temperatures}) {
+      INFO("delay " << delay_s << " s, measured " << static_cast<int>(measured));
+      CHECK(over_limit_K(measured, delay_s, delay_s) < 0.0);
+    }
+}
+
+TEST_CASE("a delay that nobody counts only shifts time where nothing is measured") {
+  CHECK(over_limit_K(Measured::nothing, 2.0, 0.0) < 0.0);
+  CHECK(over_limit_K(Measured::temperatures, 2.0, 0.0) > 1.0);
 }

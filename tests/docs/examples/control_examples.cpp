@@ -104,7 +104,8 @@ TEST_CASE("power laws: levels, and the laws around them") {
 namespace {
 //! [air range]
 struct Indoors : Motor {
-  static tp::AirRange air() { return {15.0f, 35.0f}; }  // what reads otherwise is no air
+  // What reads otherwise is no air; what reads so says that the thermometer lives, and 35 counts.
+  static tp::AirRange air() { return {15.0f, 35.0f}; }
 };
 //! [air range]
 }  // namespace
@@ -115,6 +116,13 @@ TEST_CASE("the range of the air") {
   CHECK(axis.step({0.5f, 12.0f, 25.0f, tp::LimitReason::none}, 0.03f).reason == tp::LimitReason::none);
   CHECK(axis.step({0.5f, 12.0f, 0.0f, tp::LimitReason::none}, 0.03f).reason ==
         tp::LimitReason::air_implausible);
+  //! [air bound]
+  Axis told;  // this one is told a bound, such as AirTemperature gives, and believes it
+  told.step({0.5f, 12.0f, tp::AxisAirCelsius::bound(20.0f), tp::LimitReason::none}, 0.03f);
+  //! [air bound]
+  CHECK(told.state().motor_C == Approx(20.0f).margin(0.01));
+  Axis read;
+  CHECK(read.step({0.5f, 12.0f, 20.0f, tp::LimitReason::none}, 0.03f).motor_C == Approx(35.0f).margin(0.01));
 }
 
 TEST_CASE("the range of a supply") {
@@ -354,12 +362,33 @@ TEST_CASE("a gimbal: several axes behind one board, its air, its supply, what is
   CHECK(tp::MeasuredSupply::supply_V(13.0f, 12.1f) == 12.1f);
 
   //! [air]
-  tp::AirTemperature air;        // eq 4.20
-  air.step(30.0f, 28.0f, 1.0f);  // camera and frame: both believed once they have moved
+  // No air here is warmer than 35 degC. Both thermometers say 30 on average (eq 4.20), once they have moved; but nothing else does.
+  tp::AirTemperature air(tp::AirTemperature::Config::declared(35.0f));
+  air.step(30.0f, 28.0f, 1.0f);
   const tp::AirTemperature::State& now = air.step(31.0f, 29.0f, 1.0f);
   //! [air]
-  CHECK(now.air_C == 30.0f);
+  CHECK(now.air_C == 35.0f);
+  CHECK(now.read_C == 30.0f);
   CHECK(now.source == tp::AirSource::both);
+
+  const float camera_C = 24.0f, frame_C = 24.5f, thermistor_C = 61.0f, loop_s = 0.1f;
+  float air_C = 45.0f;
+  air.step(camera_C, frame_C, loop_s);
+  //! [air witness]
+  tp::AirTemperature room(tp::AirTemperature::Config::declared(45.0f));
+  tp::AirWitness witness;                               // its standard: 3 K, 1 K/min, 6 min
+  tp::SensorGuard guard;                                // in front of the motor's thermistor
+  tp::ThermalModel<> model({{18.0f}, {0.05f}}, 60.0f);  // stands in the air as read; nothing corrects it
+  for (int cycle = 0; cycle < 20000; ++cycle) {         // half an hour, and some minutes
+    const float heat_W = 0.05f * (61.0f - 24.25f);
+    model.step({heat_W, 0.0f, {cycle == 0 ? 24.0f : room.state().read_C, 0.0f}}, loop_s);
+    const tp::GuardedCelsius motor_C = guard.step({thermistor_C, model.hottest_C()}, loop_s);
+    witness.step(motor_C, model.hottest_C(), loop_s);             // witness.state().reason: who disagrees
+    air_C = room.step(camera_C, frame_C, witness, loop_s).air_C;  // for the limiter's own model
+  }
+  //! [air witness]
+  CHECK(air_C == Approx(24.5f + 12.0f));  // the warmer reading and the margin
+  CHECK(room.state().is_witnessed);
 
   //! [power in force]
   tp::PowerInForce<1> force;                     // one axis

@@ -81,13 +81,15 @@ TEST_CASE("parts of an axis in whole numbers, alone") {
   const uint8_t demand = law.step(23);  // 0.505 degrees
   fp::SafetyLimiter<fp::ThesisLimit, fp::PerCycle> limiter;
   // 50 degC that rise by 1 K/s: in 30 s they would be above 60.
-  const tp::LimitedPower granted = limiter.step(255, 50 * 8388608, 140737488, 117);
+  const tp::LimitedPower granted =
+      limiter.step(255, fp::GuardedTemperature::unchecked(50 * 8388608), 140737488, 117);
   //! [fixed-point parts]
   CHECK(demand == 125);
   CHECK(fp::K_per_s_of(140737488) == Approx(1.0).epsilon(1e-4));
   CHECK(granted.power == 254);
   fp::SafetyLimiter<fp::ThesisLimit, fp::PerSecond> second;
-  CHECK(second.step(255, 50 * 8388608, 140737488, 117).power == 254);  // 33.3 counts per second: one in 30 ms
+  CHECK(second.step(255, fp::GuardedTemperature::unchecked(50 * 8388608), 140737488, 117).power ==
+        254);  // 33.3 counts per second: one in 30 ms
   fp::HysteresisLevels<> held;
   CHECK(held.step(23) == 125);
   CHECK(held.step(22) == 125);  // below the edge by less than the hysteresis
@@ -130,11 +132,15 @@ TEST_CASE("a gimbal in whole numbers: telemetry in, POWER and P out") {
 
 TEST_CASE("air in whole numbers") {
   //! [fixed-point air]
-  fp::AirTemperature<fp::StandardAir> air;  // ProgrammedAir believes a fall at once, as the thesis's program
-  air.step(30, 28, 3906);                   // camera and frame, whole degC; a second in ticks of 256 us
-  const fp::CoarseTemperature now = air.step(31, 29, 3906).air;  // in 2^-7 K
+  fp::AirTemperature<fp::StandardAir>
+      air;                 // ProgrammedAir believes its thermometers, as the thesis's program
+  air.step(30, 28, 3906);  // camera and frame, whole degC; a second in ticks of 256 us
+  const fp::CoarseTemperature now = air.step(31, 29, 3906).air;  // in 2^-7 K: the declared 45 degC
+  fp::AirTemperature<fp::BelievedAir> believed;                  // 30 degC, whoever drifts
   //! [fixed-point air]
-  CHECK(now == 30 * 128);
+  CHECK(now == 45 * 128);
+  believed.step(30, 28, 3906);
+  CHECK(believed.step(31, 29, 3906).air == 30 * 128);
   fp::AirTemperature<fp::ProgrammedAir> programmed;
   programmed.step(30, 28, 3906);
   programmed.step(31, 29, 3906);

@@ -26,13 +26,23 @@ struct StandardAir {
   static constexpr uint8_t maximum_difference_K() { return 15; }
   /// A fall is believed no faster than this, K/s. 0: at once; at most 1.
   static constexpr double fall_per_s() { return 0.2; }
+  /// The air is never warmer: no reading makes it colder. Declare your own; -128: readings are believed.
+  static constexpr int8_t declared_C() { return 45; }
 };
-/// The same for a program that believes a fall at once, as the thesis's does.
+/// The same with thermometers that are believed inside their range.
 ///
 /// @snippet fixed_point_examples.cpp fixed-point air
 /// How to: @ref wire_up_sbgc.
 /// @ingroup control
-struct ProgrammedAir : StandardAir {
+struct BelievedAir : StandardAir {
+  static constexpr int8_t declared_C() { return -128; }  ///< Readings are believed.
+};
+/// The same for a program that believes its thermometers, and a fall at once, as the thesis's does.
+///
+/// @snippet fixed_point_examples.cpp fixed-point air
+/// How to: @ref wire_up_sbgc.
+/// @ingroup control
+struct ProgrammedAir : BelievedAir {
   static constexpr double fall_per_s() { return 0.0; }  ///< At once.
 };
 
@@ -47,7 +57,8 @@ template <class Candidate>
 struct IsAirConstants<
     Candidate,
     typename Exists<decltype(Candidate::minimum_plausible_C()), decltype(Candidate::maximum_plausible_C()),
-                    decltype(Candidate::maximum_difference_K()), decltype(Candidate::fall_per_s())>::Type> {
+                    decltype(Candidate::maximum_difference_K()), decltype(Candidate::fall_per_s()),
+                    decltype(Candidate::declared_C())>::Type> {
   static constexpr bool value = true;
 };
 }  // namespace detail
@@ -68,11 +79,14 @@ class AirTemperature {
   static_assert(Constants::minimum_plausible_C() >= -60 && Constants::maximum_plausible_C() <= 125 &&
                     Constants::minimum_plausible_C() < Constants::maximum_plausible_C(),
                 "thermopower: plausible air for a fixed-point model must be within -60 .. 125 degC");
+  static_assert(Constants::declared_C() <= Constants::maximum_plausible_C(),
+                "thermopower: declared_C must not be above maximum_plausible_C");
 
 public:
   /// What one logs.
   struct State {
-    CoarseTemperature air;  ///< The last plausible air temperature; 0 degC before there was one.
+    CoarseTemperature
+        air;           ///< The air is no warmer by the last plausible reading; 0 degC before there was one.
     AirSource source;  ///< Which thermometers the last reading rests on; `neither` keeps `air` as it was.
   };
 
@@ -102,7 +116,7 @@ public:
         static_cast<uint16_t>(detail::nearest(Constants::fall_per_s() * 8388608.0 / detail::ticks_per_s()));
     if (fall == 0) {
       state_.air = read;
-      return state_;
+      return declare();
     }
     const Temperature lowest = air_ - static_cast<Temperature>(static_cast<uint32_t>(fall) * ticks);
     if (!has_air_ || static_cast<CoarseTemperature>(lowest >> 16) <= read) {
@@ -113,7 +127,7 @@ public:
       state_.air = static_cast<CoarseTemperature>(lowest >> 16);
     }
     has_air_ = true;
-    return state_;
+    return declare();
   }
 
   /// Takes the air to be as warm as this until the first reading.
@@ -122,6 +136,11 @@ public:
   const State& state() const noexcept { return state_; }  ///< After the last step.
 
 private:
+  const State& declare() noexcept {
+    constexpr CoarseTemperature declared = static_cast<CoarseTemperature>(Constants::declared_C() * 128);
+    if (Constants::declared_C() != -128 && state_.air < declared) state_.air = declared;
+    return state_;
+  }
   static bool is_plausible(int8_t reading_C) noexcept {
     return reading_C >= Constants::minimum_plausible_C() && reading_C <= Constants::maximum_plausible_C();
   }

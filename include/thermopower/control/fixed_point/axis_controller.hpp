@@ -34,7 +34,7 @@ public:
     const uint8_t demand = power_law.step(error_units);
     const Rate rate = thermal.step(air, ticks, cooling_factor);
     granted = is_fault(fault) ? limiter.cut(fault, demand)
-                              : limiter.step(demand, thermal.state().motor, rate, ticks);
+                              : limiter.step(demand, GuardedTemperature::of(thermal), rate, ticks);
   }
 
   // As above: one copy for all axes.

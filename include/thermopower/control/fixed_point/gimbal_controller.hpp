@@ -31,7 +31,15 @@ struct StandardGimbal {
   /// Silence of the link that is tolerated, 0.01 .. 16 s.
   static constexpr double timeout_s() { return 0.5; }
 };
-/// The same for the thesis's program, which believes a fall of the air at once.
+/// The same with thermometers that are believed: GimbalConfig::believing().
+///
+/// @snippet fixed_point_examples.cpp fixed-point gimbal
+/// How to: @ref wire_up_sbgc, @ref target_cost.
+/// @ingroup control
+struct BelievingGimbal : StandardGimbal {
+  typedef BelievedAir Air;  ///< When a thermometer is believed.
+};
+/// The same for the thesis's program, which believes its thermometers, and a fall of the air at once.
 ///
 /// @snippet fixed_point_examples.cpp fixed-point gimbal
 /// How to: @ref wire_up_sbgc, @ref target_cost.

@@ -137,11 +137,12 @@ class SafetyLimiter {
 
 public:
   /// @param demand  power parameter asked for
-  /// @param motor   temperature
+  /// @param told    temperature that somebody vouches for
   /// @param rate    dT/dt at the power of the last step
   /// @param ticks   time since the last step
-  [[gnu::always_inline]] LimitedPower step(uint8_t demand, Temperature motor, Rate rate,
+  [[gnu::always_inline]] LimitedPower step(uint8_t demand, GuardedTemperature told, Rate rate,
                                            Ticks ticks) noexcept {
+    const Temperature motor = told;
     constexpr Temperature maximum = detail::temperature_of(Constants::maximum_C());
     if (motor > maximum) return cut(LimitReason::over_temperature, demand);
     const int32_t soon = detail::scaled(rate, Horizon::factor);

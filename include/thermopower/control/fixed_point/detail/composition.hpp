@@ -5,6 +5,7 @@
 #include "../../../detail/probe.hpp"
 #include "../../../fixed_point/units.hpp"
 #include "../../limit_reason.hpp"
+#include "../guarded_temperature.hpp"
 
 /// @file control/fixed_point/detail/composition.hpp
 /// Asks whether a type can play a part in a controller in whole numbers.
@@ -42,12 +43,12 @@ struct IsLimiter {
   static constexpr bool value = false;
 };
 template <class Candidate>
-struct IsLimiter<
-    Candidate,
-    typename thermopower::detail::Exists<
-        decltype(thermopower::detail::probe<Candidate>().step(uint8_t(1), Temperature(0), Rate(0), Ticks(0))),
-        decltype(thermopower::detail::probe<Candidate>().cut(LimitReason::none, uint8_t(1))),
-        decltype(thermopower::detail::probe<const Candidate>().ceiling())>::Type> {
+struct IsLimiter<Candidate,
+                 typename thermopower::detail::Exists<
+                     decltype(thermopower::detail::probe<Candidate>().step(
+                         uint8_t(1), GuardedTemperature::unchecked(0), Rate(0), Ticks(0))),
+                     decltype(thermopower::detail::probe<Candidate>().cut(LimitReason::none, uint8_t(1))),
+                     decltype(thermopower::detail::probe<const Candidate>().ceiling())>::Type> {
   static constexpr bool value = true;
 };
 
