@@ -3,8 +3,8 @@
 #pragma once
 
 // Four minutes of an axis at hard work in which everything around it fails, as often as one likes: a controller as
-// firmware has it (certified limiter, journal, memory that survives a reset), and a board, a motor, thermometers and
-// a supply that share no code with it. Telemetry and commands pass whole or not at all; the bytes themselves are
+// firmware has it (certified limiter, guarded thermistors, journal, memory that survives a reset), and a board, a motor,
+// thermometers and a supply that share no code with it. Telemetry and commands pass whole or not at all; the bytes themselves are
 // damaged in tests/sbgc and in the runs on the simulated chip.
 
 #include <algorithm>
@@ -34,6 +34,18 @@ enum Fault : int {
   thermometers_absurd,
   supply_absurd,
   supply_missing,
+  supply_beyond,
+  thermometers_drift,
+  thermometers_stuck,
+  thermistor_torn,
+  thermistor_stuck,
+  thermistor_drifts,
+  thermistors_exchanged,
+  time_stands,
+  clock_wraps,
+  board_late,
+  stray_confirm,
+  reset_series,
   fault_count
 };
 inline const char* name(int fault) {
@@ -49,7 +61,19 @@ inline const char* name(int fault) {
                                                  "one thermometer absurd",
                                                  "both thermometers absurd",
                                                  "supply reads 655 V",
-                                                 "supply reads 0 V"};
+                                                 "supply reads 0 V",
+                                                 "supply reads 1e30 V",
+                                                 "both thermometers drift by 1 K/min to 1 K/s",
+                                                 "both thermometers stuck",
+                                                 "thermistor torn",
+                                                 "thermistor stuck",
+                                                 "thermistor drifts",
+                                                 "thermistors exchanged",
+                                                 "time step reads 0",
+                                                 "clock of 16 or 32 bits wraps",
+                                                 "board obeys up to 5 messages late",
+                                                 "board deaf, CONFIRM of another command",
+                                                 "twenty resets in four seconds"};
   return names[fault];
 }
 
@@ -85,10 +109,20 @@ inline tp::StartAssumptions assumptions() {
   return tp::StartAssumptions::around(nominal(), 0.1f, full_W / 0.92f, static_cast<float>(winding_limit_C),
                                       static_cast<float>(body_limit_C));
 }
-inline Gimbal new_gimbal() {
+/// @param is_believing  thermometers of the air are believed within the limiter's `air_error_K`
+inline Gimbal new_gimbal(bool is_believing) {
   Axis::Config axis = Axis::Config::with_gain({24.0f, 4.0f});
   axis.limiter = limiter();
-  return Gimbal(tp::GimbalConfig::standard(), axis);
+  tp::GimbalConfig config = tp::GimbalConfig::believing();
+  if (!is_believing) config.air.declared_C = axis.limiter.use.highest_air_C;
+  return Gimbal(config, axis);
+}
+// What a guard lets through is no colder than the model by more than this; and the model, with constants a tenth off and
+// a supply that is one tenth wrong at most, is no colder than the truth by more than the other.
+constexpr float disagreement_K = 4.0f, model_error_K = 12.0f;
+inline tp::SensorGuard new_guard(float rate_K_per_s) {
+  return tp::SensorGuard(
+      tp::SensorGuard::Config{0.0f, 150.0f, rate_K_per_s, 0.5f, 5.0f, disagreement_K, 2.0f});
 }
 
 /// The motor as it is.
@@ -134,11 +168,31 @@ struct Telemetry {
 struct Firmware {
   Eeprom eeprom;
   tp::Retained<tp::StoredState> retained;
-  Gimbal gimbal = new_gimbal();
+  bool is_believing;
+  Gimbal gimbal;
+  tp::SensorGuard of_winding = new_guard(20.0f), of_body = new_guard(5.0f);
   tp::StateJournal<Eeprom> journal{eeprom, tp::StateJournal<Eeprom>::Config::standard()};
   double open_s = 0.0;  // before the first step
 
-  Firmware() { std::memset(&retained, 0x5b, sizeof retained); }
+  explicit Firmware(bool believes) : is_believing(believes), gimbal(new_gimbal(believes)) {
+    std::memset(&retained, 0x5b, sizeof retained);
+  }
+
+  /// What the thermistors read, told to the limiter as far as their guards let it through. @param is_raw  a program without guards
+  void measure(float winding_C, float body_C, float dt_s, bool is_raw) {
+    auto& axis = gimbal.axis<0>();
+    if (is_raw) {
+      axis.limiter().tighten(tp::GuardedCelsius::unchecked(winding_C + 1.0f),
+                             tp::GuardedCelsius::unchecked(body_C + 1.0f));
+      return;
+    }
+    const tp::SensorGuard::Inputs winding = {winding_C, axis.thermal().state().winding_C},
+                                  body = {body_C, axis.thermal().state().body_C};
+    of_winding.step(winding, body, dt_s);
+    of_body.step(body, winding, dt_s);
+    axis.limiter().tighten(of_winding.upper(disagreement_K + model_error_K),
+                           of_body.upper(disagreement_K + model_error_K));
+  }
 
   static constexpr float longest_reset_s = 2.0f;
 
@@ -146,7 +200,8 @@ struct Firmware {
   void boot(bool is_power_lost, double known_C, bool is_believed) {
     eeprom.writes_left = -1;
     if (is_power_lost) retained.forget();
-    gimbal = new_gimbal();
+    gimbal = new_gimbal(is_believing);
+    of_winding = new_guard(20.0f), of_body = new_guard(5.0f);
     new (&journal) tp::StateJournal<Eeprom>(eeprom, tp::StateJournal<Eeprom>::Config::standard());
     tp::StoredState found = {}, newest = {};
     const bool is_retained = retained.recall(found);
@@ -205,7 +260,8 @@ struct Tally {
 
 /// One run. Faults come one after the other, with pauses in which all is well.
 /// @param forgets  the program starts as warm as the air, as one without a memory would
-inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
+/// @param is_raw   the program believes its thermistors, as one without guards would
+inline void run(std::uint32_t seed, Tally& tally, bool forgets = false, bool is_raw = false) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random() >> 5) / 134217728.0);
@@ -224,20 +280,24 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
   const bool reports = !once_in(2);  // or confirms
   const int restart_power = static_cast<int>(uniform(1.0, 255.0));
 
-  Firmware chip;
+  const bool is_believing = once_in(2), has_thermistors = is_raw || once_in(2);
+  Firmware chip(is_believing);
   // Every fourth starts with an empty store, as hot as its limits; the others know how warm they are.
   chip.boot(true, once_in(4) ? std::nan("") : motor.body_C, false);
   int force = restart_power, fault = -1, last_fault = 0;
   double now_s = 0.0, fault_ends_s = 0.0, next_fault_s = uniform(5.0, 40.0), fault_began_s = 0.0;
   double down_until_s = 0.0, board_down_until_s = 0.0, disobeyed_s = 0.0, differs_s = 0.0, ended_s = -1.0,
          last_ended_s = 0.0, demand_until_s = 0.0;
-  double error = 5.0, bias_K = 0.0;
+  double error = 5.0, bias_K = 0.0, drift_K_per_s = 0.0, stuck_winding_C = 0.0, stuck_body_C = 0.0;
+  int late = 0, resets_left = 0;
+  std::vector<int> on_the_way;
   int frozen = 0, absurd = 0;
   bool is_down = false, is_cold = false, is_over = false, is_uncontrolled = false, is_first = true,
-       is_named = false;
+       is_named = false, has_wrapped = false;
   bool lost_power = false, was_uncontrolled_fault = false;
   double over_K = -1e9, last_step_s = 0.0;
   std::uint8_t sent = 1;
+  double resets_due_s = 0.0;
 
   while (now_s < run_s) {
     const double dt_s = uniform(0.020, 0.030);
@@ -257,19 +317,33 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
     const bool is_overdue = ended_s >= 0.0 && now_s > ended_s + 120.0;
     if (fault < 0 && now_s >= next_fault_s && (ended_s < 0.0 || is_overdue)) {
       tally.not_back += is_overdue ? 1 : 0;
-      fault = static_cast<int>(random() % fault_count);
+      do fault = static_cast<int>(random() % fault_count);
+      while ((is_believing && (fault == thermometers_drift || fault == thermometers_stuck)) ||
+             (!has_thermistors && fault >= thermistor_torn && fault <= thermistors_exchanged) ||
+             (reports && fault == stray_confirm));
       ++tally.faults[fault];
       fault_began_s = now_s;
       fault_ends_s = now_s + uniform(1.5, 25.0);
       if ((fault == board_refuses || fault == board_deaf) && once_in(4))
         fault_ends_s = now_s + uniform(25.0, 60.0);
       bias_K = uniform(-10.0, 10.0);
+      drift_K_per_s = std::exp(uniform(std::log(1.0 / 60.0), 0.0));
+      stuck_winding_C = motor.winding_C, stuck_body_C = motor.body_C;
+      late = 1 + static_cast<int>(random() % 5);
+      on_the_way.clear();
       frozen = static_cast<int>(air_C);
       const int absurdities[] = {127, 90, -128, -60};
       absurd = absurdities[random() % 4];
       is_named = was_uncontrolled_fault = false;
       ended_s = -1.0;
       if (fault == chip_reset) down_until_s = now_s + uniform(0.05, 1.9);
+      if (fault == reset_series) {
+        resets_left = 20;
+        down_until_s = now_s + 0.1;
+        is_down = true, lost_power = false;
+        fault_ends_s = now_s + 4.0;
+      }
+      if (fault == clock_wraps) fault_ends_s = now_s + 0.001;
       if (fault == power_loss) {
         down_until_s = fault_ends_s;
         if (once_in(2)) {  // in the middle of a record
@@ -296,6 +370,13 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
       is_down = false;
       is_first = !forgets;
       last_step_s = now_s;
+      if (resets_left > 0) --resets_left;
+      resets_due_s = now_s + 0.1;
+    }
+    if (resets_left > 0 && now_s >= resets_due_s) {
+      is_down = true;
+      down_until_s = now_s + 0.1;
+      continue;
     }
 
     // What the board says, and what the chip makes of it.
@@ -310,24 +391,51 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
     if (fault == thermometer_biased) telemetry.camera = static_cast<int>(air_C + bias_K);
     if (fault == thermometer_absurd) telemetry.frame = absurd;
     if (fault == thermometers_absurd) telemetry.camera = telemetry.frame = absurd;
-    telemetry.supply_V = fault == supply_absurd ? 655.35 : (fault == supply_missing ? 0.0 : volt);
+    if (fault == thermometers_stuck) telemetry.camera = telemetry.frame = frozen;
+    if (fault == thermometers_drift)
+      telemetry.camera = telemetry.frame =
+          static_cast<int>(std::floor(std::max(-39.0, air_C - drift_K_per_s * (now_s - fault_began_s))));
+    telemetry.supply_V = fault == supply_absurd
+                             ? 655.35
+                             : (fault == supply_missing ? 0.0 : (fault == supply_beyond ? 1e30 : volt));
     telemetry.reported = reports ? force : 0;
     const bool is_board_up = now_s >= board_down_until_s;
     const bool is_heard = is_board_up && fault != link_silent && fault != link_dead;
-    const float step_s =
-        static_cast<float>(now_s - last_step_s) + (is_first ? Firmware::longest_reset_s : 0.0f);
+    float step_s = static_cast<float>(now_s - last_step_s) + (is_first ? Firmware::longest_reset_s : 0.0f);
+    if (fault == time_stands) step_s = 0.0f;
+    const bool is_wrapped = fault == clock_wraps && !has_wrapped;
+    if (is_wrapped) step_s -= once_in(2) ? 65.536f : 4294.967296f;
+    has_wrapped = fault == clock_wraps;
+    if (has_thermistors) {
+      double winding_C = motor.winding_C, body_C = motor.body_C;
+      const double drifted_K = drift_K_per_s * (now_s - fault_began_s);
+      if (fault == thermistor_torn) winding_C = body_C = bias_K > 0.0 ? -88.6 : 300.0;
+      if (fault == thermistor_stuck) winding_C = stuck_winding_C, body_C = stuck_body_C;
+      if (fault == thermistor_drifts) winding_C -= drifted_K, body_C -= drifted_K;
+      if (fault == thermistors_exchanged) std::swap(winding_C, body_C);
+      chip.measure(static_cast<float>(winding_C), static_cast<float>(body_C), step_s, is_raw);
+    }
     last_step_s = now_s;
     is_first = false;
     const Gimbal::Command& command =
         is_heard ? chip.gimbal.step(telemetry, step_s) : chip.gimbal.step_silent(step_s);
     chip.keep(dt_s);
     sent = command.power[0];
-    const bool is_taken = is_board_up && fault != board_refuses && fault != board_deaf && fault != link_dead;
-    if (is_taken) force = sent;
+    const bool is_taken = is_board_up && fault != board_refuses && fault != board_deaf &&
+                          fault != link_dead && fault != stray_confirm;
+    if (is_taken) on_the_way.push_back(sent);
+    const std::size_t waiting = fault == board_late ? static_cast<std::size_t>(late) : 0;
+    bool is_new = false;
+    while (on_the_way.size() > waiting) {
+      force = on_the_way.front();
+      on_the_way.erase(on_the_way.begin());
+      is_new = true;
+    }
     // Who reports no power confirms, or refuses; a deaf board does neither.
-    if (!reports && is_heard && is_taken) {
+    if (!reports && is_heard && ((is_taken && is_new) || fault == stray_confirm)) {
       thermopower::sbgc::Confirm confirm;
-      confirm.confirmed_id = thermopower::sbgc::command::set_adj_vars_val;
+      confirm.confirmed_id = fault == stray_confirm ? thermopower::sbgc::command::control
+                                                    : thermopower::sbgc::command::set_adj_vars_val;
       chip.gimbal.confirmed(confirm);
     }
     if (is_heard && fault == board_refuses) chip.gimbal.refused();
@@ -339,19 +447,27 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false) {
     const tp::LimitReason reason = command.reason[0];
     // Two counts of difference are a board's own way of counting, and two hundredths pass for its scale.
     differs_s = fault >= 0 && std::abs(force - int(sent)) > 2 + 0.02 * 255 ? differs_s + dt_s : 0.0;
+    if (is_wrapped) {
+      ++tally.nameable[fault];
+      tally.named[fault] += reason == tp::LimitReason::time_invalid ? 1 : 0;
+    }
     if (fault >= 0 && now_s > fault_began_s + 1.0) {
+      const bool is_ignored = fault == board_refuses || fault == board_deaf || fault == stray_confirm;
       const bool is_it =
-          ((fault == board_refuses || fault == board_deaf) && reason == tp::LimitReason::not_obeyed) ||
+          (is_ignored && reason == tp::LimitReason::not_obeyed) ||
           ((fault == link_silent || fault == link_dead) && reason == tp::LimitReason::link_silent) ||
           (fault == thermometers_absurd && reason == tp::LimitReason::air_implausible) ||
           (fault == supply_absurd && reason == tp::LimitReason::supply_implausible) ||
           (fault == supply_missing && reason == tp::LimitReason::supply_low) ||
+          (fault == supply_beyond && reason == tp::LimitReason::supply_implausible) ||
+          (fault == time_stands && reason == tp::LimitReason::time_stands_still) ||
+          (fault == thermistor_torn && chip.of_body.state().reason == tp::LimitReason::sensor_out_of_range) ||
           (fault == thermometer_absurd && chip.gimbal.state().air_source == tp::AirSource::camera);
       // A board that is told what it does anyway disobeys nothing.
       const bool is_nameable = fault == link_silent || fault == link_dead || fault == thermometers_absurd ||
-                               fault == supply_absurd || fault == supply_missing ||
-                               fault == thermometer_absurd ||
-                               ((fault == board_refuses || fault == board_deaf) && differs_s > 1.0);
+                               fault == supply_absurd || fault == supply_missing || fault == supply_beyond ||
+                               fault == time_stands || fault == thermistor_torn ||
+                               fault == thermometer_absurd || (is_ignored && differs_s > 1.0);
       if (is_nameable && !is_named) {
         ++tally.nameable[fault];
         is_named = true;  // asked once

@@ -9,7 +9,7 @@
 
 TEST_CASE("whatever fails around it, a certified axis passes no limit, says what failed, and comes back") {
   campaign::Tally tally;
-  for (std::uint32_t seed = 1; seed <= 300; ++seed) campaign::run(seed, tally);
+  for (std::uint32_t seed = 1; seed <= 500; ++seed) campaign::run(seed, tally);
   CHECK(tally.colder == 0);
   CHECK(tally.over == 0);
   CHECK(tally.uncontrolled < tally.runs / 5);  // the others say nothing about limits
@@ -29,4 +29,11 @@ TEST_CASE("the campaign finds a program that forgets") {
   campaign::Tally tally;
   for (std::uint32_t seed = 1; seed <= 300; ++seed) campaign::run(seed, tally, true);
   CHECK(tally.colder > 50);
+}
+
+TEST_CASE("the campaign finds a program that believes its thermistors") {
+  campaign::Tally tally;
+  for (std::uint32_t seed = 1; seed <= 300; ++seed) campaign::run(seed, tally, false, true);
+  CHECK(tally.colder > 20);
+  CHECK(tally.over > 0);
 }
