@@ -303,19 +303,19 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
     first += entry->info.parameters.size();
     const SpecialCase in_fact = special_case(candidate, entry->info, at);
     if (in_fact.cause.empty()) continue;
-    std::vector<std::string> ids;
-    for (const std::string& id : candidate.explanation.ids(model))
-      if (id != entry->info.id) ids.push_back(id);
-    // Constants are free in every explanation.
+    // Constants are free in every explanation: only its effects tell it from another one.
+    std::vector<std::string> ids, simpler_ids;
+    for (const CatalogueEntry* one : candidate.explanation.effects)
+      if (one != entry) ids.push_back(one->info.id);
     if (!plant::is_calibration(in_fact.cause)) ids.push_back(in_fact.cause);
-    std::vector<std::string> simpler_ids = simpler.explanation.ids(model);
+    for (const CatalogueEntry* one : simpler.explanation.effects) simpler_ids.push_back(one->info.id);
     std::sort(ids.begin(), ids.end());
     std::sort(simpler_ids.begin(), simpler_ids.end());
-    if (ids == simpler_ids)
-      return in_the_running(simpler) &&
-             (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)) ||
-              (in_fact.the_same && (is_nearly(simpler.held_out, candidate.held_out) ||
-                                    is_nearly(simpler.train, candidate.train))));
+    if (ids == simpler_ids && in_the_running(simpler) &&
+        (scores_alike(simpler, candidate) || (in_fact.but_for_a_bit && is_at_the_noise(simpler)) ||
+         (in_fact.the_same &&
+          (is_nearly(simpler.held_out, candidate.held_out) || is_nearly(simpler.train, candidate.train)))))
+      return true;
   }
   return false;
 }

@@ -207,7 +207,8 @@ public:
     Eigen::VectorXd from = candidate.fit.point;
     for (std::size_t i = 0; i < candidate.list.size(); ++i)
       for (std::size_t k = 0; k < other.list.size(); ++k)
-        if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k))
+        if (candidate.list[i].name == other.list[k].name || same_parameter(candidate, i, other, k) ||
+            is_where_equal(candidate, i, other, k))
           from[static_cast<Eigen::Index>(i)] = std::clamp(other.fit.point[static_cast<Eigen::Index>(k)],
                                                           candidate.list[i].lower, candidate.list[i].upper);
     // The noise may have been measured anew since the candidate was fitted: both costs are in units of the present one.
@@ -274,6 +275,20 @@ private:
     return first != nullptr && second != nullptr && *first == *second &&
            bare(one.list[i].name) == bare(other.list[k].name) &&
            one.list[i].logarithmic == other.list[k].logarithmic;
+  }
+
+  /// Whether a coordinate is the first parameter of what another one's effect is where two of its own are equal: the friction that
+  /// one by direction is.
+  static bool is_where_equal(const Candidate& one, std::size_t i, const Candidate& other, std::size_t k) {
+    for (const CatalogueEntry* rich : other.explanation.effects)
+      for (const CatalogueEntry* plain : one.explanation.effects)
+        if (rich->info.where_equal && rich->info.where_equal->cause == plain->info.id &&
+            one.list[i].name == plain->info.id + "." + plain->info.parameters.front().name &&
+            other.list[k].name ==
+                rich->info.id + "." +
+                    rich->info.parameters[static_cast<std::size_t>(rich->info.where_equal->one)].name)
+          return true;
+    return false;
   }
 
   /// An explanation of which nothing is known yet.
