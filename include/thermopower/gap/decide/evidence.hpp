@@ -391,7 +391,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   for (std::size_t i = 0; i < signal_count; ++i)
     samples += candidates.front().train.samples[i] / weight.correlation[i];
   const auto penalty = [&](const Candidate& one) {
-    const double causes = static_cast<double>(one.explanation.size());
+    const auto causes =
+        static_cast<double>(one.explanation.effects.size() + moved_constants(one, model).size());
     return cost_of_parameters(one, model, std::log(std::max(samples, 2.0))) + decision.rarity * causes +
            price_of_constants(one, model);
   };

@@ -297,12 +297,18 @@ private:
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);
   }
 
-  /// The likeliest fit of constants alone: what it leaves, and what its moves cost.
+  /// The likeliest explanation by constants alone; where all of these are as good as excluded, the one that leaves least and moves
+  /// them least.
   const Candidate& likeliest_constants(const std::vector<Candidate>& candidates) const {
+    constexpr double hardly = 1e-3;
     const auto cost = [&](const Candidate& one) { return fitness(one) + price_of_constants(one, model_); };
+    const auto is_better = [&](const Candidate& one, const Candidate& than) {
+      return std::max(one.probability, than.probability) > hardly ? one.probability > than.probability
+                                                                  : cost(one) < cost(than);
+    };
     const Candidate* best = &candidates.front();
     for (const Candidate& one : candidates)
-      if (one.explanation.effects.empty() && cost(one) < cost(*best)) best = &one;
+      if (one.explanation.effects.empty() && is_better(one, *best)) best = &one;
     return *best;
   }
 
