@@ -83,7 +83,7 @@ public:
     for (const std::size_t near : seeds_of(candidates))
       for (Promise& one : all_with(candidates, near, singles))
         if (is_new(one.together)) promises.push_back(std::move(one));
-    return most_promising(std::move(promises), candidates, 14);
+    return most_promising(std::move(promises), candidates, 8);
   }
 
   /// A candidate with every further cause, as pairs() has them.

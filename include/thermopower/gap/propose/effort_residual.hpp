@@ -106,19 +106,21 @@ public:
   }
 
   /// Residuals at a point, at the compared rows.
-  /// @param free  coordinates that derivatives are wanted of; empty: none. At most wide_dual_width - 1
+  /// @param free  coordinates that derivatives are wanted of; empty: none
   EffortResiduals evaluate(const EffortPoint& point, const std::vector<EffortCoordinate>& free) const {
     EffortResiduals all;
     const Eigen::Index n = rows_.rows(), columns = static_cast<Eigen::Index>(free.size());
     Eigen::VectorXd effort(n);
     Eigen::MatrixXd slopes(n, columns);
     std::vector<bool> flat(static_cast<std::size_t>(n), false);
-    with_scalar(columns, [&](auto scalar) {
+    in_passes(free, [&](auto scalar, const std::vector<EffortCoordinate>& some, Eigen::Index first) {
       typedef decltype(scalar) Scalar;
-      const Needed<Scalar> needed(*this, point, free);
+      const Needed<Scalar> needed(*this, point, some);
+      Eigen::MatrixXd part(n, static_cast<Eigen::Index>(some.size()));
       for (const EffortPiece& piece : rows_.pieces)
         for (Eigen::Index row = piece.begin; row < piece.end; ++row)
-          flat[static_cast<std::size_t>(row)] = needed.at(piece, row, effort, slopes, row);
+          flat[static_cast<std::size_t>(row)] = needed.at(piece, row, effort, part, row);
+      slopes.middleCols(first, part.cols()) = part;
     });
     const LowPass low_pass(propose_thresholds.residual_cutoff);
     for (const EffortPiece& piece : rows_.pieces) {
@@ -147,14 +149,17 @@ public:
     EffortResiduals all;
     all.effort.resize(kept);
     all.jacobian.resize(kept, columns);
-    with_scalar(columns, [&](auto scalar) {
+    in_passes(free, [&](auto scalar, const std::vector<EffortCoordinate>& some, Eigen::Index first) {
       typedef decltype(scalar) Scalar;
-      const Needed<Scalar> needed(*this, point, free);
+      const Needed<Scalar> needed(*this, point, some);
+      Eigen::MatrixXd part(kept, static_cast<Eigen::Index>(some.size()));
+      Eigen::Index flat = 0;
       for (Eigen::Index i = 0; i < kept; ++i) {
         const std::size_t at = static_cast<std::size_t>(i * every);
-        all.flat +=
-            needed.at(rows_.pieces[compared_.piece[at]], compared_.rows[at], all.effort, all.jacobian, i);
+        flat += needed.at(rows_.pieces[compared_.piece[at]], compared_.rows[at], all.effort, part, i);
       }
+      all.flat = flat;
+      all.jacobian.middleCols(first, part.cols()) = part;
     });
     return all;
   }
@@ -172,6 +177,19 @@ private:
   static Scalar delay_of(const plant::Instance<Scalar>& instance) {
     const auto& shape = instance.axis_structure;
     return shape.delayed ? shape.delay_s : plant::constant<Scalar>(0.0);
+  }
+
+  /// Derivatives by more coordinates than a scalar carries are taken in passes. Direction 0 is the effort's.
+  template <class Use>
+  static void in_passes(const std::vector<EffortCoordinate>& free, Use&& use) {
+    constexpr std::size_t most = static_cast<std::size_t>(plant::wide_dual_width) - 1;
+    for (std::size_t first = 0; first == 0 || first < free.size(); first += most) {
+      const auto from = free.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::vector<EffortCoordinate> some(
+          from, from + static_cast<std::ptrdiff_t>(std::min(most, free.size() - first)));
+      with_scalar(static_cast<Eigen::Index>(some.size()),
+                  [&](auto scalar) { use(scalar, some, static_cast<Eigen::Index>(first)); });
+    }
   }
 
   template <class Use>
