@@ -19,7 +19,7 @@ namespace thermopower::gap::engine {
 /// Thresholds of a common factor. Factors are compared by the magnitudes of their logarithms.
 /// Held by tests/gap/units/unit_posterior_test.cpp.
 struct CommonFactorThresholds {
-  double least = 1.25;   ///< factor that is worth a word
+  double least = 1.5;    ///< factor that is worth a word
   double alike = 1.08;   ///< times that two constants may differ in it
   double sd = 0.15;      ///< of the logarithm of a constant that tells one
   double beyond = 30.0;  ///< factor that no constant is off by, as KnownConstants::farthest_factor

@@ -35,8 +35,10 @@ struct MotionEvidenceThresholds {
   double alike = 0.97;             ///< correlation of two columns of which one is the other's slope
   double follows = 0.9;            ///< correlation of a target and the motion that follows it
   double partial = 0.7;            ///< correlation of effort and acceleration beside everything else
-  double independent = 10.0;       ///< half the windows that count as independent: a misfit remembers
-  double most_nats = 12.0;         ///< that one recording says of a sign
+  double tells_sign =
+      0.3;  ///< of the effort's variance that inertia, drag and friction may leave where they tell a sign
+  double independent = 10.0;  ///< half the windows that count as independent: a misfit remembers
+  double most_nats = 12.0;    ///< that one recording says of a sign
 };
 
 /// How one column follows from another: the factor between them, and how alike they are.
@@ -156,7 +158,7 @@ public:
         const double free = one->least_square(directed, 0.0), forwards = one->least_square(directed, 1.0),
                      backwards = one->least_square(directed, -1.0);
         const double left = std::min(forwards, backwards) / free;
-        if (!(left < least_left)) continue;
+        if (!(left < least_left) || left > limit.tells_sign) continue;
         least_left = left;
         best.forwards_nats =
             std::clamp(limit.independent * std::log(backwards / forwards), -limit.most_nats, limit.most_nats);
