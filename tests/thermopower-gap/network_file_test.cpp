@@ -148,6 +148,14 @@ TEST_CASE("what is wrong with a network's file is told with its place and its li
   }
 }
 
+TEST_CASE("a network that nothing heats is an error that names the missing field") {
+  const std::string message = error_of(
+      R"({"format": "thermopower-model/1", "network": {"nodes": {"w": {"heat_capacity_J_per_K": 22, "column": "motor_C"}},)"
+      R"( "given": {"air": {"column": "ambient_C"}}, "links": [{"from": "w", "to": "air", "conductance_W_per_K": 0.9}]}})");
+  CHECK(message.find("/network/heat:") != std::string::npos);
+  CHECK(message.find("nothing heats this network") != std::string::npos);
+}
+
 TEST_CASE("inputs alone are enough to predict a network, from the air's temperature or where one says") {
   const Model model = parse(file);
   Recording r;

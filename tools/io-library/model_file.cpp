@@ -468,6 +468,10 @@ private:
       }
       network.heat.push_back(std::move(heat));
     });
+    // Two given temperatures may drive it; one alone is where it rests.
+    if (network.heat.empty() && network.given.size() < 2)
+      fail(below(here, "heat"),
+           "is missing; expected at least one source of heat: nothing heats this network");
     if (const auto problem = network.validate()) fail(here + "/" + problem->where, problem->what);
     std::string name = std::move(model.name);
     model = plant::network_model(network, std::move(name));

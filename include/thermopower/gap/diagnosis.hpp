@@ -197,6 +197,7 @@ struct DecisionNumbers {
   ShareLeft share;           ///< what the likeliest explanation leaves
   double probability = 0.0;  ///< of the likeliest explanation's class
   double together = 0.0;     ///< of that class and the alternatives
+  bool common_factor = false;  ///< one factor explains several constants (FindingKind::common_factor)
 };
 
 /// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of

@@ -50,6 +50,9 @@ enum class FindingKind {
   // The file.
   text_column_ignored,  ///< a column of text that is no run label
   no_final_line_break,  ///< a file that may have been cut off
+  // The model beside the recording.
+  common_factor,    ///< several constants are off by one factor: a unit, a gear or a supply
+  detached_sensor,  ///< a thermometer that does not follow the power at all
 };
 
 /// The kind as reports spell it.
@@ -99,6 +102,10 @@ inline const char* to_string(FindingKind kind) {
       return "wrong_sign";
     case FindingKind::swapped_columns:
       return "swapped_columns";
+    case FindingKind::common_factor:
+      return "common_factor";
+    case FindingKind::detached_sensor:
+      return "detached_sensor";
     case FindingKind::clock_shift:
       return "clock_shift";
     case FindingKind::lagging_output:

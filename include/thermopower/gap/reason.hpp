@@ -10,6 +10,7 @@ enum class Reason {
   configured_model_passes,  ///< every judged signal is near its floor as configured
   constants_within_known,   ///< refitted constants suffice, and moved no further than the file says they may
   constants_moved,          ///< refitted constants suffice, and one moved further than the file says is known
+  common_factor,            ///< several constants are off by one factor: a unit, a gear or a supply
   constants_leave_a_rest,   ///< constants do best, and leave a gap
   cause_explains,           ///< the named cause brings every signal near its floor
   several_explain,          ///< several explanations do
@@ -32,6 +33,9 @@ inline const char* to_string(Reason reason) {
              "says is known";
     case Reason::constants_moved:
       return "refitted constants alone bring every signal near its noise floor, and no effect is needed";
+    case Reason::common_factor:
+      return "refitted constants alone bring every signal near its noise floor, but several are off by one common factor: look "
+             "for a unit, a gear or a supply";
     case Reason::constants_leave_a_rest:
       return "there is a gap; refitted constants predict held-out data best and leave a gap, and no effect does better";
     case Reason::cause_explains:
@@ -63,6 +67,8 @@ inline const char* code_of(Reason reason) {
       return "constants_within_known";
     case Reason::constants_moved:
       return "constants_moved";
+    case Reason::common_factor:
+      return "common_factor";
     case Reason::constants_leave_a_rest:
       return "constants_leave_a_rest";
     case Reason::cause_explains:

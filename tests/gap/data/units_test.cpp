@@ -7,7 +7,7 @@
 #include "../plants.hpp"
 
 #include <thermopower/gap/check.hpp>
-#include <thermopower/gap/detail/unit_check.hpp>
+#include <thermopower/gap/units/clock_shift.hpp>
 #include <thermopower/plant/standard_catalogue.hpp>
 
 #include <cmath>

@@ -103,6 +103,7 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
   const bool near = numbers.left <= limit.near_floor;
   if (only_constants) {
     if (!near) return {Verdict::unexplained, Reason::constants_leave_a_rest};
+    if (numbers.common_factor && !within_known) return {Verdict::partial, Reason::common_factor};
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
   }
   // What reaches the floor closes the gap. It need not beat constants that do, too: their moves count in its probability.

@@ -5,11 +5,13 @@
 #include <thermopower/gap/data/normal_equations.hpp>
 #include <thermopower/gap/recording.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 /// @file bell_regression.hpp
@@ -68,6 +70,41 @@ public:
       list.push_back({all[k] / scale[k], std::sqrt(share), static_cast<double>(rows)});
     }
     return list;
+  }
+
+  /// The least sum of squares where the first terms have coefficients of one sign or none.
+  /// @param directed  how many of the first terms have that sign; at most 3
+  /// @param sign      1 or -1; 0: their coefficients are 0
+  double least_square(Eigen::Index directed, double sign) const {
+    const Eigen::Index count = terms_.front().size(), rows = static_cast<Eigen::Index>(terms_.size());
+    Eigen::MatrixXd all(rows, count + 1);
+    for (Eigen::Index i = 0; i < rows; ++i)
+      all.row(i) << terms_[static_cast<std::size_t>(i)].transpose(), responses_[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k <= count; ++k)
+      if (const double size = all.col(k).norm(); size > 0.0) all.col(k) /= size;
+    const Eigen::MatrixXd products = all.transpose() * all;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned chosen = 0; chosen < (1U << directed); ++chosen) {
+      if (sign == 0.0 && chosen != 0) break;
+      std::vector<Eigen::Index> in;
+      for (Eigen::Index k = 0; k < count; ++k)
+        if ((k >= directed || (chosen >> k & 1U) != 0) && products(k, k) > 0.0) in.push_back(k);
+      const auto size = static_cast<Eigen::Index>(in.size());
+      Eigen::MatrixXd gram(size, size);
+      Eigen::VectorXd with(size);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        with[i] = products(in[static_cast<std::size_t>(i)], count);
+        for (Eigen::Index k = 0; k < size; ++k)
+          gram(i, k) = products(in[static_cast<std::size_t>(i)], in[static_cast<std::size_t>(k)]);
+        gram(i, i) += 1e-12;
+      }
+      const Eigen::VectorXd found = gram.ldlt().solve(with);
+      bool fits = true;
+      for (Eigen::Index i = 0; i < size; ++i)
+        fits = fits && (in[static_cast<std::size_t>(i)] >= directed || found[i] * sign >= 0.0);
+      if (fits) least = std::min(least, std::max(products(count, count) - with.dot(found), 1e-12));
+    }
+    return least;
   }
 
 private:

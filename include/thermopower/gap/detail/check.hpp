@@ -12,10 +12,10 @@
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
-#include <thermopower/gap/detail/recordings_together.hpp>
-#include <thermopower/gap/detail/run_units.hpp>
-#include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/gap/rule.hpp>
+#include <thermopower/gap/units/choose_units.hpp>
+#include <thermopower/gap/units/clock_shift.hpp>
+#include <thermopower/gap/units/detached_sensor.hpp>
 #include <thermopower/plant/inline.hpp>
 #include <thermopower/plant/variable_words.hpp>
 
@@ -68,17 +68,26 @@ inline void mend_what_lags(const Model& model, CheckedRecordings& checked, std::
   });
 }
 
-/// Looks for runs that are in another unit than the others.
+/// Chooses the units of all recordings. What else the columns say is asked only where their units are right.
 /// @param spans  given_spans() of the recordings in training, then of those held out
-inline void check_runs(const Model& model, const CheckedRecordings& checked,
-                       const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
-                       std::vector<Finding>& findings) {
-  if (model.own) return;
-  RunUnits runs(model, catalogue);
+inline void check_units(const Model& model, const CheckedRecordings& checked,
+                        const std::vector<std::vector<RunSpan>>& spans, const Catalogue& catalogue,
+                        double most_power, std::vector<Finding>& findings) {
+  if (model.own) return;  // nobody but its author knows the units of its columns
+  UnitChoice units(model, catalogue, most_power);
   std::size_t at = 0;
   for (const auto* all : {&checked.train, &checked.held_out})
-    for (const PreparedRecording& one : *all) runs.add(one, spans[at++]);
-  runs.find(findings);
+    for (const PreparedRecording& one : *all) units.add(one, spans[at++]);
+  units.find(findings);
+  if (!units.is_as_expected()) return;
+  for (const auto* all : {&checked.train, &checked.held_out})
+    for (const PreparedRecording& one : *all) {
+      FindingList list(one.recording());
+      check_thermometer(model, one, catalogue, list);
+      check_current_clock(model, one, catalogue, list);
+      check_drive_clock(model, one, list);
+      for (Finding& finding : list.take()) findings.push_back(std::move(finding));
+    }
 }
 
 /// Lets the target of a servo go on between the rows where the training recordings say that it did.
@@ -261,27 +270,21 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
       if (one.has("power_param"))
         for (const double power : one.column("power_param"))
           if (power > most_power) most_power = power;
-  RecordingsTogether together;
   std::vector<std::vector<RunSpan>> spans;
   const auto take = [&](std::vector<Recording>& recordings, std::vector<PreparedRecording>& to) {
     to.reserve(recordings.size());
     for (Recording& one : recordings) {
-      if (!model.own) together.add(one);
       spans.push_back(given_spans(one));
       to.emplace_back(model, one, options.as_recorded);
       const std::vector<Finding>& own = to.back().findings();
       others.insert(others.end(), own.begin(), own.end());
-      for (Finding& finding : check_units(model, one, to.back(), catalogue, most_power))
-        others.push_back(std::move(finding));
       one = Recording();
     }
   };
   take(train, result.train);
   take(held_out, result.held_out);
-  check_runs(model, result, spans, catalogue, others);
+  check_units(model, result, spans, catalogue, most_power, others);
   leave_out_what_is_dead(model, result, options.as_recorded, others);
-  together.find_air(others);
-  together.settle(others);
   if (!options.as_recorded) {
     mend_what_lags(model, result, others);
     read_what_drove_before(model, result);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/check_data.hpp>
-#include <thermopower/gap/detail/unit_check.hpp>
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
 #include <thermopower/gap/data/noise.hpp>
@@ -22,6 +21,49 @@
 namespace thermopower::gap {
 
 namespace engine {
+
+/// Some of a recording that spans its excitation: of an axis four stretches of consecutive rows, of a bench every n-th
+/// row with the mean power, so that it spans a time in which temperatures move.
+inline Recording sampled(const Recording& recording, bool axis) {
+  constexpr Eigen::Index most = 3000;  // rows that are simulated
+  if (recording.rows() <= most) return recording;
+  Recording part;
+  part.name = recording.name;
+  std::vector<Eigen::Index> rows;
+  const Eigen::Index stride = axis ? 1 : (recording.rows() + most - 1) / most;
+  constexpr Eigen::Index parts = 4;
+  const auto add = [&](Eigen::Index from, Eigen::Index end, const std::string& label) {
+    const auto begin = static_cast<Eigen::Index>(rows.size());
+    for (Eigen::Index i = from; i < end; i += stride) rows.push_back(i);
+    if (static_cast<Eigen::Index>(rows.size()) - begin > 1)
+      part.runs.push_back({begin, static_cast<Eigen::Index>(rows.size()), label});
+    else rows.resize(static_cast<std::size_t>(begin));
+  };
+  for (const RunSpan& run : recording.spans()) {
+    if (!axis) {
+      add(run.begin, run.end, run.label);
+      continue;
+    }
+    for (Eigen::Index p = 0; p < parts; ++p) {
+      const Eigen::Index begin = p * (recording.rows() - most / parts) / (parts - 1);
+      const Eigen::Index from = std::max(begin, run.begin), end = std::min(begin + most / parts, run.end);
+      if (from < end) add(from, end, run.label);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  const auto pick = [&](const Eigen::VectorXd& values, bool mean) {
+    Eigen::VectorXd picked(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::Index row = rows[static_cast<std::size_t>(k)];
+      picked[k] = mean ? values.segment(row, std::min(stride, values.size() - row)).mean() : values[row];
+    }
+    return picked;
+  };
+  part.t_s = pick(recording.t_s, false);
+  for (const Column& column : recording.columns)
+    part.columns.push_back({column.name, pick(column.values, column.name == "power_param" && stride > 1)});
+  return part;
+}
 
 /// Thresholds of what a recording can show.
 /// Held by tests/gap/known_inputs_test.cpp and tests/gap/network_test.cpp.
@@ -301,7 +343,7 @@ THERMOPOWER_GAP_INLINE DataReport check_data(const Model& model, const std::vect
   if (report.too_little.empty() && !judged_on.empty())
     report.too_little = engine::lacking(model, judged_on, true, options.horizon_s, report.next_experiment);
   constexpr Eigen::Index few = 12;
-  const Recording sample = engine::sampled(longest->recording(), engine::moves(model, longest->recording()));
+  const Recording sample = engine::sampled(longest->recording(), longest->inputs().axis());
   if (sample.rows() < few) return report;
   const engine::Responses responses(model, sample, options.horizon_s, catalogue);
   report.signals = responses.signals();

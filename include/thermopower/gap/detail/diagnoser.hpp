@@ -253,6 +253,9 @@ private:
     result_.numbers = numbers_of(result_.gap, choice.probability);
     if (effort_leads_) result_.numbers.share = share_left({result_.gap.back()});
     result_.numbers.together = choice.together;
+    result_.numbers.common_factor =
+        std::any_of(result_.findings.begin(), result_.findings.end(),
+                    [](const Finding& one) { return one.kind == FindingKind::common_factor; });
     if (result_.numbers.configured <= verdict_limits.near_floor)
       result_.numbers.twice_horizon = at_twice_the_horizon();
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
@@ -269,8 +272,9 @@ private:
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
-    const bool by_constants =
-        decided.reason == Reason::constants_within_known || decided.reason == Reason::constants_moved;
+    const bool by_constants = decided.reason == Reason::constants_within_known ||
+                              decided.reason == Reason::constants_moved ||
+                              decided.reason == Reason::common_factor;
     const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                        decided.verdict == Verdict::partial;
     result_.constants = named && !by_constants ? constants_of(chosen, model_, weight) : refitted;

@@ -4,6 +4,8 @@
 
 #include <thermopower/gap/data/bell_regression.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/model.hpp>
+#include <thermopower/gap/units/evidence.hpp>
 #include <thermopower/plant/sine_cosine.hpp>
 
 #include <Eigen/Core>
@@ -13,15 +15,15 @@
 #include <cstddef>
 #include <vector>
 
-/// @file motion_scale.hpp
-/// How large the numbers of an axis' columns are against each other and against what drives it, whatever friction or load
-/// a simulation lacks.
+/// @file motion_evidence.hpp
+/// What the columns of an axis say of their units: the rate against the slope of the angle, and the effort that the measured
+/// motion needs, with friction, drag, a constant load and gravity left free.
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of what counts as told about the size of an axis' columns.
+/// Thresholds of what counts as told about an axis' columns.
 /// Held by tests/gap/data/scale_test.cpp.
-struct MotionScaleThresholds {
+struct MotionEvidenceThresholds {
   Eigen::Index looked_at = 10000;  ///< rows of a recording, about; of longer ones stretches
   Eigen::Index stretch = 1250;     ///< rows of such a stretch
   std::size_t shortest = 2;        ///< intervals of the shortest bell
@@ -29,9 +31,14 @@ struct MotionScaleThresholds {
   int least_bells = 20;            ///< that compare two columns
   std::size_t least_windows = 40;  ///< of a regression
   double moving = 0.05;            ///< of the speed's 95th percentile: slower rows may be stuck
+  double over_noise = 3.0;         ///< standard deviations of the rate's noise: slower rows may be stuck
   double alike = 0.97;             ///< correlation of two columns of which one is the other's slope
-  double partial = 0.7;            ///< correlation of command and acceleration beside everything else
-  double significance = 8.0;       ///< standard errors that the coefficient of the command is from 0
+  double follows = 0.9;            ///< correlation of a target and the motion that follows it
+  double partial = 0.7;            ///< correlation of effort and acceleration beside everything else
+  double tells_sign =
+      0.3;  ///< of the effort's variance that inertia, drag and friction may leave where they tell a sign
+  double independent = 10.0;  ///< half the windows that count as independent: a misfit remembers
+  double most_nats = 12.0;    ///< that one recording says of a sign
 };
 
 /// How one column follows from another: the factor between them, and how alike they are.
@@ -40,18 +47,20 @@ struct ColumnRatio {
   double alike = 0.0;      ///< magnitude of their correlation, 0..1
 
   /// Whether the one is so many times the other.
-  bool is_told() const { return alike > MotionScaleThresholds().alike; }
+  bool is_told() const { return alike > MotionEvidenceThresholds().alike; }
 };
 
-/// What the command and the rate do to the acceleration.
-struct MotionTold {
-  ToldCoefficient drive;  ///< deg/s^2 as recorded for each A or V
-  ToldCoefficient drag;   ///< 1/s, negative for a drag
+/// The effort that a motion needs.
+struct EffortOnMotion {
+  ToldCoefficient inertia;  ///< effort for each deg/s^2
+  ToldCoefficient drag;     ///< effort for each deg/s
+  ToldCoefficient torque;   ///< effort for each N m from outside; negative where it helps
+  double forwards_nats =
+      0.0;  ///< log likelihood that inertia, drag and friction are positive, against negative
 
-  /// Whether the command's part is told.
-  bool is_told() const {
-    constexpr MotionScaleThresholds limit;
-    return drive.partial > limit.partial && drive.significance() > limit.significance && drive.value != 0.0;
+  /// Whether a coefficient is told.
+  static bool is_told(const ToldCoefficient& one) {
+    return one.partial > MotionEvidenceThresholds().partial && one.value != 0.0;
   }
 };
 
@@ -91,12 +100,16 @@ private:
 };
 
 /// The columns of an axis against each other and against what drives it.
-class MotionScale {
+class MotionEvidence {
 public:
   /// @param inputs  of an axis; must outlive this object
   /// @param voltage  whether a voltage drives it, and not a current
-  MotionScale(const Inputs& inputs, bool voltage)
-      : t_s_(inputs.t_s), runs_(some_of(inputs.runs)), command_(voltage ? inputs.voltage_V : inputs.drive_A) {
+  MotionEvidence(const Inputs& inputs, bool voltage)
+      : t_s_(inputs.t_s),
+        runs_(some_of(inputs.runs)),
+        command_(voltage ? inputs.voltage_V : inputs.drive_A),
+        torque_(inputs.torque_Nm),
+        interval_s_(plant::median_interval_s(inputs.t_s, inputs.runs)) {
     if (inputs.judged(Signal::angle_deg)) angle_ = inputs.of(Signal::angle_deg);
     if (inputs.judged(Signal::rate_dps)) rate_ = inputs.of(Signal::rate_dps);
   }
@@ -110,36 +123,75 @@ public:
   /// The command by the slope of the angle: 1 where rate and command are exchanged.
   ColumnRatio command_by_slope_of_angle() const { return ratio_to_slope(command_, angle_); }
 
-  /// The acceleration regressed on command, rate, direction, a constant and the angle, by the bells that tell the command's
-  /// part best.
+  /// The effort regressed on acceleration, rate, direction, a constant and the angle, by the bells that tell most.
   /// @param by_rate  the slope of the recorded rate; else the curvature of the recorded angle
-  MotionTold regressed(bool by_rate) const {
-    constexpr MotionScaleThresholds limit;
-    MotionTold best;
+  /// @param earlier  rows by which the command is read later than it was stamped
+  /// @param only     intervals of the bells; 0: all lengths
+  EffortOnMotion effort(bool by_rate, Eigen::Index earlier = 0, std::size_t only = 0) const {
+    constexpr MotionEvidenceThresholds limit;
+    EffortOnMotion best;
     const Eigen::VectorXd& moved = by_rate ? rate_ : angle_;
     if (moved.size() == 0 || command_.size() == 0) return best;
     const ReadRows rows(t_s_, runs_, moved);
-    const double slow = limit.moving * fast(rows, moved, by_rate);
+    const double fastest = fast(rows, moved, by_rate), noise = white_scale(moved, runs_);
     const Eigen::VectorXd angle = last_known(angle_, runs_);
+    double least_left = 1.0;
     for (std::size_t length = by_rate ? limit.shortest : 2 * limit.shortest; length <= limit.longest;
          length *= 2) {
+      if (only != 0 && length != only) continue;
+      const double of_rate = by_rate ? noise : noise / (interval_s_ * static_cast<double>(length / 8 + 1));
+      const Reading reading{angle, std::max(limit.moving * fastest, limit.over_noise * of_rate), earlier};
       KeptRegression all, moving;
       rows.for_each_bell(length, [&](const std::vector<ReadRows::Part>& parts) {
-        const Window window =
-            by_rate ? window_of_rate(parts, angle, slow) : window_of_angle(parts, angle, slow);
+        const Window window = by_rate ? window_of_rate(parts, reading) : window_of_angle(parts, reading);
         all.add(window.terms, window.response);
         if (window.moves) moving.add(window.terms, window.response);
       });
       for (const KeptRegression* one : {&moving, &all}) {
         if (one->rows() < limit.least_windows) continue;
         const std::vector<ToldCoefficient> told = one->solve();
-        if (!told.empty() && told[0].partial > best.drive.partial) best = {told[0], told[1]};
+        if (told.empty()) continue;
+        if (told[0].partial > best.inertia.partial) best.inertia = told[0];
+        if (one != &moving) continue;  // one that is held may be driven either way
+        if (told[1].partial > best.drag.partial) best.drag = told[1];
+        if (has_torque() && told.back().partial > best.torque.partial) best.torque = told.back();
+        const double free = one->least_square(directed, 0.0), forwards = one->least_square(directed, 1.0),
+                     backwards = one->least_square(directed, -1.0);
+        const double left = std::min(forwards, backwards) / free;
+        if (!(left < least_left) || left > limit.tells_sign) continue;
+        least_left = left;
+        best.forwards_nats =
+            std::clamp(limit.independent * std::log(backwards / forwards), -limit.most_nats, limit.most_nats);
       }
     }
     return best;
   }
 
+  /// The target by the motion that follows it. @param target  of the angle or of the rate
+  ColumnRatio target_by(const Eigen::VectorXd& target, const Eigen::VectorXd& motion) const {
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+    if (target.size() == 0 || motion.size() == 0) return {};
+    for (const RunSpan& run : runs_)
+      for (Eigen::Index i = run.begin; i < run.end; ++i) {
+        if (!std::isfinite(target[i]) || !std::isfinite(motion[i])) continue;
+        n += 1.0, x += motion[i], y += target[i];
+        xx += motion[i] * motion[i], xy += motion[i] * target[i], yy += target[i] * target[i];
+      }
+    if (n < MotionEvidenceThresholds().least_bells) return {};
+    xx -= x * x / n, xy -= x * y / n, yy -= y * y / n;
+    if (!(xx > 0.0) || !(yy > 0.0)) return {};
+    return {std::copysign(std::sqrt(yy / xx), xy), std::abs(xy) / std::sqrt(xx * yy)};
+  }
+
 private:
+  static constexpr Eigen::Index directed =
+      3;  // first terms, whose sign is that of the effort: inertia, drag, friction
+
+  struct Reading {
+    const Eigen::VectorXd& angle;  // without holes
+    double slow;                   // below it a row may be stuck
+    Eigen::Index earlier;          // rows
+  };
   struct Window {
     Eigen::VectorXd terms;
     double response = 0.0;
@@ -148,7 +200,7 @@ private:
 
   /// Stretches all over long recordings: some thousand rows tell an order of magnitude as well as a million.
   static std::vector<RunSpan> some_of(const std::vector<RunSpan>& runs) {
-    constexpr MotionScaleThresholds limit;
+    constexpr MotionEvidenceThresholds limit;
     Eigen::Index rows = 0;
     for (const RunSpan& run : runs) rows += run.size();
     const Eigen::Index parts = rows / limit.looked_at;
@@ -170,7 +222,7 @@ private:
 
   /// What one column is of another one's slope in time, by the bells under which they are most alike.
   ColumnRatio ratio_to_slope(const Eigen::VectorXd& column, const Eigen::VectorXd& whole) const {
-    constexpr MotionScaleThresholds limit;
+    constexpr MotionEvidenceThresholds limit;
     ColumnRatio best;
     if (column.size() == 0 || whole.size() == 0) return best;
     const Travel travel(t_s_, runs_, column);
@@ -199,64 +251,65 @@ private:
   double fast(const ReadRows& rows, const Eigen::VectorXd& moved, bool by_rate) const {
     constexpr double share = 0.95;
     std::vector<double> speeds;
-    rows.for_each_bell(2 * MotionScaleThresholds().shortest, [&](const std::vector<ReadRows::Part>& parts) {
-      const Eigen::Index from = parts.front().row, to = parts.back().next;
-      speeds.push_back(std::abs(by_rate ? moved[from] : (moved[to] - moved[from]) / (t_s_[to] - t_s_[from])));
-    });
+    rows.for_each_bell(
+        2 * MotionEvidenceThresholds().shortest, [&](const std::vector<ReadRows::Part>& parts) {
+          const Eigen::Index from = parts.front().row, to = parts.back().next;
+          speeds.push_back(
+              std::abs(by_rate ? moved[from] : (moved[to] - moved[from]) / (t_s_[to] - t_s_[from])));
+        });
     return quantile_of(speeds, share);
   }
 
-  /// Adds to the terms what the command and everything but the drag is in one interval.
-  void add_terms(Window& window, const ReadRows::Part& part, double rate, double slow,
-                 const Eigen::VectorXd& angle) const {
-    double command = 0.0;
-    for (Eigen::Index row = part.row; row < part.next; ++row)
-      command += command_[row] * (t_s_[row + 1] - t_s_[row]);
+  bool has_torque() const { return torque_.size() > 0; }
+
+  Window empty_window() const {
+    constexpr Eigen::Index without = 4, of_angle = 3;
+    Window window;
+    window.terms =
+        Eigen::VectorXd::Zero(without + (angle_.size() > 0 ? of_angle : 0) + (has_torque() ? 1 : 0));
+    return window;
+  }
+
+  /// Adds one interval of everything but the acceleration.
+  void add(Window& window, const ReadRows::Part& part, double rate, const Reading& reading) const {
+    for (Eigen::Index row = part.row; row < part.next; ++row) {
+      const Eigen::Index later = std::min(row + reading.earlier, command_.size() - 1);
+      window.response += part.weight * command_[later] * (t_s_[row + 1] - t_s_[row]);
+      if (has_torque())
+        window.terms[window.terms.size() - 1] += part.weight * torque_[row] * (t_s_[row + 1] - t_s_[row]);
+    }
     const double weight_s = part.weight * part.step_s;
-    window.moves = window.moves && std::abs(rate) > slow;
-    window.terms[0] += part.weight * command;
-    window.terms[2] += weight_s * std::clamp(rate / slow, -1.0, 1.0);
+    window.moves = window.moves && std::abs(rate) > reading.slow;
+    window.terms[1] += weight_s * rate;
+    window.terms[2] += weight_s * std::clamp(rate / reading.slow, -1.0, 1.0);
     window.terms[3] += weight_s;
-    if (angle.size() == 0) return;
-    const double deg = 0.5 * (angle[part.row] + angle[part.next]);
+    if (angle_.size() == 0) return;
+    const double deg = 0.5 * (reading.angle[part.row] + reading.angle[part.next]);
     window.terms[4] += weight_s * deg;
     const plant::SineCosine at(deg * rad_per_deg);
     window.terms[5] += weight_s * at.sine;
     window.terms[6] += weight_s * at.cosine;
   }
 
-  Window empty_window(const Eigen::VectorXd& angle) const {
-    constexpr Eigen::Index with_angle = 7, without = 4;
-    Window window;
-    window.terms = Eigen::VectorXd::Zero(angle.size() > 0 ? with_angle : without);
-    return window;
-  }
-
-  Window window_of_rate(const std::vector<ReadRows::Part>& parts, const Eigen::VectorXd& angle,
-                        double slow) const {
-    Window window = empty_window(angle);
+  Window window_of_rate(const std::vector<ReadRows::Part>& parts, const Reading& reading) const {
+    Window window = empty_window();
     for (const ReadRows::Part& one : parts) {
-      const double rate = 0.5 * (rate_[one.row] + rate_[one.next]);
-      window.response += one.weight * (rate_[one.next] - rate_[one.row]);
-      window.terms[1] += one.weight * rate * one.step_s;
-      add_terms(window, one, rate, slow, angle);
+      window.terms[0] += one.weight * (rate_[one.next] - rate_[one.row]);
+      add(window, one, 0.5 * (rate_[one.row] + rate_[one.next]), reading);
     }
     return window;
   }
 
-  Window window_of_angle(const std::vector<ReadRows::Part>& parts, const Eigen::VectorXd& angle,
-                         double slow) const {
+  Window window_of_angle(const std::vector<ReadRows::Part>& parts, const Reading& reading) const {
     constexpr std::size_t part_of_bell = 8;
-    Window window = empty_window(angle);
+    Window window = empty_window();
     const std::size_t around = std::max<std::size_t>(1, parts.size() / part_of_bell);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const ReadRows::Part& one = parts[i];
       const Eigen::Index from = parts[i >= around ? i - around : 0].row,
                          to = parts[std::min(i + around, parts.size() - 1)].next;
-      const double change = angle_[one.next] - angle_[one.row];
-      window.response -= one.slope_per_s * change;
-      window.terms[1] += one.weight * change;
-      add_terms(window, one, (angle_[to] - angle_[from]) / (t_s_[to] - t_s_[from]), slow, angle);
+      window.terms[0] -= one.slope_per_s * (angle_[one.next] - angle_[one.row]);
+      add(window, one, (angle_[to] - angle_[from]) / (t_s_[to] - t_s_[from]), reading);
     }
     return window;
   }
@@ -264,6 +317,8 @@ private:
   const Eigen::VectorXd& t_s_;
   const std::vector<RunSpan> runs_;  ///< those that are looked at
   const Eigen::VectorXd& command_;
+  const Eigen::VectorXd& torque_;
+  const double interval_s_;
   Eigen::VectorXd angle_;
   Eigen::VectorXd rate_;
 };

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+#pragma once
+
+#include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/gap/units/motion_evidence.hpp>
+#include <thermopower/plant/bench_at_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+/// @file clock_shift.hpp
+/// Inputs and outputs that two loggers stamped with different clocks.
+
+namespace thermopower::gap::engine {
+
+/// Thresholds of the check of clocks.
+/// Held by tests/gap/data/units_test.cpp.
+struct ClockShiftThresholds {
+  Eigen::Index furthest_current = 12;  ///< rows that a current is looked for
+  Eigen::Index furthest_drive = 8;     ///< rows that a motion is looked for before its command
+  double least_rows = 30.0;            ///< that compare two columns
+  double current_left = 0.6;           ///< of the current's variance that the right shift leaves
+  double follows = 0.02;               ///< of the effort's variance that a command on time may leave
+  double drive_left = 0.3;             ///< of the effort's variance that the right shift leaves
+};
+
+/// Rows of a column moved to later rows by `shift` (to earlier ones where negative), ends repeated.
+inline Eigen::VectorXd shifted(const Eigen::VectorXd& values, Eigen::Index shift) {
+  Eigen::VectorXd result(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    result[i] = values[std::clamp<Eigen::Index>(i - shift, 0, values.size() - 1)];
+  return result;
+}
+
+/// A current follows its voltage within a row: where another shift fits far better, the loggers' clocks differ.
+inline void check_current_clock(const Model& model, const PreparedRecording& prepared,
+                                const Catalogue& catalogue, FindingList& list) {
+  constexpr ClockShiftThresholds limit;
+  const Recording& recording = prepared.recording();
+  if (!model.has_current() || !prepared.inputs().bench() || !recording.has("power_param") ||
+      !recording.has("current_A"))
+    return;
+  const Inputs& inputs = prepared.inputs();
+  const Eigen::VectorXd law_A =
+      plant::BenchAtRows(model, catalogue, inputs, {}).evaluate(plant::heat_told(inputs)).law_A;
+  const Eigen::VectorXd& measured = recording.column("current_A");
+  const auto left_at = [&](Eigen::Index shift) {
+    double xx = 0.0, xy = 0.0, yy = 0.0, rows = 0.0;
+    for (const RunSpan& run : inputs.runs)
+      for (Eigen::Index i = run.begin + limit.furthest_current; i + limit.furthest_current < run.end; ++i) {
+        const double x = law_A[i - shift], y = measured[i];
+        if (!std::isfinite(x) || !std::isfinite(y)) continue;
+        xx += x * x, xy += x * y, yy += y * y, rows += 1.0;
+      }
+    return rows > limit.least_rows && xx > 0.0 ? (yy - xy * xy / xx) / rows : -1.0;
+  };
+  const double now = left_at(0);
+  double best = now;
+  Eigen::Index at = 0;
+  for (Eigen::Index shift = -limit.furthest_current; shift <= limit.furthest_current; ++shift) {
+    const double left = left_at(shift);
+    if (left >= 0.0 && left < best) best = left, at = shift;
+  }
+  if (at == 0 || !(best < limit.current_left * now)) return;
+  list.add(FindingKind::clock_shift, Severity::warning, "current_A",
+           std::string(at > 0 ? "follows" : "precedes") + " power_param by " +
+               short_number(static_cast<double>(std::abs(at)) * prepared.interval_s()) + " s (" +
+               std::to_string(std::abs(at)) + (std::abs(at) == 1 ? " row)" : " rows)"),
+           "log both with one clock");
+}
+
+/// A motion before its command is a clock's fault. One that comes after may be the drive's own delay.
+inline void check_drive_clock(const Model& model, const PreparedRecording& prepared, FindingList& list) {
+  constexpr ClockShiftThresholds limit;
+  const Inputs& inputs = prepared.inputs();
+  if (!inputs.axis() || inputs.closed_loop) return;
+  const bool voltage = model.axis->voltage_driven(), by_rate = inputs.judged(Signal::rate_dps);
+  const MotionEvidence motion(inputs, voltage);
+  // Short bells tell the time best, longer ones a slow sensor's.
+  for (const std::size_t intervals : {std::size_t{8}, std::size_t{32}}) {
+    const auto left_at = [&](Eigen::Index earlier) {
+      const double partial = motion.effort(by_rate, earlier, intervals).inertia.partial;
+      return 1.0 - partial * partial;
+    };
+    const double now = left_at(0);
+    if (now < limit.follows) return;
+    double best = now;
+    Eigen::Index at = 0;
+    for (Eigen::Index k = 1; k <= limit.furthest_drive; ++k)
+      if (const double left = left_at(k); left < best) best = left, at = k;
+    if (at == 0 || !(best < limit.drive_left * now)) continue;
+    list.add(FindingKind::clock_shift, Severity::warning, voltage ? "voltage_V" : "drive_A",
+             "is stamped " + short_number(static_cast<double>(at) * prepared.interval_s()) +
+                 " s later than the motion it causes",
+             "log both with one clock");
+    return;
+  }
+}
+
+}  // namespace thermopower::gap::engine

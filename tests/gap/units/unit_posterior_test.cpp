@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+// The posterior of units: a unit competes with constants that moved, and holds in every recording of a source.
+#include "../../catch.hpp"
+#include "../data/rough_recordings.hpp"
+
+#include <thermopower/gap/check.hpp>
+#include <thermopower/gap/units/posterior.hpp>
+#include <thermopower/plant/standard_catalogue.hpp>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace thermopower::gap;
+using namespace thermopower::gap::engine;
+
+namespace {
+
+/// A joint whose command moves it `moves` times as much as its model says.
+UnitEvidence joint(double moves) {
+  UnitEvidence one;
+  one.columns = {"t_s", "drive_A", "angle_deg", "rate_dps"};
+  one.is_axis = true;
+  one.interval_s = 5e-3;
+  one[UnitMeasure::slope].value = 1.0;
+  one[UnitMeasure::slope].sd = 0.03;
+  one[UnitMeasure::drive].value = moves;
+  return one;
+}
+
+/// The likeliest line of the table for all recordings; empty where none is sure.
+std::string likeliest(const std::vector<UnitEvidence>& parts) {
+  const std::vector<UnitHypothesis> table =
+      unit_hypotheses([&](const std::string& column) { return parts.front().has(column); });
+  const UnitPosterior posterior(parts, 0.0);
+  const auto all = [&](const UnitHypothesis& one) { return UnitPosterior::Assignment(parts.size(), &one); };
+  const UnitHypothesis* best = &table.front();
+  double most = posterior.of(all(*best), *best) + UnitPosterior::beliefs.sure;
+  for (const UnitHypothesis& one : table)
+    if (const double now = posterior.of(all(one), one);
+        now > most && posterior.holds_everywhere(one, all(one)))
+      most = now, best = &one;
+  return best->is_none() ? "" : best->mend();
+}
+
+std::vector<Finding> findings(const Model& model, const Recording& r) {
+  return engine::check(model, {r}, {}, {}, standard_catalogue()).findings;
+}
+
+bool has(const std::vector<Finding>& list, FindingKind kind, Severity severity) {
+  for (const Finding& one : list)
+    if (one.kind == kind && one.severity == severity) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("a factor that units have is a unit, and one that they do not have is not") {
+  CHECK(likeliest({joint(1.0)}).empty());
+  CHECK(likeliest({joint(1e-3)}) == "--column drive_A=drive_A:mA");
+  for (const double moves : {32.5, 425.0, 27000.0, 0.1, 10.0}) CHECK(likeliest({joint(moves)}).empty());
+}
+
+TEST_CASE("a unit or a sign holds in every recording of a source") {
+  CHECK(likeliest({joint(1e-3), joint(1e-3)}) == "--column drive_A=drive_A:mA");
+  CHECK(likeliest({joint(1e-3), joint(1.0), joint(1.0)}).empty());
+  UnitEvidence forwards = joint(1.0), backwards = joint(1.0);
+  forwards[UnitMeasure::drive].forwards_nats = 12.0;
+  backwards[UnitMeasure::drive].forwards_nats = -12.0;
+  CHECK(likeliest({backwards, backwards}) == "--column drive_A=drive_A:-A");
+  CHECK(likeliest({backwards, forwards}).empty());
+}
+
+TEST_CASE("one factor of several constants is said, and stops nothing") {
+  Recording slow = test::recorded(test::RubbingAxis{1, 1.0, 0.0});
+  slow.t_s *= 0.5;
+  CHECK(has(findings(test::rubbing_model(), slow), FindingKind::common_factor, Severity::warning));
+  CHECK(deciding(findings(test::rubbing_model(), slow)) == nullptr);
+  const Recording sound = test::recorded(test::RubbingAxis{1, 1.0, 0.0});
+  CHECK_FALSE(has(findings(test::rubbing_model(), sound), FindingKind::common_factor, Severity::warning));
+}
+
+TEST_CASE("a thermometer that only follows the air is not attached") {
+  Recording r = test::recorded(test::CasedMotor{});
+  CHECK_FALSE(has(findings(test::cased_model(), r), FindingKind::detached_sensor, Severity::error));
+  std::mt19937 numbers(3);
+  std::normal_distribution<double> noise;
+  double drift_K = 0.0;
+  Eigen::VectorXd motor = r.column("ambient_C");
+  for (double& one : motor) one += drift_K += 0.0005, one += 0.05 * noise(numbers);
+  r.set("motor_C", motor);
+  CHECK(has(findings(test::cased_model(), r), FindingKind::detached_sensor, Severity::error));
+}
