@@ -5,6 +5,7 @@
 #include <thermopower/plant/hyperbolic_tangent.hpp>
 #include <thermopower/plant/sine_cosine.hpp>
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -51,8 +52,11 @@ public:
     for (const std::uint32_t one : bits) any |= one;
     return any != 0;
   }
-  /// Makes it vary with a direction at unit speed.
-  void seed(int direction) { slope_[direction] = 1.0f; }
+  /// Makes it vary with a direction at unit speed. @param direction  from 0, below `width`
+  void seed(int direction) {
+    assert(direction >= 0 && direction < width);
+    slope_[direction] = 1.0f;
+  }
   /// Forgets the directions from `first` on.
   void forget(int first) {
     for (int i = first < 0 ? 0 : first; i < width; ++i) slope_[i] = 0.0f;

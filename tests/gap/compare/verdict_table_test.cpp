@@ -47,6 +47,14 @@ TEST_CASE("no gap is said only where the table as configured shows none") {
 }
 
 TEST_CASE("constants that leave a gap explain nothing") {
+  // A gap that shows in windows twice as long only, and that no constant closes.
+  GapScore unproven = row(1.4, 1.3, 1.3);
+  unproven.ci95.low = -0.1;
+  DecisionNumbers numbers = numbers_of({unproven}, 1.0);
+  numbers.twice_horizon = 6.0;
+  CHECK(decide(numbers, true, true).verdict == Verdict::unexplained);
+  numbers.twice_horizon = 1.2;
+  CHECK(decide(numbers, true, true).verdict == Verdict::no_gap);
   CHECK(verdict_of({row(46.0, 8.0, 8.0)}, 1.0, true, false) == Verdict::unexplained);
 }
 

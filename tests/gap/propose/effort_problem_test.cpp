@@ -189,3 +189,19 @@ TEST_CASE("a true cause does not lose, and one that is not there gains nothing")
   CHECK(both.gain > posed.score({"coulomb_friction"}).gain);
   CHECK(posed.score({"coulomb_friction", "imbalance", "cable_spring"}).gain < both.gain + 1.0);
 }
+
+TEST_CASE(
+    "more parameters than a scalar carries are fitted as well: friction is told beside eight other causes") {
+  Motion motion;
+  motion.extra_Nm = [](double, double rate) { return rate > 0.0 ? 0.08 : -0.08; };
+  Posed posed(model_of(motion), motion);
+  const InverseScore few = posed.score({"coulomb_friction"});
+  const InverseScore many =
+      posed.score({"coulomb_friction", "asymmetric_viscous", "constant_torque", "imbalance", "cable_spring",
+                   "quadratic_drag", "load_friction", "cogging", "torque_ripple"});
+  std::size_t free = many.constants.size();
+  for (const InverseEstimate& one : many.parameters) free += one.fitted ? 1 : 0;
+  REQUIRE(many.judged);
+  CHECK(free >= 16);
+  CHECK(many.share < 1.1 * few.share);
+}

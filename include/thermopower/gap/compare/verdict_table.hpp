@@ -101,16 +101,18 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
   if (numbers.configured <= passes && numbers.twice_horizon <= limit.near_floor)
     return {Verdict::no_gap, Reason::configured_model_passes};
   const bool near = numbers.left <= limit.near_floor;
+  const bool is_proven = 1.0 - numbers.share.most >= limit.material;
+  if (!is_proven && numbers.configured <= limit.near_floor && numbers.twice_horizon <= limit.near_floor)
+    return {Verdict::no_gap, Reason::configured_model_passes};
   if (only_constants) {
-    if (!near) return {Verdict::unexplained, Reason::constants_leave_a_rest};
+    // Near the floor as configured, too, and no better: the gap shows in longer windows, and constants do not close it.
+    const bool closes_nothing = !is_proven && numbers.configured <= limit.near_floor;
+    if (!near || closes_nothing) return {Verdict::unexplained, Reason::constants_leave_a_rest};
     if (numbers.common_factor && !within_known) return {Verdict::partial, Reason::common_factor};
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
   }
   // What reaches the floor closes the gap. It need not beat constants that do, too: their moves count in its probability.
-  const bool is_proven = 1.0 - numbers.share.most >= limit.material;
   const bool closes = is_proven && numbers.share.of_refitted_constants <= limit.of_constants;
-  if (!is_proven && numbers.configured <= limit.near_floor && numbers.twice_horizon <= limit.near_floor)
-    return {Verdict::no_gap, Reason::configured_model_passes};
   if (near && within_known && numbers.probability < limit.sure && numbers.refitted <= limit.near_floor)
     return {Verdict::explained, Reason::constants_within_known};
   if (near)

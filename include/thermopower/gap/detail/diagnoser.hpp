@@ -63,10 +63,15 @@ public:
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
     Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where).run();
-    if (effort_is_measured() && leave_out_what_effort_denies(attempt.candidates)) {
+    const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
+    const Answer answer = choose(attempt.candidates, model_);
+    // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap.
+    const bool leaves_a_gap =
+        largest_noise_multiple(attempt.candidates[answer.chosen].held_out) > verdict_limits.near_floor;
+    if (effort_is_measured() && (is_denied || (leaves_a_gap && effort_->loop().kind != LoopKind::open))) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
-    return report_on(attempt, choose(attempt.candidates, model_));
+    return report_on(attempt, answer);
   }
 
 private:
