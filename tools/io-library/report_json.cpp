@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include <thermopower/io/report_json.hpp>
+#include <thermopower/io/sentences.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -145,7 +146,8 @@ std::string findings_json(const std::vector<Finding>& findings) {
   return list.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string report_json(const Diagnosis& diagnosis) {
+std::string report_json(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects,
+                        const Provenance& made_of) {
   Json root;
   root["format"] = "thermopower-gap-report/1";
   root["verdict"] = to_string(diagnosis.verdict);
@@ -163,6 +165,13 @@ std::string report_json(const Diagnosis& diagnosis) {
   if (diagnosis.remaining) root["remaining"] = remaining(*diagnosis.remaining);
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
+  root["words"] = sentences(diagnosis, effects);
+  if (made_of.told())
+    root["made_of"] = {{"version", version_text()},
+                       {"model", made_of.model},
+                       {"recordings", made_of.recordings},
+                       {"held_out", made_of.held_out},
+                       {"options", made_of.options}};
   if (!diagnosis.loop.empty()) root["loop"] = diagnosis.loop;
   const DecisionNumbers& numbers = diagnosis.numbers;
   root["decision"] = {{"reason", code_of(diagnosis.why)},

@@ -29,3 +29,7 @@ Command add_fleet(CLI::App& program);
 Command add_init(CLI::App& program);
 /// @brief Adds `effects`: lists the catalogue.
 Command add_effects(CLI::App& program);
+/// @brief Adds `explain`: says what a code of a report means.
+Command add_explain(CLI::App& program);
+/// @brief Adds `compare`: says in what two reports differ.
+Command add_compare(CLI::App& program);
