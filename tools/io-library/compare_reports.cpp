@@ -122,10 +122,10 @@ std::string compared(const NamedReport& name_a, const NamedReport& name_b, const
     }
     for (const auto& [name, one] : cause.at("parameters").items())
       if (other->at("parameters").contains(name))
-        out += summary_line("both",
-                            effect + ", " + name + " " +
-                                difference(known(one, "value"), known(other->at("parameters").at(name), "value"),
-                                           one.at("unit").get<std::string>()));
+        out += summary_line(
+            "both", effect + ", " + name + " " +
+                        difference(known(one, "value"), known(other->at("parameters").at(name), "value"),
+                                   one.at("unit").get<std::string>()));
   }
   for (const Json& cause : b.at("cause"))
     if (cause_in(a, cause.at("effect").get<std::string>()) == nullptr) {
