@@ -21,13 +21,13 @@
 namespace thermopower::io {
 namespace {
 
-constexpr const char* headings[] = {"What it is", "How it shows",  "Mistaken for",
-                                    "Experiment", "In simulators", "When to ignore it"};
+constexpr const char* headings[] = {"Meaning",    "Signs",         "Mistaken for",
+                                    "Experiment", "In simulators", "Negligible"};
 
 CodePage page_of(const std::string& code, const char* kind, const std::vector<std::string>& texts) {
   CodePage page{code, kind, {}};
   for (std::size_t i = 0; i < texts.size(); ++i)
-    if (!texts[i].empty()) page.sections.push_back({headings[i], texts[i]});
+    if (!texts[i].empty()) page.sections.push_back({headings[i], texts[i], false});
   return page;
 }
 
@@ -42,10 +42,9 @@ std::string sentence(const std::string& text) {
 std::string parameters_of(const EffectInfo& effect) {
   std::string text;
   for (const plant::Parameter& one : effect.parameters)
-    text += (text.empty() ? " Parameters: " : ", ") + one.name + " (" +
-            (one.unit == "1" ? "a number" : one.unit) + ", " + readable(one.lower) + " to " +
-            readable(one.upper) + ")";
-  return text.empty() ? text : text + ".";
+    text += (text.empty() ? "" : "; ") + one.name + (one.unit == "1" ? "" : " in " + one.unit) + ", " +
+            readable(one.lower) + " to " + readable(one.upper);
+  return text;
 }
 
 std::string needs_of(const EffectInfo& effect) {
@@ -60,14 +59,16 @@ CodePage page_of_effect(const EffectInfo& effect) {
   const auto note = [notes](const char* EffectNotes::*which) {
     return notes == nullptr ? std::string() : notes->*which;
   };
-  std::string is =
-      sentence(effect.prose) + " It acts in the " + part_in_words(to_string(effect.submodel)) + ".";
-  if (!effect.equation.empty()) is += " Equation: " + effect.equation + ".";
-  is += plant::is_curve(effect.id) ? std::string() : parameters_of(effect);
-  return page_of(effect.id, "effect",
-                 {is, note(&EffectNotes::shows), sentence(note(&EffectNotes::mistaken_for)),
-                  sentence(effect.experiment) + needs_of(effect), note(&EffectNotes::in_simulators),
-                  note(&EffectNotes::ignore_when)});
+  CodePage page =
+      page_of(effect.id, "effect",
+              {sentence(effect.prose) + " It acts in the " + part_in_words(to_string(effect.submodel)) + ".",
+               note(&EffectNotes::shows), sentence(note(&EffectNotes::mistaken_for)),
+               sentence(effect.experiment) + needs_of(effect), note(&EffectNotes::in_simulators),
+               note(&EffectNotes::ignore_when)});
+  if (!effect.equation.empty()) page.sections.push_back({"Equation", effect.equation, true});
+  if (!effect.parameters.empty() && !plant::is_curve(effect.id))
+    page.sections.push_back({"Parameters", parameters_of(effect), true});
+  return page;
 }
 
 CodePage page_of_constant(const std::string& code) {
@@ -98,7 +99,7 @@ constexpr VerdictNotes verdicts[] = {
      "Every judged signal is within one and a half times its noise floor.",
      "A recording that does not excite what is wrong: nothing shows in a motor that stays cold.",
      "Record what the simulation will be used for: the largest power, the fastest motion, the longest run.",
-     "Signals under 'not judged' are no part of it."},
+     "Signals under 'not judged' do not count."},
     {Verdict::explained, "One explanation brings held-out data near their noise, and no other is as likely.",
      "The error with the effect is within one and a half times the noise floor in every judged signal.",
      "An effect that the catalogue lacks and that does the same in this recording: see 'looks like'.",
@@ -147,7 +148,7 @@ constexpr ReasonNotes reasons[] = {
 CodePage page_of_verdict(const VerdictNotes& one) {
   return page_of(to_string(one.verdict), "verdict",
                  {one.is, one.shows, one.mistaken_for, one.experiment,
-                  "It is about a simulation and recordings, and no simulator writes it.", one.ignore_when});
+                  "It judges a simulation; no simulator writes it.", one.ignore_when});
 }
 
 CodePage page_of_reason(const ReasonNotes& one) {
@@ -223,7 +224,7 @@ std::string code_pages_markdown() {
     kind = page.kind;
     out += "\n### `" + page.code + "`\n\n";
     for (const CodeSection& one : page.sections)
-      out += "- **" + one.heading + ":** " + literal(one.text) + "\n";
+      out += "- **" + one.heading + ":** " + (one.is_code ? "`" + one.text + "`" : literal(one.text)) + "\n";
   }
   return out;
 }

@@ -13,8 +13,9 @@ namespace thermopower::io {
 
 /// @brief One paragraph of a CodePage.
 struct CodeSection {
-  std::string heading;  ///< the same on every page
-  std::string text;     ///< sentences in plain words
+  std::string heading;   ///< the same on every page
+  std::string text;      ///< sentences in plain words
+  bool is_code = false;  ///< it is an equation or a list of parameters instead
 };
 
 /// @brief What a code of a report means: an effect, a finding, a verdict or a reason.
