@@ -15,6 +15,8 @@ struct Command {
 
 /// @brief Adds `diagnose`: finds the missing effect.
 Command add_diagnose(CLI::App& program);
+/// @brief Adds `design`: writes the schedule of the next experiment.
+Command add_design(CLI::App& program);
 /// @brief Adds `predict`: simulates a recording with a model.
 Command add_predict(CLI::App& program);
 /// @brief Adds `check`: says what is wrong with recordings.

@@ -66,7 +66,7 @@ int diagnose(const Arguments& arguments) {
     // A fleet compares its reports byte by byte, wherever its logs lie.
     if (!arguments.of_fleet) made_of = provenance_of(arguments);
     if (!arguments.report.empty())
-      outputs.put(arguments.report, io::report_json(diagnosis, effects, made_of));
+      outputs.put(arguments.report, io::report_json(diagnosis, model, effects, made_of));
     if (!arguments.html.empty())
       outputs.put(arguments.html, io::report_html(diagnosis, model.name, effects, held_out, made_of));
     if (!arguments.predictions.empty()) {

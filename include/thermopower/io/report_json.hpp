@@ -20,6 +20,10 @@ namespace thermopower::io {
 std::string report_json(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects = {},
                         const Provenance& made_of = {});
 
+/// @brief The same with the model that was diagnosed, under `model`: thermopower-gap design needs it.
+std::string report_json(const Diagnosis& diagnosis, const Model& model,
+                        const std::vector<EffectInfo>& effects = {}, const Provenance& made_of = {});
+
 /// @brief The findings as a JSON list, as reports have it under `findings`.
 std::string findings_json(const std::vector<Finding>& findings);
 

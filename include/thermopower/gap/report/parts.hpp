@@ -57,6 +57,11 @@ inline void describe_fit(RankedExplanation& entry, const Candidate& one, const M
                             k < one.fit.at_bound.size() && one.fit.at_bound[k]});
   }
   entry.covariance = covariance_of_moving(one, weight);
+  entry.fixed.clear();
+  for (std::size_t k = 0; k < one.list.size(); ++k)
+    if (one.list[k].still)
+      entry.fixed.push_back(
+          {one.list[k].name, one.fit.point[static_cast<Eigen::Index>(k)], one.list[k].logarithmic, false});
 }
 
 /// Every explanation weighed, likeliest first.
