@@ -236,8 +236,9 @@ struct Tally {
   int cases = 0, right = 0, wrong = 0, open = 0, cannot = 0, cannot_rightly = 0;
   std::vector<double>
       duration_s;  ///< of the experiments until it was resolved rightly, in units of the longest one allowed
-  double design_s = 0.0;
+  double design_s = 0.0;  ///< spent by all designs
   int designs = 0;
+  std::string sentence;  ///< of the last design
 };
 
 double median(std::vector<double> values) {
@@ -256,6 +257,7 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
     const Design next = design_experiment(gap, limits, options);
     tally.design_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++tally.designs;
+    tally.sentence = next.sentence;
     if (next.ending != Ending::schedule) return std::nullopt;
     return next.schedule;
   }
@@ -351,7 +353,7 @@ int main(int count, char** values) {
             next_of(contender, i, now, hidden->limits,
                     static_cast<unsigned>(seed + number * 10 + static_cast<std::uint64_t>(i)), tally);
         if (!schedule) {
-          steps += " none";
+          steps += " none: " + tally.sentence;
           break;
         }
         if (contender == "designed" && violations > 0) {
