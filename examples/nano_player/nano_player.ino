@@ -31,7 +31,8 @@ float thermistor_C(uint8_t pin) {
 float current_A() { return (static_cast<float>(analogRead(current_pin)) * (5.0f / 1023.0f) - 2.5f) / 0.185f; }
 
 float scheduled(uint16_t row, uint8_t input) {
-  return schedule_unit[input] * static_cast<float>(static_cast<int16_t>(pgm_read_word(&schedule_values[row][input])));
+  return schedule_unit[input] *
+         static_cast<float>(static_cast<int16_t>(pgm_read_word(&schedule_values[row][input])));
 }
 
 void drive(float value) {

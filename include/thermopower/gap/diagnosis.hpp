@@ -163,7 +163,7 @@ struct RankedExplanation {
       0;  ///< hidden states whose start the held-out gain fitted, because nobody measures them
   std::vector<FittedCoordinate> fitted = {};  ///< every constant, then the effects' parameters
   Eigen::MatrixXd covariance;  ///< of `fitted`; 0 by 0 where nobody looked at the fit's curvature
-  std::vector<FittedCoordinate> fixed = {};  ///< parameters that the data gave and no fit moved: the range of a curve
+  std::vector<FittedCoordinate> fixed = {};  ///< given by the data, such as the range of a curve
 };
 
 /// A constant of the model: as configured, and as the reported explanation has it.

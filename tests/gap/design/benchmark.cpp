@@ -204,6 +204,18 @@ Answer answer_of(const Diagnosis& diagnosis, const HiddenCase& hidden) {
   return best.effects.size() == 1 && is_it(best.effects.front()) ? Answer::right : Answer::wrong;
 }
 
+/// Whether the hidden cause is among what a design says is left; of a cause outside of the catalogue, a curve.
+bool holds_truth(const Design& design, const HiddenCase& hidden) {
+  for (const ExplanationClass& one : design.classes)
+    for (const std::vector<std::string>& ids : one.members)
+      for (const std::string& id : ids) {
+        const auto& richer = hidden.contained_in;
+        if (id == hidden.truth || std::find(richer.begin(), richer.end(), id) != richer.end()) return true;
+        if (hidden.truth.empty() && id.rfind("unknown.", 0) == 0) return true;
+      }
+  return false;
+}
+
 /// Whether the first recording leaves anything to decide.
 bool leaves_open(const DiagnosedGap& gap) {
   if (gap.verdict == Verdict::insufficient || gap.verdict == Verdict::no_gap ||
@@ -233,12 +245,16 @@ std::optional<Recording> fixed_kind(Shape shape, double length_s, const Limits& 
 }
 
 struct Tally {
-  int cases = 0, right = 0, wrong = 0, open = 0, cannot = 0, cannot_rightly = 0;
+  int cases = 0, right = 0, wrong = 0, open = 0;
+  int one_class = 0, one_class_rightly = 0;  ///< of the open: what is left predicts alike in every experiment
+  int cannot = 0,
+      cannot_rightly = 0;  ///< of the open: no experiment decides; rightly: the truth is among what is left
   std::vector<double>
       duration_s;  ///< of the experiments until it was resolved rightly, in units of the longest one allowed
   double design_s = 0.0;  ///< spent by all designs
   int designs = 0;
   std::string sentence;  ///< of the last design
+  Design last;
 };
 
 double median(std::vector<double> values) {
@@ -258,6 +274,7 @@ std::optional<Recording> next_of(const std::string& contender, int number, const
     tally.design_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++tally.designs;
     tally.sentence = next.sentence;
+    tally.last = next;
     if (next.ending != Ending::schedule) return std::nullopt;
     return next.schedule;
   }
@@ -397,7 +414,12 @@ int main(int count, char** values) {
         ++tally.wrong;
       } else {
         ++tally.open;
-        if (steps.find("none") != std::string::npos) ++tally.cannot;
+        if (steps.find("none") != std::string::npos && contender == "designed") {
+          const bool rightly = holds_truth(tally.last, *hidden);
+          const bool is_class = tally.last.ending == Ending::enough;
+          (is_class ? tally.one_class : tally.cannot) += 1;
+          (is_class ? tally.one_class_rightly : tally.cannot_rightly) += rightly;
+        }
       }
       std::printf("%d %s %s, truth %s, share %.2f: %s in %.2f of the longest;%s\n", played,
                   axis ? "axis" : "bench", contender.c_str(),
@@ -411,11 +433,16 @@ int main(int count, char** values) {
   }
   std::printf("\n%d of %d recordings leave something open\n", played, drawn);
   std::printf(
-      "| experiment | cases | right | wrong | open | of these: says that none decides | median duration where right, share of the longest |\n|---|---|---|---|---|---|---|\n");
+      "| experiment | cases | right | wrong | open | one class is left (rightly) | none decides (rightly) | median duration "
+      "where right, share of the longest |\n|---|---|---|---|---|---|---|---|\n");
   for (const std::string& contender : contenders) {
     const Tally& t = tallies[contender];
-    std::printf("| %s | %d | %d | %d | %d | %d | %.2f |\n", contender.c_str(), t.cases, t.right, t.wrong,
-                t.open, t.cannot, median(t.duration_s));
+    std::printf("| %s | %d | %d | %d | %d | %d (%d) | %d (%d) | %.2f |\n", contender.c_str(), t.cases,
+                t.right, t.wrong, t.open, t.one_class, t.one_class_rightly, t.cannot, t.cannot_rightly,
+                median(t.duration_s));
+  }
+  for (const std::string& contender : contenders) {
+    const Tally& t = tallies[contender];
     if (t.designs > 0) std::printf("%d designs, %.2f s each\n", t.designs, t.design_s / t.designs);
   }
   if (draws > 0)

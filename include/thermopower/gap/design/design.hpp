@@ -65,11 +65,13 @@ public:
     result_.best_apart = search.best_apart().maxCoeff();
     std::vector<std::size_t> label = classes_of(search.best_apart());
     std::optional<Tried> best;
-    if (count_of(label) == 1 && is_sure()) {
-      // Causes that these limits hide from each other are no answer; those that nothing tells apart are.
+    if (count_of(label) == 1) {
+      // Causes that these limits hide from each other are not an answer; those that nothing tells apart are one.
       write_classes(label);
+      result_.expected_right = *std::max_element(weights_.begin(), weights_.end());
       const std::optional<RaisedLimit> helpful = helpful_limit(search);
-      return helpful ? cannot_decide(helpful) : enough();
+      return helpful || result_.classes.front().probability < options_.sure ? cannot_decide(helpful)
+                                                                            : enough();
     }
     if (count_of(label) > 1) {
       best = search.improve((1.0 - options_.search.screening) * rows, weights_, label);
@@ -119,9 +121,11 @@ private:
 
   Design enough() {
     result_.ending = Ending::enough;
-    result_.expected_right = explanations_.front().probability();
+    const ExplanationClass& first = result_.classes.front();
+    result_.expected_right = first.probability;
     result_.sentence =
-        "Enough: " + result_.classes.front().name() + " has " + two_digits(result_.expected_right) + ".";
+        "Enough: " + first.name() + " has " + two_digits(first.probability) +
+        (first.members.size() > 1 ? "; no experiment near these limits tells its members apart." : ".");
     return result_;
   }
 

@@ -13,6 +13,8 @@
 namespace thermopower::gap::design {
 
 /// Draws experiments from the library of shapes, and changes them a little.
+///
+/// How to: @ref design_the_next_experiment.
 class Library {
 public:
   /// @param limits  must outlive the object

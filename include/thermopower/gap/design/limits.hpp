@@ -16,6 +16,8 @@
 namespace thermopower::gap::design {
 
 /// An input that an experiment may vary.
+///
+/// How to: @ref design_the_next_experiment.
 struct VariedInput {
   std::string column;  ///< as recordings name it: `drive_A`, `power_param`, `target_deg`, ...
   double from = 0.0;   ///< smallest value, in the column's unit
@@ -30,6 +32,8 @@ struct VariedInput {
 };
 
 /// A range that a quantity must not leave.
+///
+/// How to: @ref design_the_next_experiment.
 struct Bounds {
   double low = -std::numeric_limits<double>::infinity();  ///< smallest allowed value
   double high = std::numeric_limits<double>::infinity();  ///< largest allowed value

@@ -38,6 +38,8 @@ struct PredictedSignal {
 };
 
 /// Explanations that no experiment within the limits tells apart.
+///
+/// How to: @ref design_the_next_experiment.
 struct ExplanationClass {
   std::vector<std::vector<std::string>> members;  ///< ids of each; an empty one: nothing is missing
   double probability = 0.0;                       ///< of all of them, as the report has it

@@ -21,6 +21,8 @@ namespace thermopower::gap::design {
 
 /// An explanation that the recordings so far leave possible, with what they leave open of its parameters: a normal distribution
 /// around the fit, in the fit's coordinates.
+///
+/// How to: @ref design_the_next_experiment.
 class Possible {
 public:
   /// @param model      as it was diagnosed

@@ -32,6 +32,8 @@ struct Prediction {
 };
 
 /// Simulates experiments with explanations.
+///
+/// How to: @ref design_the_next_experiment.
 class Predictor {
 public:
   /// Readings of a signal that count: neighbouring ones err alike, and more would promise too much.

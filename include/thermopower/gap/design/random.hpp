@@ -8,6 +8,8 @@
 namespace thermopower::gap::design {
 
 /// Random numbers that are the same on every machine: the distributions of the standard library are not.
+///
+/// How to: @ref design_the_next_experiment.
 class Random {
 public:
   explicit Random(unsigned seed) : engine_(seed) {}

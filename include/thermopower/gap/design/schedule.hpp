@@ -25,6 +25,8 @@ enum class Shape {
 };
 
 /// One part of an experiment: a shape, for how long, and how large.
+///
+/// How to: @ref design_the_next_experiment.
 struct Piece {
   Shape shape = Shape::rest;
   double duration_s = 1.0;     ///< how long, s, > 0
@@ -67,6 +69,8 @@ private:
 };
 
 /// What one varied input does during an experiment.
+///
+/// How to: @ref design_the_next_experiment.
 struct Course {
   std::vector<Piece> pieces;  ///< one after the other; then the input is at rest
   double once = 0.0;          ///< of an input that has one value: where that is, -1..1
@@ -80,6 +84,8 @@ struct Course {
 };
 
 /// An experiment: a course for each varied input, in the order of Limits::vary.
+///
+/// How to: @ref design_the_next_experiment.
 struct Experiment {
   std::vector<Course> courses;
   double scale = 1.0;  ///< multiplies everything, 0..1: how far the limits of the motion allow it

@@ -38,6 +38,8 @@ struct Tried {
 };
 
 /// Looks for experiments that tell explanations apart and keep the limits. The same seed gives the same experiments.
+///
+/// How to: @ref design_the_next_experiment.
 class Search {
 public:
   /// All must outlive the object.
