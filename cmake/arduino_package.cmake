@@ -20,7 +20,7 @@ foreach(part actuator control detail fixed_point monitor motors sbgc)
 endforeach()
 # The Arduino builder finds a library by a header in the root of its sources.
 file(WRITE ${package}/src/thermopower.h "#pragma once\n#include \"thermopower/thermopower.hpp\"\n")
-foreach(sketch nano_gimbal gimbal_controller pwm_motor)
+foreach(sketch nano_gimbal gimbal_controller nano_player pwm_motor)
   file(GLOB parts ${root}/examples/${sketch}/*.ino ${root}/examples/${sketch}/*.h)
   file(COPY ${parts} DESTINATION ${package}/examples/${sketch})
 endforeach()

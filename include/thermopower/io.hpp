@@ -11,6 +11,8 @@
 #include <thermopower/io/check_report.hpp>
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/column_list.hpp>
+#include <thermopower/io/compare_reports.hpp>
+#include <thermopower/io/explain.hpp>
 #include <thermopower/io/header_export.hpp>
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/mcap_file.hpp>
@@ -19,9 +21,11 @@
 #include <thermopower/io/predictions_file.hpp>
 #include <thermopower/io/recording_file.hpp>
 #include <thermopower/io/remedy.hpp>
+#include <thermopower/io/provenance.hpp>
 #include <thermopower/io/report_html.hpp>
 #include <thermopower/io/report_json.hpp>
 #include <thermopower/io/sbgc_capture.hpp>
 #include <thermopower/io/simulator_export.hpp>
+#include <thermopower/io/sentences.hpp>
 #include <thermopower/io/summary.hpp>
 #include <thermopower/io/text_table.hpp>

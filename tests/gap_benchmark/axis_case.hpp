@@ -65,6 +65,8 @@ struct AxisSession {
   double length_s = 40.0, unknown_phase = 0.0;
   int runs = 1;
   std::uint64_t seed = 1;  ///< of what belongs to the experiment: frequencies, where it starts from
+  /// A schedule: the current at each row, in the place of `motion`; the axis begins at 0. Empty: there is none.
+  std::vector<double> commands_A = {};
 };
 
 struct AxisRecording {
@@ -191,7 +193,8 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
     Wander gust(1.0, 0.4), warmth(0.15, 3.0);
     const double start_s = 0.0, length_s = session.length_s / session.runs;
     AxisState x;
-    x.angle = x.far_angle = session.runs > 1 || fixed.chance(0.3) ? fixed.uniform(-0.3, 0.3) : 0.0;
+    if (session.commands_A.empty())
+      x.angle = x.far_angle = session.runs > 1 || fixed.chance(0.3) ? fixed.uniform(-0.3, 0.3) : 0.0;
     const std::size_t first = out.drive.t_s.size();
     out.drive.run_start.push_back(first);
     const double breaks_s = length_s * (0.35 + 0.3 * session.unknown_phase / 6.2832);
@@ -210,7 +213,9 @@ inline AxisRecording record(const AxisSetup& setup, const AxisSession& session, 
       // The loop closes over the sensors' noise; a wrong scale in the log is not in the loop.
       const double seen_deg = x.angle * degrees_per_radian + setup.noise_angle_deg * random.gauss(),
                    seen_dps = x.rate * degrees_per_radian + setup.noise_rate_dps * random.gauss();
-      u.drive_A = source.next(random, t, seen_deg, seen_dps);
+      u.drive_A = session.commands_A.empty()
+                      ? source.next(random, t, seen_deg, seen_dps)
+                      : session.commands_A[std::min(k - first, session.commands_A.size() - 1)];
       out.drive.servo.target_deg.push_back(source.goal_deg);
       out.drive.servo.target_dps.push_back(source.goal_dps);
       if (setup.servo && plant.target_delay() > 0.0)

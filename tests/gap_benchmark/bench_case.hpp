@@ -34,6 +34,8 @@ struct BenchSession {
   double length_s = 3000.0, ambient_C = 22.0, run_gap_K = 0.0, unknown_phase = 0.0;
   int runs = 1;
   std::uint64_t seed = 1;  ///< of what belongs to the experiment: levels, frequencies, where it starts from
+  /// A schedule: POWER at each row, in the place of `kind`. Empty: there is none.
+  std::vector<double> commands = {};
 };
 
 struct BenchRecording {
@@ -150,7 +152,9 @@ inline BenchRecording record(const BenchSetup& setup, const BenchSession& sessio
       } else {
         plant.advance(x, out.drive.input.back(), elapsed_s);
       }
-      u.power_param = power.next(random, t[k], x.winding_C);
+      u.power_param = session.commands.empty()
+                          ? power.next(random, t[k], x.winding_C)
+                          : std::round(session.commands[std::min(k, session.commands.size() - 1)]);
       if (c.current_is_input) u.measured_current_A = plant.current(u, x);
       const double sensed_C = plant.sensed_temperature(u, x);
       if (k == 0) out.drive.start_C.push_back(sensed_C);

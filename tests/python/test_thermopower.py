@@ -3,10 +3,13 @@
 """The Python module against a motor that is integrated here, in NumPy, and knows nothing of the library."""
 
 import ast
+import copy
+import datetime
 import doctest
 import inspect
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -125,6 +128,71 @@ class Diagnosing(unittest.TestCase):
         report = thermopower.check(knowing, hot)
         self.assertFalse(report.believable)
         self.assertIn("motor_C=motor_C:degF", report.findings[0].mend)
+
+
+    def test_what_is_misspelt_is_refused(self):
+        with self.assertRaisesRegex(thermopower.InputError, "no effect 'winding_tempc'; did you mean winding_tempco"):
+            thermopower.diagnose(MODEL, self.train, without=["winding_tempc"])
+        with self.assertRaisesRegex(thermopower.InputError, "there is no 'angle'; expected motor_C"):
+            thermopower.predict(MODEL, self.train, start={"angle": 1.0})
+        with self.assertRaisesRegex(TypeError, "no option 'horizon'"):
+            thermopower.diagnose(MODEL, self.train, horizon=1.0)
+
+    def test_is_kept_and_copied(self):
+        again = pickle.loads(pickle.dumps(self.found))
+        self.assertEqual(again.as_dict(), self.found.as_dict())
+        for one in ("html", "header", "markdown"):
+            self.assertEqual(getattr(again, one)(), getattr(self.found, one)())
+        self.assertEqual(again.augmented, self.found.augmented)
+        self.assertEqual(str(again), str(self.found))
+        self.assertEqual(len(again.series), len(self.found.series))
+        self.assertEqual(copy.copy(self.found).verdict, "explained")
+        self.assertEqual(copy.deepcopy(self.found).verdict, "explained")
+        with self.assertRaisesRegex(ValueError, "axis"):
+            again.mjcf()  # a motor without a joint
+
+    def test_says_it_in_words(self):
+        self.assertIn("The winding's resistance rises with temperature (0.3", self.found.words[0])
+        self.assertIn("| motor temperature / degC |", self.found.markdown())
+        self.assertIn("Both say the same", thermopower.compare(self.found, self.found))
+        self.assertIn("At the same voltage the current falls", thermopower.explain("winding_tempco"))
+        with self.assertRaisesRegex(thermopower.InputError, "did you mean winding_tempco"):
+            thermopower.explain("winding_tempc")
+        self.assertIn("\n", repr(thermopower.effects()))
+        self.assertIn("motor temperature", str(thermopower.check(MODEL, self.train)))
+        self.assertRegex(thermopower.__version__, r"^\d+\.\d+\.\d+$")
+        self.assertEqual(sorted(thermopower.__all__), thermopower.__all__)
+
+    def test_dates_indexes_and_float32_are_read(self):
+        expected = thermopower.simulate(MODEL, self.train)["motor_C"]
+        dates = np.datetime64("2026-03-01T12:00:00") + (1000 * self.train["t_s"]).astype("timedelta64[ms]")
+        dated = dict(self.train, t_s=dates)
+        found = thermopower.simulate(MODEL, dated)
+        np.testing.assert_array_equal(found["motor_C"], expected)
+        np.testing.assert_array_equal(found["t_s"], self.train["t_s"])
+        utc = [datetime.datetime(2026, 3, 1, tzinfo=datetime.timezone.utc) + datetime.timedelta(seconds=float(one)) for one in self.train["t_s"]]
+        np.testing.assert_allclose(thermopower.simulate(MODEL, dict(self.train, t_s=utc))["motor_C"], expected)
+        single = {name: values.astype(np.float32) for name, values in self.train.items()}
+        np.testing.assert_allclose(thermopower.simulate(MODEL, single)["motor_C"], expected, atol=1e-3)
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas is not here")
+        frame = pandas.DataFrame(self.train)
+        np.testing.assert_array_equal(thermopower.simulate(MODEL, frame.set_index("t_s"))["motor_C"], expected)
+        frame.index = pandas.DatetimeIndex(dates)
+        np.testing.assert_array_equal(thermopower.simulate(MODEL, frame.drop(columns="t_s"))["motor_C"], expected)
+
+    def test_columns_of_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "log.csv")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("time [s],motor_temp [degC],ambient_temp [degC]\n")
+                file.writelines(f"{i},{20 + 0.5 * i},20\n" for i in range(50))
+            found = thermopower.columns(path)
+        self.assertIn("motor_C", found)
+        self.assertTrue(any(one.startswith("motor_C=motor_temp") for one in found.choices), found.choices)
+        self.assertIn("motor_temp", repr(found))
 
 
 class Predicting(unittest.TestCase):

@@ -47,6 +47,17 @@ protected:
     const auto found = known.find(name);
     return found == known.end() ? name : found->second;
   }
+  /// Units as the page spells them; a unit follows a number or an interval.
+  static std::string with_signs(const std::string& text) {
+    const std::pair<const char*, const char*> signs[] = {{"([0-9\\]]) degC\\b", "$1 \u00b0C"},
+                                                         {"([0-9\\]]) ohm\\b", "$1 \u03a9"},
+                                                         {"([0-9\\]]) deg/s\\b", "$1 \u00b0/s"},
+                                                         {"([0-9\\]]) m\\^2\\b", "$1 m\u00b2"},
+                                                         {"([0-9\\]]) rad/s2\\b", "$1 rad/s\u00b2"}};
+    std::string out = text;
+    for (const auto& [plain, sign] : signs) out = std::regex_replace(out, std::regex(plain), sign);
+    return out;
+  }
   static std::string of(const Json& text) { return text.get<std::string>(); }
   static std::string together(const Json& ids) {
     std::string out;
@@ -168,10 +179,11 @@ protected:
   /// A finding is told as the report has it.
   bool finding(Sentence& sentence) {
     for (const auto& one : r_["findings"]) {
-      if (sentence.text().find(of(one["message"])) == std::string::npos) continue;
+      const bool plain = sentence.text().find(of(one["message"])) != std::string::npos;
+      if (!plain && sentence.text().find(with_signs(of(one["message"]))) == std::string::npos) continue;
       const std::string path = of(one["recording"]), name = path.substr(path.find_last_of('/') + 1);
       if (sentence.text().find(name) == std::string::npos) continue;
-      sentence.take(of(one["message"]));
+      sentence.take(plain ? of(one["message"]) : with_signs(of(one["message"])));
       sentence.take(of(one["mend"]));
       sentence.take(of(one["column"]));
       for (const auto& other : r_["findings"]) {  // the same fault of several recordings is told once

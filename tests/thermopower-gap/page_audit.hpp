@@ -105,7 +105,9 @@ private:
         {"explained", "The gap is explained"},
         {"partial", "The gap is explained in part"},
         {"ambiguous", "Several explanations fit, and this recording cannot tell them apart"},
-        {"unexplained", "There is a gap that no known effect explains"},
+        {"unexplained",
+         "There is a gap that no known effect explains|The simulation runs away|"
+         "Refitted constants take a part of the gap away, and no known effect the rest"},
         {"insufficient", "(The data cannot be believed as they stand|Too little data for any statement)"}};
     bool said = false;
     take_all(html, "<h1 class=\"([a-z_]+)\">([^<]*)</h1>", [&](const std::smatch& m) {
@@ -114,8 +116,17 @@ private:
     need(said, "another verdict on the page");
     take_all(html, "<div class=\"eyebrow\">[^]*?</div>", [](const std::smatch&) {});  // the model's name
     take_all(html, "<p class=\"lead\">([^]*?)</p>", [&](const std::smatch& m) {
-      need(without_tags(m[1]) == capital(of(r_["reason"])) + ".", "another reason", m[1]);
+      need(without_tags(m[1]) == with_signs(capital(of(r_["reason"]))) + ".", "another reason", m[1]);
     });
+    bool worded = false;
+    take_all(html, "<p class=\"words\">([^]*?)</p>", [&](const std::smatch& m) {
+      std::string words;
+      for (const auto& one : r_["words"]) words += (words.empty() ? "" : " ") + of(one);
+      worded = without_tags(m[1]) == with_signs(words);
+      need(worded, "other words", m[1]);
+    });
+    need(worded, "no words");
+    take_all(html, "<p class=\"from\">[^]*?</p>", [](const std::smatch&) {});  // versions and dates
     std::size_t cause = 0;
     take_all(
         html,
@@ -221,7 +232,7 @@ private:
           Sentence sentence(row);
           std::string pattern = std::string("^\\|") + number + "\\|" + number +
                                 (caused ? std::string("\\|") + number : "") + "\\|" + number;
-          if (caused) pattern += std::string("\\|") + share + " " + number + " to " + number + " %";
+          if (caused) pattern += std::string("\\|") + share + " \\[" + number + ", " + number + "\\]";
           const int scores = sentence.take(pattern + "$", [&](const std::smatch& s) {
             bool same = is(s[1], (*gap)["before"]) && is(s[2], (*gap)["recalibrated"]) &&
                         is(s[caused ? 4 : 3], (*gap)["noise_floor"]);
@@ -235,7 +246,7 @@ private:
         });
     bool told = false;
     take_all(html, "<p>([^]*?)</p>", [&](const std::smatch& m) {
-      told = without_tags(m[1]) == capital(of(r_["recalibration"])) + ".";
+      told = without_tags(m[1]) == with_signs(capital(of(r_["recalibration"]))) + ".";
       need(told, "another recalibration", m[1]);
     });
     need(told != of(r_["recalibration"]).empty(), "a recalibration that is not told");
@@ -283,6 +294,11 @@ private:
                      known = known || (!run["from_s"].is_null() && is(m[1], run["from_s"]));
                need(known, "another stamp", m[0]);
              });
+    take_all(html, std::string("Shown: ") + number + "(?: |\u00a0)s of " + number + "(?: |\u00a0)s",
+             [&](const std::smatch& m) {
+               const double shown = std::atof(m[1].str().c_str()), whole = std::atof(m[2].str().c_str());
+               need(shown < whole && whole < 1.01 * w_.longest_run_s, "a longer run than any", m[0]);
+             });
     take_all(html, "<div class=\"keys\">[^]*?</div>", [&](const std::smatch& m) {
       Sentence sentence(replaced(without_tags(m[0]), "\n", " "));
       common(sentence);
@@ -318,7 +334,7 @@ private:
       if (places_ >= r_["where"].size()) return complain("more places than there are");
       const Json& one = r_["where"][places_++];
       Sentence sentence(replaced(without_tags(m[1]), "\n", " "));
-      const std::string evidence = capital(of(one["evidence"]));
+      const std::string evidence = with_signs(capital(of(one["evidence"])));
       need(sentence.text().find(evidence) != std::string::npos, "other evidence", sentence.text());
       Sentence before(trimmed(sentence.text().substr(0, sentence.text().find(evidence))));
       place(before, one);
@@ -336,6 +352,13 @@ private:
   void which(std::string& html) {
     std::size_t at = 0;
     const std::size_t shown = std::min<std::size_t>(12, r_["ranking"].size());
+    std::vector<Json> likeliest(r_["ranking"].begin(), r_["ranking"].end());
+    std::stable_sort(likeliest.begin(), likeliest.end(), [](const Json& a, const Json& b) {
+      const auto of_it = [](const Json& one) {
+        return one["probability"].is_null() ? -1.0 : one["probability"].get<double>();
+      };
+      return of_it(a) > of_it(b);
+    });
     take_all(
         html, "<tr[^>]*><td class=\"t\">([^]*?)</td><td class=\"t nowrap\">([^]*?)</td><td>([^]*?)</td></tr>",
         [&](const std::smatch& m) {
@@ -346,12 +369,12 @@ private:
             return;
           }
           if (at >= shown) return complain("more explanations than there are", m[1]);
-          const Json& one = r_["ranking"][at++];
+          const Json& one = likeliest[at++];
           need(is_share(probability, one["probability"]), "another probability", together(one["effects"]));
           const std::string ratio = without_tags(m[3]);
           const double meant = one["held_out_ratio"].is_null() ? 0.0 : one["held_out_ratio"].get<double>();
-          need(meant > 0.0 ? ratio.rfind("\u00d7 ", 0) == 0 && is(ratio.substr(3), meant) : ratio == "\u2013",
-               "another ratio", together(one["effects"]) + " " + ratio);
+          need(meant > 0.0 ? is_share(ratio, 1.0 - meant) : ratio == "\u2013", "another ratio",
+               together(one["effects"]) + " " + ratio);
           explanation(one, lines_of(without_tags(m[1])));
         });
     need(at == shown, "explanations on the page");

@@ -23,7 +23,7 @@ function look() {
   check(ticks() !== before, 'zoom changed no tick');
   const other = [...d.querySelectorAll('.chart')].find(c => c !== chart && c.dataset.group === chart.dataset.group);
   check([...other.querySelectorAll('.gx')].map(t => t.textContent).join(' ') === ticks(), 'charts of one run are not zoomed together');
-  [...chart.querySelectorAll('button')].find(b => b.textContent === 'whole run').click();
+  [...chart.querySelectorAll('button')].find(b => b.textContent === 'show the whole run').click();
   check(ticks() === before, 'the whole run is not what it was');
   // The run is 30 + 0.2 t, as configured 1 more: read from the picture at 25 % of its width, t = 24.75.
   const box = plot.getBoundingClientRect();

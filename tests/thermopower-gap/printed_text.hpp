@@ -64,7 +64,7 @@ inline std::vector<std::string> lines_of(const std::string& text) {
 /// A number as it is printed: signs, digits, point, exponent.
 inline const char* const number = "([-+]?[0-9]+(?:\\.[0-9]+)?(?:e[-+]?[0-9]+)?|\u2013|\\?)";
 /// A share as it is printed.
-inline const char* const share = "((?:[<>] ?)?-?[0-9]+ %|\u2013|\\?)";
+inline const char* const share = "((?:[<>] ?)?-?[0-9]+(?:\\.[0-9]+)? %|\u2013|\\?)";
 
 /// Whether a printed number is the value, to half a unit of its last digit.
 inline bool is(const std::string& text, const Json& value) {

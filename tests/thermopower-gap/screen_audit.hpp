@@ -34,7 +34,7 @@ private:
         // A sentence goes on, or the next one of a kind begins: only what was wrapped is as long as that.
         const bool first = paragraphs.empty();
         if (first || begins_anew(paragraphs.back().first, trimmed(line)))
-          paragraphs.emplace_back(first ? "reason" : paragraphs.back().first, trimmed(line));
+          paragraphs.emplace_back(first ? "words" : paragraphs.back().first, trimmed(line));
         else paragraphs.back().second += " " + trimmed(line);
       }
     }
@@ -69,7 +69,12 @@ private:
 
   void paragraph(const std::string& label, std::size_t index, Sentence& sentence) {
     const std::string& text = sentence.text();
-    if (label == "reason") {
+    if (label == "words") {
+      std::string words;
+      for (const auto& one : r_["words"]) words += (words.empty() ? "" : " ") + of(one);
+      need(text == words, "other words", text);
+      sentence.take(words);
+    } else if (label == "why") {
       need(text == of(r_["reason"]), "another reason", text);
       sentence.take(of(r_["reason"]));
     } else if (label == "data" || label == "note") {

@@ -220,7 +220,7 @@ std::vector<Place> numbers_in(const std::string& text) {
     std::size_t end = i;
     while (digit(end) || (end < text.size() && text[end] == '.' && digit(end + 1))) ++end;
     places.push_back({i, end});
-    i = end;
+    i = end - 1;
   }
   return places;
 }

@@ -20,6 +20,7 @@ public:
     places();
     rest();
     steps();
+    in_words();
   }
 
 private:
@@ -125,6 +126,91 @@ private:
       nothing_left(sentence);
       if (!place["regime"].is_null())
         need(place["regime"]["from"] <= place["regime"]["to"], "a regime that ends before it begins");
+    }
+  }
+
+  static std::string signal_of_error(const std::string& error) {
+    if (error == "current") return "current_A";
+    if (error == "temperature") return "motor_C";
+    if (error == "angle") return "angle_deg";
+    if (error == "angular rate") return "rate_dps";
+    return error;
+  }
+
+  /// Whether some parameter of the causes has these numbers; of a temperature coefficient in per cent.
+  bool is_a_parameter(const std::string& value, const std::string& low, const std::string& high) const {
+    for (const auto& cause : r_["cause"])
+      for (const auto& [name, one] : cause["parameters"].items()) {
+        const double times = one["unit"] == "1/K" ? 100.0 : 1.0;
+        const auto same = [times](const std::string& text, const Json& number_of_it) {
+          return number_of_it.is_null() ? is(text, number_of_it)
+                                        : is(text, Json(times * number_of_it.get<double>()));
+        };
+        if (same(value, one["value"]) &&
+            (low.empty() || (same(low, one["ci95"][0]) && same(high, one["ci95"][1]))))
+          return true;
+      }
+    return false;
+  }
+
+  /// The answer in words against everything else.
+  void in_words() {
+    need(!r_["words"].empty(), "nothing is said in words");
+    const std::string signal = "(current|temperature|angle|angular rate)",
+                      the_signal = "(motor current|motor temperature|angle|angular rate)";
+    for (const auto& text : r_["words"]) {
+      Sentence sentence(of(text));
+      sentence.take(of(r_["reason"]));
+      sentence.take(capital(of(r_["reason"])));
+      for (const auto& one : r_["findings"]) sentence.take(of(one["message"]));
+      sentence.take(std::string(share) + " of the " + signal + " error", [&](const std::smatch& m) {
+        need(is_share(m[1], gap_of(signal_of_error(m[2]))["shrunk_by"]), "another shrinkage in words",
+             sentence.text());
+      });
+      sentence.take("the " + signal + " error by " + share, [&](const std::smatch& m) {
+        need(is_share(m[2], Json(-gap_of(signal_of_error(m[1]))["shrunk_by"].get<double>())),
+             "another growth in words", sentence.text());
+      });
+      sentence.take(std::string(number) + "(?: [^\\[(),]+)? \\[" + number + ", " + number + "\\]",
+                    [&](const std::smatch& m) {
+                      need(is_a_parameter(m[1], m[2], m[3]), "another parameter in words", sentence.text());
+                    });
+      sentence.take(std::string(number) + "(?: [^\\[(),]+)?, which these data do not tell",
+                    [&](const std::smatch& m) {
+                      need(is_a_parameter(m[1], "", ""), "another parameter in words", sentence.text());
+                    });
+      sentence.take(std::string(number) + " times that", [&](const std::smatch& m) {
+        need(is_a_parameter(m[1], "", ""), "another factor in words", sentence.text());
+      });
+      sentence.take("the error of the " + the_signal + " is " + number + " times what noise makes",
+                    [&](const std::smatch& m) {
+                      need(is(m[2], r_["remaining"]["times_floor"]), "another rest in words",
+                           sentence.text());
+                    });
+      sentence.take(std::string("off by ") + number + " \\S+ in the " + the_signal +
+                        " \\(RMS\\), where noise makes " + number,
+                    [&](const std::smatch& m) {
+                      for (const auto& [name, gap] : r_["gap"].items())
+                        if (words(name) == m[2])
+                          need(is(m[1], gap["before"]) && is(m[3], gap["noise_floor"]),
+                               "another gap in words", sentence.text());
+                    });
+      sentence.take(std::string("bring that down to ") + number, [&](const std::smatch& m) {
+        need(std::any_of(r_["gap"].begin(), r_["gap"].end(),
+                         [&](const Json& gap) { return is(m[1], gap["recalibrated"]); }),
+             "another score in words", sentence.text());
+      });
+      const char* const predicted =
+          of(r_["decision"]["reason"]) == "constants_within_known" ? "recalibrated" : "before";
+      sentence.take("the " + the_signal + " to " + number + " \\S+ \\(noise makes " + number + "\\)",
+                    [&](const std::smatch& m) {
+                      for (const auto& [name, gap] : r_["gap"].items())
+                        if (words(name) == m[1])
+                          need(is(m[2], gap[predicted]) && is(m[3], gap["noise_floor"]),
+                               "another score in words", sentence.text());
+                    });
+      sentence.take("or [0-9]+ more", [&](const std::smatch&) {});
+      nothing_left(sentence);
     }
   }
 

@@ -121,6 +121,10 @@ public:
       for (std::size_t i = 0; i < series.x.size() && i < series.y.size(); ++i)
         if (std::isfinite(series.y[i])) x_.include(series.x[i]);
     x_.settle();
+    // Points at the ends are whole.
+    if (std::any_of(chart.series.begin(), chart.series.end(),
+                    [](const Series& one) { return one.style == Series::Style::points; }))
+      x_.widen(0.02);
     view_ = x_;
     if (chart.view && chart.view->second > chart.view->first) {
       view_.from = std::max(x_.from, chart.view->first);
@@ -216,9 +220,13 @@ private:
         }
       return list;
     }
-    const double step = tick_step(range.to - range.from, about);
-    for (double at = std::ceil(range.from / step) * step; at <= range.to + 1e-9 * step; at += step)
-      list.emplace_back(at, tick_text(at, step));
+    // One tick tells no scale.
+    for (int finer = about; list.size() < 2 && finer < 4 * about; ++finer) {
+      const double step = tick_step(range.to - range.from, finer);
+      list.clear();
+      for (double at = std::ceil(range.from / step) * step; at <= range.to + 1e-9 * step; at += step)
+        list.emplace_back(at, tick_text(at, step));
+    }
     return list;
   }
 

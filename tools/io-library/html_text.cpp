@@ -6,8 +6,11 @@
 #include <thermopower/plant/variable_words.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 namespace thermopower::io {
 namespace {
@@ -69,8 +72,10 @@ std::string readable(double value, int digits) {
   if (size != 0.0 && (size < 1e-3 || size >= 1e5)) {
     std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
   } else {
-    const int decimals =
-        size == 0.0 ? 0 : std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+    int decimals = size == 0.0 ? 0 : std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+    // Rounded up to the next power of ten it has a digit more: 9.999 is 10.0.
+    const double next = std::pow(10.0, digits - decimals);
+    if (decimals > 0 && size + 0.5 * std::pow(10.0, -decimals) >= next) --decimals;
     std::snprintf(text, sizeof text, "%.*f", decimals, value);
   }
   return text;
@@ -78,8 +83,58 @@ std::string readable(double value, int digits) {
 
 std::string known_to(const gap::ParameterEstimate& parameter) {
   if (!parameter.told) return "(not told by these data)";
-  return "[" + readable(parameter.ci95.low) + ", " + readable(parameter.ci95.high) + "]" +
+  return interval_text(parameter.ci95.low, parameter.ci95.high) +
          (parameter.at_bound ? ", on its bound" : "");
+}
+
+std::string interval_text(double low, double high) {
+  constexpr int least_digits = 3, most_digits = 7;
+  int digits = least_digits;
+  while (digits < most_digits && low != high && readable(low, digits) == readable(high, digits)) ++digits;
+  return "[" + readable(low, digits) + ", " + readable(high, digits) + "]";
+}
+
+std::string percent_text(double share) {
+  if (!std::isfinite(share)) return "?";
+  char text[16];
+  if (share > 0.99 && share < 1.0) return ">99 %";
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
+  return text;
+}
+
+PercentTexts percent_texts(double share, const gap::Interval& interval) {
+  if (!std::isfinite(share)) return {"?", "[?, ?]"};
+  // A tenth of the interval is more than anybody needs, and two places after the point more than anything has.
+  const double width = 100.0 * (interval.high - interval.low);
+  const int places = width >= 2.0 || !(width > 0.0) ? 0 : width >= 0.2 ? 1 : 2;
+  const auto text = [places](double value) {
+    char digits[24];
+    std::snprintf(digits, sizeof digits, "%.*f", places, 100.0 * value + 0.0);
+    if (digits[0] == '-' && std::strtod(digits, nullptr) == 0.0) return std::string(digits + 1);
+    return std::string(std::isfinite(value) ? digits : "\u2013");
+  };
+  return {text(share), "[" + text(interval.low) + ", " + text(interval.high) + "]"};
+}
+
+std::string with_signs(std::string text) {
+  constexpr std::pair<const char*, const char*> signs[] = {{" degC", "\u00a0\u00b0C"},
+                                                           {" ohm", "\u00a0\u03a9"},
+                                                           {" deg/s", "\u00a0\u00b0/s"},
+                                                           {" m^2", "\u00a0m\u00b2"},
+                                                           {" rad/s2", "\u00a0rad/s\u00b2"}};
+  for (const auto& [plain, sign] : signs) {
+    const std::string from = plain;
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;) {
+      const std::size_t end = at + from.size();
+      const bool ends = end == text.size() || std::isalnum(static_cast<unsigned char>(text[end])) == 0;
+      // A unit follows a number or an interval.
+      const bool begins =
+          at > 0 && (std::isdigit(static_cast<unsigned char>(text[at - 1])) != 0 || text[at - 1] == ']');
+      if (ends && begins) text.replace(at, from.size(), sign);
+      at += ends && begins ? std::string(sign).size() : 1;
+    }
+  }
+  return text;
 }
 
 std::string percent_html(double share) {

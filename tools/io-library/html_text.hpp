@@ -24,6 +24,24 @@ std::string readable(double value, int digits = 3);
 /// @brief What the data say of a parameter beside its value: its interval, in brackets, or that they tell nothing.
 std::string known_to(const gap::ParameterEstimate& parameter);
 
+/// @brief An interval in brackets, with as many digits as tell its ends apart, three at least.
+std::string interval_text(double low, double high);
+
+/// @brief A share in per cent, plain text: "83 %", ">99 %".
+std::string percent_text(double share);
+
+/// @brief A share and its interval in per cent, all to the same place: "93 % [92, 95]", "0.4 % [0.2, 0.7]".
+struct PercentTexts {
+  std::string value;     ///< "93"
+  std::string interval;  ///< "[92, 95]"
+};
+
+/// @brief A share and its interval as text, to the place that the interval's width asks for.
+PercentTexts percent_texts(double share, const gap::Interval& interval);
+
+/// @brief Text of a report with its ASCII units as people write them: `degC` as degrees Celsius, `ohm` as its sign.
+std::string with_signs(std::string text);
+
 /// @brief A share for people, such as "83 %", "> 99 %".
 std::string percent_html(double share);
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include <thermopower/io/report_html.hpp>
+#include <thermopower/io/sentences.hpp>
 
 #include "chart.hpp"
 #include "held_out_runs.hpp"
@@ -37,8 +38,12 @@ std::string regime_text(const Regime& regime) {
 class Page {
 public:
   Page(const Diagnosis& diagnosis, const std::string& model_name, const std::vector<EffectInfo>& effects,
-       const std::vector<Recording>& held_out)
-      : d_(diagnosis), model_(model_name), effects_(effects), runs_(held_out_runs(diagnosis, held_out)) {}
+       const std::vector<Recording>& held_out, const Provenance& made_of)
+      : d_(diagnosis),
+        model_(model_name),
+        effects_(effects),
+        made_of_(made_of),
+        runs_(held_out_runs(diagnosis, held_out)) {}
 
   std::string write() {
     head();
@@ -79,7 +84,14 @@ private:
       case Verdict::ambiguous:
         return "Several explanations fit, and this recording cannot tell them apart";
       case Verdict::unexplained:
-        return "There is a gap that no known effect explains";
+        switch (d_.why) {
+          case Reason::constants_leave_a_rest:
+            return "Refitted constants take a part of the gap away, and no known effect the rest";
+          case Reason::simulation_runs_away:
+            return "The simulation runs away";
+          default:
+            return "There is a gap that no known effect explains";
+        }
       case Verdict::insufficient:
         return deciding(d_.findings) != nullptr ? "The data cannot be believed as they stand"
                                                 : "Too little data for any statement";
@@ -87,6 +99,7 @@ private:
     return "";
   }
 
+  // The answer in words; then why, and what it was made of.
   void head() {
     out_ +=
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -96,9 +109,17 @@ private:
     out_ += "<div class=\"eyebrow\">Sim-to-real gap" +
             std::string(model_.empty() ? "" : " \u00b7 " + escaped(model_)) + "</div>\n<h1 class=\"" +
             to_string(d_.verdict) + "\">" + headline() + "</h1>\n";
+    const std::string words = joined(sentences(d_, effects_), " ");
+    if (!words.empty()) out_ += "<p class=\"words\">" + escaped(with_signs(words)) + "</p>\n";
     if (!d_.reason.empty())
-      out_ += "<p class=\"lead\">" + escaped(capital(d_.reason)) + (d_.reason.back() == '.' ? "" : ".") +
-              "</p>\n";
+      out_ += "<p class=\"lead\">" + escaped(with_signs(capital(d_.reason))) +
+              (d_.reason.back() == '.' ? "" : ".") + "</p>\n";
+    provenance();
+  }
+
+  void provenance() {
+    const std::string line = provenance_line(made_of_);
+    if (!line.empty()) out_ += "<p class=\"from\">" + breakable(line) + "</p>\n";
   }
 
   // The same fault in several recordings is told once.
@@ -110,10 +131,11 @@ private:
       if (std::find(recordings.begin(), recordings.end(), other.recording) == recordings.end())
         recordings.push_back(other.recording);
     }
+    for (std::string& name : recordings) name = path_for_others(name);
     out_ += std::string("<div class=\"finding ") + to_string(one.severity) + "\"><span class=\"tag\">" +
             to_string(one.severity) + "</span>" + breakable(joined(recordings, ", "));
     if (!one.column.empty()) out_ += ", <code>" + breakable(one.column) + "</code>";
-    out_ += ": " + escaped(one.message) + ".";
+    out_ += ": " + escaped(with_signs(one.message)) + ".";
     if (one.action != FindingAction::none) {
       const auto rows = one.row_count();
       out_ += std::string(" <span class=\"soft\">") +
@@ -134,6 +156,10 @@ private:
   void fact(const std::string& name, const std::string& value, const std::string& more) {
     out_ += "<div class=\"fact\"><span class=\"name\">" + name + "</span><b>" + value +
             "</b><span class=\"more\">" + more + "</span></div>\n";
+  }
+
+  static std::string small_print(const std::string& id) {
+    return "<br><code class=\"id\">" + breakable(id) + "</code>";
   }
 
   std::string occurrences(const std::vector<Occurrence>& list) const {
@@ -178,7 +204,11 @@ private:
       std::string more = escaped(signal_text(first.signal)) + ", " + share_of_gap(first);
       if (first.regime) more += "; most for " + regime_text(*first.regime);
       if (!first.only_in.empty()) more += "<br>Only in " + occurrences(first.only_in);
-      fact("Where", breakable(to_string(first.submodel)), more);
+      if (const std::string elsewhere = acts_elsewhere(); !elsewhere.empty())
+        more +=
+            "<br>The cause acts in the " + escaped(elsewhere) + ": from residuals alone it looks like this.";
+      more += small_print(to_string(first.submodel));
+      fact("Where", escaped(capital(part_in_words(to_string(first.submodel)))), more);
     }
     for (const auto& cause : d_.cause) {
       std::string more;
@@ -186,7 +216,9 @@ private:
         more += (more.empty() ? "" : "<br>") + breakable(parameter.name) + " " +
                 with_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
       }
-      fact("Which \u00b7 probability " + percent_html(cause.probability), breakable(cause.effect), more);
+      more += small_print(cause.effect);
+      fact("Which \u00b7 probability " + percent_html(cause.probability),
+           escaped(capital(effect_in_words(cause.effect))), more);
     }
     if (!d_.alternatives.empty()) {
       std::string text;
@@ -199,10 +231,9 @@ private:
       if (most == nullptr || named) most = &gap;
     }
     if (most != nullptr && has_cause()) {
+      const PercentTexts shrunk = percent_texts(most->shrunk_by, most->ci95);
       fact(
-          "How far it shrinks",
-          percent_html(most->shrunk_by) + " [" + readable(100.0 * most->ci95.low) + ", " +
-              readable(100.0 * most->ci95.high) + "]",
+          "How far it shrinks", shrunk.value + "\u00a0% " + shrunk.interval,
           escaped(signal_text(most->signal)) + ": " + readable(most->before) + " to " +
               with_unit(readable(most->after), most->unit) + ", noise floor " + readable(most->noise_floor) +
               (most->ci95.low < 0.0
@@ -225,54 +256,42 @@ private:
     out_ += "</div>\n";
   }
 
-  // Dots on one scale per signal: as configured, recalibrated, with the effect; a tick for what a perfect
-  // model would score.
-  std::string gap_picture(const GapScore& gap) const {
-    double largest = std::max({gap.before, gap.recalibrated, gap.noise_floor, has_cause() ? gap.after : 0.0});
-    if (!(largest > 0.0)) largest = 1.0;
-    const auto at = [&](double value) {
-      char text[16];
-      std::snprintf(text, sizeof text, "%.1f%%", 100.0 * std::clamp(value / largest, 0.0, 1.0));
-      return std::string(text);
-    };
-    std::string html = "<div class=\"dotline\" aria-hidden=\"true\"><span class=\"rail\"></span>";
-    const double low = gap.before * (1.0 - gap.ci95.high), high = gap.before * (1.0 - gap.ci95.low);
-    if (has_cause() && high > low)
-      html += "<span class=\"ci\" style=\"left:" + at(low) + ";width:" + at(std::min(high, largest) - low) +
-              "\"></span>";
-    html += "<span class=\"tick\" style=\"left:" + at(gap.noise_floor) +
-            "\"></span><span class=\"dot before\" style=\"left:" + at(gap.before) +
-            "\"></span><span class=\"square\" style=\"left:" + at(gap.recalibrated) + "\"></span>";
-    if (has_cause()) html += "<span class=\"dot after\" style=\"left:" + at(gap.after) + "\"></span>";
-    return html + "</div>";
+  // A score with a bar below it, on one scale per signal: number and mark stand in one place.
+  static std::string score_cell(double value, double largest, const char* role) {
+    char width[16];
+    std::snprintf(width, sizeof width, "%.1f%%",
+                  largest > 0.0 ? 100.0 * std::clamp(value / largest, 0.0, 1.0) : 0.0);
+    return "<td>" + readable(value) + "<span class=\"score " + role +
+           "\" style=\"width:" + (std::isfinite(value) ? std::string(width) : "0") + "\"></span></td>";
   }
 
   void how_far() {
     if (d_.gap.empty()) return;
     out_ +=
         "<h2>How far</h2>\n<p class=\"soft\">RMS difference between simulation and recording, on data that was held out.</p>\n"
-        "<table class=\"scores\">\n<tr><th class=\"t\"><span class=\"dot before\"></span> as con\u00adfigured</th>"
-        "<th><span class=\"square\"></span> re\u00adcali\u00adbrated</th>";
-    if (has_cause()) out_ += "<th><span class=\"dot after\"></span> with the effect</th>";
-    out_ += "<th><span class=\"tick\"></span> noise floor</th>" +
-            std::string(has_cause() ? "<th>shrunk by</th>" : "") + "</tr>\n";
+        "<table class=\"scores\">\n<tr><th class=\"t\">as con\u00adfigured</th>"
+        "<th>con\u00adstants re\u00adfitted</th>";
+    if (has_cause()) out_ += "<th>with the effect</th>";
+    out_ += "<th>noise floor</th>" + std::string(has_cause() ? "<th>shrunk by</th>" : "") + "</tr>\n";
     for (const auto& gap : d_.gap) {
+      const double largest =
+          std::max({gap.before, gap.recalibrated, gap.noise_floor, has_cause() ? gap.after : 0.0});
       out_ += "<tr class=\"name\"><td class=\"t\" colspan=\"" + std::string(has_cause() ? "5" : "3") + "\">" +
               escaped(capital(signal_text(gap.signal))) + "<span class=\"soft\">" +
               (unit_text(gap.unit).empty() ? "" : " in " + escaped(unit_text(gap.unit)));
       if (gap.horizon_s) out_ += ", windows of " + readable(*gap.horizon_s, 2) + "\u00a0s";
-      out_ += "</span>" + gap_picture(gap) + "</td></tr>\n<tr><td class=\"t\">" + readable(gap.before) +
-              "</td><td>" + readable(gap.recalibrated) + "</td>";
-      if (has_cause()) out_ += "<td>" + readable(gap.after) + "</td>";
-      out_ += "<td>" + readable(gap.noise_floor) + "</td>";
+      out_ += "</span></td></tr>\n<tr>" + score_cell(gap.before, largest, "before") +
+              score_cell(gap.recalibrated, largest, "refitted");
+      if (has_cause()) out_ += score_cell(gap.after, largest, "after");
+      out_ += score_cell(gap.noise_floor, largest, "noise");
       if (has_cause()) {
-        out_ += "<td>" + percent_html(gap.shrunk_by) + "<small>" + readable(100.0 * gap.ci95.low) + " to " +
-                readable(100.0 * gap.ci95.high) + "\u00a0%</small></td>";
+        const PercentTexts shrunk = percent_texts(gap.shrunk_by, gap.ci95);
+        out_ += "<td>" + shrunk.value + "\u00a0%<small>" + shrunk.interval + "</small></td>";
       }
       out_ += "</tr>\n";
     }
     out_ += "</table>\n";
-    if (!d_.recalibration.empty()) out_ += "<p>" + escaped(capital(d_.recalibration)) + ".</p>\n";
+    if (!d_.recalibration.empty()) out_ += "<p>" + escaped(with_signs(capital(d_.recalibration))) + ".</p>\n";
   }
 
   void next() {
@@ -391,6 +410,7 @@ private:
 
   void run_pictures(const HeldOutRun& run, const std::string& name) {
     out_ += "<h3>" + breakable(title_of(run)) + "</h3>\n<figure>\n";
+    const std::size_t caption_at = out_.size();
     const std::optional<double> from = shows_from(run);
     // An axis runs in windows of half a second: over a whole run nothing could be seen. The worst few seconds
     // tell; other signals are seen whole.
@@ -428,13 +448,18 @@ private:
       draw(std::move(chart), windows);
     }
     std::string caption;
-    if (stretch)
-      caption =
-          "The stretch in which the simulation as configured is worst; each window starts from the measured state.";
+    if (stretch) {
+      const Eigen::VectorXd& t_s = run.signals.front()->t_s;
+      const double whole = t_s[run.end - 1] - t_s[run.begin], shown = stretch->second - stretch->first;
+      if (whole > 1.01 * shown)
+        caption = "Shown: " + readable(shown, 2) + "\u00a0s of " + readable(whole) +
+                  "\u00a0s, in which the simulation as configured is worst. ";
+      caption += "Each window starts from the measured state.";
+    }
     if (from)
       caption += std::string(caption.empty() ? "" : " ") + "The red line: from " + readable(*from) +
                  "\u00a0s on the fault shows.";
-    if (!caption.empty()) out_ += "<figcaption>" + caption + "</figcaption>\n";
+    if (!caption.empty()) out_.insert(caption_at, "<figcaption>" + caption + "</figcaption>\n");
     out_ += "</figure>\n";
   }
 
@@ -553,17 +578,35 @@ private:
     }
   }
 
+  // The place in which the causes act, where residuals alone point at another one first; else empty.
+  std::string acts_elsewhere() const {
+    if (d_.where.empty() || !has_cause()) return {};
+    std::string place;
+    for (const Cause& cause : d_.cause) {
+      const EffectInfo* const known = info(cause.effect);
+      if (known == nullptr || known->submodel == d_.where.front().submodel) return {};
+      const std::string words = part_in_words(to_string(known->submodel));
+      if (place.find(words) == std::string::npos) place += (place.empty() ? "" : " and the ") + words;
+    }
+    return place;
+  }
+
   void where() {
     if (d_.where.empty()) return;
     out_ +=
         "<h2>Where</h2>\n<p class=\"soft\">Found from residuals alone, before any effect is considered.</p>\n";
+    if (const std::string elsewhere = acts_elsewhere(); !elsewhere.empty())
+      out_ +=
+          "<p>The residuals point at the " + escaped(part_in_words(to_string(d_.where.front().submodel))) +
+          " first, and the explanation acts in the " + escaped(elsewhere) +
+          ". A cause in one place may look like one in another; held-out data decide between explanations, not between places.</p>\n";
     for (const auto& one : d_.where) {
       out_ += "<div class=\"where\"><b>" + breakable(to_string(one.submodel)) + "</b> in " +
               escaped(signal_text(one.signal)) + ", " + share_of_gap(one);
       if (one.regime) out_ += "; most for " + regime_text(*one.regime);
       out_ += ".";
       if (!one.only_in.empty()) out_ += "<br>Only in " + occurrences(one.only_in) + ".";
-      out_ += "<br><span class=\"soft\">" + escaped(capital(one.evidence)) + "</span></div>\n";
+      out_ += "<br><span class=\"soft\">" + escaped(with_signs(capital(one.evidence))) + "</span></div>\n";
     }
   }
 
@@ -613,6 +656,7 @@ private:
     if (one.absorbed) add("re-calibration imitates it: this recording cannot show it");
     if (one.at_bound) add("a parameter ended on its bound");
     if (one.refused) add("refused: held-out data gets worse");
+    if (const std::string why = why_less_likely(one); !why.empty()) add(why);
     std::string like;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, one.confusable.size()); ++i)
       like += (like.empty() ? "" : ", ") + breakable(joined(one.confusable[i].effects)) + " (" +
@@ -624,17 +668,36 @@ private:
                "\"><svg viewBox=\"0 0 24 8\"><path class=\"curve " + role +
                "\" d=\"M1 4h22\"/></svg>in the pictures</span>";
     out_ += (small.empty() ? "" : "<small>" + small + "</small>") + "</td>" + probability(one.probability) +
-            "<td>" +
-            (one.held_out_ratio > 0.0 ? "\u00d7\u2009" + readable(one.held_out_ratio, 2) : "\u2013") +
+            "<td>" + (one.held_out_ratio > 0.0 ? percent_html(1.0 - one.held_out_ratio) : "\u2013") +
             "</td></tr>\n";
+  }
+
+  // What speaks against an explanation that leaves less on held-out data than the chosen one.
+  std::string why_less_likely(const RankedExplanation& one) const {
+    if (!has_cause() || one.refused || one.absorbed || one.at_bound || !(one.held_out_ratio > 0.0)) return {};
+    for (const RankedExplanation& chosen : d_.ranking) {
+      if (!is_chosen(chosen)) continue;
+      if (!(one.held_out_ratio < chosen.held_out_ratio) || one.probability >= chosen.probability) return {};
+      if (one.effects.size() > chosen.effects.size())
+        return "takes more away, with more causes than the recording proves";
+      return "takes more away there, and is less likely on all data with what is known of the constants";
+    }
+    return {};
   }
 
   void which() {
     if (d_.ranking.empty()) return;
     out_ +=
         "<h2>Which</h2>\n<table>\n<tr><th class=\"t\">explanation</th><th class=\"t\">probability</th>"
-        "<th>held-out gap<small>of that with nothing missing</small></th></tr>\n";
-    for (std::size_t i = 0; i < std::min(most_ranked, d_.ranking.size()); ++i) explanation(d_.ranking[i]);
+        "<th>takes away<small>of the held-out error that refitted constants leave</small></th></tr>\n";
+    std::vector<RankedExplanation> order = d_.ranking;
+    std::stable_sort(order.begin(), order.end(), [](const RankedExplanation& a, const RankedExplanation& b) {
+      const auto at = [](const RankedExplanation& one) {
+        return std::isfinite(one.probability) ? one.probability : -1.0;
+      };
+      return at(a) > at(b);
+    });
+    for (std::size_t i = 0; i < std::min(most_ranked, order.size()); ++i) explanation(order[i]);
     out_ += "<tr><td class=\"t\">none of these</td>" + probability(d_.none_of_these) +
             "<td></td></tr>\n</table>\n";
     if (d_.ranking.size() > most_ranked)
@@ -759,6 +822,7 @@ private:
   const Diagnosis& d_;
   const std::string& model_;
   const std::vector<EffectInfo>& effects_;
+  const Provenance& made_of_;
   std::vector<HeldOutRun> runs_;
   std::string out_;
 };
@@ -766,8 +830,9 @@ private:
 }  // namespace
 
 std::string report_html(const Diagnosis& diagnosis, const std::string& model_name,
-                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out) {
-  return Page(diagnosis, model_name, effects, held_out).write();
+                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out,
+                        const Provenance& made_of) {
+  return Page(diagnosis, model_name, effects, held_out, made_of).write();
 }
 
 }  // namespace thermopower::io

@@ -3,6 +3,9 @@
 
 #include <thermopower/io/report_json.hpp>
 
+#include <thermopower/io/model_file.hpp>
+#include <thermopower/io/sentences.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -100,6 +103,16 @@ Json fitted(const RankedExplanation& one) {
   return object;
 }
 
+Json fixed(const RankedExplanation& one) {
+  Json object = {{"names", Json::array()}, {"at", Json::array()}, {"logarithmic", Json::array()}};
+  for (const FittedCoordinate& coordinate : one.fixed) {
+    object["names"].push_back(coordinate.name);
+    object["at"].push_back(number(coordinate.at));
+    object["logarithmic"].push_back(coordinate.logarithmic);
+  }
+  return object;
+}
+
 Json ranked(const RankedExplanation& one) {
   Json confusable = Json::array();
   for (const auto& other : one.confusable)
@@ -116,7 +129,8 @@ Json ranked(const RankedExplanation& one) {
           {"train_gain", number(one.train_gain)},
           {"held_out_gain", number(one.held_out_gain)},
           {"hidden_starts", one.hidden_starts},
-          {"fitted", fitted(one)}};
+          {"fitted", fitted(one)},
+          {"fixed", fixed(one)}};
 }
 
 // Who recomputes a score needs the rows that were masked; of a file in which nothing is right, the first ones, and how many
@@ -145,7 +159,9 @@ std::string findings_json(const std::vector<Finding>& findings) {
   return list.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string report_json(const Diagnosis& diagnosis) {
+namespace {
+
+Json report(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects, const Provenance& made_of) {
   Json root;
   root["format"] = "thermopower-gap-report/1";
   root["verdict"] = to_string(diagnosis.verdict);
@@ -163,6 +179,13 @@ std::string report_json(const Diagnosis& diagnosis) {
   if (diagnosis.remaining) root["remaining"] = remaining(*diagnosis.remaining);
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
+  root["words"] = sentences(diagnosis, effects);
+  if (made_of.told())
+    root["made_of"] = {{"version", version_text()},
+                       {"model", made_of.model},
+                       {"recordings", made_of.recordings},
+                       {"held_out", made_of.held_out},
+                       {"options", made_of.options}};
   if (!diagnosis.loop.empty()) root["loop"] = diagnosis.loop;
   const DecisionNumbers& numbers = diagnosis.numbers;
   root["decision"] = {{"reason", code_of(diagnosis.why)},
@@ -201,7 +224,25 @@ std::string report_json(const Diagnosis& diagnosis) {
   root["recalibration"] = diagnosis.recalibration;
   root["ranking"] = Json::array();
   for (const auto& one : diagnosis.ranking) root["ranking"].push_back(ranked(one));
+  return root;
+}
+
+std::string text_of(const Json& root) {
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string report_json(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects,
+                        const Provenance& made_of) {
+  return text_of(report(diagnosis, effects, made_of));
+}
+
+std::string report_json(const Diagnosis& diagnosis, const Model& model,
+                        const std::vector<EffectInfo>& effects, const Provenance& made_of) {
+  Json root = report(diagnosis, effects, made_of);
+  root["model"] = Json::parse(to_json(model));
+  return text_of(root);
 }
 
 }  // namespace thermopower::io

@@ -123,8 +123,11 @@ class Chart {
         }
       return list;
     }
-    const step = tickStep(to - from, about);
-    for (let at = Math.ceil(from / step) * step; at <= to; at += step) list.push([at, tickText(at, step)]);
+    for (let finer = about; list.length < 2 && finer < 4 * about; ++finer) {
+      const step = tickStep(to - from, finer);
+      list.length = 0;
+      for (let at = Math.ceil(from / step) * step; at <= to; at += step) list.push([at, tickText(at, step)]);
+    }
     return list;
   }
   word(value) { return readable(this.logarithmic ? 10 ** value : value); }
@@ -155,9 +158,16 @@ const charts = [...document.querySelectorAll('.chart[data-x]')].map(element => n
 if (!charts.length) return;
 root.classList.add('js');
 const together = chart => chart.group ? charts.filter(one => one.group === chart.group) : [chart];
+// Where the pointer stands: what is under it changes with the zoom.
+let pointed = null;
 const zoom = (chart, view) => {
   const least = 1e-4 * (chart.x1 - chart.x0), from = Math.max(chart.x0, view[0]), to = Math.min(chart.x1, view[1]);
-  if (to - from > least) together(chart).forEach(one => one.show([from, to]));
+  if (!(to - from > least)) return;
+  together(chart).forEach(one => one.show([from, to]));
+  if (pointed && together(chart).includes(pointed.chart)) {
+    const x = from + pointed.share * (to - from);
+    together(chart).forEach(one => one.point(x));
+  }
 };
 const toggle = role => {
   const off = root.classList.toggle('no-' + role);
@@ -190,6 +200,7 @@ for (const chart of charts) {
   let begin = null, marked = null;
   plot.addEventListener('pointermove', event => {
     const x = at(event);
+    pointed = {chart, share: (x - chart.view[0]) / (chart.view[1] - chart.view[0])};
     together(chart).forEach(one => one.point(x));
     if (begin === null || !chart.group) return;
     if (!marked) {
@@ -211,7 +222,10 @@ for (const chart of charts) {
     marked = null;
     begin = null;
   };
-  plot.addEventListener('pointerleave', () => together(chart).forEach(one => one.leave()));
+  plot.addEventListener('pointerleave', () => {
+    pointed = null;
+    together(chart).forEach(one => one.leave());
+  });
   if (!chart.group) continue;
   plot.addEventListener('pointerdown', event => {
     begin = at(event);
@@ -229,7 +243,7 @@ for (const chart of charts) {
     chart.label.prepend(one);
   };
   if (together(chart)[0] !== chart) continue;
-  button('whole run', 'or double-click the picture; drag across it to see a part', () => zoom(chart, [chart.x0, chart.x1]));
+  button('show the whole run', 'or double-click the picture; drag across it to see a part', () => zoom(chart, [chart.x0, chart.x1]));
   button('\u2212', 'see more time', () => {
     const more = 0.5 * (chart.view[1] - chart.view[0]);
     zoom(chart, [chart.view[0] - more, chart.view[1] + more]);

@@ -12,12 +12,12 @@ inline constexpr const char* report_style = R"css(
 --measured:#7d8288;--baseline:#d55e00;--augmented:#0072b2;--recalibrated:#7b5aa6;--input:#00795c;--rival1:#00795c;--rival2:#b0457f;--rival3:#8a6500;--good:#00795c;--doubt:#8a5d00;--bad:#b3261e;color-scheme:light}
 @media screen and (prefers-color-scheme:dark){:root{--paper:#15171a;--ink:#e8e8e3;--soft:#a8adb3;--faint:#31353a;--card:#1e2125;--shade:#3a3420;--band:#263038;
 --measured:#9aa0a6;--baseline:#ff9a4d;--augmented:#5bb8f5;--recalibrated:#b79ae0;--input:#4cc9a4;--rival1:#4cc9a4;--rival2:#f09ac6;--rival3:#e6c14c;--good:#4cc9a4;--doubt:#e3b341;--bad:#ff8a80;color-scheme:dark}}
-*{box-sizing:border-box}
+*{box-sizing:border-box;-webkit-print-color-adjust:exact;print-color-adjust:exact}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"DejaVu Sans",sans-serif;-webkit-text-size-adjust:100%}
 main{max-width:980px;margin:0 auto;padding:44px 28px 64px;overflow-wrap:anywhere}
 h1{font-size:30px;line-height:1.2;margin:6px 0 10px;letter-spacing:-.01em}
 h2{font-size:20px;margin:46px 0 4px}h3{font-size:16px;margin:28px 0 2px;font-weight:600}
-p{margin:6px 0 12px;max-width:70ch}.soft,.lead{color:var(--soft)}.lead{font-size:17px}
+p{margin:6px 0 12px;max-width:70ch}.soft,.lead,.from{color:var(--soft)}.words{font-size:19px;line-height:1.5;margin:12px 0 10px;max-width:62ch}.from{font-size:13px;max-width:none}.id{font-size:12.5px;color:var(--soft)}
 .eyebrow{font-size:13px;letter-spacing:.07em;text-transform:uppercase;color:var(--soft)}
 .explained,.no_gap{color:var(--good)}.ambiguous,.partial{color:var(--doubt)}.unexplained,.insufficient{color:var(--bad)}
 .facts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(210px,100%),1fr));gap:14px;margin:26px 0 6px}
@@ -35,16 +35,13 @@ th.t,td.t{text-align:left}tr>:first-child{padding-left:0}tr>:last-child{padding-
 tr.chosen td{font-weight:600}tr.chosen small{font-weight:400}tr.out td{color:var(--soft)}
 .bar{display:inline-block;height:9px;border-radius:2px;background:var(--augmented);vertical-align:middle}
 .track{display:inline-block;width:88px;text-align:left;margin-right:8px}.nowrap{white-space:nowrap}
-.dotline{position:relative;height:22px;margin:0 8px 0 7px}.dotline *{position:absolute;top:50%;transform:translate(-50%,-50%)}
-.dotline .rail{left:0;width:100%;height:6px;border-radius:3px;background:var(--faint);transform:translateY(-50%)}
-.dotline .ci{height:3px;background:var(--augmented);opacity:.5;transform:translateY(-50%)}
-.dot,.square,.tick{display:inline-block;width:12px;height:12px;border-radius:6px}.square{border-radius:1px;width:9px;height:9px;background:var(--recalibrated)}
-.tick{width:2px;height:18px;border-radius:0;background:var(--ink)}.dot.before{background:var(--baseline)}.dot.after{background:var(--augmented)}
-th .tick{height:12px}code{font:14px ui-monospace,"DejaVu Sans Mono",monospace}ul{padding-left:20px;margin:8px 0}li{margin:5px 0;max-width:80ch}
-figure{margin:14px 0 22px}figcaption{font-size:13.5px;color:var(--soft);max-width:80ch}
+.score{display:block;height:7px;border-radius:2px;margin:5px 0 0;background:var(--baseline)}.scores td,.scores th{text-align:left}.scores small{white-space:nowrap}
+.score.refitted{background:var(--recalibrated)}.score.after{background:var(--augmented)}.score.noise{background:var(--soft)}
+code{font:14px ui-monospace,"DejaVu Sans Mono",monospace}ul{padding-left:20px;margin:8px 0}li{margin:5px 0;max-width:80ch}
+figure{margin:14px 0 22px}figcaption{font-size:14px;color:var(--soft);max-width:80ch}
 .chart{margin:14px 0 10px;font-size:13px;color:var(--soft)}.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(380px,100%),1fr));gap:4px 26px}
 .keys{display:flex;flex-wrap:wrap;gap:2px 16px;align-items:center;margin-bottom:6px}.keys .yl{color:var(--ink);margin-right:auto}
-.key{color:var(--ink);white-space:nowrap}.key svg{width:24px;height:8px;margin-right:6px;vertical-align:middle}.key em{font-style:normal;display:inline-block;min-width:4em;text-align:right;font-variant-numeric:tabular-nums}
+.key{color:var(--ink);white-space:nowrap}.key svg{width:24px;height:8px;margin-right:6px;vertical-align:middle}.key em{font-style:normal;display:inline-block;min-width:4em;margin-left:6px;text-align:right;font-variant-numeric:tabular-nums}
 .key[aria-pressed]{cursor:pointer}.key[aria-pressed=false]{opacity:.45;text-decoration:line-through}
 .bandkey{display:inline-block;width:22px;height:10px;background:var(--band);margin-right:6px}
 .plot{position:relative;margin-left:52px;border-bottom:1px solid var(--soft)}.plot svg{position:absolute;width:100%;height:100%;overflow:hidden}
@@ -66,7 +63,9 @@ footer{margin-top:52px;padding-top:14px;border-top:1px solid var(--faint);font-s
 @media (max-width:600px){main{padding:24px 16px 40px}h1{font-size:25px}h2{margin-top:36px}table{font-size:13.5px}td,th{padding-left:5px;padding-right:5px}
 .together td,.together th{font-size:12px;padding:5px 1px}.together td:not(.t),.together th:not(.t){width:auto}
 .track,.wide{display:none}.plot{margin-left:44px}.gx:nth-of-type(even) b{visibility:hidden}.key em{min-width:3.4em}.keys{gap:2px 12px}.keys .yl{flex-basis:100%}}
-@media print{main{padding:0;max-width:none}body{font-size:12px}figure,.chart,.fact,tr,.next,.where,.finding{break-inside:avoid}h2,h3{break-after:avoid}.xl button{display:none}}
+@media print{@page{margin:16mm}main{padding:0;max-width:none}body{font-size:12px}.words{font-size:15px}h1{font-size:24px}h2{margin-top:26px}
+.chart,.fact,tr,.next,.where,.finding,figcaption,.keys{break-inside:avoid}h2,h3,h2+p.soft,tr.name{break-after:avoid}footer{break-before:avoid;margin-top:16px;font-size:11px}p{orphans:3;widows:3}
+body{background:#fff}figure{margin:8px 0}.plot{max-height:130px}.pair{grid-template-columns:1fr 1fr}.xl button,.xl span,.key[aria-pressed=false],.switch{display:none}.chart{margin:6px 0}.xl{min-height:34px}table{font-size:12px}td,th{padding-top:4px;padding-bottom:4px}td small,th small{font-size:11px}.facts{grid-template-columns:repeat(2,1fr);gap:8px;margin:14px 0 4px}.fact{padding:8px 12px}}
 )css";
 
 }  // namespace thermopower::io

@@ -2,10 +2,12 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include <thermopower/io/summary.hpp>
+#include <thermopower/io/sentences.hpp>
 #include <thermopower/plant/variable_words.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
 #include "html_text.hpp"
+#include "wrapped.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,40 +16,10 @@
 namespace thermopower::io {
 namespace {
 
-constexpr std::size_t text_width = 100;
-
-// Wraps words, and indents every line but the first: the first stands behind a label.
-std::string wrapped(const std::string& text, std::size_t indent) {
-  std::string out;
-  std::size_t column = indent, i = 0;
-  while (i < text.size()) {
-    const std::size_t end = std::min(text.find(' ', i), text.size());
-    if (column > indent && column + 1 + (end - i) > text_width) {
-      out += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (column > indent) {
-      out += ' ';
-      ++column;
-    }
-    out.append(text, i, end - i);
-    column += end - i;
-    i = end + 1;
-  }
-  return out;
-}
-
 std::string line(const std::string& label, const std::string& text) {
   std::string head = "  " + label;
   head.resize(14, ' ');
   return head + wrapped(text, 14) + "\n";
-}
-
-std::string percent(double share) {
-  if (!std::isfinite(share)) return "?";
-  char text[16];
-  if (share > 0.99 && share < 1.0) return ">99 %";
-  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
-  return text;
 }
 
 // As the terminal writes it: `ohm`, not a sign.
@@ -90,6 +62,11 @@ std::string regime_text(const Regime& regime) {
          plain_unit(readable(regime.to), words != nullptr ? words->unit : "");
 }
 
+std::string shrunk_text(const GapScore& gap) {
+  const PercentTexts texts = percent_texts(gap.shrunk_by, gap.ci95);
+  return texts.value + " % " + texts.interval;
+}
+
 std::string gap_table(const Diagnosis& diagnosis) {
   if (diagnosis.gap.empty()) return {};
   char row[200];
@@ -97,10 +74,7 @@ std::string gap_table(const Diagnosis& diagnosis) {
                 "recalibrated", "with effect", "noise floor", "shrunk by [95 %]");
   std::string out = row;
   for (const auto& gap : diagnosis.gap) {
-    std::string shrunk = diagnosis.cause.empty()
-                             ? "-"
-                             : percent(gap.shrunk_by) + " [" + readable(100.0 * gap.ci95.low, 3) + ", " +
-                                   readable(100.0 * gap.ci95.high, 3) + "]";
+    std::string shrunk = diagnosis.cause.empty() ? "-" : shrunk_text(gap);
     std::snprintf(row, sizeof row, "  %-24s%13s%14s%13s%13s   ",
                   (plant::in_words(to_string(gap.signal)) + " / " + gap.unit).c_str(),
                   readable(gap.before).c_str(), readable(gap.recalibrated).c_str(),
@@ -113,16 +87,18 @@ std::string gap_table(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string summary(const Diagnosis& diagnosis) {
+std::string summary(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects) {
   std::string out = std::string(headline(diagnosis.verdict)) + "\n";
-  if (!diagnosis.reason.empty()) out += line("", diagnosis.reason);
+  const std::string words = joined(sentences(diagnosis, effects), " ");
+  if (!words.empty()) out += line("", words);
+  if (!diagnosis.reason.empty()) out += line("why", diagnosis.reason);
   out += findings_text(diagnosis.findings, Severity::warning);
   // Constants within what is known of them may take away what the model as configured shows.
   const std::string difference = diagnosis.verdict == Verdict::no_gap ? "difference as configured" : "gap";
   bool first = true;
   for (const auto& where : diagnosis.where) {
     std::string text = plant::in_words(to_string(where.signal)) + ", " + to_string(where.submodel) + " (" +
-                       (takes_gap_away(where) ? percent(where.share) + " of the " + difference
+                       (takes_gap_away(where) ? percent_text(where.share) + " of the " + difference
                                               : "no one place takes the " + difference + " away") +
                        ")";
     if (where.regime) text += ", most for " + regime_text(*where.regime);
@@ -132,7 +108,7 @@ std::string summary(const Diagnosis& diagnosis) {
   }
   first = true;
   for (const auto& cause : diagnosis.cause) {
-    std::string text = cause.effect + " (" + percent(cause.probability) + ")";
+    std::string text = cause.effect + " (" + percent_text(cause.probability) + ")";
     for (const auto& parameter : cause.parameters) {
       text += (&parameter == &cause.parameters.front() ? ": " : ", ") + parameter.name + " " +
               plain_unit(readable(parameter.value), parameter.unit) + " " + known_to(parameter);
@@ -148,13 +124,13 @@ std::string summary(const Diagnosis& diagnosis) {
       out += line("with", constant.name + " " + readable(constant.configured) + " -> " +
                               readable(constant.fitted) + " (known to " +
                               (constant.is_place ? readable(constant.uncertainty) + " rad"
-                                                 : percent(constant.uncertainty)) +
+                                                 : percent_text(constant.uncertainty)) +
                               (constant.on_bound ? "; on its bound)" : ")"));
   }
   if (diagnosis.remaining) {
     const Remaining& rest = *diagnosis.remaining;
     std::string text = plant::in_words(to_string(rest.signal)) + " stays at " +
-                       readable(rest.times_floor, 3) + " times its noise floor, " + percent(rest.share) +
+                       readable(rest.times_floor, 3) + " times its noise floor, " + percent_text(rest.share) +
                        " of the gap";
     if (rest.submodel) text += std::string("; ") + to_string(*rest.submodel);
     if (rest.regime) text += ", most for " + regime_text(*rest.regime);
@@ -169,6 +145,66 @@ std::string summary(const Diagnosis& diagnosis) {
   if (!diagnosis.recalibration.empty()) out += line("constants", diagnosis.recalibration);
   if (!diagnosis.next_experiment.empty()) out += line("next", diagnosis.next_experiment);
   for (const auto& one : diagnosis.not_judged) out += line("not judged", one);
+  return out;
+}
+
+namespace {
+
+// What Markdown takes for its own is said to be text.
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (const char one : text) {
+    if (one == '|' || one == '*' || one == '_' || one == '<' || one == '`' || one == '[' || one == '\\')
+      out += '\\';
+    out += one == '\n' ? ' ' : one;
+  }
+  return out;
+}
+
+std::string item(const std::string& label, const std::string& text) {
+  return "- **" + label + ":** " + text + "\n";
+}
+
+}  // namespace
+
+std::string summary_markdown(const Diagnosis& diagnosis, const std::string& model_name,
+                             const std::vector<EffectInfo>& effects, const Provenance& made_of) {
+  std::string out = "### Sim-to-real gap" + (model_name.empty() ? "" : " of " + markdown(model_name)) + ": " +
+                    headline(diagnosis.verdict) + "\n\n";
+  for (const std::string& one : sentences(diagnosis, effects)) out += markdown(one) + "\n";
+  const bool has_cause = !diagnosis.cause.empty();
+  if (!diagnosis.gap.empty()) {
+    out += std::string("\n| RMSE, held out | as configured | constants refitted |") +
+           (has_cause ? " with the effect |" : "") + " noise floor |" +
+           (has_cause ? " shrunk by [95 %] |" : "") + "\n|---|---:|---:|" +
+           (has_cause ? "---:|---:|---:|" : "---:|") + "\n";
+    for (const GapScore& gap : diagnosis.gap)
+      out += "| " + markdown(plant::in_words(to_string(gap.signal)) + " / " + gap.unit) + " | " +
+             readable(gap.before) + " | " + readable(gap.recalibrated) + " | " +
+             (has_cause ? readable(gap.after) + " | " : "") + readable(gap.noise_floor) + " |" +
+             (has_cause ? " " + shrunk_text(gap) + " |" : "") + "\n";
+  }
+  out += "\n";
+  for (const Cause& cause : diagnosis.cause)
+    out += item("Which", "`" + cause.effect + "`, probability " + percent_text(cause.probability));
+  for (const std::vector<std::string>& one : diagnosis.alternatives)
+    out += item("Or", "`" + joined(one) + "`");
+  for (const Location& where : diagnosis.where)
+    out += item("Where", markdown(plant::in_words(to_string(where.signal))) + ", `" +
+                             to_string(where.submodel) + "`" +
+                             (takes_gap_away(where) ? ", " + percent_text(where.share) + " of the gap" : ""));
+  std::vector<std::string> told;
+  for (const Finding& one : diagnosis.findings) {
+    if (one.severity < Severity::warning) continue;
+    const std::string text = (one.column.empty() ? "" : "`" + one.column + "` ") + markdown(one.message) +
+                             (one.mend.empty() ? "" : ". To mend it: `" + one.mend + "`");
+    if (std::find(told.begin(), told.end(), text) != told.end()) continue;
+    told.push_back(text);
+    out += item("Data", text);
+  }
+  if (!diagnosis.reason.empty()) out += item("Why", markdown(diagnosis.reason));
+  if (!diagnosis.next_experiment.empty()) out += item("Next", markdown(diagnosis.next_experiment));
+  if (const std::string from = provenance_line(made_of); !from.empty()) out += "\n" + markdown(from) + "\n";
   return out;
 }
 

@@ -6,12 +6,14 @@
 
 #include "dual_numbers.hpp"
 #include "own_effect.hpp"
+#include "nearest_name.hpp"
 #include "own_plant.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
 #include <thermopower/io.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
+#include <thermopower/plant/calibration_id.hpp>
 
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
@@ -102,14 +104,23 @@ struct Result {
   std::string model_name;
   std::vector<gap::Recording> held_out;
 
-  std::string report() const { return io::report_json(diagnosis); }
-  std::string html() const {
-    return io::report_html(diagnosis, model_name, gap::catalogue_of(diagnosis.augmented, catalogue).list(),
-                           held_out);
+  std::vector<plant::EffectInfo> effects() const {
+    return gap::catalogue_of(diagnosis.augmented, catalogue).list();
   }
+  std::string report() const { return io::report_json(diagnosis, effects()); }
+  std::string html() const { return io::report_html(diagnosis, model_name, effects(), held_out); }
   std::string augmented() const { return io::to_json(diagnosis.augmented); }
   std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }
-  std::string summary() const { return io::summary(diagnosis); }
+  std::string summary() const { return io::summary(diagnosis, effects()); }
+  std::string markdown() const { return io::summary_markdown(diagnosis, model_name, effects()); }
+  std::pair<std::string, std::vector<std::string>> mjcf() const {
+    io::SimulatorFile made = io::mjcf(diagnosis.augmented, io::one_sentence(diagnosis), catalogue);
+    return {made.text, made.left_out};
+  }
+  std::pair<std::string, std::vector<std::string>> urdf() const {
+    io::SimulatorFile made = io::urdf(diagnosis.augmented, io::one_sentence(diagnosis), catalogue);
+    return {made.text, made.left_out};
+  }
   std::pair<std::string, std::vector<std::string>> header() const {
     io::MotorModelHeader made =
         io::motor_model_header(diagnosis.augmented, io::one_sentence(diagnosis), catalogue);
@@ -133,12 +144,37 @@ struct Result {
   }
 };
 
+/// A misspelt id would silently remove nothing.
+void expect_effects(const std::vector<std::string>& ids, const gap::Catalogue& catalogue) {
+  for (const std::string& id : ids) {
+    if (plant::is_calibration(id) || catalogue.find(id) != nullptr) continue;
+    std::vector<std::string> known;
+    for (const auto& effect : catalogue.list()) known.push_back(effect.id);
+    const std::string nearest = io::nearest_name(id, known);
+    throw io::InputError(
+        "without: there is no effect '" + id + "'; " +
+        (nearest.empty() ? "print(thermopower.effects()) lists them" : "did you mean " + nearest + "?"));
+  }
+}
+
+/// A misspelt start would silently start nothing.
+void expect_starts(const std::map<std::string, double>& starts, const gap::Model& model) {
+  if (model.own) return;  // tells by itself
+  for (const auto& [name, value] : starts) {
+    const bool known = name == "motor_C" || name == "current_A" || name == "angle_deg" || name == "rate_dps";
+    if (!known)
+      throw io::InputError("start: there is no '" + name +
+                           "'; expected motor_C, current_A, angle_deg or rate_dps");
+  }
+}
+
 Result diagnose(const gap::Model& model, const std::vector<py::dict>& effects,
                 std::vector<gap::Recording> train, std::vector<gap::Recording> held_out,
                 gap::Options options) {
   options.validate();
   Result result;
   result.catalogue = catalogue_with(effects);
+  expect_effects(options.without, gap::catalogue_of(model, result.catalogue));
   if (held_out.empty()) {
     for (gap::Recording& recording : train) {
       auto [first, last] = gap::split(recording, options.held_out_fraction);
@@ -155,13 +191,20 @@ Result diagnose(const gap::Model& model, const std::vector<py::dict>& effects,
   return result;
 }
 
-std::string check(const gap::Model& model, const std::vector<py::dict>& effects,
-                  const std::vector<gap::Recording>& train, const std::vector<gap::Recording>& held_out,
-                  const gap::Options& options) {
+// For machines and for people.
+std::pair<std::string, std::string> check(const gap::Model& model, const std::vector<py::dict>& effects,
+                                          const std::vector<gap::Recording>& train,
+                                          const std::vector<gap::Recording>& held_out,
+                                          const gap::Options& options,
+                                          const std::vector<std::string>& choices) {
   options.validate();
   const gap::Catalogue catalogue = catalogue_with(effects);
   const py::gil_scoped_release released;
-  return io::check_json(gap::check_data(model, train, held_out, options, catalogue));
+  gap::DataReport report = gap::check_data(model, train, held_out, options, catalogue);
+  std::vector<io::ColumnChoice> in_force;
+  for (const std::string& text : choices) in_force.push_back(io::parse_column_choice(text));
+  io::put_remedies_in_force(report.findings, in_force);
+  return {io::check_json(report), io::check_text(report)};
 }
 
 using Signals = std::vector<std::pair<std::string, Eigen::VectorXd>>;
@@ -184,6 +227,7 @@ std::vector<Signals> simulate(const std::vector<gap::Model>& models, const std::
       try {
         const gap::Model& model = models[i / recordings.size()];
         gap::Recording recording = recordings[i % recordings.size()];
+        if (from_inputs) expect_starts(starts, model);
         if (from_inputs) recording = io::with_starts(std::move(recording), model, starts);
         for (auto& one : gap::simulate(model, recording, options, catalogue))
           all[i].emplace_back(to_string(one.signal), std::move(one.values));
@@ -251,6 +295,9 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("recalibrated", &Result::recalibrated)
       .def("summary", &Result::summary)
       .def("header", &Result::header)
+      .def("markdown", &Result::markdown)
+      .def("mjcf", &Result::mjcf)
+      .def("urdf", &Result::urdf)
       .def("series", &Result::series);
   thermopower::python::bind_dual<plant::Dual>(module, "Dual");
   thermopower::python::bind_dual<plant::WideDual>(module, "WideDual");
@@ -271,5 +318,27 @@ PYBIND11_MODULE(_thermopower, module) {
   module.def("simulate", &simulate);
   module.def("effects", [] { return io::catalogue_text(gap::standard_catalogue().list()); });
   module.def("normalised", [](const std::string& model) { return io::to_json(model_of(model)); });
+  module.def("explain", [](const std::string& code) {
+    const auto page = io::code_page(code);
+    if (page) return io::to_text(*page);
+    const std::string nearest = io::nearest_name(code, io::known_codes());
+    throw io::InputError("explain: there is no code '" + code + "'" +
+                         (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  });
+  module.def("compare", [](const std::string& a, const std::string& b) {
+    return io::comparison({"the first", a}, {"the second", b});
+  });
+  module.def(
+      "columns",
+      [](const std::string& path, const std::string& joint) {
+        const io::LogContents contents = io::list_log(path, joint);
+        std::vector<std::pair<std::string, std::string>> proposed;
+        for (const io::ListedColumn& one : contents.columns)
+          if (!one.proposed.empty())
+            proposed.emplace_back(one.proposed, one.header + (one.unit.empty() ? "" : ":" + one.unit));
+        return std::make_pair(io::columns_text(contents), proposed);
+      },
+      released());
+  module.attr("version") = io::version_text();
   module.attr("known_columns") = io::known_columns();
 }

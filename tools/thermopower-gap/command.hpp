@@ -15,6 +15,8 @@ struct Command {
 
 /// @brief Adds `diagnose`: finds the missing effect.
 Command add_diagnose(CLI::App& program);
+/// @brief Adds `design`: writes the schedule of the next experiment.
+Command add_design(CLI::App& program);
 /// @brief Adds `predict`: simulates a recording with a model.
 Command add_predict(CLI::App& program);
 /// @brief Adds `check`: says what is wrong with recordings.
@@ -29,3 +31,7 @@ Command add_fleet(CLI::App& program);
 Command add_init(CLI::App& program);
 /// @brief Adds `effects`: lists the catalogue.
 Command add_effects(CLI::App& program);
+/// @brief Adds `explain`: says what a code of a report means.
+Command add_explain(CLI::App& program);
+/// @brief Adds `compare`: says in what two reports differ.
+Command add_compare(CLI::App& program);

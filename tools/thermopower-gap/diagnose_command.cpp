@@ -32,6 +32,8 @@ int diagnose(const Arguments& arguments) {
   }
   gap::Diagnosis diagnosis;
   gap::Model model;
+  std::vector<gap::EffectInfo> effects;
+  io::Provenance made_of;
   {
     Progress progress;
     model = read_model(arguments, catalogue);
@@ -60,10 +62,13 @@ int diagnose(const Arguments& arguments) {
     diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
     io::put_remedies_in_force(diagnosis.findings, how.choices);
     progress.stage("writing");
-    if (!arguments.report.empty()) outputs.put(arguments.report, io::report_json(diagnosis));
+    effects = gap::catalogue_of(model, catalogue).list();
+    // A fleet compares its reports byte by byte, wherever its logs lie.
+    if (!arguments.of_fleet) made_of = provenance_of(arguments);
+    if (!arguments.report.empty())
+      outputs.put(arguments.report, io::report_json(diagnosis, model, effects, made_of));
     if (!arguments.html.empty())
-      outputs.put(arguments.html, io::report_html(diagnosis, model.name,
-                                                  gap::catalogue_of(model, catalogue).list(), held_out));
+      outputs.put(arguments.html, io::report_html(diagnosis, model.name, effects, held_out, made_of));
     if (!arguments.predictions.empty()) {
       outputs.put(arguments.predictions,
                   io::predictions_csv(model, diagnosis, held_out, arguments.horizon_s, catalogue));
@@ -75,7 +80,12 @@ int diagnose(const Arguments& arguments) {
   // Where an output is standard output, it has that for itself.
   const bool taken = std::any_of(outputs_asked.begin(), outputs_asked.end(),
                                  [](const std::string* path) { return *path == "-"; });
-  if (!arguments.of_fleet) std::fputs(io::summary(diagnosis).c_str(), taken ? stderr : stdout);
+  if (!arguments.of_fleet) {
+    const std::string text = arguments.summary == "markdown"
+                                 ? io::summary_markdown(diagnosis, model.name, effects, made_of)
+                                 : io::summary(diagnosis, effects);
+    std::fputs(text.c_str(), taken ? stderr : stdout);
+  }
   return diagnosis.verdict == gap::Verdict::insufficient ? too_little_data : made;
 }
 
@@ -94,6 +104,10 @@ Command add_diagnose(CLI::App& program) {
   app->add_option("--predictions", asked->predictions, "write held-out predictions (CSV)");
   app->add_option("--augmented", asked->augmented, "write the model with what was found (JSON)");
   app->add_option("--header", asked->header, "write the same as a C++11 header for firmware");
+  app->add_option("--summary", asked->summary,
+                  "how the answer is printed: text, or markdown to paste into an issue")
+      ->check(CLI::IsMember({"text", "markdown"}))
+      ->capture_default_str();
   app->add_option("--without", asked->without, "remove an effect from the catalogue; may be repeated");
   add_horizon(*app, *asked)->capture_default_str();
   app->add_option("--tolerance", asked->tolerance, "relative shrinkage of the gap below which nobody cares")

@@ -41,6 +41,23 @@ void expect_subcommand(CLI::App& app, const std::string& given) {
       (nearest.empty() ? "; expected one of " : "; did you mean " + nearest + "? Expected one of ") + list);
 }
 
+// The files that were typed without options, with those they probably belong to.
+std::string with_options(const std::vector<std::string>& options, const std::string& required, int count,
+                         char** values) {
+  const auto known = [&](const char* option) {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  };
+  const std::string expected = "expected " + (required.empty() ? std::string("an option first") : required);
+  if (!known("--model") || !known("--recording")) return expected;
+  std::string text;
+  for (int i = 2; i < count && values[i][0] != '-'; ++i) {
+    const std::string word = values[i];
+    const bool is_model = word.size() > 5 && word.compare(word.size() - 5, 5, ".json") == 0;
+    text += std::string(is_model ? " --model " : " --recording ") + word;
+  }
+  return "did you mean" + text + "?";
+}
+
 // Says what was typed that no option is, before the parser says what is missing.
 void expect_options(const CLI::App& subcommand, int count, char** values) {
   std::vector<std::string> options = {"--help"};
@@ -64,10 +81,15 @@ void expect_options(const CLI::App& subcommand, int count, char** values) {
     }
     const bool is_letter =
         name.size() == 2 && name[0] == '-' && name[1] >= 'a' && name[1] <= 'z' && name != "-h";
-    if (is_letter) throw UsageError("there is no option " + name + "; options are spelt out: " + required);
+    if (is_letter) {
+      for (const std::string& option : options)
+        if (option[2] == name[1])
+          throw UsageError("there is no option " + name + "; did you mean " + option + "?");
+      throw UsageError("there is no option " + name + "; options are spelt out: " + required);
+    }
     if (i == 2 && !takes_words && !word.empty() && word[0] != '-')
-      throw UsageError(io::excerpt(word) + " stands before any option; expected " +
-                       (required.empty() ? "an option first" : required));
+      throw UsageError(io::excerpt(word) + " stands before any option; " +
+                       with_options(options, required, count, values));
   }
 }
 
@@ -84,10 +106,11 @@ int run(int count, char** values) {
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 a diagnosis was made, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand.");
-  const std::vector<Command> commands = {add_diagnose(app), add_predict(app), add_check(app),
-                                         add_export(app),   add_columns(app), add_fleet(app),
-                                         add_effects(app),  add_init(app)};
+      "Exit status: 0 a diagnosis was made, 1 a fault of the program itself, 2 wrong usage, 3 unreadable or invalid input, 4 too little data, or data that cannot be believed as they stand, or no experiment that decides.");
+  const std::vector<Command> commands = {add_diagnose(app), add_design(app),  add_predict(app),
+                                         add_check(app),    add_export(app),  add_columns(app),
+                                         add_fleet(app),    add_effects(app), add_init(app),
+                                         add_explain(app),  add_compare(app)};
   for (const Command& command : commands)
     for (CLI::Option* const option : command.app->get_options([](const CLI::Option*) { return true; }))
       if (option->get_expected_min() > 0) option->check(not_empty);

@@ -89,6 +89,33 @@ io::ReadOptions reading(const Arguments& arguments, const gap::Model& model) {
   return options;
 }
 
+io::Provenance provenance_of(const Arguments& arguments) {
+  io::Provenance made_of{arguments.model, arguments.recordings, arguments.held_out, {}, io::today()};
+  const Arguments standard;
+  const auto number = [&made_of](const char* option, double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%s %g", option, value);
+    made_of.options.emplace_back(text);
+  };
+  const auto each = [&made_of](const char* option, const std::vector<std::string>& values,
+                               bool is_path = false) {
+    for (const std::string& one : values)
+      made_of.options.push_back(std::string(option) + " " + (is_path ? io::path_for_others(one) : one));
+  };
+  if (arguments.horizon_s != standard.horizon_s) number("--horizon", arguments.horizon_s);
+  if (arguments.tolerance != standard.tolerance) number("--tolerance", arguments.tolerance);
+  if (arguments.seed != standard.seed) number("--seed", arguments.seed);
+  if (arguments.as_recorded) made_of.options.emplace_back("--as-recorded");
+  each("--without", arguments.without);
+  each("--map", arguments.maps, true);
+  each("--column", arguments.columns);
+  if (arguments.rows_per_s > 0.0) number("--rate", arguments.rows_per_s);
+  if (arguments.has_ambient) number("--ambient", arguments.ambient_C);
+  if (arguments.has_supply) number("--supply", arguments.supply_V);
+  each("--constant", arguments.constants);
+  return made_of;
+}
+
 // A choice of a fleet, before the models are known.
 void expect_choice(const std::string& text) {
   try {

@@ -7,6 +7,7 @@
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/io/column_choice.hpp>
 #include <thermopower/io/output_files.hpp>
+#include <thermopower/io/provenance.hpp>
 #include <thermopower/io/recording_file.hpp>
 #include <thermopower/gap/finding.hpp>
 #include <thermopower/plant/catalogue.hpp>
@@ -32,6 +33,7 @@ struct Arguments {
   std::vector<const std::string*> outputs() const {
     return {&report, &html, &predictions, &augmented, &header, &mjcf, &urdf};
   }
+  std::string summary = "text";  ///< how the answer is printed
   std::vector<std::string> recordings, held_out, without, columns, maps, starts;
   std::vector<std::string> constants;  ///< NAME=VALUE of columns that the files lack
   double ambient_C = 0.0, supply_V = 0.0;
@@ -49,6 +51,9 @@ struct Arguments {
 /// for one name the later one is taken.
 /// @throws UsageError or InputError that names the option or the line
 thermopower::io::ReadOptions reading(const Arguments& arguments, const thermopower::gap::Model& model);
+
+/// @brief What a report is made of: the files and the options that change the answer, as typed.
+thermopower::io::Provenance provenance_of(const Arguments& arguments);
 
 /// @brief Checks a `--column` before the models are known. @throws UsageError
 void expect_choice(const std::string& text);

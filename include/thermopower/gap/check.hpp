@@ -22,7 +22,7 @@ struct CheckedRecordings {
 /// How to check.
 struct CheckOptions {
   double horizon_s = 0.5;    ///< length of the axis' windows in s
-  bool as_recorded = false;  ///< say what is wrong, but mask and cut nothing
+  bool as_recorded = false;  ///< report faults, but mask and cut nothing
 };
 
 /// Checks and prepares all recordings of a diagnosis. Each is let go of as soon as it is prepared: they may be long.

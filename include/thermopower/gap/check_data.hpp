@@ -15,7 +15,7 @@
 
 namespace thermopower::gap {
 
-/// What a recording holds of one judged signal.
+/// The content of a recording for one judged signal.
 struct SignalReport {
   std::string signal;        ///< `motor_C`, ...
   std::string unit;          ///< of the numbers below
@@ -42,14 +42,14 @@ struct Combination {
 /// Whether a recording can show an effect.
 struct EffectReport {
   std::string effect;  ///< id
-  /// Root mean square, in noise units of the signal that shows it best, of what an effect of usual size changes and
-  /// moved constants cannot imitate.
+  /// Root mean square of what an effect of usual size changes and moved constants cannot imitate. In noise units of the
+  /// signal that shows it best.
   double visible = 0.0;
   bool absorbed = false;           ///< moved constants imitate it almost entirely
   std::vector<std::string> alike;  ///< other effects that look the same here (cosine above 0.95)
 };
 
-/// What data are worth before anything is fitted.
+/// The worth of data before anything is fitted.
 struct DataReport {
   std::vector<Finding> findings;           ///< those that decide first
   std::string too_little;                  ///< what a diagnosis lacks to say anything; empty: nothing
@@ -63,8 +63,8 @@ struct DataReport {
       need_columns;  ///< effects that nothing can show for want of a column: `id: column, ...`
 };
 
-/// Looks at the data of a diagnosis: what is wrong with them, what these columns and this excitation can show, and
-/// which constants they determine. Nothing is fitted; see `thermopower-gap check`.
+/// Looks at the data of a diagnosis: their faults, what these columns and this excitation can show, and which constants
+/// they determine. Nothing is fitted; see `thermopower-gap check`.
 /// @throws InvalidInput where the model, a recording or an option is invalid
 DataReport check_data(const Model& model, const std::vector<Recording>& train,
                       const std::vector<Recording>& held_out = {}, const Options& options = {},

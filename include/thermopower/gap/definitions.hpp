@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file definitions.hpp
-/// Every definition that the public headers of the diagnosis leave to a library where
-/// THERMOPOWER_GAP_LIBRARY is defined: for the one source file that compiles them.
+/// Every definition that the public headers of the diagnosis leave to a library if THERMOPOWER_GAP_LIBRARY is defined. The
+/// one source file that compiles them includes it.
 
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/detail/check_data.hpp>

@@ -14,8 +14,8 @@ namespace thermopower::gap {
 
 /// Says where a model and recordings part, which effect is missing, and how far the gap shrinks with it.
 ///
-/// `train` serves to find and to fit, `held_out` to judge; where `held_out` is empty, the last
-/// `held_out_fraction` of each training recording (whole excitation segments) is taken away for it.
+/// `train` serves to find and to fit, `held_out` to judge. If `held_out` is empty, the last `held_out_fraction` of each
+/// training recording (whole excitation segments) is held out.
 /// @throws InvalidInput where the model, a recording or an option is invalid
 Diagnosis diagnose(const Model& model, const std::vector<Recording>& train,
                    const std::vector<Recording>& held_out = {}, const Options& options = {},

@@ -48,10 +48,10 @@ struct Location {
   std::optional<Regime> regime;          ///< where in which variable it is largest
   std::string evidence;                  ///< one sentence
   std::vector<Occurrence> only_in = {};  ///< the runs it shows in; empty: all of them, throughout
-  /// Whether what is missing follows nothing that a cause follows, and a course of its own predicts it: in time, or of a
+  /// Whether the missing quantity follows no variable of a cause, and a course of its own predicts it: in time, or of a
   /// torque over the angle.
   bool has_own_course = false;
-  /// How much is missing, in multiples of what noise leaves: the mean square of what constants within their slack do not
+  /// How much is missing, in multiples of what noise leaves. It is the mean square that constants within their slack do not
   /// make up for, on stretches that they were not fitted to.
   double times_noise = 0.0;
 };
@@ -66,7 +66,7 @@ struct ParameterEstimate {
   double value = 0.0;  ///< maximum-posterior estimate, in `unit`
   Interval ci95;  ///< accounts for autocorrelated residuals; its whole range where the data say nothing of it
   std::string unit;       ///< "1" for a pure number
-  bool at_bound = false;  ///< ended on a bound of its range: then it is no explanation
+  bool at_bound = false;  ///< ended on a bound of its range: then it does not explain
   bool told = true;       ///< the data narrow its range
 };
 
@@ -93,7 +93,7 @@ struct GapScore {
   Interval by_constants = {};      ///< the same of 1 - recalibrated / before
 };
 
-/// What an explanation that was not chosen makes of a signal.
+/// The curve of a signal by an explanation that was not chosen.
 struct RivalCurve {
   std::vector<std::string> effects;  ///< its ids, as in `Diagnosis::ranking`
   Eigen::VectorXd values;            ///< one per row of the series
@@ -115,7 +115,7 @@ struct SignalSeries {
 /// The missing physical quantity itself (watts, newton metres, volts) against the variable that orders it.
 struct MissingQuantity {
   plant::SignalName signal;      ///< the signal it was inferred from
-  plant::QuantityName quantity;  ///< what is missing
+  plant::QuantityName quantity;  ///< the missing quantity
   std::string unit;              ///< W, N m, V, ...
   std::string variable;          ///< abscissa, such as `rise_K` or `rate_rad_per_s`
   std::string variable_unit;     ///< unit of the abscissa
@@ -123,8 +123,7 @@ struct MissingQuantity {
   Eigen::VectorXd value;         ///< missing quantity there
   Eigen::VectorXd spread;        ///< its standard error
   Eigen::VectorXd effect_x;      ///< abscissae of the curve `effect`, ascending and evenly spaced
-  /// What the model with the chosen causes supplies at `effect_x`, as a smooth curve; empty where there are
-  /// none.
+  /// The quantity that the model with the chosen causes supplies at `effect_x`, as a smooth curve; empty without causes.
   Eigen::VectorXd effect;
   double effect_freedom = 0.0;  ///< effective degrees of freedom of that curve: 2 is a straight line
 };
@@ -135,7 +134,7 @@ struct Likeness {
   double cosine = 0.0;               ///< of the signatures, whitened and freed of the baseline's constants
 };
 
-/// Where the fit of an explanation ended, as what is made of many recordings needs it.
+/// The end of the fit of an explanation, as a fleet needs it.
 struct FittedCoordinate {
   std::string name;          ///< `calibration.<id>` for the factor on a constant, or `<effect>.<parameter>`
   double at = 0.0;           ///< the value, or its natural logarithm
@@ -155,8 +154,8 @@ struct RankedExplanation {
   bool refused = false;              ///< makes held-out data worse
   std::vector<ParameterEstimate> parameters;  ///< named `<effect>.<parameter>`
   std::vector<Likeness> confusable;           ///< others with a likeness of 0.9 or more
-  /// Twice the log of how much likelier it makes the training data than the empty explanation does, residuals of unknown
-  /// variance, rows divided by the length of their correlation; nothing is charged for parameters.
+  /// Twice the log of how much likelier it makes the training data than the empty explanation does. Residuals have an
+  /// unknown variance, and rows are divided by the length of their correlation. Nothing is charged for parameters.
   double train_gain = 0.0;
   double held_out_gain =
       0.0;  ///< the same of held-out data, parameters from training; NaN: was not looked at
@@ -164,6 +163,7 @@ struct RankedExplanation {
       0;  ///< hidden states whose start the held-out gain fitted, because nobody measures them
   std::vector<FittedCoordinate> fitted = {};  ///< every constant, then the effects' parameters
   Eigen::MatrixXd covariance;  ///< of `fitted`; 0 by 0 where nobody looked at the fit's curvature
+  std::vector<FittedCoordinate> fixed = {};  ///< given by the data, such as the range of a curve
 };
 
 /// A constant of the model: as configured, and as the reported explanation has it.
@@ -179,7 +179,8 @@ struct ConstantEstimate {
   bool within_known = true;  ///< it moved by no more than two of its uncertainties
 };
 
-/// What an explanation leaves of the held-out gap: the geometric mean over the signals that have one, 1 where nothing is closed.
+/// The share of the held-out gap that an explanation leaves: the geometric mean over the signals that have one, 1 if
+/// nothing is closed.
 struct ShareLeft {
   double of_configured = 1.0;          ///< of what the configured model leaves
   double most = 1.0;                   ///< upper end of its one-sided 95 % interval
@@ -200,15 +201,15 @@ struct DecisionNumbers {
   bool common_factor = false;  ///< one factor explains several constants (FindingKind::common_factor)
 };
 
-/// How the estimates of the chosen explanation hang together: near 1 or -1 the training data show little more of two of
-/// them than one combination.
+/// Correlation of the estimates of the chosen explanation. Near 1 or -1 the training data show little more than one
+/// combination of two of them.
 struct ParameterCorrelation {
   std::vector<std::string>
       names;  ///< `<effect>.<parameter>`, and `<constant>.scale` of the model's own (`.shift` of a place)
   Eigen::MatrixXd of;  ///< symmetric, 1 on its diagonal; NaN where nothing is known
 };
 
-/// What the named causes leave of the gap on held-out data.
+/// The rest of the held-out gap that the named causes leave.
 struct Remaining {
   plant::SignalName signal;                     ///< the signal that is furthest above its noise floor
   double share = 0.0;                           ///< of the gap above the noise as configured, 0..1

@@ -10,7 +10,7 @@
 
 namespace thermopower::gap {
 
-/// What the check of a recording can find. `to_string` gives the id that reports spell.
+/// The faults that the check of a recording can find. `to_string` gives the id that reports spell.
 enum class FindingKind {
   // Stamps.
   irregular_stamps,  ///< intervals vary more than by rounding
@@ -24,7 +24,7 @@ enum class FindingKind {
   spiked_samples,    ///< isolated samples far from their neighbours
   glitched_samples,  ///< a stretch that jumps away and back (0 A, 85.0 degC, a 16-bit word that wrapped)
   repeated_frames,   ///< rows that repeat the outputs of the row before them
-  held_samples,  ///< an output that repeats the last word of a sensor slower than the rows; only what is new counts
+  held_samples,  ///< an output that repeats the last word of a sensor slower than the rows; only new words count
   interpolated_samples,  ///< an output with straight lines between the readings of a slower sensor; only those count
   separate_samples,    ///< an angle and a rate that never stand in one row; windows start between samples
   frozen_samples,      ///< an output that stands still where it cannot
@@ -48,7 +48,7 @@ enum class FindingKind {
   held_out_in_training,   ///< held-out data that are training data, too
   recording_given_twice,  ///< two training recordings are the same
   // The file.
-  text_column_ignored,  ///< a column of text that is no run label
+  text_column_ignored,  ///< a column of text that is not a run label
   no_final_line_break,  ///< a file that may have been cut off
   // The model beside the recording.
   common_factor,    ///< several constants are off by one factor: a unit, a gear or a supply
@@ -152,7 +152,7 @@ inline const char* to_string(Severity severity) {
   return "";
 }
 
-/// What the check did about a finding.
+/// The check's answer to a finding.
 enum class FindingAction {
   none,       ///< nothing
   masked,     ///< the samples count as missing
@@ -187,7 +187,7 @@ struct Finding {
   Severity severity = Severity::note;               ///< an error decides the verdict
   std::string recording;                            ///< name of the recording it was found in
   std::string column;                               ///< may be empty
-  std::string message;                              ///< one sentence: what is wrong, where, by how much
+  std::string message;                              ///< one sentence: the fault, where, by how much
   std::string mend = {};  ///< what would mend it, such as `--column motor_C=motor_C:degF`; may be empty
   FindingAction action = FindingAction::none;  ///< what was done about it
   std::vector<RowRange> rows = {};             ///< which rows, in order; empty: the column as a whole

@@ -19,16 +19,16 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a diagnosis may be told.
+/// Options of a diagnosis.
 struct Options {
-  double horizon_s = 0.5;          ///< length of the axis' windows in s, > 0
-  double tolerance = 0.05;         ///< shrinkage of the score below which nobody cares, as a fraction, 0..0.5
-  double held_out_fraction = 0.3;  ///< held out where no recording is given for it, 0.05..0.9
-  int effects_at_once = 3;         ///< the largest set of effects weighed together, 1..3
+  double horizon_s = 0.5;            ///< length of the axis' windows in s, > 0
+  double tolerance = 0.05;           ///< smallest relative shrinkage of the score that counts, 0..0.5
+  double held_out_fraction = 0.3;    ///< held out where no recording is given for it, 0.05..0.9
+  int effects_at_once = 3;           ///< the largest set of effects weighed together, 1..3
   std::vector<std::string> without;  ///< ids removed from the catalogue
-  bool as_recorded = false;  ///< the check says what is wrong with the data, but masks and cuts nothing
-  unsigned threads = 1;      ///< 1 or more, of which at most 1024 are used; the result does not depend on it
-  unsigned seed = 1;         ///< of the bootstrap; equal seeds give equal reports
+  bool as_recorded = false;          ///< the check reports faults of the data, but masks and cuts nothing
+  unsigned threads = 1;  ///< 1 or more, of which at most 1024 are used; the result does not depend on it
+  unsigned seed = 1;     ///< of the bootstrap; equal seeds give equal reports
   /// Where another thread sets it, the diagnosis soon ends by throwing Stopped. None: nobody may.
   const std::atomic<bool>* stop = nullptr;
 

@@ -24,12 +24,12 @@ struct Column {
   Eigen::VectorXd values;  ///< one per row; NaN is a missing sample
 };
 
-/// What was recorded on the real actuator, in memory.
+/// A recording of the real actuator, in memory.
 ///
 /// Inputs (`power_param`, `drive_A`, `supply_V`, `ambient_C`, ...) are held from their row to the next one.
 /// Outputs are samples at the row's time. Every other numeric column is a covariate.
-/// Invariants (see validate()): all columns are as long as `t_s`; `t_s` is finite and strictly increasing
-/// inside a run; the runs are in order and do not overlap.
+/// Invariants (see validate()): all columns are as long as `t_s`, which is finite and strictly increasing inside a run. The
+/// runs are in order and do not overlap.
 ///
 /// @snippet plant_examples.cpp recording
 /// How to: @ref diagnose_a_gap, @ref take_logs_in.
@@ -120,7 +120,7 @@ struct Recording {
     return part;
   }
 
-  /// What is wrong with it, in one sentence, or nothing.
+  /// The first fault in it, in one sentence, or nothing.
   std::optional<std::string> validate() const {
     for (const Column& one : columns)
       if (one.values.size() != rows())

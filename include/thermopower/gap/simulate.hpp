@@ -29,9 +29,9 @@ std::vector<SimulatedSignal> simulate(const Model& model, const Recording& recor
                                       const SimulationOptions& options = {},
                                       const Catalogue& catalogue = standard_catalogue());
 
-/// The same as a gap is measured: an axis restarts from what the check of a diagnosis believes of the measured motion (no spikes
-/// or frozen readings, a late rate read earlier), and where that cuts the recording. At rows that the check leaves out, and of
-/// signals that it does not judge, it is simulate() from the recording as it is.
+/// The same as a gap is measured. An axis restarts from the motion that the check of a diagnosis believes, and where the
+/// check cuts the recording. At rows that the check leaves out, and of signals that it does not judge, it is simulate()
+/// from the recording as it is.
 /// @throws InvalidInput  like simulate()
 std::vector<SimulatedSignal> simulate_as_believed(const Model& model, const Recording& recording,
                                                   double horizon_s,

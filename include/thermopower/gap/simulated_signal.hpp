@@ -16,7 +16,7 @@ struct SimulatedSignal {
   Eigen::VectorXd values;    ///< in the signal's unit: A, degC, deg or deg/s
 };
 
-/// What was simulated of one held-out recording, at its rows as they were given; NaN at rows that the check left out.
+/// The simulation of one held-out recording, at its rows as they were given; NaN at rows that the check left out.
 struct HeldOutPrediction {
   std::vector<SimulatedSignal> baseline;   ///< by the model as configured
   std::vector<SimulatedSignal> augmented;  ///< by the model with the causes

@@ -7,9 +7,9 @@
 
 namespace thermopower::gap {
 
-/// What a diagnosis concludes.
+/// The conclusion of a diagnosis.
 enum class Verdict {
-  no_gap,        ///< the simulation, its constants within what is known of them, scores what noise allows
+  no_gap,        ///< the simulation, its constants within their uncertainties, scores near the noise
   explained,     ///< the causes bring held-out data near the noise floor, and nothing else does
   partial,       ///< the causes take a proven part of the held-out gap away; the rest is above the noise
   ambiguous,     ///< several explanations do, and this recording cannot tell them apart
@@ -36,7 +36,7 @@ inline const char* to_string(Verdict verdict) {
   return "insufficient";
 }
 
-/// The verdict that a report spells so; none where it is no verdict.
+/// The verdict that a report spells so; none for another word.
 inline std::optional<Verdict> verdict_of(std::string_view text) {
   for (const Verdict one : {Verdict::no_gap, Verdict::explained, Verdict::partial, Verdict::ambiguous,
                             Verdict::unexplained, Verdict::insufficient})

@@ -10,7 +10,7 @@ namespace thermopower::io {
 /// @brief Which column of a file is meant by a name of the format, and how its numbers become the format's unit:
 /// value = (number - offset) * factor, and then what `needs` says.
 struct ColumnChoice {
-  /// What the numbers must be multiplied or divided by besides.
+  /// Further factors of the numbers.
   enum class Needs {
     nothing,          ///< the factor is all
     torque_constant,  ///< a torque of the drive: divided by the model's torque constant it is a current
@@ -49,8 +49,8 @@ std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::s
 
 /// @brief Says what is wrong with a name that is none of the format's; empty where it can only be meant for a covariate.
 ///
-/// A covariate may be called anything, but for what is nearly a name of the format, and a column that already has such a name is
-/// none: a typing mistake would take it away without a word.
+/// A covariate may have any name that is not nearly a name of the format: a typing mistake would take that column away
+/// silently.
 /// @param choice  as it was given
 /// @param others  names that a plant of one's own reads besides
 std::string unknown_name(const ColumnChoice& choice, const std::vector<std::string>& others = {});

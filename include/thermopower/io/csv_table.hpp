@@ -52,9 +52,9 @@ struct CsvReading {
 };
 
 /// @brief Reads a CSV file as RFC 4180 describes it: a header row, optional quotes, LF or CRLF, optional UTF-8
-/// byte-order mark. Columns are separated by commas, or by semicolons or tabs where the header row has more of
-/// those; then numbers may have a decimal comma, all of them. Lines that begin with `#` are comments; the last one above
-/// the first row is the header row where the first row holds numbers only.
+/// byte-order mark. Columns are separated by commas, semicolons or tabs, as in the header row. With the latter two, all
+/// numbers may have a decimal comma. Lines that begin with `#` are comments; the last one above the first row is the header
+/// row where the first row holds numbers only.
 ///
 /// Strict, because a number that was read wrongly is worse than a file that was refused. Checked on the way:
 /// header names present and distinct; as many fields in each row as in the header; numbers complete, finite
@@ -67,8 +67,8 @@ struct CsvReading {
 ///
 /// Three habits of programs are understood. A first row that holds units only is a row of units (CsvTable::units): a column
 /// whose choice says no unit is in that one. `t_s` may hold dates or times of day (ISO 8601, and as Python, pandas and
-/// spreadsheets write them); it becomes seconds since the first. A first column without a name, as pandas writes its index, is
-/// called `index` and left out unless it is chosen; a column without a name and without a cell is left out.
+/// spreadsheets write them); it becomes seconds since the first. A first column without a name, as pandas writes its index,
+/// is called `index` and left out unless it is chosen. A column without a name and without a cell is left out.
 ///
 /// Blank lines are skipped. Numbers are parsed with std::from_chars, so that no locale can change their
 /// meaning.

@@ -23,12 +23,12 @@ struct MotorModelHeader {
 /// Effects write themselves: their own equations are traced with an Expression and printed as code, those of
 /// the catalogue and a user's own alike. What they do to the circuit becomes `v_rms_V()`, to the heat
 /// `heat_W()`, to the loss the policy `Cooling`, to drive, load and friction `drive_Nm()`, `load_Nm()` and
-/// `dry_friction_Nm()`; the errors of sensors are undone by `true_...()`. What shapes the model (nodes, lags,
-/// delays, springs) is a policy of the library or a named constant. Compiles wherever the library's firmware
-/// headers do (avr-gcc 5.4 with -std=gnu++11).
+/// `dry_friction_Nm()`; the errors of sensors are undone by `true_...()`. The shape of the model (nodes, lags, delays,
+/// springs) is a policy of the library or a named constant. Compiles wherever the library's firmware headers do (avr-gcc
+/// 5.4 with -std=gnu++11).
 ///
-/// What has no counterpart in firmware is listed in the header and in `left_out`, and its parameters are kept
-/// as constants: nothing is dropped silently.
+/// A part without a counterpart in firmware is listed in the header and in `left_out`, and its parameters are kept as
+/// constants: nothing is dropped silently.
 /// @param model      with its effects
 /// @param origin     one line that says where it comes from, for the comment on top
 /// @param catalogue  knows the equations of the model's effects; of others the constants are kept

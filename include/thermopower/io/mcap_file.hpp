@@ -54,11 +54,12 @@ std::string columns_text(const McapContents& contents);
 /// any topic that bears a name of the format (`motor_C`) needs no choice. All else is left out.
 ///
 /// **One time base.** Nothing is interpolated or resampled. Each message becomes a row at its own time; messages of the same
-/// nanosecond share it. What is measured (`current_A`, `motor_C`, `angle_deg`, `rate_dps`) has samples in the rows of its
-/// own messages alone. Everything else is held from message to message, as inputs are; rows before the first message of any of
-/// these are left out. Time is counted from the first row that is kept. It is `header.stamp`, the time of measurement, where the messages
-/// of all topics that are used have one, else the time at which the recorder took them; `t_s=log_time`,
-/// `t_s=publish_time`, `t_s=header.stamp` say so by hand, and `t_s=/topic.field[:unit]` takes a field, where all columns are of that topic.
+/// nanosecond share it. A measured column (`current_A`, `motor_C`, `angle_deg`, `rate_dps`) has samples in the rows of its
+/// own messages alone. Everything else is held from message to message, as inputs are; rows before the first message of any
+/// of these are left out. Time is counted from the first row that is kept. It is `header.stamp`, the time of measurement,
+/// where the messages of all topics that are used have one, else the time at which the recorder took them; `t_s=log_time`,
+/// `t_s=publish_time`, `t_s=header.stamp` say so by hand, and `t_s=/topic.field[:unit]` takes a field, where all columns
+/// are of that topic.
 ///
 /// Memory grows with the fields that are chosen and not with the file.
 /// @param path  file to read, `-` for standard input

@@ -10,10 +10,9 @@
 
 namespace thermopower::io {
 
-/// @brief Reads a model file ("thermopower-model/1"). Strict: a key that nobody would read, a key that
-/// appears twice, a wrong type and a constant outside its range are errors, named by their line and JSON pointer
-/// (`/current/resistance_ohm`); syntax errors by line and column. A block `network` makes a model of a
-/// plant::ThermalNetwork, with effects of its own.
+/// @brief Reads a model file ("thermopower-model/1"). Strict: an unknown key, a repeated key, a wrong type and a constant
+/// outside its range are errors, named by their line and JSON pointer (`/current/resistance_ohm`); syntax errors by line
+/// and column. A block `network` makes a model of a plant::ThermalNetwork, with effects of its own.
 ///
 /// May be left out: `name`, whole blocks, `tempco_per_K` (0) and `reference_C` (25) of the ohmic law,
 /// `minimum_V_rms` (1) of the thesis laws. Effects must be in the catalogue, with all their parameters,

@@ -17,9 +17,9 @@ public:
 
 /// @brief The output files of one run of a program: all appear complete, or none does.
 ///
-/// Each file is written under a temporary name in its own directory and renamed over the target once every
-/// one of them is complete on disk. Until then an older file of that name stays as it was. Special files (a
-/// pipe, /dev/stdout) are written straight through, and `-` is standard output.
+/// Each file is written under a temporary name in its own directory. All are renamed once every one is complete on disk.
+/// Until then an older file of that name stays as it was. Special files (a pipe, /dev/stdout) are written straight through,
+/// and `-` is standard output.
 ///
 /// @snippet 10_own_effect/own_effect.cpp writing files
 /// How to: @ref diagnose_a_gap, @ref gap_files.

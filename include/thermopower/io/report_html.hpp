@@ -6,6 +6,7 @@
 #include <thermopower/gap/recording.hpp>
 #include <thermopower/plant/effect.hpp>
 #include <thermopower/io/names.hpp>
+#include <thermopower/io/provenance.hpp>
 
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ namespace thermopower::io {
 /// @param model_name as in the model file
 /// @param effects the catalogue, for what an effect is in words
 /// @param held_out the recordings it was judged on: they tell runs apart and show what drove them
+/// @param made_of what it was made of, as one line below the answer
 std::string report_html(const Diagnosis& diagnosis, const std::string& model_name,
-                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out = {});
+                        const std::vector<EffectInfo>& effects, const std::vector<Recording>& held_out = {},
+                        const Provenance& made_of = {});
 
 }  // namespace thermopower::io

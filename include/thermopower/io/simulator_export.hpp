@@ -22,7 +22,7 @@ struct SimulatorFile {
 ///
 /// Exact: inertia, damping, torque constant, spring, constant torque, saturation, lag of the drive, imbalance (as a
 /// mass off the axis), compliance (as a second hinge). Nearly: dry friction as `frictionloss`, which has no transition.
-/// What MJCF cannot express stands in a comment of the file and in `left_out`, with its numbers.
+/// The parts that MJCF cannot express stand in a comment of the file and in `left_out`, with its numbers.
 /// @param origin     one line that says where it comes from
 /// @param catalogue  knows the model's effects: each of them says what it is in a joint (EffectInfo::in_a_joint)
 /// @throws InvalidInput where the model has no axis

@@ -55,7 +55,7 @@ inline const Catalogue& catalogue_of(const Model& model, const Catalogue& given)
   return own != nullptr ? *own : given;
 }
 
-/// What a signal of a model's plant is called.
+/// The name of a signal of a model's plant.
 inline SignalName signal_name(const Model& model, Signal signal) {
   const PlantInfo* own = plant_of(model).info();
   if (own == nullptr) return signal;

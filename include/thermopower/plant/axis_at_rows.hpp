@@ -19,7 +19,7 @@
 #include <vector>
 
 /// @file axis_at_rows.hpp
-/// What an axis recorded, row by row, with what its equation says of it: for the balances of axis_balances.hpp.
+/// The rows of an axis with the terms of its equation: for the balances of axis_balances.hpp.
 
 namespace thermopower::plant {
 
@@ -44,8 +44,8 @@ struct SpringTwist {
     const auto pulled = [&](double q, double v) {
       return gap_rad > 0.0 ? play.torque(play.touching(q, v), q, v) : w * w * q + 2.0 * damping * w * v;
     };
-    // Without free play the motion over an interval is linear in where it begins and in what pulls: three of them tell it, for as
-    // many intervals as are alike.
+    // Without free play the motion over an interval is linear in its start and in the torques. Three solutions tell it, for
+    // all equal intervals.
     constexpr double alike = 1e-9;
     double step = 0.0;
     Motion by_angle, by_rate, by_pull;
@@ -94,12 +94,12 @@ private:
   }
 };
 
-/// What an axis recorded and what its equation says of it, row by row at the measured motion.
+/// The rows of an axis and the terms of its equation, at the measured motion.
 ///
 /// How the whole works: @ref gap_method.
 class AxisAtRows {
 public:
-  /// What a balance needs of each row.
+  /// The quantities that a balance needs of each row.
   struct Values {
     double inertia_kgm2 = 0.0;  ///< that moves with the instruments
     Eigen::VectorXd motion_Nm;  ///< torques of the motion: viscous, load, dry friction, spring, back-EMF
@@ -180,7 +180,7 @@ public:
     return list;
   }
 
-  /// What one more of a constant's logarithm changes, or of a place's value.
+  /// The change by one more of a constant's logarithm, or of a place's value.
   /// @param constant  its place in Model::calibrated()
   Values slopes(std::size_t constant) const {
     constexpr double step = 1e-4;  // of the logarithm: central differences are then exact to eight digits

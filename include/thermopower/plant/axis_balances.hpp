@@ -27,8 +27,8 @@
 
 namespace thermopower::plant {
 
-/// What the freedoms of a moving axis are tried at. Held by tests/gap/localise/localisation_test.cpp and the rows "signal and
-/// submodel right" of docs/reference/gap-benchmark.md (seed 20270221).
+/// The variables of the freedoms of a moving axis. Held by tests/gap/localise/localisation_test.cpp and the rows "signal
+/// and submodel right" of docs/reference/gap-benchmark.md (seed 20270221).
 struct AxisFreedomThresholds {
   double widest_rad = 0.5;      ///< angle over which a friction builds up, at most; shares of it by the next,
   double narrower = 0.3;        ///< each of the one before
@@ -89,13 +89,13 @@ inline std::vector<double> repeats_per_turn(const AxisAtRows& a) {
   return counts;
 }
 
-/// What repeats so often in a turn, in words.
+/// The words for a repetition in a turn.
 inline std::string repeating(const char* what, double count) {
   return std::string(what) + " that repeats " + std::to_string(static_cast<int>(std::lround(count))) +
          " times a turn";
 }
 
-/// What in friction may be otherwise.
+/// The freedoms of friction.
 /// @param direction  which way the axis moves, -1 to 1
 /// @param drive_Nm   torque of the drive
 inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a,
@@ -144,7 +144,7 @@ inline void add_friction_freedoms(Balance& b, const std::shared_ptr<const AxisAt
     });
 }
 
-/// What between command and torque may be otherwise.
+/// The freedoms between command and torque.
 inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a,
                                const std::shared_ptr<const Eigen::VectorXd>& drive_Nm) {
   const auto add = [&](const std::string& variable, const std::string& words,
@@ -186,7 +186,7 @@ inline void add_drive_freedoms(Balance& b, const std::shared_ptr<const AxisAtRow
   if (!periodic.scan.empty()) b.freedoms.push_back(std::move(periodic));
 }
 
-/// What of angle, time and inertia may be otherwise.
+/// The freedoms of angle, time and inertia.
 inline void add_load_freedoms(Balance& b, const std::shared_ptr<const AxisAtRows>& a) {
   const Eigen::Index n = a->rate.size();
   const auto sampled = [](const Eigen::MatrixXd& columns) {
@@ -328,7 +328,7 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
                            return directions_of(columns(),
                                                 [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
                          }});
-    // What causes of a catalogue do is among the freedoms, and these did not do.
+    // The action of a catalogue's causes is among the freedoms, and these did not do.
     b.courses.back().is_nobodys = true;
   };
   const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };

@@ -98,7 +98,7 @@ public:
     return drive;
   }
 
-  /// What the servo makes of the motion measured around a row, its delay left out.
+  /// The servo's command by the motion measured around a row, without its delay.
   double servo_A(Eigen::Index row, const RunSpan& run) const {
     const auto& shape = instance_.axis_structure;
     const LateTarget<double> late(inputs_, run, shape.target_delayed ? value_of(shape.target_delay_s) : 0.0,

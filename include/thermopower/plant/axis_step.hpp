@@ -30,7 +30,7 @@ struct OwnValues {
   }
 };
 
-/// What the axis remembers. The far side is stated relative to the near one: 0 while the spring is relaxed.
+/// The state of an axis. The far side is stated relative to the near one: 0 while the spring is relaxed.
 template <class Scalar>
 struct AxisState {
   Scalar angle_rad;             ///< of the driven inertia
@@ -41,7 +41,7 @@ struct AxisState {
   int touching = 0;             ///< the end of the free play at which the sides touch; AxisStep keeps it
 };
 
-/// What drives the axis over an interval.
+/// The inputs of an axis over an interval.
 template <class Scalar>
 struct AxisDrive {
   Scalar torque_Nm;          ///< after the drive's own effects; of a motor at a voltage, at standstill
@@ -105,7 +105,8 @@ public:
     follow(state, t_s, settled_for_s, drive);
   }
 
-  /// Lets the effects' own states move for a while in which the motion stays what it is. What drifts without an end stays.
+  /// Lets the effects' own states move for a while in which the motion stays what it is. A state that drifts without an end
+  /// stays.
   void follow(AxisState<Scalar>& state, double t_s, double length_s, const AxisDrive<Scalar>& drive) const {
     if (state.own.count == 0) return;
     OwnState<Scalar> own[most_own_states];
@@ -421,8 +422,8 @@ private:
       state.touching = play_.touching(state.twist_rad, state.twist_rate_rad_per_s);
   }
 
-  /// Cuts a step where the sides of the free play meet or part in it: between two such events the equations are
-  /// linear in the twist, and across one the torque jumps.
+  /// Cuts a step where the sides of the free play meet or part. Between two such events the equations are linear in the
+  /// twist, and across one the torque jumps.
   /// @param start   slope of `from`
   /// @param cut_s   in: the whole step; out: as far as the event, with its derivatives
   /// @param at_cut  in: what the whole step reaches; out: the state at the event, touching what it touches after it

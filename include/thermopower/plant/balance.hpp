@@ -18,7 +18,7 @@
 #include <vector>
 
 /// @file balance.hpp
-/// What is missing at measured rows, in one balance per conservation law or pair of instruments:
+/// The missing quantities at measured rows, in one balance per conservation law or pair of instruments:
 ///
 /// \f[ \mathrm{missing} = c \, \frac{\mathrm{d}x}{\mathrm{d}t} - f_\mathrm{sampled} - f_\mathrm{held} \f]
 ///
@@ -71,14 +71,14 @@ struct BalancePart {
 /// A direction in which a balance can be off: the sum of its parts.
 using Direction = std::vector<BalancePart>;
 
-/// How the reading of a signal would have to be corrected where an instrument is at fault, per unit of the
-/// coefficient that a freedom was fitted with.
+/// The correction of a signal's reading if an instrument is at fault, per unit of the coefficient that a freedom was fitted
+/// with.
 struct Correction {
   Signal signal = Signal{};  ///< whose reading
   double offset = 0.0;       ///< to be taken off, in the signal's unit
 };
 
-/// What in a plant may be otherwise than its equation says, with no formula for it: a few directions.
+/// A deviation of a plant from its equation, without a formula: a few directions.
 ///
 /// How the whole works: @ref gap_method.
 struct Freedom {
@@ -172,7 +172,7 @@ struct Balance {
   double per_display_unit = 1.0;      ///< the missing quantity is divided by this for display
 };
 
-/// What a plant's readings are taken off before they enter a balance, by signal, in the signals' units.
+/// The offsets of a plant's readings before they enter a balance, by signal, in the signals' units.
 using ReadingOffsets = PerSignal<double>;
 
 /// A balance that is made when a stage asks for it.

@@ -17,7 +17,7 @@
 #include <vector>
 
 /// @file bench_at_rows.hpp
-/// What the laws of a bench say at the rows of a recording: for the balances of bench_balances.hpp.
+/// The terms of a bench's laws at the rows of a recording: for the balances of bench_balances.hpp.
 
 namespace thermopower::plant {
 
@@ -35,13 +35,13 @@ inline HeatTold heat_told(const Inputs& inputs) {
   return inputs.heat == HeatSource::law ? HeatTold::by_law : HeatTold::by_current;
 }
 
-/// What the laws of a bench say at the rows of a recording, each at its measured inputs. Behind a thermometer that
-/// lags (a model with that effect) the circuit is judged at what the thermometer shows.
+/// The terms of a bench's laws at the rows of a recording, each at its measured inputs. Behind a thermometer that lags (a
+/// model with that effect) the circuit is judged at what the thermometer shows.
 ///
 /// How the whole works: @ref gap_method.
 class BenchAtRows {
 public:
-  /// What a balance needs of each row.
+  /// The quantities that a balance needs of each row.
   struct Values {
     Eigen::VectorXd law_A;             ///< what the ammeter would show
     Eigen::VectorXd ohm;               ///< volts per ampere of the motor
@@ -71,7 +71,7 @@ public:
     return evaluate(heat, factors, true);
   }
 
-  /// What one more of a constant's logarithm changes in the flows of a balance, or of a place's value.
+  /// The change of a balance's flows by one more of a constant's logarithm, or of a place's value.
   struct Slopes {
     Eigen::VectorXd law_A;     ///< A
     Eigen::VectorXd heat_W;    ///< W

@@ -26,7 +26,7 @@ namespace thermopower::plant {
 template <class Scalar>
 class BenchRollout {
 public:
-  /// What is fed in besides the recorded inputs.
+  /// Further inputs besides the recorded ones.
   struct Feed {
     bool measured_motor = false;    ///< current from the recorded temperature
     bool measured_current = false;  ///< heat from the recorded current
@@ -78,7 +78,7 @@ public:
     return state;
   }
 
-  /// What flows in the circuit at an instant.
+  /// The currents and voltages of the circuit at an instant.
   struct Circuit {
     Scalar supply_V;   ///< at the bridge
     Scalar v_rms_V;    ///< at the motor
@@ -129,7 +129,7 @@ public:
     return result;
   }
 
-  /// What a recorded current does at a row: the circuit's voltages, and the heat of that current.
+  /// The circuit at a row with a recorded current: its voltages, and the heat of that current.
   Circuit driven_by(Eigen::Index row, double t_s, double current_A, const Scalar& winding_C,
                     const Scalar& charge_Ah) const {
     Circuit result;
@@ -142,7 +142,7 @@ public:
     return result;
   }
 
-  /// What is known of the circuit where the heat is recorded and nothing else.
+  /// The circuit if only the heat is recorded.
   Circuit heated(Eigen::Index row) const {
     const Scalar zero = constant<Scalar>(0.0), nominal_V = constant<Scalar>(inputs_.nominal_V);
     return {nominal_V, nominal_V, zero, constant<Scalar>(inputs_.heat_W[row])};
@@ -199,8 +199,8 @@ public:
       if (value_of(rise_K_per_J) > 0.0) {
         loss_W = natural_rate / rise_K_per_J + terms.extra_loss_W;
       } else {
-        // Nor has it one where 1/r is not positive: watts do nothing there. What cools is a rate, whatever the
-        // capacity is taken to be.
+        // Nor has it one where 1/r is not positive: watts do nothing there. The cooling is a rate, whatever the capacity is
+        // taken to be.
         constexpr double any_K_per_J = 1.0 / 60.0;
         rise_K_per_J = constant<Scalar>(any_K_per_J);
         terms.heat_W = constant<Scalar>(0.0);
@@ -312,7 +312,7 @@ private:
             : zero;
   }
 
-  /// What a joule warms the whole motor by; of the polynomial law just above its least voltage.
+  /// The rise of the whole motor by a joule; for the polynomial law just above its least voltage.
   Scalar storage_K_per_J(const BenchState<Scalar>& state) const {
     if (instance_.lumped) return 1.0 / instance_.heat_capacity.heat_capacity_J_per_K;
     return instance_.heating_law.rise_K_per_J(instance_.heating_law.minimum_V_rms + 1.0, state.winding_C);

@@ -6,10 +6,10 @@
 
 namespace thermopower::plant {
 
-/// What the ids of causes that are constants begin with.
+/// The beginning of the ids of causes that are constants.
 inline constexpr char calibration_prefix[] = "calibration.";
 
-/// What a constant is called as a cause. @param constant  its id, such as `resistance`
+/// The name of a constant as a cause. @param constant  its id, such as `resistance`
 inline std::string calibration_id(const std::string& constant) { return calibration_prefix + constant; }
 
 /// Whether a cause or a coordinate is a constant, and no effect.

@@ -10,15 +10,15 @@
 
 namespace thermopower::plant::detail {
 
-/// What a rollout carries out of one segment of a recording into the next. The segment that was rolled last may be rolled
-/// again: it gets what it got the first time.
+/// The state that a rollout carries from one segment of a recording into the next. The segment that was rolled last may be
+/// rolled again: it gets what it got the first time.
 template <class State>
 class CarriedOn {
 public:
   /// @param nothing  what is carried into the first segment
   explicit CarriedOn(State nothing = State()) : into_(nothing), out_(std::move(nothing)) {}
 
-  /// What is carried into a segment. The reference holds until the next call.
+  /// The state carried into a segment. The reference holds until the next call.
   const State& into(const Segment& segment) {
     const bool again = inputs_ == segment.inputs && begin_ == segment.begin;
     if (!again) into_ = out_;

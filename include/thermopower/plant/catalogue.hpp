@@ -163,7 +163,8 @@ struct CatalogueEntry {
 /// How to: @ref diagnose_a_gap.
 class Catalogue {
 public:
-  /// Adds an effect; a type that is none is a compile-time error in one sentence. @throws InvalidInput where its info is unusable or its id is taken.
+  /// Adds an effect. Another type is a compile-time error in one sentence. @throws InvalidInput where its info is unusable
+  /// or its id is taken.
   template <class Effect>
   Catalogue& add() {
     static_assert(detail::HasInfo<Effect>::value,
@@ -194,7 +195,7 @@ public:
   /// @param size  of what its values are relative to (CurveShape)
   Catalogue& support(std::string_view id, double from, double to, double size);
 
-  /// What there is, in the order added.
+  /// The effects, in the order added.
   const std::vector<EffectInfo>& list() const { return infos_; }
 
   /// The effects with their hooks, in the order added.

@@ -18,7 +18,7 @@ inline double share_of_supply(double power_param) {
   return std::sqrt(std::clamp(power_param, 0.0, 255.0) / 255.0);
 }
 
-/// What a supply has given by the current that was recorded; what a row lacks counts as none.
+/// The charge that a supply has given by the recorded current; a missing sample counts as none.
 ///
 /// @snippet plant_examples.cpp charge
 /// How to: @ref gap_method.

@@ -48,7 +48,7 @@ inline Expression curve_at(const char* id, const Expression* p, const Expression
   return x.trace()->curve(id, std::move(curve), x);
 }
 
-/// What a curve is, but for its id, place, words and needs.
+/// A curve's description, without its id, place, words and needs.
 /// @param variable   that it is a function of, as `angle_deg`: its unit ends the names of the first two parameters
 /// @param unit       of the values, as their names begin
 /// @param spelt      the same as reports spell it

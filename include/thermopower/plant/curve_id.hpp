@@ -6,7 +6,7 @@
 
 namespace thermopower::plant {
 
-/// What the ids of curves begin with.
+/// The beginning of the ids of curves.
 inline constexpr std::string_view curve_prefix = "unknown.";
 
 /// Whether an effect is a curve: a smooth function of a recorded variable that nobody has named, such as

@@ -14,7 +14,7 @@
 
 namespace thermopower::plant {
 
-/// What must be there before an effect can be judged: a block of the model, or a column of the recordings.
+/// A need of an effect before it can be judged: a block of the model, or a column of the recordings.
 enum class Need {
   current_model,         ///< the model says how much current flows
   thermal_model,         ///< the model says how the body warms, and `motor_C` is recorded
@@ -91,7 +91,7 @@ enum class CurveVariable {
   motor_C     ///< measured temperature
 };
 
-/// What the values of a curve are relative to, where their likely size is asked for.
+/// The reference of a curve's values, for their likely size.
 enum class CurveScale {
   drive_Nm,  ///< largest torque of the drive
   drive_A,   ///< largest command
@@ -99,7 +99,7 @@ enum class CurveScale {
   supply_V   ///< largest voltage
 };
 
-/// What makes an effect a curve: a smooth function of a recorded variable that nobody has named.
+/// The mark of a curve: a smooth function of a recorded variable that nobody has named.
 ///
 /// Its first two parameters are where its first and its last knot lie; they are not fitted but taken from the range of the
 /// data. The others are the values at the knots, evenly spaced between these.
@@ -203,7 +203,7 @@ public:
   /// The same at its upper bound alone.
   ParameterBuilder& degenerate_at_upper() { return parameter_.degenerate_at_upper = true, *this; }
 
-  /// What was built.
+  /// The finished parameter.
   operator Parameter() const { return parameter_; }  // NOLINT: lists of parameters are lists of these
 
 private:
@@ -221,22 +221,22 @@ struct HiddenState {
   std::string unit;  ///< of its value
 };
 
-/// What an effect is where two of its parameters are equal: dry friction that is alike in both directions is dry friction.
+/// The name of an effect if two of its parameters are equal: dry friction that is alike in both directions is dry friction.
 struct WhereEqual {
   int one = -1;       ///< place of a parameter among the effect's
   int other = -1;     ///< place of another, in the same unit
   std::string cause;  ///< the other effect's id, or that of a constant, such as `calibration.viscous`
 };
 
-/// What an effect is where one of its parameters is small beside another: dry friction that hardly rises near standstill is
-/// dry friction.
+/// The name of an effect if one of its parameters is small beside another: dry friction that hardly rises near standstill
+/// is dry friction.
 struct WhereSmall {
   int small = -1;     ///< place of a parameter among the effect's
   int beside = -1;    ///< place of the one that it is measured against, in the same unit
   std::string cause;  ///< as in WhereEqual
 };
 
-/// What an effect is, for people and for the engine. The equation in code is the effect's hooks.
+/// The description of an effect, for people and for the engine. The equation in code is the effect's hooks.
 struct EffectInfo {
   std::string id;                     ///< stable, snake_case
   SubmodelName submodel;              ///< where it acts
@@ -260,17 +260,17 @@ struct EffectInfo {
   bool (*is_itself)(const double* parameters) = nullptr;
   /// The same of a friction where the model has no dry friction already, to which it may add. None: always.
   bool (*is_itself_alone)(const double* parameters) = nullptr;
-  /// What it is where two of its parameters are equal: a fit that ends there is no rival of that cause. None: itself.
+  /// Its name if two of its parameters are equal. A fit that ends there is not a rival of that cause. None: itself.
   std::optional<WhereEqual> where_equal = {};
   /// The same where one of its parameters is small beside another.
   std::optional<WhereSmall> where_small = {};
-  /// What it is to simulators of bodies: adds itself to a joint. Null: they have no words for it, and an export leaves it out
-  /// with its numbers.
+  /// Its counterpart in simulators of bodies: adds itself to a joint. Null: they have no words for it, and an export leaves
+  /// it out with its numbers.
   void (*in_a_joint)(const double* parameters, JointDescription& joint) = nullptr;
   /// Whether sides meet and part in it: each blow moves all later ones, and a fit of its parameters stands in one of many hollows.
   /// The diagnosis looks beside the place where it ended.
   bool strikes = false;
-  /// What makes it a curve; none: it is a cause with a name.
+  /// Its shape as a curve; none: it is a cause with a name.
   std::optional<CurveShape> curve = {};
 };
 

@@ -49,7 +49,7 @@ public:
   /// How far the nodes move in the step when they set out with `slope`: h phi_1(h J) slope.
   Pair moved(const Pair& slope) const { return applied(first_, slope); }
 
-  /// What a change of the rest from the step's start to its end adds: h phi_2(h J) change.
+  /// The addition by a change of the rest from the step's start to its end: h phi_2(h J) change.
   Pair corrected(const Pair& change) const { return applied(second_, change); }
 
   /// J applied to a pair.

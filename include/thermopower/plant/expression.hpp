@@ -109,7 +109,7 @@ struct WrittenCurve {
 /// How to: @ref gap_method.
 class Trace {
 public:
-  /// What a node does with its arguments.
+  /// The operation of a node.
   enum class Kind {
     constant,       ///< a number
     symbol,         ///< an input by its name
@@ -305,7 +305,7 @@ private:
   const Expression& expression() const { return *this; }
 };
 
-/// What a recorded column is in a trace.
+/// A recorded column in a trace.
 template <>
 struct GivenFor<Expression> {
   using type = GivenExpression;  ///< still an expression

@@ -11,7 +11,7 @@ namespace thermopower::plant {
 /// The share of dry friction that acts at a rate, with its sign: tanh(x) where `tail` is 0, x / (1 + |x|) where it is
 /// 1, x cut off at -1 and 1 where it is -1, and what lies between in proportion. A film that is sheared carries a torque
 /// that turns over with the rate; how soon it becomes the full one differs from joint to joint, and a creeping motion
-/// shows it. What simulators do in dry friction's place, a damper with a limit, is the last of the three.
+/// shows it. Many simulators use the last of the three, a damper with a limit, in dry friction's place.
 /// @param x     rate over the transition
 /// @param tail  -1..1
 template <class Scalar>

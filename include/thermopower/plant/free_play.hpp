@@ -27,7 +27,7 @@ struct FreePlay {
     return static_cast<double>(end) * twist - 0.5 * gap_rad;
   }
 
-  /// What an end would press with where nothing kept the sides from pulling: below 0 it does not touch.
+  /// The force of an end if the sides could also pull: below 0 it does not touch.
   /// @param twist_rate  of the far side relative to the near one, rad/s
   Scalar pressed(int end, const Scalar& twist, const Scalar& twist_rate) const {
     return stiffness * beyond(end, twist) + damping * (static_cast<double>(end) * twist_rate);
@@ -41,7 +41,7 @@ struct FreePlay {
     return touches ? end : 0;
   }
 
-  /// What is transmitted while the sides touch at an end, or at none (0); positive where the twist is.
+  /// The torque while the sides touch at an end, or at none (0); positive where the twist is.
   Scalar torque(int end, const Scalar& twist, const Scalar& twist_rate) const {
     if (end == 0) return constant<Scalar>(0.0);
     return static_cast<double>(end) * pressed(end, twist, twist_rate);

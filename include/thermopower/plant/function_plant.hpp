@@ -34,7 +34,7 @@ struct SimulatorCall {
   }
 };
 
-/// What a simulator answers.
+/// The answer of a simulator.
 struct SimulatorAnswer {
   Eigen::MatrixXd signals;  ///< rows x signals; NaN where it failed
   std::vector<double> end;  ///< states at the last row; may stay empty where every state is measured
@@ -225,7 +225,7 @@ public:
   }
 
 private:
-  /// What a parameter is typically as large as: itself, or where it is small the smallest start of a fit.
+  /// The typical size of a parameter: itself, or the smallest start of a fit if it is small.
   static double scale_of(const Parameter& parameter, double value) {
     double typical = 0.0;
     for (double start : parameter.starts)

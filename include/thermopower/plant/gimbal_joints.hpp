@@ -83,7 +83,7 @@ struct AngularRow {
 /// @snippet plant_examples.cpp gimbal
 /// How to: @ref gimbal_how_to, @ref three_joints.
 struct GimbalJoints {
-  /// What it is made of.
+  /// Its constants, inputs and signals.
   static PlantInfo info() {
     PlantInfo info;
     info.type = "gimbal_joints";
@@ -230,7 +230,7 @@ struct GimbalCoupling {
     camera_z_less_x_kgm2,  ///< the camera's moment of inertia about its z less that about its x, kg m^2
     rolled_yaw_kgm2  ///< how much larger the inertia that yaw moves is at a roll of 90 degrees than at 0, kg m^2
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "coupling",
@@ -285,7 +285,7 @@ struct GimbalProducts {
     yz_kgm2,  ///< integral of yz, kg m^2
     xz_kgm2   ///< integral of xz, kg m^2
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     const std::string name = body == GimbalBody::camera ? "camera" : "arm";
     const auto product = [](int index, const char* parameter_name) {
@@ -336,7 +336,7 @@ struct CameraImbalance {
     right_kgm,  ///< along its y, kg m
     below_kgm   ///< along its z, kg m
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return detail::imbalance(
         "camera_imbalance", "torque += (m r x g) about each joint's axis",
@@ -371,7 +371,7 @@ struct ArmImbalance {
     right_kgm,  ///< mass times the lever along the arm's y, kg m
     below_kgm   ///< along its z, kg m
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return detail::imbalance("arm_imbalance", "torque += (m r x g) about roll and yaw",
                              "The roll arm is not balanced: gravity turns roll, whatever the pitch.",
@@ -398,7 +398,7 @@ struct YawImbalance {
     ahead_kgm,  ///< mass times the lever along the yaw stage's x, kg m
     right_kgm   ///< along its y, kg m
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return detail::imbalance(
         "yaw_imbalance", "torque += (m r x g) about yaw",
@@ -424,7 +424,7 @@ struct JointFriction {
   enum Parameters {
     size_Nm  ///< torque against the motion, N m
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     const std::string name = to_string(joint);
     return {name + "_coulomb_friction",
@@ -454,7 +454,7 @@ struct JointCable {
     Nm_per_rad,  ///< stiffness of the cables, N m/rad
     at_0_Nm      ///< their torque against positive angles at angle 0, N m
   };
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     const std::string name = to_string(joint);
     return {name + "_cable_spring",

@@ -14,7 +14,7 @@
 ///
 /// All sources of a program must agree on it.
 
-/// What a definition begins with: `inline`, or nothing where the library has the only one.
+/// The beginning of a definition: `inline`, or nothing where the library has the only one.
 #if defined(THERMOPOWER_GAP_LIBRARY)
 #define THERMOPOWER_GAP_INLINE
 #else

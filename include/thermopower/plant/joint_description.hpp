@@ -8,7 +8,7 @@
 
 namespace thermopower::plant {
 
-/// What a format for simulators of bodies takes otherwise than an effect means it.
+/// A deviation of a format for simulators of bodies from the meaning of an effect.
 struct JointRemark {
   std::vector<int> parameters;  ///< of the effect, whose values it is about
   std::string text;             ///< what becomes of them, in a few words

@@ -115,10 +115,10 @@ struct CalibratedConstant {
   bool may_be_cause = true;         ///< off by more than what is known of it, it is a cause of its own
   bool has_slack = true;  ///< is known by itself; of a polynomial each coefficient is, not all together
   /// It is a place and no size, such as the angle at which a load hangs: it is off by so much and not by a factor, and may be 0
-  /// or of the other sign. What is known of it is known in its unit.
+  /// or of the other sign. Its uncertainty is in its unit.
   bool is_place = false;
 
-  /// What a fit that leaves the constant as it is moves it by: a place is moved by adding, another constant by a factor.
+  /// The move of a fit that leaves the constant as it is: a place is moved by adding, another constant by a factor.
   double unmoved() const { return is_place ? 0.0 : 1.0; }
 
   /// The constant moved. @param by  a factor, of a place what is added
@@ -224,8 +224,8 @@ struct Model {
   /// The same of the transition of a friction: whoever wrote it down meant small.
   static constexpr double transition_known_to = 1.0;
 
-  /// What is wrong with it, naming the field and what was expected, or nothing. Effects are not looked into:
-  /// the catalogue knows them.
+  /// The first fault, with the field and the expected value, or nothing. Effects are not looked into: the catalogue knows
+  /// them.
   std::optional<std::string> validate() const;
 };
 

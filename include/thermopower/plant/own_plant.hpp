@@ -24,7 +24,7 @@ struct WrittenEquation {
   Expression value;                    ///< of the trace it was written with, in symbols of these names
 };
 
-/// What all plants of one's own have in common: states of which some are measured, and signals.
+/// The common part of all plants of your own: states of which some are measured, and signals.
 ///
 /// @snippet plant_examples.cpp rollout
 /// How to: @ref diagnose_a_gap.

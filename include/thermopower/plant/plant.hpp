@@ -56,7 +56,7 @@ struct Directions {
   int count = 0;  ///< how many; 0: values alone
 };
 
-/// What a rollout says of a segment: a value for each of its signals at each of its rows, with derivatives.
+/// The result of a rollout for a segment: a value for each of its signals at each of its rows, with derivatives.
 ///
 /// @snippet plant_examples.cpp rollout
 /// How to: @ref gap_method, @ref diagnose_a_gap.
@@ -157,7 +157,7 @@ class Plant {
 public:
   virtual ~Plant() = default;
 
-  /// What a plant of one's own is made of; null for the library's.
+  /// The description of a plant of your own; null for the library's.
   virtual const PlantInfo* info() const { return nullptr; }
   /// The effects that a plant of one's own may have, in place of the library's; null for the library's.
   virtual const Catalogue* effects() const { return nullptr; }

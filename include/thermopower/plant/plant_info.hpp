@@ -15,7 +15,7 @@
 
 namespace thermopower::plant {
 
-/// What makes a missing quantity of a missing rate of a signal: the balance of a heat, a torque, a flow.
+/// The balance that turns a missing rate of a signal into a missing quantity: of a heat, a torque, a flow.
 struct PlantBalance {
   std::string
       constant;  ///< of the plant, by its name: the rate times it is the quantity, as with a heat capacity
@@ -27,7 +27,7 @@ struct PlantBalance {
   std::vector<std::string> leaves_by = {};
 };
 
-/// What a plant of one's own shows: a column of the recording that a diagnosis judges.
+/// A signal of a plant of your own: a column of the recording that a diagnosis judges.
 struct PlantSignal {
   std::string name;  ///< of the column, ends in its unit, as in `level_m`
   std::string unit;  ///< as reports spell it
@@ -37,14 +37,14 @@ struct PlantSignal {
   std::string note = {};  ///< how it is judged, for the evidence; empty: nothing to be said
 };
 
-/// What a plant of one's own is fed with: a column of the recording, held from its row to the next one.
+/// An input of a plant of your own: a column of the recording, held from its row to the next one.
 struct PlantInput {
   std::string name;                      ///< of the column
   std::string unit;                      ///< as reports spell it
   std::optional<double> otherwise = {};  ///< its value where it is not recorded; none: it must be
 };
 
-/// What a plant of one's own remembers.
+/// A state of a plant of your own.
 struct PlantState {
   std::string name;      ///< for messages
   std::string unit;      ///< of the state
@@ -54,7 +54,7 @@ struct PlantState {
   int shows_in = 0;      ///< of a state that nobody measures: place of the signal that tells its start
 };
 
-/// What a plant of one's own is made of, for people and for the engine.
+/// The description of a plant of your own, for people and for the engine.
 struct PlantInfo {
   std::string type;                      ///< stable, snake_case
   std::vector<PlantConstant> constants;  ///< in the order in which its equations read them

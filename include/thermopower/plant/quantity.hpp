@@ -6,7 +6,7 @@
 
 namespace thermopower::plant {
 
-/// What a balance may lack: one per conservation law or pair of instruments.
+/// A quantity that a balance may lack: one per conservation law or pair of instruments.
 enum class Quantity {
   missing_current,         ///< A, of the circuit, as the ammeter sees it
   missing_voltage,         ///< V, the same as what would have to drive the circuit besides

@@ -19,8 +19,8 @@ namespace thermopower::plant {
 /// A missing sample.
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// What a stamp may be short of a grid by, and belong to its next point: rounding of the stamp, which may count from 1970, and of
-/// the seconds since a run began.
+/// The distance by which a stamp may miss a grid's next point and still belong to it. It covers rounding of the stamp,
+/// which may count from 1970, and of the seconds since a run began.
 inline double stamp_rounding_s(double at_s, double run_start_s) {
   return 4e-16 * std::abs(at_s) + 1e-9 * (1.0 + std::abs(at_s - run_start_s));
 }
@@ -45,7 +45,7 @@ struct RunSpan {
   Eigen::Index size() const { return end - begin; }
 };
 
-/// What a command did between the rows, as far as nobody knows: errors by row of its mean until the next one, in its unit.
+/// The unknown part of a command between the rows: errors by row of its mean until the next one, in its unit.
 ///
 /// @snippet plant_examples.cpp unknown command
 /// How to: @ref gap_files.
@@ -142,7 +142,7 @@ struct Inputs {
   bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
   /// Measured values of a judged signal.
   const Eigen::VectorXd& of(Signal signal) const { return measured[static_cast<std::size_t>(signal)]; }
-  /// What a window that starts at a row starts from: the measured value, else one between samples; NaN without either.
+  /// The start of a window at a row: the measured value, else one between samples; NaN without either.
   double start_of(Signal signal, Eigen::Index row) const {
     const auto at = static_cast<std::size_t>(signal);
     const double value = measured[at][row];

@@ -12,7 +12,7 @@
 #include <vector>
 
 /// @file samples.hpp
-/// What balances need of sampled signals: no holes, and how noisy they are.
+/// Sampled signals for balances: without holes, and with their noise.
 
 namespace thermopower::plant {
 
@@ -45,8 +45,8 @@ inline double median_interval_s(const Eigen::VectorXd& t_s, const std::vector<Ru
   return steps[middle];
 }
 
-/// What a first-order lag of time constant `tau_s` makes of an input that is held over each interval; each run
-/// starts at 0 or at its first value.
+/// The response of a first-order lag of time constant `tau_s` to an input that is held over each interval. Each run starts
+/// at 0 or at its first value.
 inline Eigen::VectorXd lagged(const Eigen::VectorXd& input, double tau_s, bool from_zero,
                               const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs) {
   Eigen::VectorXd out(input.size());

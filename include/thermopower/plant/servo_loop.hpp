@@ -109,7 +109,7 @@ inline double moving_target_share(double period_s, double interval_s) {
   return 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s, period_s));
 }
 
-/// What a servo made of the motion that was measured: where a window starts, its memory is known from that.
+/// The command of a servo by the measured motion. It tells the servo's memory where a window starts.
 ///
 /// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and
 /// `inputs.servo_integral`, what was accumulated before each row. Motion and targets must be without holes.
@@ -254,7 +254,7 @@ private:
           target_between(inputs_, inputs_.target_dps, run_, row, part));
   }
 
-  /// What the servo's integral lacks at a row, for the part of the target that has not arrived.
+  /// The lack of the servo's integral at a row, by the part of the target that has not arrived.
   Scalar missing_integral(Eigen::Index row) const {
     if (!(std::abs(value_of(gains_.integral)) > 0.0)) return constant<Scalar>(0.0);
     return late_target_->missing_integral(gains_.position ? inputs_.target_deg : inputs_.target_dps, row);

@@ -4,13 +4,13 @@
 
 namespace thermopower::plant {
 
-/// What a plant is given besides the recorded inputs.
+/// The further inputs of a plant besides the recorded ones.
 enum class SimulationMode {
-  /// As a gap is judged: signals that run over whole runs do so from their first measured value; those that run
-  /// in windows restart from the measured state at each, states that nobody measures carried on.
+  /// As a gap is judged. Signals of whole runs start from their first measured value. Those of windows restart from the
+  /// measured state at each, with states that nobody measures carried on.
   free_running,
   /// Each submodel on its measured inputs: current from the measured `motor_C`; temperature from the measured
-  /// `current_A`. What runs in windows as in free_running.
+  /// `current_A`. Windows as in free_running.
   measured_inputs,
 };
 

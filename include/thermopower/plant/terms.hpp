@@ -90,7 +90,7 @@ struct ThermalStructure {
   /// Share of the body's heat capacity that is in winding and surface.
   Scalar own_share() const { return soaking_added ? Scalar(1.0) : Scalar(1.0 - soaking_share); }
 
-  /// What a joule warms the node behind the surface by. @param rise_K_per_J  what it warms the body by
+  /// The rise of the node behind the surface by a joule. @param rise_K_per_J  the rise of the body by a joule
   Scalar soaking_K_per_J(const Scalar& rise_K_per_J) const {
     return soaking_added ? Scalar(1.0 / soaking_J_per_K) : Scalar(rise_K_per_J / soaking_share);
   }
@@ -162,7 +162,7 @@ struct FrictionTerms {
   OwnState<Scalar>* own = nullptr;  ///< the effect's states, in the order of its info
   Scalar tail = 0.0;  ///< how slowly it becomes full beyond the transition, -1..1, by `film_share`
 
-  /// No friction yet. What it is given must outlive it.
+  /// No friction yet. Its arguments must outlive it.
   FrictionTerms(Given<Scalar> at_s, Given<Scalar> recorded_C, const Scalar& angle, const Scalar& rate,
                 const Scalar& drive, const Scalar& load)
       : t_s(at_s),
@@ -203,7 +203,7 @@ struct AxisStructure {
   bool target_delayed = false;  ///< to be set with it
 };
 
-/// What the instruments say of the bench.
+/// The readings of the instruments of a bench.
 template <class Scalar>
 struct BenchReadings {
   Given<Scalar> t_s = 0.0;                 ///< time since the start of the run
@@ -213,7 +213,7 @@ struct BenchReadings {
   Scalar motor_C;    ///< what the thermometer shows; given as its node's temperature
 };
 
-/// What the instruments say of the axis.
+/// The readings of the instruments of an axis.
 template <class Scalar>
 struct AxisReadings {
   Given<Scalar> t_s = 0.0;  ///< time since the start of the run

@@ -6,7 +6,7 @@
 
 namespace thermopower::plant {
 
-/// What people call a recorded column or a variable derived from columns.
+/// The words for a recorded column or a variable derived from columns.
 struct VariableWords {
   const char* name;  ///< of the column, or of the derived variable, as reports identify it
   const char* text;  ///< "motor temperature": to stand in a sentence, "the" before it

@@ -27,8 +27,17 @@ import numpy as np
 from . import _thermopower
 from ._thermopower import InputError, InvalidInput
 
-__all__ = ["InputError", "InvalidInput", "Part", "Diagnosis", "Effect", "Plant", "check", "curve", "diagnose", "effects", "parameter", "predict",
-           "read_model", "simulate"]
+__version__ = _thermopower.version
+
+__all__ = ["Check", "Columns", "Diagnosis", "Effect", "InputError", "InvalidInput", "Part", "Plant", "Text", "check", "columns", "compare", "curve",
+           "diagnose", "effects", "explain", "parameter", "predict", "read_model", "simulate"]
+
+
+class Text(str):
+    """A text that a prompt shows with its lines."""
+
+    def __repr__(self):
+        return str(self)
 
 
 class Part:
@@ -38,7 +47,9 @@ class Part:
         self._content = content
 
     def __getattr__(self, name):
-        if name.startswith("_") or name not in self._content:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._content:
             raise AttributeError(f"there is no '{name}' here; there is {', '.join(self._content)}")
         return _part(self._content[name])
 
@@ -250,6 +261,64 @@ class Plant:
         return f"Plant({self._model.name!r}, constants={self.constants!r}, acting={self.acting!r})"
 
 
+class Check(Part):
+    """What is wrong with recordings, and what they can show: the keys of its JSON as attributes; it prints as the program's."""
+
+    def __init__(self, content, text):
+        super().__init__(content)
+        self._text = text
+
+    def __repr__(self):
+        return self._text
+
+    def __str__(self):
+        return self._text
+
+
+class Columns(dict):
+    """What the columns of a file seem to be, name of the format to header and unit; it prints as the program's list.
+
+    list(found.choices) goes to columns= of diagnose() and the others.
+    """
+
+    def __init__(self, proposed, text):
+        super().__init__(proposed)
+        self._text = text
+
+    @property
+    def choices(self):
+        """The proposals as NAME=HEADER:UNIT."""
+        return [f"{name}={header}" for name, header in self.items()]
+
+    def __repr__(self):
+        return self._text
+
+    def __reduce__(self):
+        return (Columns, (dict(self), self._text))
+
+
+class _Stored:
+    """What a pickled diagnosis keeps: everything that was written from it."""
+
+    _texts = ("report", "html", "augmented", "recalibrated", "summary", "markdown", "series", "header", "mjcf", "urdf")
+
+    def __init__(self, result):
+        self._kept = {}
+        for one in self._texts:
+            try:
+                self._kept[one] = (getattr(result, one)(), None)
+            except ValueError as error:  # a model without a joint has no MJCF
+                self._kept[one] = (None, str(error))
+
+    def __getattr__(self, name):
+        if name not in _Stored._texts:
+            raise AttributeError(name)
+        kept, error = self._kept[name]
+        if error is not None:
+            raise InvalidInput(error)
+        return lambda: kept
+
+
 class Diagnosis(Part):
     """What a diagnosis found: the keys of the JSON report as attributes, and what can be written from it."""
 
@@ -265,7 +334,23 @@ class Diagnosis(Part):
         return self._result.summary()
 
     def __dir__(self):
-        return super().__dir__() + ["augmented", "recalibrated", "series", "html", "header", "table", "plot"]
+        return super().__dir__() + ["augmented", "recalibrated", "series", "html", "header", "markdown", "mjcf", "urdf", "table", "plot"]
+
+    def __getstate__(self):
+        if self._plant is not None:
+            raise TypeError("a diagnosis of a Plant holds its Python function; keep as_dict() and html() instead")
+        result = self._result if isinstance(self._result, _Stored) else _Stored(self._result)
+        return {"_content": self._content, "_kept": result._kept}
+
+    def __setstate__(self, state):
+        stored = object.__new__(_Stored)
+        stored._kept = state["_kept"]
+        self.__dict__.update(_content=state["_content"], _result=stored, _plant=None)
+
+    def __copy__(self):
+        other = object.__new__(Diagnosis)
+        other.__dict__.update(self.__dict__)
+        return other
 
     def _repr_html_(self):
         page = self.html().replace("&", "&amp;").replace('"', "&quot;")
@@ -297,6 +382,18 @@ class Diagnosis(Part):
     def header(self):
         """A C++11 header for firmware, and a list of what it cannot express."""
         return self._result.header()
+
+    def markdown(self):
+        """The answer as Markdown, to be pasted into an issue."""
+        return Text(self._result.markdown())
+
+    def mjcf(self):
+        """The axis with what was found as a model of MuJoCo, and a list of what the format cannot express."""
+        return self._result.mjcf()
+
+    def urdf(self):
+        """The same as a joint of URDF."""
+        return self._result.urdf()
 
     def table(self):
         """The table of the gap as a pandas DataFrame, one row per signal."""
@@ -347,6 +444,28 @@ def _chosen(taken, name, choices):
     return {**{key: values for key, values in taken.items() if key not in used and key not in chosen}, **chosen}
 
 
+def _seconds(values):
+    """Stamps in seconds: dates count from the first, time deltas are what they are."""
+    values = np.asarray(values)
+    if values.dtype.kind == "M":
+        return (values - values[0]) / np.timedelta64(1, "s") if len(values) else values.astype(float)
+    if values.dtype.kind == "m":
+        return values / np.timedelta64(1, "s")
+    if values.dtype.kind == "O" and len(values) and all(hasattr(one, "timestamp") for one in values):
+        first = values[0].timestamp()
+        return np.array([one.timestamp() - first for one in values])
+    return values
+
+
+def _stamps_of_index(data):
+    """The index of a frame where it is time: named t_s, or dates, or time deltas."""
+    index = getattr(data, "index", None)
+    if index is None or callable(index) or not hasattr(index, "dtype"):
+        return None
+    is_time = getattr(index, "name", None) == "t_s" or getattr(index.dtype, "kind", "") in "Mm"
+    return np.asarray(index) if is_time else None
+
+
 def _in_force(content, columns):
     """What findings say to type, in the columns that were asked for."""
     for one in content.get("findings", ()):
@@ -363,6 +482,10 @@ def _recording(data, name, columns=()):
         raise InputError(f"{name}: is a {type(data).__name__}; expected a dict of arrays, a DataFrame or a path")
     taken = {str(key): np.asarray(data[key]) for key in data.keys()}
     taken = _chosen(taken, name, _choices(columns))
+    if "t_s" not in taken and _stamps_of_index(data) is not None:
+        taken["t_s"] = _stamps_of_index(data)
+    if "t_s" in taken:
+        taken["t_s"] = _seconds(taken["t_s"])
     if "t_s" not in taken:
         raise InputError(f"{name}: there is no column 't_s'; expected the time of each row in seconds")
     rows = len(taken["t_s"])
@@ -462,17 +585,19 @@ def diagnose(model, recordings, held_out=None, columns=(), effects=(), **options
 
 def check(model, recordings, held_out=None, columns=(), effects=(), **options):
     """What is wrong with recordings, and what they can show; nothing is fitted."""
-    return Part(
-        _in_force(json.loads(
-            _thermopower.check(
-                _model(model, effects),
-                _own(effects),
-                _recordings(recordings, "recordings", columns),
-                _recordings(held_out, "held_out", columns),
-                _options(options),
-            )
-        ), columns)
+    content, text = _thermopower.check(
+        _model(model, effects),
+        _own(effects),
+        _recordings(recordings, "recordings", columns),
+        _recordings(held_out, "held_out", columns),
+        _options(options),
+        _choices(columns),
     )
+    return Check(json.loads(content), text)
+
+
+def _stamps(source):
+    return np.asarray(_seconds(source["t_s"] if "t_s" in source.keys() else _stamps_of_index(source)), float)
 
 
 def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, columns, effects):
@@ -483,7 +608,7 @@ def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, colum
         [_model(one, effects) for one in (models if many_models else [models])], _own(effects), taken, starts, horizon_s, from_inputs, threads or os.cpu_count() or 1
     )
     results = [
-        [{**({"t_s": np.asarray(source["t_s"], float)} if hasattr(source, "keys") else {}), **dict(signals)}
+        [{**({"t_s": _stamps(source)} if hasattr(source, "keys") else {}), **dict(signals)}
          for source, signals in zip(sources, found[row * len(sources):(row + 1) * len(sources)])]
         for row in range(len(found) // max(len(sources), 1))
     ]
@@ -509,4 +634,31 @@ def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, c
 
 def effects():
     """The catalogue of effects as text."""
-    return _thermopower.effects()
+    return Text(_thermopower.effects())
+
+
+def explain(code):
+    """What an effect, finding, verdict or reason of a report means.
+
+    >>> "temperature" in explain("winding_tempco")
+    True
+    """
+    return Text(_thermopower.explain(code))
+
+
+def compare(a, b):
+    """In what two diagnoses differ, by what their uncertainties say: diagnoses, or paths of JSON reports."""
+
+    def text_of(one):
+        if isinstance(one, Diagnosis):
+            return json.dumps(one.as_dict())
+        with open(one, encoding="utf-8") as file:
+            return file.read()
+
+    return Text(_thermopower.compare(text_of(a), text_of(b)))
+
+
+def columns(path, joint=""):
+    """What is in a file of a log, and what its columns seem to be. joint: a word in the headers of the one that is meant."""
+    text, proposed = _thermopower.columns(os.fspath(path), joint)
+    return Columns(proposed, text)

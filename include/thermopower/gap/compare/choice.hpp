@@ -25,23 +25,23 @@ struct Answer {
   std::vector<std::size_t> alternatives;  ///< candidates of other classes, likeliest first
 };
 
-/// Whether a set keeps the constants where they are known to be, at the noise, while a part of it reaches that with constants
-/// far off alone: a current sensor's gain is a re-scaling of resistance, heat capacity and conductance.
+/// Whether a set reaches the noise with constants as they are known, while a part of it reaches the noise only with
+/// constants far off. For example, a current sensor's gain is a re-scaling of resistance, heat capacity and conductance.
 inline bool spares_the_constants(const Candidate& set, const Candidate& part, const Model& model) {
   return largest_noise_multiple(set.held_out) <= decision.near_floor &&
          price_of_constants(part, model) - price_of_constants(set, model) > decision.dear_constants;
 }
 
-/// Multiple of the noise above which a part of a set leaves room for a further cause: less is needed where it comes so near with
-/// constants far off alone.
+/// Multiple of the noise above which a part of a set leaves room for a further cause. It is lower where the part reaches
+/// the noise only with constants far off.
 inline double least_room_beside(const Candidate& part, const Model& model) {
   const bool far_off = price_of_constants(part, model) > decision.rarity + decision.dear_constants;
   return far_off ? decision.room_beside_dear_constants : decision.room_for_second;
 }
 
-/// The smallest part of a set of causes that does its work. A further cause is only named where the set without it stays
-/// clearly above the noise, and the further one takes away at least half of what is left. Otherwise it mends small errors of
-/// the others' equations.
+/// The smallest part of a set of causes that does its work. A further cause is named only if the set without it stays
+/// clearly above the noise. It must also take away at least half of what is left. Otherwise it mends small errors of the
+/// others' equations.
 inline std::size_t parsimonious(const std::vector<Candidate>& candidates, std::size_t chosen,
                                 const Model& model) {
   for (bool smaller = true; smaller;) {

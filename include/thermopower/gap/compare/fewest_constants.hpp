@@ -24,7 +24,7 @@ inline Candidate with_only(const FitProblem& problem, const std::vector<int>& mo
 }
 
 /// The fewest constants that do what all of them do together. Many scalings of a plant predict alike, such as all torques
-/// and inertias by one factor; the one that moves the fewest constants is the one to name.
+/// and inertias by one factor. The one that moves the fewest constants is named.
 ///
 /// Forward selection: the constant that helps most is added until the training data are predicted as well as by `all`.
 /// @param all  the fit of all constants

@@ -44,16 +44,16 @@ double times_floor(const std::vector<GapScore>& table, Error&& error) {
   return worst;
 }
 
-/// The end of a one-sided 95 % interval on these very data, where that of a printed one is known: two-sided, and wider by what no
-/// single recording can show.
+/// The end of a one-sided 95 % interval on these very data. It is computed from the printed end, which is two-sided and
+/// wider by what no single recording can show.
 inline double proven_end(double value, double end) {
   constexpr double narrower = 2.015 / 2.571;  // Student's t of six blocks, one-sided against two-sided
   const double own = std::sqrt(std::max(std::pow(end - value, 2.0) - std::pow(between_days, 2.0), 0.0));
   return value + narrower * std::copysign(own, end - value);
 }
 
-/// What an explanation leaves of the gap on held-out data, from the printed table: the geometric mean over the signals that
-/// have a gap. Signals near their floor say nothing.
+/// The share of the held-out gap that an explanation leaves, from the printed table. It is the geometric mean over the
+/// signals that have a gap. Signals near their floor say nothing.
 inline ShareLeft share_left(const std::vector<GapScore>& table) {
   double configured = 0.0, constants = 0.0, most = 0.0, count = 0.0;
   for (const bool any : {false, true}) {  // where no signal has a gap, all of them count
@@ -111,7 +111,8 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
     if (numbers.common_factor && !within_known) return {Verdict::partial, Reason::common_factor};
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
   }
-  // What reaches the floor closes the gap. It need not beat constants that do, too: their moves count in its probability.
+  // An explanation at the floor closes the gap. It need not beat constants that do, too: their moves count in its
+  // probability.
   const bool closes = is_proven && numbers.share.of_refitted_constants <= limit.of_constants;
   if (near && within_known && numbers.probability < limit.sure && numbers.refitted <= limit.near_floor)
     return {Verdict::explained, Reason::constants_within_known};

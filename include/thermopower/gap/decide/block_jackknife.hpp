@@ -61,9 +61,10 @@ Jackknifed block_jackknife(const SignalSums& a, const SignalSums& b, std::size_t
 
 /// How much better one candidate fits than another where every block has a noise of its own.
 ///
-/// The difference of two pooled deviances is a function of two mean squares. Where a model runs away in one block (at a
-/// resonance that it does not have, say) its mean square is that block's, and leaving it out takes most of the logarithm
-/// away: the other model, a hundred times better in every block, is then not better beyond doubt. Block by block it is.
+/// The difference of two pooled deviances is a function of two mean squares. A model may run away in one block, for example
+/// at a resonance that it does not have. Its mean square is then that block's, and leaving the block out takes most of the
+/// logarithm away. The other model would not be better beyond doubt, though it is a hundred times better in every block.
+/// Block by block it is.
 class BlockByBlock {
 public:
   /// Adds data. @param a, b  the worse one's sums and the better one's
@@ -110,10 +111,10 @@ public:
   /// Its standard error: from how much the blocks differ.
   double standard_error() const { return std::sqrt(variance_); }
 
-  /// Whether that decides. Only where hardly any block speaks against it, as what is better here and worse there has to
-  /// be weighed by how much; and where it is at least twice as good in the blocks in which the other is above the noise
-  /// at all: a tenth may come of an error that all blocks share. Not where the better one leaves the noise alone
-  /// everywhere: then what the other has above it is the other's error.
+  /// Whether that decides. Only if hardly any block speaks against it: a model that is better here and worse there has to
+  /// be weighed by how much. And only if it is at least twice as good in the blocks in which the other is above the noise.
+  /// A tenth may come from an error that all blocks share. Not where the better one leaves the noise alone everywhere: then
+  /// what the other has above it is the other's error.
   /// @param leaves_noise  whether the better one does
   bool decides(bool leaves_noise = false) const {
     constexpr double hardly_any = 0.05,  // of what speaks for it

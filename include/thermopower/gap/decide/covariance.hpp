@@ -14,7 +14,7 @@
 #include <vector>
 
 /// @file covariance.hpp
-/// What the data leave open of a fit's parameters, and whether their parts agree about them.
+/// The uncertainty of a fit's parameters, and whether the parts of the data agree about them.
 
 namespace thermopower::gap::engine {
 
@@ -24,8 +24,9 @@ struct Covariance {
   double quantile = 1.96;  ///< two-sided, 95 %
 };
 
-/// What noise that is remembered adds to the standard deviation of a sum of blocks: of a process of first order,
-/// sqrt((1 + r) / (1 - r)) with the correlation r of neighbours. Blocks that pull against their neighbours are chance.
+/// The factor by which noise with memory enlarges the standard deviation of a sum of blocks. For a process of first order
+/// it is sqrt((1 + r) / (1 - r)), with the correlation r of neighbours. Blocks that pull against their neighbours are
+/// chance.
 /// @param pulls  on one coordinate, block after block
 inline double remembered_by_blocks(const Eigen::VectorXd& pulls) {
   constexpr double most = 0.9;  // beyond, the blocks say no more than that they are all one
@@ -38,19 +39,19 @@ inline double remembered_by_blocks(const Eigen::VectorXd& pulls) {
   return std::sqrt((1.0 + r) / (1.0 - r));
 }
 
-/// The covariance that the data's blocks show (the sandwich of White 1982, clustered): how much the pull on the
-/// parameters differs between contiguous blocks, whatever the reason, noise, its correlation, or a model that is a
-/// little wrong. At least that of the noise alone. With few blocks the noise's, widened with the residuals' level
-/// and correlation. Of a fit whose curvature nobody looked at nothing is known: `of` is 0 by 0.
+/// The covariance that the data's blocks show (the sandwich of White 1982, clustered). It measures how much the pull on the
+/// parameters differs between contiguous blocks. The reason may be noise, its correlation, or a model that is a little
+/// wrong. At least that of the noise alone. With few blocks the noise's, widened with the residuals' level and correlation.
+/// Of a fit whose curvature nobody looked at nothing is known: `of` is 0 by 0.
 ///
-/// What a prior is wrong by pulls, too: where the fit lets it count for as many samples as make one, that is no more knowledge of
-/// the constant, and where only the prior knows a direction, its own standard deviation is what is left open.
+/// A wrong prior pulls, too. The fit lets a prior count for as many samples as make one, which adds no knowledge of the
+/// constant. If only the prior knows a direction, its own standard deviation remains.
 inline Covariance covariance_of(const Candidate& candidate, const Weight& weight) {
   constexpr int fewest_blocks = 12;  // below, the blocks themselves say little
   const FitResult& fit = candidate.fit;
   if (fit.information.size() == 0) return {};
-  // Each coordinate in the unit that the data resolve it in: beside a parameter that is known to a millionth of its
-  // unit, what only the prior knows would be taken for rounding, and its share of the intervals would be lost.
+  // Each coordinate is in the unit in which the data resolve it. Otherwise a direction that only the prior knows would be
+  // taken for rounding beside a parameter that is known to a millionth of its unit.
   Eigen::VectorXd unit = fit.information.diagonal();
   for (double& one : unit) one = one > 0.0 ? 1.0 / std::sqrt(one) : 1.0;
   const LeastSquares scaled(scaled_both_ways(fit.information, unit));
@@ -74,8 +75,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
     covariance.of = by_noise * inflation + by_priors;
     return covariance;
   }
-  // A fit leans towards each of its blocks, which then pulls less than a new one would: as much less, on average, as there
-  // are parameters for each block (the jackknife's correction, HC3 of MacKinnon & White 1985).
+  // A fit leans towards each of its blocks, which then pulls less than a new one would. The correction is that of the
+  // jackknife (HC3 of MacKinnon & White 1985): as many parameters as there are for each block.
   const double leaning = blocks / free;
   Eigen::MatrixXd moves(unit.size(), fit.pulls.cols());  // of the coordinates, by each block
   for (Eigen::Index k = 0; k < moves.rows(); ++k) {
@@ -90,8 +91,8 @@ inline Covariance covariance_of(const Candidate& candidate, const Weight& weight
   return covariance;
 }
 
-/// The 95 % interval of a coordinate, in its own numbers and within its range: all of that where moving it so far changes nothing,
-/// as of a friction's transition that no sample fell into.
+/// The 95 % interval of a coordinate, in its own numbers and within its range. It is the whole range if moving the
+/// coordinate so far changes nothing, such as a friction's transition that no sample fell into.
 inline Interval interval_of(const Candidate& candidate, std::size_t place, const Covariance& covariance) {
   const Coordinate& one = candidate.list[place];
   const double range = one.upper - one.lower;
@@ -110,16 +111,16 @@ inline bool is_narrower(const Interval& interval, const Coordinate& one) {
   return interval.high - interval.low < hardly * (one.upper - one.lower);
 }
 
-/// Whether a fit looked for a parameter as an effect's own: it is no detail of a shape, and moved.
+/// Whether a fit looked for a parameter as an effect's own: it is not a detail of a shape, and moved.
 inline bool was_looked_for(const Parameter& parameter, const Coordinate& one) {
   return !parameter.standard && !one.still;
 }
 
-/// Marks sets of causes of which one may as well not be there: the 95 % intervals of all its sizes hold the value without it, or it
-/// is no more than a constant that moved, as each explanation's may. Two that do the same from opposite sides (a friction that
-/// differs by direction, and a constant torque) are told by their sum alone. What is known by its order of magnitude only is
-/// not asked, nor is a detail of a shape. An interval is one of a valley that is straight. Where the set without the cause was
-/// fitted, and is far behind, the cause is there, however long the valley is along which it trades with a constant.
+/// Marks sets of causes of which one may be absent. The 95 % intervals of all its sizes hold the value without it, or it is
+/// no more than a constant that moved. Two that do the same from opposite sides (a friction that differs by direction, and
+/// a constant torque) are told by their sum alone. Parameters that are known by their order of magnitude, and details of a
+/// shape, are not asked. An interval is one of a valley that is straight. If the set without the cause was fitted and is
+/// far behind, the cause is there, whatever the length of the valley along which it trades with a constant.
 inline void mark_doubtful(std::vector<Candidate>& candidates, const Model& model, const Weight& weight) {
   const auto misfit = [&](const Candidate& one) {
     return misfit_of(one.train, weight.correlation) + misfit_of(one.held_out, weight.held_out);

@@ -44,9 +44,9 @@ inline double mean_correlation(const Weight& weight) {
   return signals > 0.0 ? std::pow(product, 1.0 / signals) : 1.0;
 }
 
-/// Whether a parameter ended where a recording can show it. What brings everything to the noise was shown, however little of a
-/// period the travel holds; but not a period as long as it may be, which is the first terms of a series and no period: beside a
-/// cable's spring it makes one that grows stiffer outwards.
+/// Whether a parameter ended where a recording can show it. A cause that brings everything to the noise was shown, however
+/// little of a period the travel holds. This does not hold for a period at its upper bound, which is the first terms of a
+/// series. Beside a cable's spring it makes one that grows stiffer outwards.
 /// @param at  its place among the candidate's coordinates
 inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const Parameter& parameter,
                   std::size_t at, const Shown& shown) {
@@ -63,9 +63,9 @@ inline bool shows(const Candidate& candidate, const CatalogueEntry& entry, const
   return other >= candidate.list.size() || candidate.value(at) > candidate.value(other);
 }
 
-/// Whether the training data tell a parameter at all, where an effect has another one of its kind (friction forward and
-/// backward): moved by as much as the largest of them is, it must show. In a motion one way a friction that differs by
-/// direction is no more than a friction.
+/// Whether the training data tell a parameter, if an effect has another one of its kind (friction forward and backward).
+/// Moved by as much as the largest of them is, it must show. In a motion one way a friction that differs by direction is no
+/// more than a friction.
 /// @param first  place of the effect's first parameter among the candidate's coordinates
 /// @param i      place of the parameter among the effect's
 inline bool is_told(const Candidate& candidate, const CatalogueEntry& entry, std::size_t first,
@@ -97,16 +97,16 @@ inline bool is_as_far_as_it_may(const CalibratedConstant& constant, double at) {
          (at < -nearly * farthest_down(constant) && !may_vanish(constant));
 }
 
-/// Whether some cause ended with all it has on the bounds of its range, or with one parameter where it is
-/// another effect: then it is no explanation, but stands for one that the catalogue lacks. (A transition of
-/// friction does not count: at its bound friction sticks.)
+/// Whether some cause ended with all its parameters on their bounds, or with one parameter where it is another effect. It
+/// then stands for a cause that the catalogue lacks. (A transition of friction does not count: at its bound friction
+/// sticks.)
 ///
 /// Nor is one beside which a constant went as far as it may: then the equation is another one. (The transition of a friction that
 /// the model has does not count either, nor what may vanish and does.)
 ///
-/// Nor is one that ends where the recording cannot show it: a rise of friction near standstill inside the
-/// transition through standstill, or one whose knee no motion reaches, a period longer than the travel holds, a time constant longer than a run, a
-/// friction backward of what never moved backward.
+/// Nor is a cause that ends where the recording cannot show it. Examples are a rise of friction inside the transition
+/// through standstill or with a knee that no motion reaches, a period longer than the travel, a time constant longer than a
+/// run, and backward friction of an axis that never moved backward.
 /// @param shown  by the training data; anything where it is not given
 inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const Shown& shown = {}) {
   const std::vector<bool>& at_bound = candidate.fit.at_bound;
@@ -174,9 +174,9 @@ inline double largest_noise_multiple(const Candidate& candidate) {
 }
 
 /// Whether a candidate scores as well as another where it matters. With many rows a smaller difference can still
-/// be significant; it then tells of the small errors that every model has, not of the cause. The further the
-/// better one is above the noise, the larger are the errors that it has itself: an explanation with fewer
-/// parameters is as good by a larger margin there.
+/// be significant; it then tells of the small errors that every model has, not of the cause. The further the better one is
+/// above the noise, the larger are its own errors. An explanation with fewer parameters then counts as equal within a
+/// larger margin.
 inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
   const bool simpler = candidate.explanation.parameter_count() < other.explanation.parameter_count();
   for (std::size_t i = 0; i < signal_count; ++i) {
@@ -211,7 +211,7 @@ inline bool does_nothing_more(const Candidate& candidate, const Candidate& const
   return true;
 }
 
-/// Whether a candidate follows the data it was fitted to, so that what it makes of the noise of its starts tells of a perfect
+/// Whether a candidate follows the data it was fitted to. Then its response to the noise of its starts is that of a perfect
 /// model, too.
 inline bool follows_its_data(const Candidate& candidate) {
   return candidate.train.within(decision.follows * decision.follows);
@@ -223,7 +223,8 @@ inline bool is_at_the_noise(const Candidate& candidate) {
          largest_noise_multiple(candidate.held_out) <= decision.no_gap;
 }
 
-/// Whether a candidate may be named: it was judged on held-out data, is no stand-in for another one, and all of it is there.
+/// Whether a candidate may be named: it was judged on held-out data, does not stand in for another one, and all of it is
+/// there.
 inline bool in_the_running(const Candidate& candidate) {
   return !candidate.on_bounds && !candidate.idle && !candidate.doubtful && candidate.held_out.any();
 }
@@ -261,7 +262,7 @@ inline bool is_small(const Candidate& candidate, std::size_t small, std::size_t 
   return large > 0.0 && size <= decision.equal * large;  // beside nothing, nothing is small
 }
 
-/// What an effect is in fact.
+/// Another name for an effect, by where its parameters ended.
 struct SpecialCase {
   std::string cause;           ///< id; empty: the effect itself
   bool but_for_a_bit = false;  ///< what else it has is too small to be what it fits better by
@@ -276,7 +277,7 @@ inline bool is_nearly(const SignalSums& sums, const SignalSums& others) {
   return true;
 }
 
-/// What an effect of a candidate is in fact, by where its parameters ended.
+/// The other name of an effect of a candidate, by where its parameters ended.
 /// @param at  place of its first parameter among the candidate's coordinates
 inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& info, std::size_t at) {
   const auto place = [&](int i) { return at + static_cast<std::size_t>(i); };
@@ -292,10 +293,10 @@ inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& in
   return {};
 }
 
-/// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like it:
-/// both say the same, and the other says it with fewer parameters. Where two parameters are the same to the last, it is enough that
-/// it fits the training data as well: on others they differ in what both have. What has something small besides bends to the last of
-/// what others leave: there it is enough that these leave what the noise allows.
+/// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like
+/// it. Both say the same, and the other needs fewer parameters. If two parameters are equal, it is enough that the other
+/// one fits the training data as well. On held-out data the two then differ only in what both have. A cause with a small
+/// extra part bends to the rest of the others. It is then enough that these leave what the noise allows.
 inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, const Model& model) {
   std::size_t first = model.calibrated().size();
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
@@ -320,8 +321,8 @@ inline bool is_in_fact(const Candidate& simpler, const Candidate& candidate, con
   return false;
 }
 
-/// Marks effects beside which constants move that alone bring everything to the noise: the constants are the answer,
-/// and such an effect mends what is left of the noise.
+/// Marks effects beside moved constants that alone bring everything to the noise. The constants are the answer, and such an
+/// effect only fits noise.
 inline void mark_idle(std::vector<Candidate>& candidates) {
   for (Candidate& one : candidates) one.idle = false;
   if (!holds(Rule::constants_first)) return;
@@ -374,18 +375,17 @@ inline double misfit_of(const SignalSums& sums, const std::array<double, signal_
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
 /// judged on held-out data.
 ///
-/// The deviance is that of Gaussian residuals of unknown variance, samples divided by the correlation length
-/// of the best candidate's residuals; training and held-out data together, the parameters from training alone;
-/// a Bayesian information penalty for every parameter and own state of an effect and every start that nobody measures
-/// (cost_of_parameters()), the price of the constants that moved, and a penalty for every cause. What scores like the best is
-/// given its fit: then only the penalties differ.
+/// The deviance is that of Gaussian residuals of unknown variance, over training and held-out data, with parameters from
+/// training alone. Samples are divided by the correlation length of the best candidate's residuals. Added are a Bayesian
+/// information penalty for every parameter, own state and start that nobody measures (cost_of_parameters()), the price of
+/// the constants that moved, and a penalty for every cause. A candidate that scores like the best is given its fit. Then
+/// only the penalties differ.
 ///
-/// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are
-/// at most those of a difference as many standard errors large (Vuong 1989), the standard error from leaving out
-/// blocks of the training and the held-out data: where a candidate is better in some parts of the recording and
-/// worse in others, no number of rows makes it certain; where it is better in every block, it is beyond doubt however
-/// unlike the blocks are (BlockByBlock). That holds for what the data say; what the parameters of a
-/// richer explanation cost stays: where the data are of two minds, the simpler one is named.
+/// Every model is wrong, and a model error does not average out like noise. So the odds against a candidate are at most
+/// those of the difference in standard errors (Vuong 1989), by leaving out blocks of the training and the held-out data. If
+/// a candidate is better in some parts of the recording and worse in others, no number of rows makes it certain. If it is
+/// better in every block, it is beyond doubt, however unlike the blocks are (BlockByBlock). That holds for the data alone.
+/// The penalty of a richer explanation stays, so that the simpler one is named if the data do not decide.
 inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, const Model& model) {
   double samples = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
@@ -454,8 +454,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     if (uncertain > 0.0 && holds(Rule::evidence_bound))
       one.against = std::min(one.against, log_odds_of((one.deviance - least->deviance) / uncertain));
   }
-  // The cost of its parameters is no part of that: what is richer than another and fits no better beyond doubt stays
-  // behind it by that cost.
+  // The cost of parameters is not part of that. A richer explanation that does not fit better beyond doubt stays behind by
+  // its cost.
   std::vector<Candidate*> simplest_first;
   for (Candidate& one : candidates)
     if (in_the_running(one)) simplest_first.push_back(&one);

@@ -13,8 +13,8 @@
 
 namespace thermopower::gap::engine {
 
-/// Sum over the signals of samples times the logarithm of the mean square: twice the negative log
-/// likelihood where the noise of every signal is unknown. No credit is given below the noise.
+/// Sum over the signals of samples times the logarithm of the mean square. That is twice the negative log likelihood if the
+/// noise of every signal is unknown. No credit is given below the noise.
 inline double fitness(const Candidate& candidate) {
   double sum = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i)
@@ -31,8 +31,8 @@ inline const Candidate& fittest(const std::vector<Candidate>& candidates) {
   return *least;
 }
 
-/// Whether a candidate's residuals are some five times those of the best one, which leaves far more than noise itself: it is not
-/// half of what is missing, then, nor becomes the better one by some steps of a fit.
+/// Whether a candidate's residuals are some five times those of the best one, which itself leaves far more than noise. Such
+/// a candidate is not half of what is missing, and some steps of a fit do not make it the better one.
 inline bool is_out_of_reach(const Candidate& one, const Candidate& best) {
   if (best.train.within(search_extent.plain_above)) return false;
   return fitness(one) - fitness(best) > std::log(search_extent.out_of_reach) * best.train.count();
@@ -46,8 +46,8 @@ inline std::vector<std::size_t> by_fitness(const std::vector<Candidate>& candida
   return order;
 }
 
-/// Of the candidates that fit nearly as well as the best, those whose constants moved least: constants that ran far off
-/// together in the place of what is missing, and any effect beside them, fit a little better than it.
+/// Of the candidates that fit nearly as well as the best, those whose constants moved least. Constants that ran far off
+/// together in place of the missing effect, and any effect beside them, fit a little better than it.
 inline std::vector<std::size_t> modest(const std::vector<Candidate>& candidates, const Model& model) {
   constexpr double nearly = 0.02;  // of what the best gains
   constexpr std::size_t some = 4;

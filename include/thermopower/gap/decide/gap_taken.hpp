@@ -11,14 +11,14 @@
 
 namespace thermopower::gap::engine {
 
-/// What a cause is measured against: held-out scores without any, in units of the noise floor.
+/// The reference of a cause: held-out scores without any cause, in units of the noise floor.
 struct Reference {
   SignalSums as_configured;  ///< the model as its file has it
   SignalSums recalibrated;   ///< its constants refitted
 };
 
-/// How far above the noise the worst signal of a candidate remains, as a share of what is there without it: 0 at
-/// the noise, 1 where nothing was explained.
+/// How far above the noise the worst signal of a candidate remains, as a share of that without it. At the noise it is 0,
+/// and 1 if nothing was explained.
 inline double left_over(const SignalSums& after, const SignalSums& before) {
   double worst = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i) {
@@ -29,7 +29,7 @@ inline double left_over(const SignalSums& after, const SignalSums& before) {
   return std::min(worst, 1.0);
 }
 
-/// Sum over the signals of what is above the noise on held-out data, in units of its variance.
+/// Sum over the signals of the excess above the noise on held-out data, in units of its variance.
 inline double excess(const Candidate& candidate) {
   double sum = 0.0;
   for (std::size_t i = 0; i < signal_count; ++i) sum += std::max(candidate.held_out.mean(i) - 1.0, 0.0);

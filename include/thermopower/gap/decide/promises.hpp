@@ -27,8 +27,8 @@ inline std::vector<plant::SubmodelName> suspects_among(const std::vector<Locatio
   return found.size() > 1 ? found : std::vector<plant::SubmodelName>();
 }
 
-/// What explanations are first looked at in. Where all that there is so far leaves far more than noise, half of an axis'
-/// windows tells as well as all of them which are worth more.
+/// The data of the first look at explanations. If all candidates leave far more than noise, half of an axis' windows is
+/// enough to rank them.
 struct FirstLook {
   FitProblem few;   ///< on which all are looked at
   FitProblem some;  ///< on which the best of those are
@@ -53,7 +53,7 @@ private:
 struct Promise {
   LinearGuess guess;     ///< after one linear step; of a set that nobody looked at it is empty
   std::size_t near = 0;  ///< place among the candidates of the fit of a part of it
-  Explanation together;  ///< that part and what is added
+  Explanation together;  ///< that part and the addition
 };
 
 /// Finds the sets of causes that are worth a fit.
@@ -132,8 +132,8 @@ private:
     return kept;
   }
 
-  /// Places of the best single causes, and the best ones of every submodel that is under suspicion: of two causes of one size
-  /// neither does well alone, and what does is another effect that makes up for some of both. None that is out of reach.
+  /// Places of the best single causes, and of the best ones of every suspected submodel. Of two causes of one size neither
+  /// does well alone. Another effect that makes up for some of both does. None that is out of reach.
   std::vector<std::size_t> seeds_of(const std::vector<Candidate>& candidates) const {
     constexpr std::size_t best_of_all = 5;
     constexpr int best_of_submodel = 2;

@@ -27,11 +27,11 @@ inline bool is_known(const std::vector<Candidate>& candidates, const Explanation
 
 /// Finds the explanations worth weighing: none, every single one, and the sets that promise most.
 ///
-/// Everything is first tried on a small part of the data (`coarse`), of a moving axis in windows so short that even
-/// friction that holds and lets go is nearly linear in its parameters; effects with states that nobody measures, which
-/// such windows do not tell, in longer ones (`longer`). What does well there is fitted to more of the data
-/// (`fine`). Every candidate it returns has its residuals on the fine data. Which sets are worth that is first looked at in
-/// few of the short windows (`glimpse`).
+/// Everything is first tried on a small part of the data (`coarse`). The windows of a moving axis are then so short that
+/// even friction that holds and lets go is nearly linear in its parameters. Effects with states that nobody measures are
+/// tried in longer windows (`longer`). The best ones are fitted to more of the data (`fine`). Every candidate it returns
+/// has its residuals on the fine data. Which sets are worth that is first looked at in few of the short windows
+/// (`glimpse`).
 class Search {
 public:
   /// The attributions must pose the same question to different parts of the data, and outlive this object.
@@ -75,8 +75,8 @@ public:
     finish(candidates, fitted_to_the_end);
   }
 
-  /// Looks at the details of the effects of the best candidates, where these leave more than noise: a second harmonic is one
-  /// only where the first is found. A detail stays where it takes away most of the rest.
+  /// Looks at the details of the effects of the best candidates, if these leave more than noise. A second harmonic is one
+  /// only after the first is found. A detail stays where it takes away most of the rest.
   /// @return whether the best one has changed
   bool refine_shapes(std::vector<Candidate>& candidates) const {
     constexpr std::size_t looked_at = 3;
@@ -122,8 +122,8 @@ public:
     return std::find(near.begin(), near.end(), 1) != near.end();
   }
 
-  /// Adds sets of causes, fitted to the first look's data and taken to the fine data: what they leave there says what the noise is,
-  /// and only then it is worth fitting them to the end.
+  /// Adds sets of causes, fitted to the first look's data and taken to the fine data. Their residuals there tell the noise;
+  /// only then it is worth fitting them to the end.
   /// @param sets  the most promising one first
   void add_sets(std::vector<Candidate>& candidates, const std::vector<Promise>& sets) const {
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
@@ -137,8 +137,8 @@ public:
     finish(candidates, sets.size() + fitted_to_the_end);
   }
 
-  /// Exchanges members of the best set for their relatives, and those of what is the best then once more: of two that are both
-  /// stood in for only one is found at a time.
+  /// Exchanges members of the best set for their relatives, and once more for those of the new best set. If both members
+  /// are stand-ins, only one is found at a time.
   void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) {
@@ -149,8 +149,8 @@ public:
     }
   }
 
-  /// Adds the best set without one member after another, from where the whole ended: it may have been reached by a way on which
-  /// one of them stood in for another.
+  /// Adds the best set without one member after another, from where the whole ended. On the way, one member may have stood
+  /// in for another.
   void add_parts(std::vector<Candidate>& candidates) const {
     const Candidate& whole = fittest(candidates);
     std::vector<Promise> parts;
@@ -184,9 +184,9 @@ public:
     return sets;
   }
 
-  /// Fits candidates of as many causes as the best ones, or fewer, once more from where those ended that are in sight of the
-  /// very best. A smaller explanation loses to a larger one that contains it only after it has been there: often the
-  /// larger one has only found better constants.
+  /// Fits candidates of as many causes as the best ones, or fewer, once more from the ends of those in sight of the very
+  /// best. A smaller explanation loses to a larger one only after it has been fitted from there. Often the larger one has
+  /// only found better constants.
   void refit_rivals(std::vector<Candidate>& candidates) const {
     FitOptions finish;
     finish.iterations = 12;
@@ -216,8 +216,8 @@ public:
     }
   }
 
-  /// Brings the constants of the best candidates back that are far off for nothing: where a cause and they do the same to the data
-  /// the cost lies in a long flat valley, along which only what is known of them pulls, and a fit ends anywhere in it.
+  /// Brings constants of the best candidates back that are far off without need. If a cause and the constants do the same
+  /// to the data, the cost lies in a long flat valley, along which only the prior pulls. A fit ends anywhere in it.
   void settle_constants(std::vector<Candidate>& candidates, const Model& model) const {
     constexpr std::size_t looked_at = 8;
     FitOptions finest;
@@ -341,7 +341,7 @@ private:
     in_parallel(order.size(), threads_, [&](std::size_t i) {
       Candidate& one = candidates[order[i]];
       if (one.settled) return;
-      // What constants alone can do is said whoever wins.
+      // The result of constants alone is reported in any case.
       fine_.polish(one, one.explanation.effects.empty() ? some : in_sight);
       one.settled = one.fit.iterations < some.iterations;
     });
@@ -377,8 +377,8 @@ private:
     if (!fittest(candidates).train.within(room * room)) add_all_fitted(candidates, later, coarse);
   }
 
-  /// Fits sets from the fits of their parts, the first one to the end, the others as long as they are in its sight, and
-  /// takes them among the candidates.
+  /// Fits sets from the fits of their parts, and takes them among the candidates. The first is fitted to the end, the
+  /// others as long as they are in its sight.
   void add_all_fitted(std::vector<Candidate>& candidates, const std::vector<Promise>& sets,
                       const Attribution& coarse) const {
     if (sets.empty()) return;
@@ -401,8 +401,8 @@ private:
     return static_cast<std::size_t>(&one - candidates.data());
   }
 
-  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the
-  /// same submodel: of two that do the same beside a third, only one may have been tried.
+  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the same submodel. Of
+  /// two causes that do the same beside a third, only one may have been tried.
   void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = fittest(candidates);
     const std::size_t place = place_of(candidates, near);

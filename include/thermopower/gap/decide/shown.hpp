@@ -10,16 +10,16 @@
 #include <vector>
 
 /// @file shown.hpp
-/// What recordings can show of a cause, whatever it is: how far an axis went, how fast, and for how long.
+/// The range in which recordings can show a cause: how far an axis went, how fast, and for how long.
 
 namespace thermopower::gap::engine {
 
-/// What recordings can show; anything where nothing is known.
+/// The range that recordings can show; unlimited if nothing is known.
 struct Shown {
   double travel_rad = 1e300;           ///< range of the angle
   double longest_run_s = 1e300;        ///< length of the longest run
   double fastest_rad_per_s = 1e300;    ///< of the motion
-  bool by_reaching_the_noise = false;  ///< whether what is asked about leaves nothing but noise
+  bool by_reaching_the_noise = false;  ///< whether the candidate in question leaves only noise
 };
 
 /// Range of the angle in rad; without an angle any.
@@ -41,11 +41,11 @@ inline double longest_run_s(const std::vector<Inputs>& inputs) {
   return longest_s;
 }
 
-/// The rate that all but one in two hundred rows stay below, in rad/s; from slopes of the angle over some rows where no rate is
-/// judged, and any where neither is.
+/// The rate that all but one in two hundred rows stay below, in rad/s. It comes from slopes of the angle if no rate is
+/// judged, and is unlimited if neither is.
 inline double fastest_rad_per_s(const std::vector<Inputs>& inputs) {
   constexpr double nearly_all = 0.995;
-  constexpr Eigen::Index over_rows = 8;  // noise of single readings is no motion
+  constexpr Eigen::Index over_rows = 8;  // noise of single readings is not motion
   std::vector<double> rates_dps;
   for (const Inputs& one : inputs) {
     const bool by_rate = one.judged(Signal::rate_dps);
@@ -61,7 +61,7 @@ inline double fastest_rad_per_s(const std::vector<Inputs>& inputs) {
   return rates_dps.empty() ? Shown().fastest_rad_per_s : quantile_of(rates_dps, nearly_all) * rad_per_deg;
 }
 
-/// What recordings can show.
+/// The range that recordings can show.
 inline Shown shown_by(const std::vector<Inputs>& inputs) {
   return {travel_rad(inputs), longest_run_s(inputs), fastest_rad_per_s(inputs), false};
 }

@@ -7,24 +7,24 @@
 namespace thermopower::gap::engine {
 
 /// The thresholds of the decision, each with its unit and its reason. They were chosen on recordings of
-/// `gap_benchmark_generate` with seeds of their own, and docs/reference/gap-benchmark.md judges them on seed 20270221; held by
-/// tests/gap/decide_test.cpp.
+/// `gap_benchmark_generate` with other seeds than the one of docs/reference/gap-benchmark.md. tests/gap/decide_test.cpp
+/// holds them.
 struct DecisionThresholds {
   // Evidence
   /// Twice a log odds, for every cause: they are rare, one in twenty of those looked for.
   double rarity = 6.0;
-  /// Share of the score. What is as near to the best as this on every held-out signal is given the best one's
-  /// fit: with many rows less is still significant, but tells of small errors that every model has.
+  /// Share of the score. A candidate as near to the best as this on every held-out signal is given the best one's fit. With
+  /// many rows a smaller difference is still significant, but tells of small errors that every model has.
   double alike_held_out = 0.005;
   /// The same over training and held-out data together, where starts are fitted and less is noise.
   double alike_overall = 0.02;
   /// The same over training data alone: what fits these clearly worse is another thing, however well it does on fewer others.
   double alike_in_training = 0.06;
-  /// Share of the score, for an explanation with fewer parameters, where the best one is far above the noise: a
-  /// model that is wrong by several times the noise proves nothing by its last twentieth.
+  /// Share of the score, for an explanation with fewer parameters, if the best one is far above the noise. A model that is
+  /// wrong by several times the noise proves nothing by its last twentieth.
   double alike_far_from_noise = 0.05;
-  /// Share of the larger one by which two parameters may differ, two standard errors included, that are equal as far as it
-  /// matters: frictions of two directions are seldom known to a tenth beforehand.
+  /// Share of the larger one by which two parameters may differ, two standard errors included, to count as equal. Frictions
+  /// of two directions are seldom known to a tenth beforehand.
   double equal = 0.1;
   /// The same, below which it cannot be what one fits better by than the other.
   double the_same = 0.01;
@@ -56,8 +56,8 @@ struct DecisionThresholds {
   double far_for_long_windows = 3.0;
   /// Share of it that short windows must get below to be believed instead.
   double short_windows_lower = 0.7;
-  /// Multiple of the noise in the windows that are fitted, their starts with them, above which a simulation does not follow
-  /// its data: noise alone makes 1, and blows of teeth that hang on the last digit of a start came to 2.2.
+  /// Multiple of the noise in the fitted windows, with fitted starts, above which a simulation does not follow its data.
+  /// Noise alone makes 1. Blows of teeth that depend on the last digit of a start came to 2.2.
   double follows = 3.0;
   /// Multiple of the noise in the windows that are fitted, above which others tell no more.
   double far_for_more_windows = 3.0;
@@ -69,7 +69,7 @@ struct DecisionThresholds {
   double lowered_without_costly = 0.8;
   /// Multiple of the noise above which a second cause is looked for.
   double room_for_second = 1.4;
-  /// The same where the first cause comes so near with constants far off: what is no gap by itself.
+  /// The same if the first cause comes so near only with constants far off: below it there is no gap.
   double room_beside_dear_constants = 1.25;
   /// Share of what one cause leaves that a second one must take away.
   double second_takes = 0.5;
@@ -89,8 +89,8 @@ struct SearchThresholds {
   Eigen::Index tried_axis_rows = 1600;     ///< the same of an axis
   Eigen::Index shortest_axis_rows = 2000;  ///< of the first look in windows that are shorter still
   Eigen::Index glimpsed_axis_rows = 500;   ///< of those, in which sets are looked for that are worth a look
-  /// Mean square of what is left so far, in units of the noise, above which every second of these windows tells what is
-  /// worth a fit: four times the noise is seen in a few samples.
+  /// Mean square of the best residuals so far, in units of the noise, above which every second of these windows is enough.
+  /// Four times the noise is seen in a few samples.
   double plain_above = 16.0;
   double out_of_reach =
       25.0;  ///< times the mean square that the best leaves there: no half of a set of causes
@@ -98,7 +98,7 @@ struct SearchThresholds {
   Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
   double tried_window_s = 0.5;   ///< of the first look, at most
-  /// Share of the windows of the score that shorter ones have, in which a load that holds an axis is looked for.
+  /// Length of the shorter windows, as a share of those of the score, in which a load that holds an axis is looked for.
   double shorter_than_the_score = 0.4;
 };
 

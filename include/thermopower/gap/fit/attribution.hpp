@@ -17,7 +17,7 @@
 
 namespace thermopower::gap::engine {
 
-/// What one linear step from some starts promises.
+/// The promise of one linear step from some starts.
 struct LinearGuess {
   double cost = 1e300;                  ///< after the step from the best of them
   std::vector<Eigen::VectorXd> starts;  ///< those that promise most, the best first
@@ -44,10 +44,10 @@ public:
     return fit_from(explanation, starts, options);
   }
 
-  /// Fits one explanation from the best of some starts: a few steps from each, one more from those that are in sight of
-  /// the best one so far, and to the end from the best of them unless that is hopeless. Of a set, which begins where a part of it was
-  /// fitted, no further ones are tried where two explain much more than that, and as much as each other, or where two end far beyond
-  /// what is hopeless.
+  /// Fits one explanation from the best of some starts. It takes a few steps from each, and one more from those in sight of
+  /// the best one. From the best it goes to the end, unless that is hopeless. A set begins where a part of it was fitted.
+  /// No further starts are tried if two explain much more than that part and as much as each other. The same holds if two
+  /// end far beyond hope.
   /// @param starts  at least one; coordinates in the order of coordinates()
   Candidate fit_from(const Explanation& explanation, const std::vector<Eigen::VectorXd>& starts,
                      const FitOptions& options) const {
@@ -91,9 +91,9 @@ public:
     candidate.train = candidate.fit.sums;
   }
 
-  /// Moves a candidate's torques, its inertia and its frictions by one factor, to where what is known of the constants wants them, and
-  /// fits on from there: where no torque is known by itself, motion says nothing of that factor, and a step along it in single
-  /// coordinates leaves the valley that it goes along. The candidate stays as it was where that costs less.
+  /// Moves a candidate's torques, its inertia and its frictions by one factor to where the prior wants them, and fits on
+  /// from there. If no torque is known by itself, motion says nothing of that factor. A step along it in single coordinates
+  /// leaves the curved valley. The candidate stays as it was where that costs less.
   void settle_the_scale(Candidate& candidate, const FitOptions& options) const {
     const std::vector<bool> scales = are_torques(candidate);
     const double by = scale_wanted(candidate, scales);
@@ -109,8 +109,8 @@ public:
     if (other.fit.cost < candidate.fit.cost) candidate = std::move(other);
   }
 
-  /// Frees the details of a candidate's effects and fits once more from where it ended. Details are of the effects where
-  /// they take away at least `share` of what is left above the noise; else the candidate stays as it was.
+  /// Frees the details of a candidate's effects and fits once more from where it ended. Details become part of the effects
+  /// if they take away at least `share` of the rest above the noise. Else the candidate stays.
   void refine(Candidate& candidate, double share, const FitOptions& options) const {
     if (!candidate.explanation.can_be_refined() || candidate.train.within(noise_)) return;
     Candidate finer = with_details_free(candidate);
@@ -121,8 +121,8 @@ public:
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
   }
 
-  /// Fits once more from beside where a candidate's fit ended, in the frequencies of what rings: over windows of several periods a
-  /// fit that is one period off in each is a valley of its own.
+  /// Fits once more from beside the end of a candidate's fit, in the frequencies of what rings. Over windows of several
+  /// periods, a fit that is one period off in each is a valley of its own.
   void look_beside(Candidate& candidate, const FitOptions& options) const {
     const double shares[] = {0.8, 0.87, 0.94, 1.06, 1.15, 1.25};
     FitOptions soon = options;
@@ -155,7 +155,7 @@ public:
                         .minimise(candidate.fit.point, look, starts_of(candidate));
   }
 
-  /// What is fitted to.
+  /// The problem that explanations are fitted to.
   const FitProblem& problem() const { return problem_; }
 
   /// How far one linear step from the fit of a part of it lowers the cost of an explanation: the promise of a set.
@@ -190,10 +190,10 @@ public:
     return result;
   }
 
-  /// Fits a candidate once more from where another one ended: its constants, and those of its parameters that
-  /// the candidate has too, under their own names or, between effects of one submodel, under the same one. Keeps
-  /// the better of both fits. Where the other one's effects have details that are free, the candidate's are freed, too,
-  /// and stay so where they take away at least `share` of what is left above the noise.
+  /// Fits a candidate once more from where another one ended. It takes the constants and the parameters that both have.
+  /// Between effects of one submodel, equal names count as the same parameter. Keeps the better of both fits. If details of
+  /// the other one's effects are free, the candidate's are freed, too. They stay so if they take away at least `share` of
+  /// the rest above the noise.
   /// @return whether the candidate was worth a fit: what is lost, where it ended and by the first derivatives there, has lost
   ///         whatever its constants are
   bool refit_from(Candidate& candidate, const Candidate& other, const FitOptions& options,
@@ -233,8 +233,8 @@ private:
     return candidate.fit.starts.size() == problem_.segments.size() ? &candidate.fit.starts : nullptr;
   }
 
-  /// Whether a simulation leaves what a candidate leaves by orders of magnitude at other coordinates: it grows without an end there, in
-  /// ever smaller steps, and its derivatives would take minutes to say nothing.
+  /// Whether a simulation at other coordinates is worse than a candidate by orders of magnitude. It grows without an end
+  /// there, in ever smaller steps, and its derivatives would take minutes and say nothing.
   bool runs_away(const Candidate& candidate, const Eigen::VectorXd& at,
                  const std::vector<Start>* starts) const {
     const double far = 1e6 * candidate.train.total();
@@ -359,7 +359,7 @@ private:
     return wider;
   }
 
-  /// Which coordinates of a candidate are torques, or what makes torques of motions and currents: all of one unit, in which
+  /// Which coordinates of a candidate are torques, or turn motions and currents into torques. All have one unit, in which
   /// motion by itself is not measured.
   std::vector<bool> are_torques(const Candidate& candidate) const {
     const auto has_unit = [](const std::string& name) {
@@ -373,8 +373,8 @@ private:
     return list;
   }
 
-  /// The common factor's logarithm that brings the constants among some coordinates to where they cost least: to its place one of
-  /// them, for all of them cost less and less the further they are.
+  /// The logarithm of the common factor that brings the constants among some coordinates to where they cost least. It
+  /// brings one of them to its place: the sum over all grows ever slower with the distance.
   static double scale_wanted(const Candidate& candidate, const std::vector<bool>& scales) {
     const auto cost = [&](double by) {
       double sum = 0.0;

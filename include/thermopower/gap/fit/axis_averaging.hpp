@@ -28,12 +28,12 @@ struct AveragingThresholds {
 /// Averages a fast recording of a moving axis down in time, so that a budget of rows spans the same motion at any
 /// sampling rate.
 ///
-/// Blocks of k rows become one row at their centre: outputs are the value of the parabola through their samples there
-/// (a mean would cut the tops of fast motions), inputs the mean over the time from centre to centre, so that the
-/// torque's integral is what it was. Blocks are halved until parabolas describe the samples to within their noise.
+/// Blocks of k rows become one row at their centre. Outputs are the value of the parabola through their samples there,
+/// because a mean would cut the tops of fast motions. Inputs are the mean over the time from centre to centre, so that the
+/// torque's integral stays. Blocks are halved until parabolas describe the samples to within their noise.
 class AxisAveraging {
 public:
-  /// @param full  what is averaged; must outlive this object
+  /// @param full  the rows to average; must outlive this object
   explicit AxisAveraging(const Inputs& full) : full_(full) {}
 
   /// The shorter recording, or the full one where it is not faster than needed.
@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  /// The parabola through the samples of a block, at the block's mean stamp; missing where it has at most half as many as
+  /// The parabola through the samples of a block, at the block's mean stamp. Missing if it has at most half as many as
   /// usual. @param known  share of the rows with a sample
   static double at_centre(const Eigen::VectorXd& values, const Eigen::VectorXd& t_s, Eigen::Index begin,
                           Eigen::Index end, double centre_s, double known) {

@@ -16,7 +16,7 @@ namespace thermopower::gap::engine {
 /// An explanation with its fit and what speaks for it.
 struct Candidate {
   Explanation explanation;       ///< the causes it consists of
-  std::vector<Coordinate> list;  ///< what is fitted: every constant, then the effects' parameters
+  std::vector<Coordinate> list;  ///< of the fit: every constant, then the effects' parameters
   FitResult fit;                 ///< on training data, in the coordinates of `list`
   SignalSums train;              ///< residuals of the fit where it was fitted
   SignalSums held_out;    ///< as a gap is judged, in units of the noise floor; empty until somebody looks
@@ -58,7 +58,7 @@ inline std::vector<int> moved_constants(const Candidate& candidate, const Model&
   return moved;
 }
 
-/// What the constants of a candidate paid for having moved, a released one included: twice a log odds.
+/// The price of a candidate's moved constants, a released one included: twice a log odds.
 inline double price_of_constants(const Candidate& candidate, const Model& model) {
   double price = 0.0;
   Eigen::Index at = 0;
@@ -67,11 +67,11 @@ inline double price_of_constants(const Candidate& candidate, const Model& model)
   return price;
 }
 
-/// What a parameter costs where explanations are compared: the logarithm of the samples, twice a log odds.
+/// The price of a parameter where explanations are compared: the logarithm of the samples, twice a log odds.
 ///
-/// Where a constant of the model does its work (Parameter::told_by_constant) the data tell both together only, and the one as well
-/// as the other is known before them: twice the log odds, at the centre of what is known, of a constant that is known so well
-/// against a parameter that may be anywhere in its range; nothing if it is known no better.
+/// If a constant of the model does the same (Parameter::told_by_constant), the data tell both together only. The price is
+/// then twice the log odds of the constant's density at its centre against a parameter that may be anywhere in its range.
+/// It is nothing if the constant is known no better than that.
 /// @param coordinate  the parameter's
 inline double cost_of_parameter(const plant::Parameter& parameter, const Coordinate& coordinate,
                                 const Model& model, double log_samples) {
@@ -86,7 +86,7 @@ inline double cost_of_parameter(const plant::Parameter& parameter, const Coordin
   return log_samples;
 }
 
-/// What the free parameters of a candidate's effects and their own states cost, and the starts that nobody measures.
+/// The price of a candidate's free parameters, own states, and starts that nobody measures.
 inline double cost_of_parameters(const Candidate& candidate, const Model& model, double log_samples) {
   double cost = candidate.hidden_starts * log_samples;
   std::size_t at = model.calibrated().size();

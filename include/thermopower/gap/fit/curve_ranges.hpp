@@ -19,15 +19,15 @@
 
 namespace thermopower::gap::engine {
 
-/// What recordings hold of the variables of curves, and how large their values may be.
+/// The ranges of the variables of curves in recordings, and how large the values of the curves may be.
 class CurveRanges {
 public:
   /// Keeps references to both.
   CurveRanges(const Model& model, const std::vector<Inputs>& recordings)
       : model_(model), recordings_(recordings) {}
 
-  /// Smallest and largest value of a variable, but for values that stray by more than a tenth of the range of the others; equal where
-  /// it is not recorded or does not change.
+  /// Smallest and largest value of a variable, without values that stray by more than a tenth of the range of the others.
+  /// Equal if it is not recorded or does not change.
   std::pair<double, double> range(plant::CurveVariable variable) const {
     std::vector<double> values;
     for (const Inputs& inputs : recordings_) collect(variable, inputs, values);
@@ -56,7 +56,7 @@ private:
     return most;
   }
 
-  /// What commands an axis, as a current; empty where there is none.
+  /// The command of an axis, as a current; empty without one.
   Eigen::VectorXd drive_A(const Inputs& inputs) const {
     if (!inputs.axis() || !model_.axis) return {};
     if (inputs.closed_loop) return inputs.servo_A;

@@ -24,7 +24,7 @@ struct Coordinate {
   double lower = 0.0;        ///< bound, in the fit's coordinate
   double upper = 0.0;        ///< bound, in the fit's coordinate
   double start = 0.0;        ///< where a fit begins, in the fit's coordinate
-  Prior prior = {};          ///< around 0: what is known of a constant
+  Prior prior = {};          ///< around 0: the knowledge of a constant
   bool logarithmic = false;  ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
   bool still = false;                   ///< it stays at its start: a detail that is not looked at
@@ -136,8 +136,8 @@ inline double farthest(const CalibratedConstant& constant) {
   return constant.is_place ? known_constants.farthest_place_rad : std::log(known_constants.farthest_factor);
 }
 
-/// Whether a constant may nearly vanish: a viscous friction that was fitted without the dry one has taken that in, and may be next
-/// to nothing beside it.
+/// Whether a constant may nearly vanish. A viscous friction that was fitted without the dry one has absorbed it, and may be
+/// next to nothing beside it.
 inline bool may_vanish(const CalibratedConstant& constant) { return constant.id == "viscous"; }
 
 /// How far a constant may be moved down, as farthest() has it.
@@ -146,9 +146,9 @@ inline double farthest_down(const CalibratedConstant& constant) {
   return may_vanish(constant) ? to_next_to_nothing * farthest(constant) : farthest(constant);
 }
 
-/// The coordinates of an explanation: first one per constant (logarithm of its factor, of a place what is added), then its effects'
-/// parameters. A constant that is a cause has no prior; the others have that of what is known of them, and in
-/// the empty explanation they also stay within it: further away, the constant is the cause.
+/// The coordinates of an explanation: first one per constant (logarithm of its factor, or the addition to a place), then
+/// its effects' parameters. A constant that is a cause has no prior. The others have that of the model file. In the empty
+/// explanation they also stay within it: further away, the constant is the cause.
 /// @param catalogue  knows the bounds of the model's own effects
 inline std::vector<Coordinate> coordinates(const Model& model, const Explanation& explanation,
                                            const Catalogue& catalogue) {
@@ -198,8 +198,8 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
   return list;
 }
 
-/// What is known of combinations of an explanation's coordinates: a curve's values are about as large as what they are relative
-/// to, and it is smooth.
+/// Priors of combinations of an explanation's coordinates: the values of a curve are about as large as their reference, and
+/// the curve is smooth.
 inline std::vector<CombinedPrior> combined_priors(const Explanation& explanation,
                                                   const std::vector<Coordinate>& list) {
   std::vector<CombinedPrior> priors;

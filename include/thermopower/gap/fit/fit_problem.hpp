@@ -25,8 +25,8 @@ namespace thermopower::gap::engine {
 /// Residuals in units of the noise, one after another, indexed by Signal.
 typedef std::array<std::vector<double>, signal_count> ResidualsBySignal;
 
-/// What is minimised: simulation against recordings in units of the noise, with an unknown start for every
-/// segment, over the coordinates of an explanation.
+/// The function to minimise: simulation against recordings in units of the noise, over the coordinates of an explanation
+/// and an unknown start for every segment.
 struct FitProblem {
   const Model* model = nullptr;          ///< the baseline, not owned
   const Catalogue* catalogue = nullptr;  ///< that knows the model's own effects, not owned
@@ -105,8 +105,8 @@ struct FitProblem {
     }
   }
 
-  /// What was measured of a signal of an axis at the rows that have residuals; of averages, as large as that of one sample; empty
-  /// of others.
+  /// The measured values of a signal of an axis at the rows that have residuals. Averages are scaled to the noise of one
+  /// sample. Empty for other signals.
   std::vector<double> measured_of_axis(Signal signal) const {
     std::vector<double> measured;
     for (const Segment& segment : segments) {
@@ -123,8 +123,7 @@ struct FitProblem {
     return measured;
   }
 
-  /// Sum of the squares of all residuals. Ends early, with a sum above the limit, as soon as it is: whoever compares needs no
-  /// more.
+  /// Sum of the squares of all residuals. Ends early, with a sum above the limit, because a comparison needs no more.
   /// @param kept  where given, the residuals; fewer of them where it ended early
   double squares(const Explanation& explanation, const std::vector<Coordinate>& list,
                  const Eigen::VectorXd& at, const std::vector<Start>& starts, double limit,
@@ -160,7 +159,7 @@ struct FitProblem {
   }
 
 private:
-  /// What a difference at a row is multiplied with to be in units of the noise.
+  /// The factor that brings a difference at a row to units of the noise.
   double weight_of(const Inputs& inputs, Signal signal, Eigen::Index row) const {
     const double repeats = inputs.repeats.size() > 0 ? std::sqrt(inputs.repeats[row]) : 1.0;
     return repeats / sigma[static_cast<std::size_t>(signal)];

@@ -48,9 +48,9 @@ struct FitResult {
 /// number of coordinates, whatever the number of windows. A step never leaves the bounds; coordinates whose
 /// gradient pushes against their bound are held there.
 ///
-/// Residuals that are correlated, and larger than the noise because the model is wrong, say less than their
-/// number: priors count for as many samples as make one, times the mean square. A model that misses a cause
-/// therefore does not bend its constants far to make up for a little of it.
+/// Residuals that are correlated, or larger than the noise because the model is wrong, say less than their number. So
+/// priors count for as many samples as make one, times the mean square. A model that misses a cause therefore does not bend
+/// its constants far to make up for a little of it.
 class Fitter {
 public:
   /// Keeps references to its arguments: they must outlive this object.
@@ -94,8 +94,8 @@ public:
         if (length > shorter * shorter * failed) continue;
         const double promise = best.cost - promised_cost(trial.point - best.point);
         const double enough = options.relative_decrease * best.cost;
-        // One that promises no more than that with which a fit ends is looked at as the first one only, but where blows make little of
-        // what is promised.
+        // A step that promises no more than a fit's last gain is tried only as the first one. Beside blows, which fulfil
+        // little of a promise, it is tried.
         if (attempt > 0 && promise < enough && !explanation_.strikes()) continue;
         failed = length;
         // A step that promises something is taken more often than not, and the next one needs derivatives there.
@@ -153,7 +153,7 @@ public:
     return best;
   }
 
-  /// What a fit that ended elsewhere costs by what the last one found priors to count for.
+  /// The cost of a fit that ended elsewhere, with the weight of priors that the last fit found.
   double cost(const FitResult& other) {
     double chi2 = 0.0;
     return cost(other.point, other.starts, 1e300, chi2);
@@ -191,9 +191,9 @@ private:
     double length = 0.0;  ///< squared; 0: there was none yet
     double above = 0.0;   ///< what it cost above what was promised
 
-    /// Whether a further failure shows that the cost is rough here, as where friction holds or lets go in a window: what a linear
-    /// view overlooks shrinks with the square of a step, and a step of half the length went wrong by over half as much. Keeps the
-    /// failure that the next one is compared with.
+    /// Whether a further failure shows that the cost is rough here, as if friction holds or lets go in a window. The error
+    /// of a linear view shrinks with the square of a step. The cost is rough if a step of half the length went wrong by
+    /// over half as much. Keeps the failure that the next one is compared with.
     bool is_of_the_ground(const Failure& further) {
       const bool as_false = further.above > 0.5 * above;
       if (length > 0.0 && as_false) return further.length < 0.25 * length;
@@ -223,12 +223,12 @@ private:
     double per_prior = 1.0;  ///< samples that a prior counts for
   };
 
-  /// What the linear view of the present point promises of a step of the coordinates.
+  /// The promise of the linear view of the present point for a step of the coordinates.
   double promised_cost(const Eigen::VectorXd& change) const {
     return view_.projected + 2.0 * view_.gradient.dot(change) + quadratic_form(view_.information, change);
   }
 
-  /// What it promises of one step of everything from there.
+  /// Its promise for one step of all coordinates from there.
   double promised_by_a_step(const FitResult& here) const {
     return promised_cost(stepped(here, 1e-3).point - here.point);
   }
@@ -259,7 +259,7 @@ private:
     for (std::vector<double>& one : view.residuals) one.clear();
   }
 
-  /// What is known of the constants, to a view of all segments.
+  /// The priors of the constants, to a view of all segments.
   void add_priors(const Eigen::VectorXd& at, View& view) const {
     const double mean = view.samples > 0 ? view.chi2 / static_cast<double>(view.samples) : 1.0;
     view.per_prior = std::max(mean, 1.0) * problem_.correlation;
@@ -376,8 +376,8 @@ private:
       }
       free = inside;
     }
-    // What is known by its order of magnitude moves by a factor of 3 at most: far away the linear view is
-    // blind.
+    // A coordinate that is known by its order of magnitude moves by a factor of 3 at most. The linear view is blind far
+    // away.
     for (Eigen::Index i = 0; i < n; ++i)
       if (list_[static_cast<std::size_t>(i)].logarithmic) change[i] = std::clamp(change[i], -1.1, 1.1);
     FitResult to;
@@ -394,7 +394,7 @@ private:
     return to;
   }
 
-  /// What the priors of the coordinates cost at a point, each counting for one sample.
+  /// The cost of the coordinates' priors at a point, each counting for one sample.
   double cost_of_priors(const Eigen::VectorXd& at) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < list_.size(); ++i)

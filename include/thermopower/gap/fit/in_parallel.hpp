@@ -17,12 +17,11 @@ namespace thermopower::gap::engine {
 /// Threads that one piece of work is spread over at most: beyond, starting them costs more than they do.
 inline constexpr std::size_t most_threads = 1024;
 
-/// Runs `work(i)` for i in [0, count) on some threads, this one among them; each i writes only to its own
-/// place, so that the result does not depend on how many there are. Where the system grants fewer threads,
-/// fewer do the work.
+/// Runs `work(i)` for i in [0, count) on some threads, this one among them. Each i writes only to its own place, so that
+/// the result does not depend on the number of threads. Where the system grants fewer threads, fewer do the work.
 ///
-/// An exception ends the work as soon as what is under way has ended, and is thrown here: that of the
-/// smallest i that threw, whatever the number of threads.
+/// An exception ends the work as soon as the calls under way have ended, and is thrown here. It is that of the smallest i
+/// that threw, whatever the number of threads.
 inline void in_parallel(std::size_t count, unsigned threads, const std::function<void(std::size_t i)>& work) {
   if (threads <= 1 || count <= 1) {
     for (std::size_t i = 0; i < count; ++i) work(i);

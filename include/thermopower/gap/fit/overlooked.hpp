@@ -10,9 +10,9 @@
 
 namespace thermopower::gap::engine {
 
-/// Places of the windows of an axis that an explanation fits worst, as many as were looked at, in order; none
-/// where those that were looked at speak for all. Something may happen outside of them: a limit that is reached
-/// in some windows alone.
+/// Places of the windows of an axis that an explanation fits worst, as many as were looked at, in order. Empty if the
+/// windows that were looked at speak for all. Something may happen outside of them: a limit that is reached in some windows
+/// alone.
 ///
 /// @param part       what the explanation was fitted to
 /// @param all        the segments that `part` has some of, in the same order

@@ -11,8 +11,8 @@
 
 namespace thermopower::gap::engine {
 
-/// Says of one after another whether it is kept, so that a share is, by multiples of the golden ratio: no period of an
-/// experiment falls in step with what is kept.
+/// Says of one item after another whether it is kept, so that a given share is kept. It uses multiples of the golden ratio,
+/// so that no period of an experiment falls in step.
 class GoldenSpread {
 public:
   /// @param share  of all, 0..1
@@ -29,8 +29,8 @@ private:
   double share_, place_ = 0.0;
 };
 
-/// Keeps some of the segments on the bench, spread over all, with about `rows` rows in total; all of them
-/// where there are few, or little is gained. Segments of a moving axis are all kept.
+/// Keeps some of the segments on the bench, spread over all, with about `rows` rows in total. It keeps all of them if they
+/// are few or little is gained. Segments of a moving axis are all kept.
 inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, Eigen::Index rows) {
   constexpr std::size_t few = 6;
   Eigen::Index total = 0;
@@ -47,9 +47,9 @@ inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, E
   return kept;
 }
 
-/// Keeps some of the windows of a moving axis, spread over all of the recording, with about `rows` rows in total; each
-/// with the one before it where it carries that one's states on. Windows that only
-/// bring such states about are not counted, nor chosen. Segments on the bench are all kept.
+/// Keeps some of the windows of a moving axis, spread over the recording, with about `rows` rows in total. Each comes with
+/// the one before it if it carries that one's states on. Windows that only bring such states about are not counted, nor
+/// chosen. Segments on the bench are all kept.
 /// @param also      places of further segments to keep, in order
 /// @param together  so many windows in a row are kept or left out, > 0: states that nobody measures need some time
 inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, Eigen::Index rows,

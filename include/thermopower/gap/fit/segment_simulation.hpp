@@ -22,8 +22,8 @@ inline int largest_start_size(const Plant& plant, const std::vector<Segment>& se
   return largest;
 }
 
-/// The row up to which a segment tells where it started: of a whole run the first tenth, so that most of what is scored had no part
-/// in it. A window of an axis is too short for that.
+/// The row up to which a segment tells where it started. For a whole run that is the first tenth, so that most scored rows
+/// have no part in it. A window of an axis is too short for that.
 inline Eigen::Index beginning_of(const Segment& segment) {
   constexpr Eigen::Index shares = 10, fewest = 12;
   const Eigen::Index rows = segment.end - segment.begin;
@@ -61,8 +61,8 @@ inline double best_step(const Plant& plant, Rollout& rollout, const Segment& seg
 }
 
 /// Moves the starts of a segment that nobody measures to where they fit its samples best, within their bounds. The rate
-/// between two readings of a coarse encoder is off by many times what it is fitted to, and no axis is linear that far:
-/// steps are taken until they are small.
+/// between two readings of a coarse encoder is off by many times its fit's error, and no axis is linear that far. So steps
+/// are taken until they are small.
 inline void fit_hidden_start(const Plant& plant, Rollout& rollout, const Segment& segment, Start& start) {
   const std::vector<Signal>& signals = plant.signals(segment);
   for (const HiddenStart& hidden : rollout.hidden_starts(segment)) {
@@ -98,9 +98,9 @@ inline bool begins_off(const Plant& plant, const Segment& segment) {
   return std::any_of(signals.begin(), signals.end(), is_off);
 }
 
-/// Moves the measured starts of a segment to where they fit its samples best, within their noise: a single reading is
-/// off by that much, and what it is off stays for as long as the body remembers. Where the first readings themselves say that one is
-/// off, farther: what is farther still is masked.
+/// Moves the measured starts of a segment to where they fit its samples best, within their noise. A single reading is off
+/// by that much, and the body remembers the error for long. Where the first readings themselves say that one is off,
+/// farther. Readings farther still are masked.
 /// @param sigma  noise of each signal
 inline void fit_measured_start(const Plant& plant, Rollout& rollout, const Segment& segment,
                                const std::array<double, signal_count>& sigma, Start& start) {
@@ -120,7 +120,7 @@ inline void fit_measured_start(const Plant& plant, Rollout& rollout, const Segme
 }
 
 /// Where a segment starts relative to the measured start: what nobody measures is what fits the segment's samples best.
-/// @param sigma  where given, what is measured is fitted too, within this noise. Not for windows of an axis, whose noise
+/// @param sigma  if given, the measured start is fitted too, within this noise. Not for windows of an axis, whose noise
 ///               at each restart is part of what a perfect model scores.
 inline Start start_of(const Plant& plant, Rollout& rollout, const Segment& segment,
                       const std::array<double, signal_count>* sigma) {

@@ -15,16 +15,16 @@
 
 namespace thermopower::gap::engine {
 
-/// Looks at starts of one explanation. Where an effect is not there at several of them, which are alike but in one of its
-/// other parameters, such as how often a torque repeats in a turn, they are one simulation: with the effect in it several
-/// times over it tells what the effect would do at each of them.
+/// Looks at starts of one explanation. At several points an effect may be absent. They differ only in one of its other
+/// parameters, such as how often a torque repeats in a turn. Then they are one simulation. With the effect in it several
+/// times over, it tells the effect's promise at each of them.
 class SharedScan {
 public:
   /// Keeps references to its arguments: they must outlive this object.
   SharedScan(const FitProblem& problem, const Explanation& explanation, const std::vector<Coordinate>& list)
       : problem_(problem), explanation_(explanation), list_(list), fitter_(problem, explanation, list) {}
 
-  /// What one linear step from each point promises, in their order; see Fitter::scan().
+  /// The promise of one linear step from each point, in their order; see Fitter::scan().
   std::vector<double> costs(const std::vector<Eigen::VectorXd>& points) {
     std::vector<double> all;
     for (std::size_t begin = 0; begin < points.size(); begin = all.size()) {
@@ -74,7 +74,7 @@ private:
     return {};
   }
 
-  /// One past the last of the points from `begin` on that are alike but for the effect's one coordinate.
+  /// One past the last of the points from `begin` on that differ only in the effect's one coordinate.
   static std::size_t alike_until(const std::vector<Eigen::VectorXd>& points, std::size_t begin,
                                  const Block& block) {
     std::size_t end = begin + 1;
@@ -87,8 +87,8 @@ private:
     return end;
   }
 
-  /// Looks at points that are alike, as many at once as one pass of derivatives carries. What does not hang on the effect is
-  /// worked out with the first of them.
+  /// Looks at points that are alike, as many at once as one pass of derivatives carries. The part that does not depend on
+  /// the effect is computed with the first of them.
   void look_at_alike(const std::vector<Eigen::VectorXd>& points, std::size_t begin, std::size_t end,
                      const Block& block, std::vector<double>& costs) {
     const int all = problem_.plant().directions_at_once(),

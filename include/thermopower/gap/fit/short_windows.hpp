@@ -16,8 +16,8 @@ inline bool remembers(const CatalogueEntry& entry) {
   return !entry.info.states.empty() || entry.hooks.axis_structure;
 }
 
-/// Length in s of windows so short that a simulation hardly leaves what was measured: a fifth of `short_s`, with 16 rows
-/// at least. `short_s` itself where the model has states that nobody measures, or there is no axis.
+/// Length in s of windows so short that a simulation hardly leaves the measurement: a fifth of `short_s`, with 16 rows at
+/// least. It is `short_s` itself if the model has states that nobody measures, or there is no axis.
 inline double shortest_window_s(const Model& model, const Catalogue& catalogue,
                                 const std::vector<Inputs>& recordings, double short_s) {
   constexpr double share = 0.2, rows = 16.0;

@@ -10,8 +10,8 @@
 
 namespace thermopower::gap::engine {
 
-/// Squared residuals by signal, in units of the noise, in total and in contiguous blocks of equal length: how
-/// much the blocks differ tells how sure a difference of two totals is.
+/// Squared residuals by signal, in units of the noise, in total and in contiguous blocks of equal length. The scatter of
+/// the blocks shows how sure a difference of two totals is.
 struct SignalSums {
   static constexpr std::size_t block_count = 24;  ///< a day has as many hours; merged where few count
 

@@ -11,12 +11,12 @@
 #include <vector>
 
 /// @file single_causes.hpp
-/// What a search begins with.
+/// The explanations that a search begins with.
 
 namespace thermopower::gap::engine {
 
-/// Every single cause that model and recordings allow to be judged: the catalogue's effects, then constants that may be off by
-/// more than is known of them.
+/// Every single cause that model and recordings allow to be judged: the catalogue's effects, then the constants that may be
+/// causes.
 /// @param without  ids that are left out
 inline std::vector<Explanation> single_causes(const Model& model, const Catalogue& catalogue,
                                               const std::vector<std::string>& without,

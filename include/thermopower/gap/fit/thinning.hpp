@@ -22,8 +22,8 @@ inline Eigen::Index total_rows(const std::vector<Inputs>& inputs) {
   return rows;
 }
 
-/// When rows of a bench become one. Held by tests/gap/fit/shortened_test.cpp: the mean error of the simulation under test stays,
-/// and what the whole recording tells the short one does.
+/// When rows of a bench become one. Held by tests/gap/fit/shortened_test.cpp: the mean error of the simulation under test
+/// stays. The short recording tells as much as the whole one.
 struct ThinningThresholds {
   double of_time_constant = 0.02;  ///< of the baseline's: as long blocks last in which the power switches,
   double even_blocks = 4.0;        ///< and so many times that those in which it does not
@@ -38,17 +38,16 @@ struct ThinningThresholds {
 /// Shortens a recording of a motor on the bench to about `rows` rows.
 ///
 /// Temperatures are smooth while the power is constant, so the mean over a block of rows says as much as its
-/// samples. Where the power switches within a block, the block is short against every time constant the
-/// baseline knows (`longest_s`), and the order of the powers is forgotten while their durations are kept: up
-/// to three levels, once before the block's centre and once after it. Outputs are means with their number in
-/// `repeats`. A mean is not quite the middle, nor a sorted block the true one: what the baseline's own
-/// simulation loses by being shortened is made up for, so that the mean of its errors stays what it was.
+/// samples. If the power switches within a block, the block is short against every time constant of the baseline. The order
+/// of the powers is forgotten, and their durations are kept. There are up to three levels, once before the block's centre
+/// and once after it. Outputs are means with their number in `repeats`. A mean is not quite the middle, and a sorted block
+/// not quite the true one. The loss of the baseline's own simulation is made up for, so that the mean of its errors stays.
 class BenchThinning {
 public:
   /// @param full       the recording; must outlive this object
   /// @param rows       about so many are kept, > 0
   /// @param longest_s  blocks in which the power switches are no longer than this
-  /// @param baseline   simulates what is lost; must outlive this object
+  /// @param baseline   simulates the loss; must outlive this object
   /// @param catalogue  knows the effects of the baseline; must outlive this object
   BenchThinning(const Inputs& full, Eigen::Index rows, double longest_s, const Model& baseline,
                 const Catalogue& catalogue)
@@ -132,8 +131,8 @@ private:
     return mixed;
   }
 
-  /// Rows of one power in blocks of equal length: no longer than asked for, and short enough that the mean
-  /// temperature is that of the middle.
+  /// Rows of one power in blocks of equal length. They are no longer than asked for, and so short that the mean temperature
+  /// is that of the middle.
   void add_even(Eigen::Index begin, Eigen::Index end) {
     const Eigen::Index count = end - begin;
     const double lasts_s = full_.t_s[end - 1] - full_.t_s[begin];
@@ -163,7 +162,7 @@ private:
 
   Eigen::Index constant_until(Eigen::Index row, Eigen::Index limit) const {
     Eigen::Index end = row + 1;
-    // A measured current is never constant: what is within a twentieth counts as such.
+    // A measured current is never constant: a spread within a twentieth counts as constant.
     const double slack = full_.power_param.size() > 0 ? 0.0 : limit_.alike * std::abs(heat_level(row));
     while (end < limit && std::abs(heat_level(end) - heat_level(row)) <= slack && same_heat(end, row)) ++end;
     return end;
@@ -282,8 +281,8 @@ private:
       const Mean mean = mean_of(rows_[i], signal, full_.of(signal));
       if (mean.count <= 0.0 || 3.0 * mean.count < 2.0 * usual * asked) continue;
       to[static_cast<Eigen::Index>(i)] = mean.value;
-      // Rows carry one weight for both signals: they have the same number of samples wherever both are
-      // observed, but for mixed blocks, where the temperature's is the larger and the current's counts.
+      // Rows carry one weight for both signals, which have the same number of samples wherever both are observed. In mixed
+      // blocks the temperature has more, and the current's number counts.
       thin.repeats[static_cast<Eigen::Index>(i)] = mean.count;
     }
   }
@@ -311,7 +310,7 @@ private:
     return mean;
   }
 
-  /// What the baseline gives, indexed by Signal.
+  /// The baseline's values, indexed by Signal.
   typedef std::array<Eigen::VectorXd, 2> Simulated;
 
   Simulated simulated(const Inputs& inputs) const {
@@ -331,7 +330,7 @@ private:
     return result;
   }
 
-  /// The noise of single samples. A step of the power moves the errors of a model, too: it is no noise.
+  /// The noise of single samples. A step of the power moves the errors of a model, too. It is not noise.
   double noise_of_samples(Signal signal, const Eigen::VectorXd& simulated) const {
     const Eigen::VectorXd& measured = full_.of(signal);
     std::vector<double> errors;

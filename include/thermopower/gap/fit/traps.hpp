@@ -10,16 +10,15 @@
 #include <vector>
 
 /// @file traps.hpp
-/// Places where a fit ends that are no answer, and ways out of them.
+/// Places where a fit ends without an answer, and ways out of them.
 
 namespace thermopower::gap::engine {
 
-/// A friction without a transition has no derivative by it: a fit that came to that bound is blind there,
-/// and begins once more from the standard value. Nor does the way to that bound always lead downhill: a fit
-/// that ended shortly before it begins once more there. A shape that ended at its far bound may have run there from
-/// a start on the wrong side: then all that have a standard begin once more from it. Two families of shapes meet at
-/// the standard one, and a fit that stopped shortly below it looks at the other side.
-/// What is hopeless stays where it is.
+/// A friction without a transition has no derivative by it. A fit that came to that bound is blind there, and begins once
+/// more from the standard value. Nor does the way to that bound always lead downhill: a fit that ended shortly before it
+/// begins once more there. A shape that ended at its far bound may have run there from a start on the wrong side. Then all
+/// parameters with a standard begin once more from it. Two families of shapes meet at the standard one, and a fit that
+/// stopped shortly below it looks at the other side. A hopeless fit stays where it is.
 inline void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
   if (candidate.fit.cost > options.hopeless) return;
   Eigen::VectorXd again = candidate.fit.point;
@@ -49,9 +48,9 @@ inline void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOption
 }
 
 /// Where a fit of a parameter that has to exceed another one (Parameter::exceeds) ended below it: places above it to begin from.
-/// The first one is where the other parameter is as small as it may be; in the second one the shapes have their standard values
-/// and what is small beside something else (EffectInfo::where_small) is half of that, too: inside, a film takes most of a rise
-/// away, which has grown to make up for that. Empty where nothing ended so.
+/// At the first one the other parameter is as small as it may be. At the second one the shapes have their standard values,
+/// and a small part beside something else (EffectInfo::where_small) is halved. Inside, a film takes most of a rise away,
+/// and the rise has grown to make up for that. Empty where nothing ended so.
 inline std::vector<Eigen::VectorXd> places_outside(const Candidate& candidate) {
   Eigen::VectorXd outside = candidate.fit.point, smaller_too = outside;
   bool is_inside = false;
@@ -83,8 +82,8 @@ inline std::vector<Eigen::VectorXd> places_outside(const Candidate& candidate) {
   return {outside, smaller_too};
 }
 
-/// What ended inside (places_outside()) can often do the same from outside: there a fit begins once more, and stays unless it is
-/// clearly worse. What is hopeless stays where it is.
+/// A fit that ended inside (places_outside()) can often do the same from outside. It begins once more there, and stays
+/// unless it is clearly worse. A hopeless fit stays where it is.
 inline void lead_outside(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
   if (candidate.fit.cost > options.hopeless) return;
   constexpr double clearly_worse = 1.02;  // of the cost
@@ -99,8 +98,8 @@ inline void lead_outside(Fitter& fitter, Candidate& candidate, const FitOptions&
   }
 }
 
-/// Where a fit of a cause that strikes (EffectInfo::strikes) ended, and the places beside it in one parameter of such a cause each,
-/// by some hundredths to some tenths of it. Empty where no cause does.
+/// The end of a fit of a cause that strikes (EffectInfo::strikes), and the places beside it. Each place moves one parameter
+/// of such a cause by some hundredths to some tenths. Empty where no cause does.
 inline std::vector<Eigen::VectorXd> places_beside(const Candidate& candidate) {
   std::vector<Eigen::VectorXd> places;
   for (const CatalogueEntry* entry : candidate.explanation.effects) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 /// @file
-/// What is made of one balance: which freedoms of its plant, with no formula, predict what the baseline does not.
+/// The judgement of one balance: which freedoms of its plant, with no formula, predict what the baseline does not.
 
 namespace thermopower::gap::engine {
 
@@ -55,7 +55,7 @@ public:
   double worth(std::size_t k) const { return worth_[k]; }
   /// Its first coefficient.
   double coefficient(std::size_t k) const { return coefficient_[k]; }
-  /// What to call it.
+  /// Its name.
   std::string words(std::size_t k) const {
     const plant::Freedom& one = freedom(k);
     return one.words_at ? one.words_at(at_[chosen()[k]]) : one.words;
@@ -64,15 +64,15 @@ public:
   double explained() const {
     return std::min(1.0, (choice_.none.unseen_total - choice_.best.unseen_total) / excess_);
   }
-  /// What the constants alone leave on unseen stretches, in floors.
+  /// The rest of the constants alone on unseen stretches, in floors.
   double before() const { return choice_.none.unseen_total / floor_; }
-  /// What the chosen freedoms leave there, in floors.
+  /// The rest of the chosen freedoms there, in floors.
   double left() const { return choice_.best.unseen_total / floor_; }
   /// Whom a course of its own accuses that no freedom of few directions describes; nullptr: none is better.
   const plant::Freedom* course() const { return course_; }
   /// Share of what the constants leave that it explains, 0..1.
   double course_share() const { return course_share_; }
-  /// What this account of the balance costs where alternatives of it compete.
+  /// The cost of this account of the balance among its alternatives.
   double cost() const {
     return choice_.best.unseen_total * (1.0 + limit_.per_block * static_cast<double>(chosen().size()));
   }

@@ -120,7 +120,7 @@ inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd&
                   problem.y.squaredNorm() - 2.0 * moment.dot(solution) + quadratic_form(scaled, solution));
 }
 
-/// What a set of blocks makes of a problem.
+/// A problem as seen by a set of blocks.
 struct BlockFit {
   std::vector<std::size_t> blocks;  ///< which
   std::vector<double> unseen;       ///< sum of squares on each stretch, predicted from the others
@@ -249,7 +249,7 @@ public:
     return result;
   }
 
-  /// What the fit leaves over, row by row.
+  /// The residuals of the fit, row by row.
   Eigen::VectorXd residual(const BlockFit& fit) const {
     Eigen::VectorXd out = problem_.y;
     Eigen::Index at = problem_.nuisance.cols();

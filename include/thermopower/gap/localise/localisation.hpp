@@ -85,7 +85,7 @@ inline Recording stretches(const Recording& recording, Eigen::Index most) {
 }
 
 /// The balances of a model at the rows of recordings one after another. Recordings that lack input columns of the
-/// longest one are left out; what is not judged has no balance.
+/// longest one are left out; signals that are not judged have no balance.
 class RecordedBalances {
 public:
   /// Keeps references to model and catalogue: they must outlive this object.
@@ -150,8 +150,8 @@ inline Localisation localise(const Model& model, const std::vector<Recording>& r
 
 /// Fills MissingQuantity::effect: the missing quantity that the baseline would show if the augmented
 /// simulation were the truth.
-/// @param simulated the recordings with their outputs replaced by the augmented model's simulation, in the
-///   same order; let go of as soon as the balances have what they need: they may be long
+/// @param simulated the recordings with their outputs replaced by the augmented model's simulation, in the same order;
+/// released early, as they may be long
 inline void draw_effect(const Model& baseline, std::vector<Recording> simulated, const Catalogue& catalogue,
                         std::vector<MissingQuantity>& quantities) {
   const RecordedBalances balances(baseline, simulated, catalogue);

@@ -22,7 +22,7 @@
 
 namespace thermopower::gap::engine {
 
-/// What a localisation may be told.
+/// Options of a localisation.
 struct LocalisationOptions {
   /// How far the baseline's constants may be off without that being a gap, as a fraction.
   double slack = 0.04;
@@ -37,15 +37,15 @@ struct Localisation {
 
 /// Finds where a plant and recordings part, from residuals alone: it knows no effect and no equation.
 ///
-/// Each balance is judged on its measured inputs, so that a fault upstream is not blamed on what is downstream. A
-/// submodel is accused when freedom in its equation, without any formula, predicts stretches of the recording
-/// that the fit has not seen, the constants moving within their slack. Where no freedom helps, the fault is still
-/// placed, by what orders it best.
+/// Each balance is judged on its measured inputs, so that a fault upstream is not blamed on a part downstream. A submodel
+/// is accused if freedom in its equation, without any formula, predicts stretches of the recording that the fit has not
+/// seen. The constants may move within their slack. Where no freedom helps, the fault is still placed, by what orders it
+/// best.
 ///
-/// - An instrument is at fault instead of a part of the plant where the freedom says that it may be
-///   (Freedom::or_instrument), and the other balances hold better without its reading or with it corrected.
-/// - Of several balances of one quantity (heat by the law, by the measured current) the one that holds best counts;
-///   one that reads an instrument without a gap of its own is not asked.
+/// - An instrument is at fault instead of a part of the plant if the freedom says that it may be (Freedom::or_instrument).
+///   The other balances must hold better without its reading or with it corrected.
+/// - Of several balances of one quantity (heat by the law, by the measured current) the best one counts. One that reads an
+///   instrument without a gap of its own is not asked.
 /// - What seems to depend on the reading of an instrument that is itself at fault is not blamed.
 ///
 /// @param sources of one recording, those that place a fault best first
@@ -354,8 +354,8 @@ inline Localisation localise_balances(const std::vector<plant::BalanceSource>& s
   return detail::Localiser(sources, signals, options).run();
 }
 
-/// Fills MissingQuantity::effect: what the baseline's balances lack in recordings that an augmented model
-/// simulated, as a smooth curve over the range of what they lack in the measured ones.
+/// Fills MissingQuantity::effect. It is the lack of the baseline's balances in recordings that an augmented model
+/// simulated. It is a smooth curve over the range of the measured ones.
 /// @param sources the baseline's balances of the simulated recordings
 /// @param signals number of signals of the plant
 inline void draw_supplied(const std::vector<plant::BalanceSource>& sources, int signals,

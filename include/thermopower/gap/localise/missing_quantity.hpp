@@ -32,7 +32,7 @@ struct OrderingAxis {
 /// Samples of a missing quantity, and everything recorded that may order them.
 struct Observed {
   plant::SignalName signal;        ///< that it was inferred from
-  plant::QuantityName quantity;    ///< what is missing
+  plant::QuantityName quantity;    ///< the missing quantity
   std::string unit;                ///< of `value`
   Eigen::VectorXd value;           ///< one per sample
   std::vector<OrderingAxis> axes;  ///< as long each
@@ -116,9 +116,9 @@ inline Observed observe(const plant::Balance& balance, bool as_restated,
   return o;
 }
 
-/// Whether a missing quantity scatters in proportion to a variable, as a coefficient of its own course would make
-/// it, rather than alike everywhere: the likelier of two normal laws, after what is constant, or in proportion to
-/// any axis of a flow or that variable, has been taken off.
+/// Whether a missing quantity scatters in proportion to a variable rather than alike everywhere. A coefficient with a
+/// course of its own would make it do so. The likelier of two normal laws decides, after the constant part and the
+/// proportional parts have been taken off.
 inline bool scatters_with(const Observed& o, const std::string& variable, const std::string& flow) {
   constexpr Eigen::Index least_samples = 12;
   constexpr double least_share = 1e-6, least_size = 1e-4;  // of a variance: keep a perfect fit finite

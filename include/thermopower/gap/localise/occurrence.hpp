@@ -107,8 +107,8 @@ private:
            (floor_per_row_ * static_cast<double>(part.y.size()));
   }
 
-  /// Whether the rows before a stretch would have shown what those from it on show: where nothing is asked of a fault,
-  /// its absence says nothing. What they show is told by the freedom that leaves least of it.
+  /// Whether the rows before a stretch would have shown the fault of the later rows. If nothing drives a fault there, its
+  /// absence says nothing. The freedom with the smallest rest decides.
   bool could_show_before(int held) const {
     const Problem later = part_of(whole_, stretch_, held, limit_.stretches);
     Problem before = part_of(whole_, stretch_, 0, held);
@@ -188,8 +188,8 @@ inline std::vector<RunPart> runs_of(const std::vector<Recording>& recordings, bo
 
 }  // namespace detail
 
-/// Says of each location in which runs the fault shows while it does not in others, and from when on; and adds the
-/// places of what shows in held-out runs only.
+/// Says of each location in which runs the fault shows while others hold, and from when on. It adds the places of faults
+/// that show in held-out runs only.
 /// @param train, held_out as the diagnosis is given them
 inline void add_occurrences(const Model& model, const std::vector<Recording>& train,
                             const std::vector<Recording>& held_out, const LocalisationOptions& options,
@@ -224,7 +224,7 @@ inline void add_occurrences(const Model& model, const std::vector<Recording>& tr
       const auto [part, source] = of[i];
       list[i].from_s =
           detail::RunBalances(model, parts[part], options.slack, catalogue).at(source).holds_until_s();
-      // What shows throughout the first run did not begin in a later one: of the others nobody asks.
+      // A fault that shows throughout the first run did not begin in a later one, so the others are not asked.
       if (list.size() == runs.size() && !list.front().from_s) return std::vector<Occurrence>();
     }
     return list;

@@ -20,8 +20,7 @@
 
 namespace thermopower::gap::engine {
 
-/// How a plant of one's own is localised.
-/// Held by tests/gap/localise/own_balances_test.cpp.
+/// How a plant of your own is localised. Held by tests/gap/localise/own_balances_test.cpp.
 struct OwnPlantThresholds {
   Eigen::Index windows = 300;  ///< short simulations per recording: bins of 20 samples at 15 bins
   double noise_factor =
@@ -31,7 +30,7 @@ struct OwnPlantThresholds {
 };
 inline constexpr OwnPlantThresholds own_plant_thresholds{};
 
-/// Samples of a rate that the equations of a plant of one's own lack, in bins of a variable that may order it.
+/// Samples of a rate that the equations of a plant of your own lack, in bins of a variable that may order it.
 class OrderedRate {
 public:
   /// @param rate, variable  equally many; samples without a variable are left out
@@ -91,8 +90,8 @@ private:
   std::vector<std::pair<std::size_t, std::size_t>> edges_;
 };
 
-/// Standard deviation of the noise on a smooth signal: the median magnitude of its second differences, which
-/// are sqrt(6) times as large; 0.6745 is that median for a normal distribution of deviation 1.
+/// Standard deviation of the noise on a smooth signal, from the median magnitude of its second differences. These are
+/// sqrt(6) times as large as the noise, and 0.6745 is the median for a normal distribution of deviation 1.
 inline double noise_of_smooth(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs) {
   std::vector<double> magnitudes;
   for (const RunSpan& run : runs)
@@ -106,7 +105,7 @@ inline double noise_of_smooth(const Eigen::VectorXd& values, const std::vector<R
   return *middle / (0.6745 * std::sqrt(6.0));
 }
 
-/// The rates that the equations of a plant of one's own lack, with what may order them.
+/// The rates that the equations of a plant of your own lack, with the variables that may order them.
 struct MissingRates {
   /// Of one signal.
   struct Samples {
@@ -117,7 +116,7 @@ struct MissingRates {
     double storage = 1.0;                        ///< what makes a quantity of a rate, where a balance says so
     double leaves_per_s = 0.0;                   ///< how fast what was missing leaves again
 
-    /// What was missing all along a window, of what is missed at its end, in the signal's unit.
+    /// The rate that was missing all along a window, from the error at its end, in the signal's unit.
     double quantity(double missed, double lasts_s) const {
       const double leaves = leaves_per_s * lasts_s;
       return missed / lasts_s * storage * (leaves > 1e-6 ? leaves / -std::expm1(-leaves) : 1.0);
@@ -193,11 +192,11 @@ inline MissingRates missing_rates(const Model& model, const Catalogue& catalogue
   return result;
 }
 
-/// Where a plant of one's own and recordings part, from its own short simulations: each starts from the measured
-/// state, and what it misses at its end, over its length, is the rate that the equations lack.
+/// The places where a plant of your own and recordings part, from its short simulations. Each starts from the measured
+/// state. Its error at the end, over its length, is the rate that the equations lack.
 ///
-/// It asks nothing but a rollout, so that a simulator behind a function call is localised, too. What `found`
-/// receives is a location and a picture for each signal that misses more than its noise explains.
+/// It asks nothing but a rollout, so that a simulator behind a function call is localised, too. `found` receives a location
+/// and a picture for each signal that misses more than its noise explains.
 template <class Found>
 void localise_own_plant(const Model& model, const Catalogue& catalogue, const std::vector<Inputs>& recordings,
                         Found& found) {

@@ -18,8 +18,8 @@
 #include <vector>
 
 /// @file
-/// A balance as a least-squares problem: its residual, and every direction in which it may be off, brought to
-/// rows that can be compared with noise. It knows the three forms of a balance and no equation.
+/// A balance as a least-squares problem: its residual, and every direction in which it may be off. Both are brought to rows
+/// that can be compared with noise. It knows the three forms of a balance and no equation.
 
 namespace thermopower::gap::engine {
 
@@ -53,18 +53,18 @@ private:
 class Projection {
 public:
   virtual ~Projection() = default;
-  /// What the baseline leaves; positive where flow is missing.
+  /// The baseline's residual; positive if flow is missing.
   virtual Eigen::VectorXd residual() const = 0;
-  /// What a direction adds to it.
+  /// The change by a direction.
   virtual Eigen::VectorXd column(const plant::Direction& direction) const = 0;
-  /// What the unknown starts of runs add; may have no column.
+  /// The change by the unknown starts of runs; may have no column.
   virtual Eigen::MatrixXd starts() const = 0;
   /// The stretch of each row, 0..folds-1; rows of a stretch lie together.
   virtual Eigen::VectorXi stretches(int folds) const = 0;
   /// Sum of squares that noise alone would leave.
   virtual double floor() const = 0;
 
-  /// What several directions add, one column each.
+  /// The change by several directions, one column each.
   Eigen::MatrixXd columns(const std::vector<plant::Direction>& directions) const {
     Eigen::MatrixXd out;
     for (std::size_t k = 0; k < directions.size(); ++k) {

@@ -33,7 +33,7 @@ public:
   static constexpr int stretches = 8;
   static constexpr Eigen::Index segments = 72, size = segments + 3;
 
-  /// Samples that are no numbers, or are not between the ends, are left out.
+  /// Samples that are NaN, or not between the ends, are left out.
   /// @param pieces  that the recording is cut into; every eighth belongs to the same stretch
   SplineSamples(const Eigen::VectorXd& x, const Eigen::VectorXd& y, double from, double to,
                 Eigen::Index pieces)
@@ -73,8 +73,8 @@ public:
     return std::max(0.0, all_.squares / all_.count - mean * mean);
   }
 
-  /// Mean square of what splines miss of the one stretch that they have not seen, where others have samples, too: what
-  /// they make of places where nothing was is luck. @param stiffness  weight of the bends
+  /// Mean square of the error of splines on the one stretch that they have not seen, if others have samples there.
+  /// Elsewhere a hit would be luck. @param stiffness  weight of the bends
   double missed(double stiffness) const {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < of_.size(); ++i) {
@@ -110,7 +110,7 @@ private:
     Eigen::Index first;
     Eigen::Vector4d share;
   };
-  /// What samples add up to.
+  /// The sums of samples.
   struct Sums {
     Eigen::MatrixXd left = Eigen::MatrixXd::Zero(size, size);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
@@ -158,12 +158,12 @@ private:
 /// penalties", Statistical Science 11, 1996). Its slope and the slope's slope have no jumps; across a gap between samples it goes
 /// nearly straight on.
 ///
-/// Of the weights of the bends the largest is taken that tells eighths of the recording which the curve has not seen as well
-/// as the best does, but for a hundredth of what that misses and a two-thousandth of the samples' variance. So a function of
-/// the variable keeps its bends, and what the variable does not order is no zigzag. Eighths are told only where others have
-/// samples, too; of a variable that passes most places but once they are short pieces from all over the recording.
+/// The largest weight of the bends is taken that predicts unseen eighths of the recording as well as the best one does. It
+/// may miss a hundredth more, and a two-thousandth of the samples' variance. So a function of the variable keeps its bends,
+/// and what the variable does not order is no zigzag. Eighths count only where others have samples, too. For a variable
+/// that passes most places only once, they are short pieces from all over the recording.
 ///
-/// @param x, y  samples in the order in which they were recorded; what is no number is left out
+/// @param x, y  samples in the order in which they were recorded; NaN is left out
 /// @param from, to  ends of the curve; samples up to a tenth of their distance further out count, too
 /// @return empty where fewer than four samples count or the ends are none
 inline SmoothCurve smooth_curve(const Eigen::VectorXd& x, const Eigen::VectorXd& y, double from, double to) {

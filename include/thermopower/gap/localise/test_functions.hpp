@@ -13,8 +13,8 @@
 #include <vector>
 
 /// @file
-/// Integrals of what was recorded against smooth test functions of compact support, the weak form: no noisy
-/// signal is ever differentiated, the derivative goes to the test function.
+/// Integrals of recorded signals against smooth test functions of compact support, the weak form. No noisy signal is
+/// differentiated: the derivative goes to the test function.
 
 namespace thermopower::gap::engine {
 
@@ -31,7 +31,7 @@ public:
     std::size_t weights;  ///< where its weights begin
   };
 
-  /// @param rows      what is integrated over
+  /// @param rows      the rows to integrate over
   /// @param needed    none is placed where one of these is missing
   /// @param half_rows half of their width, in rows, >= 1
   /// @param most      that are kept, evenly spread
@@ -73,7 +73,7 @@ public:
   /// Integral of the test function times the derivative of sampled values.
   Eigen::VectorXd derivative(const Eigen::VectorXd& values) const { return sum(slope_, values); }
 
-  /// What values that are held count with in the integrals of all the test functions.
+  /// The weights of held values in the integrals of all the test functions.
   struct HeldWeights {
     std::vector<double> weights;     ///< of a function's rows, the last of them first; then of the next one's
     std::vector<Eigen::Index> last;  ///< row of each function
@@ -133,8 +133,8 @@ private:
       sum += std::pow(weights[one.weights + static_cast<std::size_t>(k)], 2.0);
     return std::sqrt(sum);
   }
-  // Mean of the test function over the interval that ends at a row. Differences of such means integrate the test function times
-  // the derivative of a signal that is straight between its samples without error: as a rate is while the
+  // Mean of the test function over the interval that ends at a row. Differences of such means integrate the test function
+  // times the derivative of a signal without error, if it is straight between its samples. A rate is straight while the
   // torque is held.
   double mean_before(const One& one, Eigen::Index k) const {
     if (k == one.begin || k == one.end) return 0.0;

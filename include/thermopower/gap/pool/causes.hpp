@@ -17,7 +17,7 @@
 
 namespace thermopower::gap::pool {
 
-/// How probable each explanation is to one unit; by name, what is not there is next to impossible.
+/// How probable each explanation is to one unit, by name. One that is not listed is next to impossible.
 using Probabilities = std::map<std::string, double>;
 
 /// How common an explanation is.
@@ -34,8 +34,8 @@ struct CommonCauses {
   std::vector<Probabilities> units;  ///< of each unit, over all explanations, once the shares are known
 };
 
-/// The shares of explanations in a fleet by maximum likelihood (EM on a mixture): an explanation that many units find
-/// likely gets likelier for those that cannot tell it from another one.
+/// The shares of explanations in a fleet by maximum likelihood (EM on a mixture). An explanation that many units find
+/// likely gets likelier for units that cannot tell it from another one.
 /// @param units  probabilities with every explanation alike beforehand
 inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
   constexpr double impossible = 1e-6;  // no diagnosis is as sure as that
@@ -85,7 +85,7 @@ inline CommonCauses common_causes(const std::vector<Probabilities>& units) {
   return result;
 }
 
-/// What one unit's logs say for one explanation against none, summed over its logs.
+/// The evidence of one unit's logs for an explanation against none, summed over its logs.
 struct Gain {
   double train = 0.0;  ///< twice the log likelihood ratio of the training data, its parameters fitted there
   double held_out = 0.0;  ///< of held-out data, nothing fitted
@@ -136,10 +136,10 @@ inline double median_of(std::vector<double> values) {
 
 /// Looks for effects that help a little everywhere, among units whose own diagnosis names none.
 ///
-/// Named is what helps on held-out data over the units, at a family-wise error of `level` over all explanations tried
-/// (Holm): no assumption on noise or its correlation is in that, only that units are independent. Among those the one
-/// with the largest gain leads; what the units do not beyond doubt prefer it to (paired over units, two-sided 5 %, as
-/// Vuong 1989 does over observations) is listed beside it.
+/// Named are explanations that help on held-out data over the units, at a family-wise error of `level` over all
+/// explanations tried (Holm). That assumes nothing of noise or its correlation, only that units are independent. The one
+/// with the largest gain leads. Others that the units do not reject beyond doubt (paired over units, two-sided 5 %, as
+/// Vuong 1989 does over observations) are listed beside it.
 /// @param units  for each unit the explanations that were fitted and looked at on held-out data
 /// @return those that stand, the leading one first, then all others by p
 inline std::vector<WeakEffect> weak_effects(const std::vector<std::map<std::string, Gain>>& units,

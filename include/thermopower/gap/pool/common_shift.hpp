@@ -42,9 +42,9 @@ inline bool moved(const FittedBothWays& unit, const std::string& name, Estimate&
                ? Eigen::Index{-1}
                : static_cast<Eigen::Index>(found - one.names.begin());
   };
-  // A restricted fit is the more precise one and all that the wider one knows besides is what they differ in: the
-  // variance of the difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as
-  // nothing; a twentieth of the wider fit's is the least that is believed.
+  // A restricted fit is the more precise one, and the two differ by the wider one's extra knowledge. So the variance of the
+  // difference is that of the variances (Hausman 1978). Both are estimates, so that it may come out as nothing; a twentieth
+  // of the wider fit's is the least that is believed.
   constexpr double least = 0.05;
   const double count = static_cast<double>(unit.with.size());
   double by = 0.0, variance = 0.0;
@@ -62,8 +62,8 @@ inline bool moved(const FittedBothWays& unit, const std::string& name, Estimate&
 
 }  // namespace detail
 
-/// What an effect that stands in the pool moves the units' constants by: mean and spread over the units, each with the
-/// error of its own difference. No single unit knows; what it gets from the others is the mean, and a wider error.
+/// The shift of the units' constants by an effect that stands in the pool: mean and spread over the units. No single unit
+/// knows; what it gets from the others is the mean, and a wider error.
 /// @param units  that were fitted both ways, the effect being the only difference
 /// @return shifts of the constants that all of these fits have; empty with fewer than four units
 inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
@@ -83,8 +83,8 @@ inline CommonShift common_shift(const std::vector<FittedBothWays>& units) {
   return result;
 }
 
-/// A shift where the units do not tell the effect from others: one of those might be the true one, so that what their
-/// shifts differ in, at most, is an error of this one, too.
+/// A shift if the units do not tell the effect from others. One of those might be the true one, so their largest difference
+/// in shift is an error of this one, too.
 inline CommonShift either(CommonShift leading, const std::vector<CommonShift>& others) {
   for (auto& [name, shift] : leading) {
     double most = 0.0;

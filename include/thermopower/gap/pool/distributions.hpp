@@ -7,8 +7,8 @@
 
 namespace thermopower::gap::pool {
 
-/// Regularised incomplete beta function I_x(a, b), by the continued fraction of Abramowitz & Stegun 26.5.8 with
-/// Lentz's method; relative error below 1e-10 for a and b up to some ten thousand.
+/// Regularised incomplete beta function I_x(a, b), by the continued fraction of Abramowitz & Stegun 26.5.8 with Lentz's
+/// method. The relative error is below 1e-10 for a and b up to some ten thousand.
 /// @param a  > 0
 /// @param b  > 0
 /// @param x  0..1; outside of it the nearer end counts

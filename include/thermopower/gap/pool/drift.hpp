@@ -31,7 +31,7 @@ inline const char* to_string(DriftKind kind) {
   return kind == DriftKind::slope ? "slope" : kind == DriftKind::change ? "change" : "none";
 }
 
-/// What one series shows. Which kind, and since when, only means something where `p` is small.
+/// The result for one series. Which kind, and since when, only means something where `p` is small.
 struct Drift {
   double p = 1.0;                    ///< probability of as large a departure without any drift
   DriftKind kind = DriftKind::none;  ///< the likelier of the two
@@ -47,8 +47,8 @@ struct LogScatter {
   double degrees = 1.0;   ///< degrees of freedom it is known to
 };
 
-/// The scatter between the logs of one unit, from all series of one coordinate: from the differences of neighbouring
-/// logs, so that slow drifts hardly count, and by their median, so that jumps of a few units do not.
+/// The scatter between the logs of one unit, from all series of one coordinate. It uses differences of neighbouring logs,
+/// so that slow drifts hardly count, and their median, so that jumps of a few units do not.
 inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
   std::vector<double> squares, errors;
   for (const TimeSeries& one : fleet)
@@ -81,8 +81,8 @@ inline LogScatter log_scatter(const std::vector<TimeSeries>& fleet) {
   return result;
 }
 
-/// Looks for a drift of one unit: a slope, or a change between two logs, whichever stands out more; the probability
-/// counts that all of them were looked at (Bonferroni), and that the scatter is estimated (Student's t).
+/// Looks for a drift of one unit: a slope, or a change between two logs, whichever stands out more. The probability
+/// accounts for all candidates looked at (Bonferroni), and for the estimated scatter (Student's t).
 /// @param series   at least four logs, else there is none
 /// @param scatter  between the logs of one unit, from the fleet
 inline Drift find_drift(const TimeSeries& series, const LogScatter& scatter) {

@@ -56,7 +56,7 @@ struct UnitDrift {
 struct UnitVerdict {
   std::string unit;               ///< its name
   std::vector<std::size_t> logs;  ///< indices of its logs that could be used
-  int family = -1;                ///< index of the family it is held against; -1: none
+  int family = -1;                ///< index of the family it is compared with; -1: none
   bool member = false;            ///< its own diagnoses name that family's cause
   std::string own_cause;         ///< the likeliest explanation of its own logs, the fleet's shares considered
   double own_probability = 0.0;  ///< of that
@@ -83,7 +83,7 @@ struct Family {
 /// A log that says nothing, and why.
 struct BadLog {
   std::size_t log = 0;  ///< its index
-  std::string reason;   ///< what is wrong with it
+  std::string reason;   ///< its fault
 };
 
 /// Everything that many logs say together.
@@ -144,13 +144,13 @@ private:
                        [&](std::size_t a, std::size_t b) { return logs_[a].time < logs_[b].time; });
   }
 
-  /// What one log finds likely.
+  /// The likely explanations of one log.
   static Probabilities likely(const LogResult& log) {
     if (log.verdict == Verdict::no_gap) return {{"", 1.0}};
     if (log.verdict == Verdict::unexplained) return {{outside, 1.0}};
     Probabilities result;
     double total = 0.0;
-    // What has more effects than the cause that was named was held to do no more than it.
+    // An explanation with more effects than the named cause counts as doing no more than it.
     for (const FittedExplanation& one : log.ranking)
       if (one.effects <= log.chosen_effects && one.probability > 0.0)
         total += one.probability, result[structure_of(one.name)] += one.probability;
@@ -235,7 +235,7 @@ private:
     return units;
   }
 
-  /// Coordinates that are free in most members' fits: what is on a bound, or fixed, tells nothing.
+  /// Coordinates that are free in most members' fits. One on a bound, or fixed, tells nothing.
   void choose_coordinates(Family& family, const std::vector<std::size_t>& units) {
     std::map<std::string, std::pair<double, double>> seen;  // free, all
     std::vector<std::string> order;
@@ -406,8 +406,8 @@ private:
       if (stands[place]) result_.units[found[place].first].drifts.push_back(found[place].second);
   }
 
-  /// Whether weak effects may be looked for in a unit: what the others lack is no weak effect, and what was fitted with a
-  /// constant held that is off tells of that.
+  /// Whether weak effects may be looked for in a unit. A cause that the others lack is not a weak effect, and a fit with a
+  /// wrong constant held fixed shows that constant.
   bool lacks_nothing(const UnitVerdict& unit) const {
     if (!unit.member || !result_.families[static_cast<std::size_t>(unit.family)].cause.empty()) return false;
     if (unit.oddity != Oddity::none || !unit.drifts.empty()) return false;
@@ -417,7 +417,7 @@ private:
     });
   }
 
-  /// What the units' constants are moved by if all have an effect.
+  /// The shift of the units' constants if all have an effect.
   CommonShift shift_of(const std::string& effect) const {
     std::vector<FittedBothWays> units;
     for (const UnitVerdict& unit : result_.units) {
@@ -435,8 +435,8 @@ private:
     return common_shift(units);
   }
 
-  /// Moves all constants by what a weak effect that stands makes of them: it is in no unit's model, and would shift all
-  /// of them alike, by more than what a unit's own error is. Who is odd does not hang on that.
+  /// Moves all constants by the shift of a weak effect that stands. The effect is in no unit's model, and would shift all
+  /// of them alike, by more than a unit's own error. Who is odd does not hang on that.
   void take_weak_effect_out() {
     if (result_.weak.empty() || !result_.weak.front().stands) return;
     std::vector<CommonShift> others;
@@ -471,7 +471,7 @@ private:
       std::map<std::string, std::size_t> seen;
       for (const std::size_t log : unit.logs)
         for (const FittedExplanation& one : logs_[log].ranking) {
-          // Where a hidden start was fitted to the held-out data, their gain is no test.
+          // If a hidden start was fitted to the held-out data, their gain is not a test.
           if (one.effects != 1 || one.hidden_starts > 0 || !std::isfinite(one.held_out_gain)) continue;
           Gain& gain = gains[one.name];
           gain.parameters = (seen[one.name]++ == 0 ? 0 : gain.parameters) + one.own_parameters();
@@ -492,8 +492,8 @@ private:
 
 }  // namespace detail
 
-/// What many logs say together: which cause is common, how parameters spread, which units are odd, which logs are bad,
-/// what drifts, and which effect is too weak for any single log.
+/// The joint statements of many logs: common cause, spread of parameters, odd units, bad logs, drifts, and effects too weak
+/// for any single log.
 inline FleetVerdict judge_fleet(const std::vector<LogResult>& logs, const FleetOptions& options = {}) {
   return detail::FleetJudge(logs, options).run();
 }

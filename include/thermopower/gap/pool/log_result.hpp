@@ -31,8 +31,9 @@ inline std::vector<std::string> ids_in(const std::string& name) {
   return ids;
 }
 
-/// What an explanation adds to the model: its name without the constants that it releases. Constants are coordinates of
-/// every explanation, and how they spread is what a fleet knows: a unit whose constants alone are off lacks nothing.
+/// The part that an explanation adds to the model: its name without the constants that it releases. Constants are
+/// coordinates of every explanation, and how they spread is what a fleet knows: a unit whose constants alone are off lacks
+/// nothing.
 /// @param name  of the explanation; empty: nothing is missing
 inline std::string structure_of(const std::string& name) {
   std::string structure;
@@ -54,7 +55,7 @@ struct FittedExplanation {
       0.0;  ///< twice the log likelihood ratio of the training data against the empty explanation
   double held_out_gain =
       std::numeric_limits<double>::quiet_NaN();  ///< the same of held-out data; NaN: not looked at
-  int hidden_starts = 0;           ///< that the held-out gain fitted: then it is no prediction alone
+  int hidden_starts = 0;           ///< that the held-out gain fitted: then it is not a prediction alone
   bool on_bounds = false;          ///< it ended on the bounds of its range, and is none
   std::vector<std::string> names;  ///< of the coordinates: constants first, then the effects' parameters
   std::vector<bool> logarithmic;   ///< whether a coordinate is the logarithm of its value
@@ -71,7 +72,7 @@ struct FittedExplanation {
   }
 };
 
-/// What the diagnosis of one log leaves for the fleet.
+/// The result of one log's diagnosis for the fleet.
 ///
 /// @snippet plant_examples.cpp fleet
 /// How to: @ref diagnose_a_fleet.
@@ -94,7 +95,7 @@ struct LogResult {
   /// The likeliest explanation of a structure (structure_of()), or none: constants are released in it where this log
   /// asks for that. Among equals the one that is listed first.
   const FittedExplanation* likeliest(const std::string& structure) const {
-    // What has more effects than the cause that was named was held to do no more than it.
+    // An explanation with more effects than the named cause counts as doing no more than it.
     const FittedExplanation *best = find(structure), *plain = best;
     const std::size_t most = std::max(chosen_effects, plain == nullptr ? 0 : plain->effects);
     for (const FittedExplanation& one : ranking)

@@ -13,7 +13,7 @@
 
 namespace thermopower::gap::pool {
 
-/// What the data of one unit say of its parameters: a normal distribution around an estimate.
+/// The parameters of one unit by its data: a normal distribution around an estimate.
 struct Estimate {
   Eigen::VectorXd at;          ///< the estimate; k coordinates
   Eigen::MatrixXd covariance;  ///< of its error, k by k, positive semidefinite
@@ -26,8 +26,8 @@ inline Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
 
 /// How units spread: y_i ~ N(mean, between + V_i), V_i the covariance of unit i's estimate.
 ///
-/// The spread between units by restricted maximum likelihood, with the EM iteration of Laird & Ware (1982); the mean by
-/// generalised least squares, its covariance that of the inverse weights.
+/// The spread between units by restricted maximum likelihood, with the EM iteration of Laird & Ware (1982). The mean is by
+/// generalised least squares, and its covariance that of the inverse weights.
 ///
 /// @snippet plant_examples.cpp fleet
 /// How to: @ref diagnose_a_fleet.
@@ -48,7 +48,7 @@ struct MixedEffects {
   Eigen::Index size() const { return mean.size(); }
 };
 
-/// A unit's own value after the fleet was looked at: what is imprecise of it is drawn to the mean.
+/// A unit's own value after the fleet was looked at: the less precise it is, the more it is drawn to the mean.
 struct Shrunken {
   Eigen::VectorXd at;          ///< the best prediction of the unit's own values
   Eigen::MatrixXd covariance;  ///< of its error, that of the mean included

@@ -70,7 +70,7 @@ inline std::vector<bool> core_of(const std::vector<Estimate>& units) {
   return core;
 }
 
-/// What one unit is held against: the others' mean, its error and their spread, and how well that is known.
+/// The reference of one unit: the others' mean, its error, their spread, and how well that is known.
 struct Others {
   Eigen::VectorXd mean;
   Eigen::MatrixXd error, spread;
@@ -99,7 +99,7 @@ inline Others without(const Estimate& one, const MixedEffects& fleet, const Eige
   return others;
 }
 
-/// Hotelling's T^2 of one unit, with Satterthwaite's degrees of freedom of the variance it is held against.
+/// Hotelling's T^2 of one unit, with Satterthwaite's degrees of freedom of the variance it is compared with.
 /// @param limit  probability below which it is odd
 inline Standing standing_of(const Estimate& one, const Others& others, double limit) {
   const Eigen::Index k = one.at.size();
@@ -131,11 +131,11 @@ inline Standing standing_of(const Estimate& one, const Others& others, double li
 
 /// Finds the odd units of a fleet so that a sound fleet has one with a probability of at most `false_odd`.
 ///
-/// Each unit is held against the others without it: its distance from their mean, in their spread and its own error,
-/// follows Hotelling's T^2, with as many degrees of freedom as their spread is known to. A core around the medians
-/// decides first who the others are; then those who are within the limit, until nothing changes. The limit is
-/// Bonferroni's: the probability over the number of units. What is tested is the departure from a normal spread in the
-/// coordinates given; a spread with heavier tails has more odd units.
+/// Each unit is compared with the others without it. Its distance from their mean, in their spread and its own error,
+/// follows Hotelling's T^2. The degrees of freedom are those of their spread. A core around the medians decides first who
+/// the others are; then those who are within the limit, until nothing changes. The limit is Bonferroni's: the probability
+/// over the number of units. The test is for a departure from a normal spread in the given coordinates. A spread with
+/// heavier tails has more odd units.
 /// @param units      estimates of one size; with fewer than size + 4 nobody is odd
 /// @param false_odd  0..1
 inline OddUnits find_odd_units(const std::vector<Estimate>& units, double false_odd = 0.01) {

@@ -17,7 +17,7 @@
 
 namespace thermopower::gap::engine {
 
-/// A coordinate with what is known of it.
+/// A coordinate with its prior.
 struct BoundedCoordinate {
   EffortCoordinate at;                                      ///< which number of the point moves
   double lower = -std::numeric_limits<double>::infinity();  ///< of the number
@@ -31,7 +31,7 @@ struct BoundedCoordinate {
 /// A point fitted to training effort.
 struct EffortFit {
   EffortPoint point;               ///< constants and parameters where the fit ended
-  double mean_square = 0.0;        ///< of what is left over
+  double mean_square = 0.0;        ///< of the residuals
   Eigen::VectorXd residual;        ///< at the compared rows
   Eigen::VectorXd standard_error;  ///< by coordinate, of the number itself
   bool found = false;              ///< the equations could be solved
@@ -153,7 +153,7 @@ private:
       const double number = one.at.of(point), away = one.is_place ? number : std::log(number);
       sum += loose ? 0.5 * loose_weight(one) * away * away : 0.5 * one.prior.cost(away);
     }
-    // What a drive that has switched off does not tell: log of the spread of effort over that of the residual, a row.
+    // The lost information of a drive that has switched off: log of the spread of effort over that of the residual, a row.
     const double spread = 2.0 * data_.compared().effort_rms;
     sum += static_cast<double>(at.flat) * std::max(0.0, std::log(spread / std::sqrt(variance)));
     return sum;

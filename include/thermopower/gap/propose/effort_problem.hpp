@@ -104,7 +104,7 @@ public:
   double low_pass_Hz() const {
     return is_judged() ? propose_thresholds.motion_cutoff / train_rows_->pieces.front().interval_s : 0.0;
   }
-  /// What stays of training effort with a set of effects, A or V, at the rows that are compared; empty where it is not judged.
+  /// The residual of training effort with a set of effects, A or V, at the compared rows; empty if it is not judged.
   Eigen::VectorXd train_residual(std::vector<const plant::CatalogueEntry*> effects) {
     score(effects);
     order(effects);
@@ -116,15 +116,15 @@ public:
     order(effects);
     return held_->evaluate(scores_.at(effects).fit.point, {}).effort;
   }
-  /// What stays of held-out effort with the model as configured, A or V.
+  /// The residual of held-out effort with the model as configured, A or V.
   Eigen::VectorXd held_out_residual_as_configured() const {
     EffortPoint point;
     for (const CalibratedConstant& one : model_.calibrated()) point.factors.push_back(one.unmoved());
     return held_->evaluate(point, {}).effort;
   }
-  /// How far constants and effects that were fitted to the motion are from the effort that was recorded: what they leave of held-out
-  /// effort, over what refitted constants leave without effects. Where no motion tells an effect, it is left out of both, and any
-  /// dry friction, constant and load may stand in its place.
+  /// How far constants and effects that were fitted to the motion are from the recorded effort. It is their residual of
+  /// held-out effort, over that of refitted constants without effects. Where no motion tells an effect, it is left out of
+  /// both, and any dry friction, constant and load may stand in its place.
   /// @param factors  of Model::calibrated(), as ParameterPoint has them
   /// @param effects  with their parameters
   double times_refitted(std::vector<double> factors,
@@ -165,7 +165,8 @@ public:
     return list;
   }
 
-  /// What held-out effort asks for: single effects, and sets by forward selection. Those that are told first, then by share.
+  /// The proposals of held-out effort: single effects, and sets by forward selection. Those that are told first, then by
+  /// share.
   std::vector<InverseProposal> proposals() {
     std::vector<InverseProposal> list;
     if (!is_judged()) return list;
@@ -230,7 +231,7 @@ private:
 
   static constexpr double small_share = 0.02;  ///< of the effort's RMS: less is nobody's loss
 
-  /// What is left of held-out effort once dry friction, a constant and a load of the angle, of any size, are taken out.
+  /// The residual of held-out effort after dry friction, a constant and a load of the angle, of any size, are taken out.
   Eigen::VectorXd without_plain_torques(const Eigen::VectorXd& left) const {
     const ComparedRows& compared = held_->compared();
     Eigen::MatrixXd columns(left.size(), 5);

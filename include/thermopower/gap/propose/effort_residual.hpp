@@ -42,7 +42,7 @@ struct EffortCoordinate {
   }
 };
 
-/// What is left over at the rows that count.
+/// The residuals at the rows that count.
 struct EffortResiduals {
   Eigen::VectorXd effort;     ///< measured less needed, A or V
   Eigen::MatrixXd jacobian;   ///< its derivatives by the coordinates; empty where not asked for
@@ -50,8 +50,8 @@ struct EffortResiduals {
   std::vector<bool> is_flat;  ///< of each row
 };
 
-/// The rows of one part of the data that residuals are compared at: moving, away from the ends, and as many as the low-pass leaves
-/// independent.
+/// The rows of one part of the data at which residuals are compared. They move, are away from the ends, and are as many as
+/// the low-pass leaves independent.
 struct ComparedRows {
   std::vector<Eigen::Index> rows;  ///< of the grid
   std::vector<std::size_t> piece;  ///< of each
@@ -142,7 +142,7 @@ public:
     return all;
   }
 
-  /// The same at some of the compared rows, what is left over not filtered: to compare starts by.
+  /// The same at some of the compared rows, with unfiltered residuals: to compare starts by.
   EffortResiduals glance(const EffortPoint& point, const std::vector<EffortCoordinate>& free) const {
     const Eigen::Index every = std::max<Eigen::Index>(1, compared_.size() / propose_thresholds.scan_rows);
     const Eigen::Index kept = compared_.size() / every, columns = static_cast<Eigen::Index>(free.size());
@@ -212,7 +212,7 @@ private:
           exact_(instance_, of.rows_.grid, of.still_rad_per_s_),
           per_effort_(std::abs(plain_.torque_per_effort())) {}
 
-    /// Writes what is left over at a row, and its derivatives, to line `to`. Returns whether the drive is flat there.
+    /// Writes the residual at a row, and its derivatives, to line `to`. Returns whether the drive is flat there.
     bool at(const EffortPiece& piece, Eigen::Index row, Eigen::VectorXd& effort, Eigen::MatrixXd& slopes,
             Eigen::Index to) const {
       const plant::MotionAtRow motion{row, of_.rows_.grid.t_s[row], of_.rows_.angle_rad[row],

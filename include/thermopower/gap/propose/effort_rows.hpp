@@ -32,7 +32,7 @@ struct EffortPiece {
   double half_sample = 0.5;   ///< half an interval between samples, in rows of the grid
 };
 
-/// What the recordings of one part say, row by row: the motion, and the effort that went with it, both through one low-pass.
+/// The recordings of one part, row by row: the motion, and the effort that went with it, both through one low-pass.
 class EffortRows {
 public:
   Inputs grid;                              ///< stamps, torque from outside and temperature of the motor
@@ -122,7 +122,7 @@ private:
     pieces.push_back(piece);
   }
 
-  /// Keeps parts of the pieces, spread evenly over what is long.
+  /// Keeps parts of the pieces, spread evenly over long ones.
   void keep(Eigen::Index most) {
     constexpr Eigen::Index parts = 24, least = 200;
     if (rows() > most) {

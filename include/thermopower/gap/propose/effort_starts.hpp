@@ -19,7 +19,7 @@
 #include <vector>
 
 /// @file effort_starts.hpp
-/// What an effect is to the inverse problem: where fits of it begin, and when it is not what it is called.
+/// An effect in the inverse problem: where fits of it begin, and when its name does not fit.
 
 namespace thermopower::gap::engine {
 
@@ -46,7 +46,7 @@ inline std::vector<double> first_starts(const plant::CatalogueEntry& entry) {
   return values;
 }
 
-/// What an effect makes of the structure of an axis.
+/// The structure of an axis with an effect.
 inline plant::AxisStructure<double> structure_of(const plant::CatalogueEntry& entry,
                                                  const std::vector<double>& parameters) {
   plant::AxisStructure<double> shape = {};
@@ -67,7 +67,7 @@ inline double longest_delay_s(double interval_s) {
   return std::max(propose_thresholds.longest_delay_rows * interval_s, propose_thresholds.longest_delay_s);
 }
 
-/// Constants of the axis and of the model's own effects on it, with what is known of them.
+/// Constants of the axis and of the model's own effects on it, with their priors.
 inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Catalogue& catalogue) {
   constexpr double farthest = 1e6;  // real inertias were off by 27 000
   std::vector<BoundedCoordinate> list;
@@ -98,7 +98,7 @@ inline std::vector<BoundedCoordinate> constants_of(const Model& model, const Cat
   return list;
 }
 
-/// Where fits of an effect begin: the products of its parameters' starts. Cycles in a turn come from what is left over, delays
+/// Where fits of an effect begin: the products of its parameters' starts. Cycles in a turn come from the residuals, delays
 /// from the rows.
 /// @param left  residuals of effort without the effect, at the compared rows
 inline std::vector<std::vector<double>> starts_of(const plant::CatalogueEntry& entry,

@@ -9,7 +9,7 @@
 #include <vector>
 
 /// @file inverse_score.hpp
-/// What the inverse problem of an axis says of explanations: values, and no decision.
+/// The scores of explanations in the inverse problem of an axis: values, and no decision.
 
 namespace thermopower::gap::engine {
 
@@ -88,7 +88,7 @@ struct InverseEstimate {
 /// A constant of the model as the effort of the training data has it.
 struct InverseConstant {
   std::size_t constant = 0;     ///< its place in Model::calibrated()
-  double moved_by = 1.0;        ///< a factor; of a place what is added
+  double moved_by = 1.0;        ///< a factor; for a place the addition
   double standard_error = 0.0;  ///< of that
 };
 

@@ -23,7 +23,8 @@ inline double rest_rate(const EffortRows& rows) {
   return propose_thresholds.rest * (std::max(propose_thresholds.still_share * rms, rows.rate_noise) + 1e-9);
 }
 
-/// What inertia, drag, friction, gravity and a constant say of effort: a first look that tells how the data must be filtered.
+/// A fit of inertia, drag, friction, gravity and a constant to effort: a first look that tells how the data must be
+/// filtered.
 class PlainFit {
 public:
   /// @param rows  of training data; model and catalogue read the instruments
@@ -57,12 +58,12 @@ public:
     }
   }
 
-  /// How many samples an effort's stamp is ahead of a held one's: 0 where it holds from its stamp on, half a sample where it is a
-  /// measurement at its stamp. The data say which.
+  /// How many samples an effort's stamp is ahead of a held one's. It is 0 if it holds from its stamp on, and half a sample
+  /// if it is a measurement at its stamp. The data say which.
   double early_samples() const { return early_samples_; }
 
-  /// Whether noise of the motion spoils this fit, and less so one with a lower cutoff: the inertia grows, as noise of the
-  /// acceleration hides it, or the residual falls by more than the effort does.
+  /// Whether noise of the motion spoils this fit more than one with a lower cutoff. Noise of the acceleration hides the
+  /// inertia, so the inertia grows there, or the residual falls by more than the effort does.
   /// @param noise_share  of the acceleration's variance that may be noise, here
   bool is_noisier_than(const PlainFit& lower, double noise_share) const {
     if (!is_known_ || !lower.is_known_) return false;

@@ -24,7 +24,7 @@
 
 namespace thermopower::gap::engine {
 
-/// What the recordings of one part say on grids as fine as they were sampled, before any low-pass.
+/// The recordings of one part on grids as fine as they were sampled, before any low-pass.
 class SampledMotion {
 public:
   /// A stretch of motion without a hole, as it was sampled.
@@ -147,7 +147,7 @@ private:
     }
   }
 
-  /// Keeps pieces spread evenly over what is long.
+  /// Keeps pieces spread evenly over long ones.
   static void thin(std::vector<Span>& spans, Eigen::Index most) {
     constexpr Eigen::Index pieces = 24, least = 200;
     Eigen::Index rows = 0;

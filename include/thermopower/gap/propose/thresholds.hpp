@@ -9,7 +9,7 @@ namespace thermopower::gap::engine {
 /// How effort and motion are compared, and when a term is proposed. Held by tests/gap/propose/effort_problem_test.cpp.
 struct ProposeThresholds {
   double motion_cutoff = 0.15;    ///< of the low-pass on motion and effort, as a share of the grid's rate
-  double residual_cutoff = 0.12;  ///< of the low-pass on what is left over, as a share of the grid's rate
+  double residual_cutoff = 0.12;  ///< of the low-pass on the residuals, as a share of the grid's rate
   double next_cutoff = 0.65;   ///< times the one before, where the acceleration is noise in too large a part
   double least_cutoff = 0.01;  ///< as a share of the sampling rate
   double acceleration_noise =
@@ -30,8 +30,8 @@ struct ProposeThresholds {
   int least_residuals = 24;             ///< of the training data; fewer determine nothing
   int blocks_in_run = 8;                ///< of held-out data, at most
   int residuals_in_block = 8;           ///< at least
-  /// Share of the residual's variance by which an effort must fit better as a measurement at its stamp than as a value that holds
-  /// from it on.
+  /// Share of the residual's variance by which an effort must fit better as a measurement at its stamp than as a held
+  /// value.
   double stamped = 0.1;
   double least_delay_samples = 0.5;  ///< a delay that is less than this is one of stamps
   double longest_delay_rows = 8.0;   ///< from effort to torque

@@ -14,11 +14,11 @@
 #include <vector>
 
 /// @file estimates.hpp
-/// What a fit says of its parameters: values, intervals, and how they hang together.
+/// The parameters of a fit: values, intervals, and correlations.
 
 namespace thermopower::gap::engine {
 
-/// What a report calls the move of a constant: a factor on it, or of a place what is added.
+/// The name of a constant's move in a report: a factor on it, or an addition to a place.
 inline std::string name_of_move(const Coordinate& constant) {
   return constant.name + (constant.logarithmic ? ".scale" : ".shift");
 }
@@ -70,7 +70,7 @@ inline Eigen::MatrixXd covariance_of_moving(const Candidate& candidate, const We
   return some;
 }
 
-/// How the estimates of a fit hang together: its covariance, each coordinate in units of its own standard deviation.
+/// Correlation of the estimates of a fit: its covariance, each coordinate in units of its own standard deviation.
 inline ParameterCorrelation correlation_of_parameters(const Candidate& candidate, const Weight& weight,
                                                       std::size_t constants) {
   ParameterCorrelation correlation;

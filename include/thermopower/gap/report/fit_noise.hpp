@@ -18,8 +18,8 @@
 
 namespace thermopower::gap::engine {
 
-/// Noise of a signal beyond which the residuals of averages hold something else: where the power is another one in each of
-/// them, an error of the current looks like noise. Infinite where the samples do not tell.
+/// Noise of a signal beyond which the residuals of averages hold something else. If each average has another power, an
+/// error of the current looks like noise. Infinite where the samples do not tell.
 inline double most_noise(const FitProblem& problem, Signal signal) {
   double most = 0.0;
   for (const Segment& segment : problem.segments) {
@@ -31,7 +31,8 @@ inline double most_noise(const FitProblem& problem, Signal signal) {
   return most_of_a_mean() * most;
 }
 
-/// What a candidate leaves of the data that it was fitted to, in the signals' units; of averages, as large as that of one sample.
+/// The residuals of a candidate on the data that it was fitted to, in the signals' units. Those of averages are scaled to
+/// one sample.
 inline Errors errors_left(const FitProblem& problem, const Candidate& candidate) {
   Errors left;
   problem.evaluate(candidate.explanation, candidate.list, candidate.fit.point, candidate.fit.starts, false,
@@ -46,7 +47,7 @@ inline Errors errors_left(const FitProblem& problem, const Candidate& candidate)
   return left;
 }
 
-/// What is taken for noise of what a candidate leaves.
+/// The part of a candidate's residuals that is taken for noise.
 enum class TakenForNoise {
   what_looks_like_it,  ///< in each signal: a motion that is missed counts, too, where it looks like noise that remembers
   what_differs,  ///< no more than what a rate and the angle beside it do not show alike

@@ -30,7 +30,8 @@ inline RowsAsGiven rows_as_given(const PreparedRecording& prepared) {
   return rows;
 }
 
-/// What a model gives for recordings, simulated in the segments that a gap is measured in, at all rows as they were given.
+/// The signals of a model for recordings, simulated in the segments that a gap is measured in, at all rows as they were
+/// given.
 /// @param segments  of `inputs`
 /// @param rows      of each of `inputs`
 inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model& model,
@@ -65,7 +66,7 @@ inline std::vector<std::vector<SimulatedSignal>> simulated_as_given(const Model&
   return result;
 }
 
-/// What the model as configured and the one with the causes give for the held-out recordings.
+/// The signals of the configured model and of the one with the causes, for the held-out recordings.
 inline std::vector<HeldOutPrediction> predictions_of(const Model& baseline, const Model& augmented,
                                                      const std::vector<Segment>& segments,
                                                      const std::vector<Inputs>& inputs,

@@ -40,8 +40,8 @@ inline FitOptions last_fit() {
   return options;
 }
 
-/// The rows as they were recorded that a search fitted averages of, in windows of the same length, and the candidate fitted
-/// to them from where the search ended.
+/// The rows as recorded, whose averages a search fitted, in windows of the same length. And the candidate fitted to them
+/// from where the search ended.
 /// @param recordings as recorded, which the averages are made of
 /// @param horizon_s  length of the windows
 /// @param rows       about so many of them
@@ -56,9 +56,9 @@ inline FitProblem fitted_to_rows(Candidate& candidate, const FitProblem& searche
 
 /// Fits an explanation once more, to the rows as they were recorded, where the search fitted averages of a fast recording.
 ///
-/// A mean command over some rows is the command to a model that is linear in it, and only to that: inside a deadband, where
-/// a friction turns, or where sides meet and part, what averages leave out is a bias that no number of rows makes smaller,
-/// and intervals that tell of the noise alone do not hold it.
+/// A mean command over some rows is the command only to a model that is linear in it. Inside a deadband, where a friction
+/// turns, or where sides meet and part, averages leave a bias that no number of rows makes smaller. Intervals that tell of
+/// the noise alone do not hold it.
 /// @param result     its ranking says the same then
 /// @param searched   what the search fitted
 /// @param recordings as recorded, which that is made of

@@ -13,14 +13,14 @@
 
 namespace thermopower::gap::engine {
 
-/// How large the noise of a column was in single rows, of which the rows around tell. A simulation that starts from what was
-/// measured errs by what the noise was there, and a few dozen starts from noise with heavy tails can have twice the noise of
-/// all rows.
+/// How large the noise of a column was in single rows, of which the rows around tell. A simulation that starts from the
+/// measurement errs by the noise there. A few dozen starts from noise with heavy tails can have twice the noise of all
+/// rows.
 ///
-/// A parabola through the four rows before and after, and the row itself, leaves r of it. Of white Gaussian noise of standard
-/// deviation sigma the noise there has, given r, the mean square r^2 + h sigma^2, with h the weight of the row in its own
-/// smoothed value (Savitzky and Golay 1964, Anal. Chem. 36); over all rows its mean is sigma^2.
-/// Held by tests/gap/data/noise_test.cpp.
+/// A parabola through the four rows before and after, and the row itself, leaves r of it. For white Gaussian noise of
+/// standard deviation sigma, the noise there has, given r, the mean square r^2 + h sigma^2. Here h is the weight of the row
+/// in its own smoothed value (Savitzky and Golay 1964, Anal. Chem. 36); over all rows its mean is sigma^2. Held by
+/// tests/gap/data/noise_test.cpp.
 class NoiseAtARow {
 public:
   /// @param values  of the column, NaN where missing; kept by reference
@@ -41,8 +41,8 @@ public:
   /// Standard deviation of the noise, as what parabolas leave tells it: of a motion that bends within nine rows it is too much.
   double sd() const { return std::sqrt(variance_); }
 
-  /// Of the noise in a row of a run, its magnitude as a share of the standard deviation of all; 1 where the rows around do not
-  /// tell.
+  /// Magnitude of the noise in a row of a run, as a share of the standard deviation of all. It is 1 if the rows around do
+  /// not tell.
   double share_at(Eigen::Index row, const plant::RunSpan& run) const {
     if (!(variance_ > 0.0) || row - around < run.begin || row + around >= run.end) return 1.0;
     const double left = left_at(row);

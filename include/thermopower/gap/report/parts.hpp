@@ -46,7 +46,7 @@ inline std::vector<Rival> rivals_of(const std::vector<Candidate>& candidates, st
   return rivals;
 }
 
-/// What the fit of an explanation says of its parameters.
+/// The parameters of an explanation's fit.
 inline void describe_fit(RankedExplanation& entry, const Candidate& one, const Model& model,
                          const Weight& weight) {
   entry.parameters = estimates(one, model, weight);
@@ -57,6 +57,11 @@ inline void describe_fit(RankedExplanation& entry, const Candidate& one, const M
                             k < one.fit.at_bound.size() && one.fit.at_bound[k]});
   }
   entry.covariance = covariance_of_moving(one, weight);
+  entry.fixed.clear();
+  for (std::size_t k = 0; k < one.list.size(); ++k)
+    if (one.list[k].still)
+      entry.fixed.push_back(
+          {one.list[k].name, one.fit.point[static_cast<Eigen::Index>(k)], one.list[k].logarithmic, false});
 }
 
 /// Every explanation weighed, likeliest first.
@@ -161,9 +166,8 @@ inline void name_causes(Diagnosis& result, const std::vector<Candidate>& candida
   result.correlation = correlation_of_parameters(chosen, weight, model.calibrated().size());
 }
 
-/// Where constants alone were fitted, those that moved by more than is known of them are its causes: one that was
-/// released and stayed is none, and one that was not and went is one. Explanations that turn out to be the same,
-/// or to be empty, are dropped, the worse one.
+/// If constants alone were fitted, those that moved by more than is known of them are the causes, whether they were
+/// released or not. Explanations that turn out to be the same, or to be empty, are dropped, the worse one.
 inline void name_moved_constants(std::vector<Candidate>& candidates, const Model& model) {
   std::vector<Candidate> kept{std::move(candidates.front())};
   for (std::size_t i = 1; i < candidates.size(); ++i) {
@@ -216,7 +220,7 @@ inline void keep_constants_alone(Diagnosis& result, const Model& model) {
     series.augmented = refitted ? series.recalibrated : series.baseline;
 }
 
-/// What the named causes leave. @param left  of training data, by the augmented model
+/// The rest that the named causes leave. @param left  of training data, by the augmented model
 inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
   Remaining rest;
   double worst = 0.0;
@@ -260,7 +264,8 @@ inline Remaining remaining(const Diagnosis& result, const Localisation& left) {
 }
 
 /// Scores and curves on held-out data. @param fitted  with the chosen explanation  @param fits  whether it follows the data it was
-/// fitted to: else what it makes of the noise of its starts is its own fault, and the floor is that of the model as configured.
+/// fitted to: else its response to the noise of its starts is its own fault, and the floor is that of the model as
+/// configured.
 /// @param rivals  drawn beside it
 inline void score(Diagnosis& result, const Model& model, const std::vector<Segment>& segments,
                   const std::vector<Inputs>& inputs, const Model& fitted, bool fits,
@@ -320,7 +325,7 @@ inline void score(Diagnosis& result, const Model& model, const std::vector<Segme
   }
 }
 
-/// What to record next: the excitation that shows the rival explanations apart.
+/// The next recording: the excitation that shows the rival explanations apart.
 inline std::string next_experiment(const Diagnosis& result, const std::vector<Candidate>& candidates,
                                    const Answer& choice, const Model& model, const Catalogue& catalogue) {
   const auto advice = [&](const std::string& id) {
@@ -346,18 +351,17 @@ inline std::string next_experiment(const Diagnosis& result, const std::vector<Ca
            plant::in_words(to_string(result.where.front().signal)) +
            "): whatever is switched, touched or moved while it runs, and repeat the same excitation twice.";
   if (result.verdict == Verdict::unexplained)
-    return "Repeat the same excitation twice: what repeats is a missing effect, what does not is a "
-           "disturbance.";
+    return "Repeat the same excitation twice: a missing effect repeats, and a disturbance does not.";
   if (result.verdict == Verdict::partial && !result.cause.empty()) {
     const std::optional<plant::SubmodelName> rest =
         result.remaining ? result.remaining->submodel : std::nullopt;
-    return "To confirm, record: " + advice(result.cause.front().effect) +
+    return "To confirm this cause, record: " + advice(result.cause.front().effect) +
            ". For what remains, log more around " +
            (rest ? to_string(*rest) : std::string("what is switched, touched or moved")) +
            ", and repeat the same excitation twice.";
   }
   if (result.verdict == Verdict::explained && !result.cause.empty())
-    return "To confirm, record: " + advice(result.cause.front().effect) + ".";
+    return "To confirm this cause, record: " + advice(result.cause.front().effect) + ".";
   return "None needed: the simulation holds over the range that was recorded.";
 }
 

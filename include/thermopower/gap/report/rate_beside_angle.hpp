@@ -17,12 +17,12 @@
 #include <vector>
 
 /// @file rate_beside_angle.hpp
-/// What a rate and the angle beside it say of each other's noise.
+/// The noise of a rate and of the angle beside it, each told by the other.
 
 namespace thermopower::gap::engine {
 
 /// Errors of a rate beside those of the angle in the same rows. Whatever motion a model lacks moves both alike: the mean rate
-/// of some rows is then the slope of the angle over them. What it is beyond that is noise of the two sensors.
+/// of some rows is then the slope of the angle over them. The rest is noise of the two sensors.
 class RateBesideAngle {
 public:
   /// @param errors    of a simulation; nothing is told where it has none of an angle or of a rate, nor of a plant of the user's own,
@@ -53,8 +53,8 @@ public:
   }
 
   /// Noise of the rate that lasts over more than a few rows: standard deviation, nothing where there is too little to tell.
-  /// What lasts is what neighbouring means, which share no reading, have in common; it was larger at the first of them by
-  /// what it loses from one to the next.
+  /// Neighbouring means share no reading, so their common part lasts. It was larger at the first of them by its loss from
+  /// one to the next.
   std::optional<double> lasting_noise() const {
     constexpr std::size_t together = 5;
     const std::vector<double> beyond = beyond_slope(together - 1);
@@ -88,10 +88,10 @@ public:
     }
   };
 
-  /// Noise of the rate moves its mean over some rows, noise of the angle both ends of its slope, and neither can be more than what
-  /// lies between them at any number of rows: a blow, or a wobble that a model lacks, looks like noise that remembers in one signal
-  /// and is none where both show it. White noise is told by each signal itself. A rate that was made from the angle holds
-  /// its noise, too, and tells nothing: see has_noise_of_its_own().
+  /// Noise of the rate moves its mean over some rows, and noise of the angle both ends of its slope. Neither can be larger
+  /// than the difference between the two, at any number of rows. A blow or a wobble that a model lacks looks like noise
+  /// with memory in one signal, but both signals show it. White noise is told by each signal itself. A rate that was made
+  /// from the angle holds its noise, too, and tells nothing: see has_noise_of_its_own().
   Most most_noise() const {
     constexpr double certain = 2.0;  // standard errors
     const std::vector<Stretches> all = stretches();
@@ -146,9 +146,9 @@ private:
     return all;
   }
 
-  /// Whether neither was made from the other. An angle that was summed up from the rate is as far from its integral everywhere: less lies
-  /// between them than the rate's white noise would leave. A rate that was made from the angle follows from the angles around it,
-  /// whatever filter that was, and leaves less of itself than its white noise, too.
+  /// Whether neither was made from the other. An angle that was summed up from the rate is equally far from its integral
+  /// everywhere. Less lies between them than the rate's white noise would leave. A rate that was made from the angle
+  /// follows from the angles around it by some filter. It also leaves less than its white noise.
   bool has_noise_of_its_own(const std::vector<Stretches>& all) const {
     if (all.empty()) return false;
     constexpr double of_white = 0.25;
@@ -178,8 +178,8 @@ private:
     return (rates - steps * shares).squaredNorm() / static_cast<double>(middles.size() - terms);
   }
 
-  /// By how much the mean rate over some intervals is beyond the slope of the angle, at the row that each ends at, deg/s; NaN
-  /// where rows do not follow on each other.
+  /// The excess of the mean rate over some intervals beyond the slope of the angle, at the row that each ends at, deg/s.
+  /// NaN where rows do not follow on each other.
   std::vector<double> beyond_slope(std::size_t intervals) const {
     std::vector<double> beyond(rows_.size(), std::nan(""));
     for (std::size_t i = intervals; i < rows_.size(); ++i) {

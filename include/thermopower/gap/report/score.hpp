@@ -118,8 +118,9 @@ inline std::array<double, signal_count> rms_between(const Errors& one, const Err
   return apart;
 }
 
-/// How far a simulation wanders from itself because the command of the axis or the current that heats the bench was measured
-/// with noise, or the power of the bench switched at any time between two rows: root mean squares by signal, 0 where neither is so. One draw, the same each time.
+/// How far a simulation wanders from itself: root mean squares by signal, 0 without a reason. The reasons are noise of a
+/// measured command or heating current, and power of the bench that switched at any time between two rows. One draw, the
+/// same each time.
 inline std::array<double, signal_count> wander_of_command(const Model& model,
                                                           const std::vector<Segment>& segments,
                                                           const Catalogue& catalogue) {
@@ -130,7 +131,7 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
     const Inputs& inputs = *segment.inputs;
     if ((!inputs.errs_in_command() && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
-    // More noise on a current that heats is no more heat.
+    // More noise on a current that heats does not add heat.
     if (inputs.current_noise_A > 0.0)
       copy.current_noise_A = std::hypot(copy.current_noise_A, copy.command_noise);
     for (double& share : copy.next_share)  // of its mean; within the interval
@@ -187,8 +188,8 @@ private:
   std::map<const Inputs*, std::array<std::optional<NoiseAtARow>, signal_count>> of_;
 };
 
-/// What of an error in one coordinate of a start another coordinate takes back that is fitted to the readings of one signal, by
-/// least squares: so many units of the latter for one of the former.
+/// The part of an error in one coordinate of a start that another, fitted coordinate takes back. By least squares: units of
+/// the latter for one of the former.
 /// @param signal  place of that signal among the plant's
 inline double taken_back(const Readings& readings, const Segment& segment, int signal, int coordinate,
                          int fitted) {
@@ -201,14 +202,14 @@ inline double taken_back(const Readings& readings, const Segment& segment, int s
   return square > 0.0 ? product / square : 0.0;
 }
 
-/// What the whole runs are simulated from that a floor is for.
+/// The starts of the whole runs that a floor is for.
 enum class FirstReadings {
   within_their_noise,  ///< where a start within their noise fits best
   as_they_are          ///< the readings themselves
 };
 
-/// What the measured start of a whole run is off as far as the model and the first readings by themselves say so; 0 where it is no more
-/// than noise. A perfect model simulates on from that.
+/// The error of the measured start of a whole run, by the model and the first readings; 0 if it is no more than noise. A
+/// perfect model simulates on from that.
 /// @param sd  noise of the start
 inline Start known_off(const Plant& plant, Rollout& rollout, const Segment& segment,
                        const std::array<double, signal_count>& sigma, const Start& sd) {
@@ -221,9 +222,9 @@ inline Start known_off(const Plant& plant, Rollout& rollout, const Segment& segm
   return off;
 }
 
-/// What a perfect model would score: the signal's own noise, and the noise of the measured state it starts
-/// from, carried through the model. What nobody measures of that state is fitted, and takes a part of it back: of a window
-/// that starts an angle off, a rate that is a little off, too, leaves a quarter of the mean square.
+/// The score of a perfect model: the signal's own noise, and the noise of the measured state it starts from, carried
+/// through the model. The part of that state that nobody measures is fitted, and takes a part of the error back. If a
+/// window starts at a wrong angle, a slightly wrong rate leaves a quarter of the mean square.
 inline std::array<double, signal_count> noise_floor(const Model& model, const std::vector<Segment>& segments,
                                                     const std::array<double, signal_count>& sigma,
                                                     const Catalogue& catalogue, FirstReadings first) {
@@ -271,9 +272,9 @@ inline std::array<double, signal_count> noise_floor(const Model& model, const st
   return floor;
 }
 
-/// What a perfect model would score that carries states nobody measures from window to window: the noise of all starts
-/// before one tells there, and where sides meet and part it grows with each blow. Root mean squares by signal, 0 where
-/// nothing is carried on; the noise is drawn once, the same each time.
+/// The score of a perfect model that carries states nobody measures from window to window. The noise of all earlier starts
+/// counts there, and if sides meet and part, it grows with each blow. Root mean squares by signal, 0 where nothing is
+/// carried on; the noise is drawn once, the same each time.
 inline std::array<double, signal_count> wander_of_starts(const Model& model,
                                                          const std::vector<Segment>& segments,
                                                          const std::array<double, signal_count>& sigma,
@@ -301,7 +302,7 @@ inline std::array<double, signal_count> wander_of_starts(const Model& model,
   return rms_between(errors_of(model, segments, catalogue), errors_of(model, others, catalogue));
 }
 
-/// What a perfect model would score where a command may be noisy, too.
+/// The score of a perfect model if a command may be noisy, too.
 /// @param errors  of the best simulation  @param sigma  noise of the signals
 /// @param first   what the simulations begin with that it is for
 inline std::array<double, signal_count> floor_of(const Model& best, const Errors& errors,
@@ -318,15 +319,14 @@ inline std::array<double, signal_count> floor_of(const Model& best, const Errors
   return floor;
 }
 
-/// What no single recording can show of the logarithm of a shrinkage: the difference between two days, a standard half-width.
+/// The scatter of the logarithm of a shrinkage between two days, which no single recording can show: a standard half-width.
 inline constexpr double between_days = 0.15;
 
 /// 95 % interval of 1 - rms(after) / rms(before), for recordings like this one, by a paired block bootstrap.
 ///
-/// Both simulations' squared errors are drawn in the same six long blocks: how much sixths of a recording
-/// differ tells of slow changes that shorter blocks average away. The logarithm of the ratio is what varies
-/// evenly; its deviations are widened as Student's t asks with so few blocks, and by a seventh (0.15) for
-/// what no single recording can show, the difference between two days.
+/// Both simulations' squared errors are drawn in the same six long blocks. Sixths of a recording show slow changes that
+/// shorter blocks average away. The logarithm of the ratio varies evenly. Its deviations are widened as Student's t asks
+/// with so few blocks, and by a seventh (0.15) for the difference between two days.
 /// @return {0, 0} where both are the same or there are no errors
 inline Interval shrinkage_interval(const std::vector<double>& before, const std::vector<double>& after,
                                    unsigned seed) {

@@ -18,7 +18,7 @@ struct ActuationDelay {
     delay_s  ///< time from command to torque, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"actuation_delay",
                       Submodel::mechanical_drive,

@@ -18,7 +18,7 @@ struct AmbientBias {
     bias_K  ///< how much warmer the air at the motor is than its sensor says, K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "ambient_bias",

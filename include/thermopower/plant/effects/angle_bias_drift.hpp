@@ -18,7 +18,7 @@ struct AngleBiasDrift {
     deg_per_s  ///< drift of the reading, deg/s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"angle_bias_drift",
             Submodel::sensing_angle,

@@ -18,7 +18,7 @@ struct AngleScale {
     gain  ///< reading by angle
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"angle_scale",
             Submodel::sensing_angle,

@@ -22,7 +22,7 @@ struct AsymmetricFriction {
     tail          ///< how slowly it becomes full beyond, see friction_tail()
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"asymmetric_friction",
                       Submodel::mechanical_friction,

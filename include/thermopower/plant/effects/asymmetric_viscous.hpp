@@ -19,7 +19,7 @@ struct AsymmetricViscous {
     backward  ///< torque by rate where it is negative, N m s/rad
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {
         "asymmetric_viscous",

@@ -19,7 +19,7 @@ struct BackEmf {
     V_s_per_rad  ///< voltage that turning induces, by rate, V s/rad
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"back_emf",
             Submodel::electrical,

@@ -9,8 +9,8 @@
 
 namespace thermopower::plant {
 
-/// Part of the inertia is coupled with free play: inside the gap nothing is transmitted, at its ends two sides meet on
-/// a spring and a damper. The near side is driven and measured.
+/// Part of the inertia is coupled with free play. Inside the gap nothing is transmitted; at its ends two sides meet on a
+/// spring and a damper. The near side is driven and measured.
 ///
 /// @snippet effects_examples.cpp Backlash
 /// How to: @ref diagnose_a_gap, @ref laws.
@@ -23,7 +23,7 @@ struct Backlash {
     damping      ///< damping ratio of the contact; 1 is critical
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo info{
         "backlash",

@@ -19,7 +19,7 @@ struct CableSpring {
     centre_rad   ///< angle at which it does not pull, rad
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"cable_spring",
                       Submodel::mechanical_load,

@@ -26,7 +26,7 @@ struct Cogging {
     second_cos        ///< second harmonic a quarter of its period ahead, as a share of the first's size
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "cogging",

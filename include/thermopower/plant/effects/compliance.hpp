@@ -21,7 +21,7 @@ struct Compliance {
     damping        ///< damping ratio of the spring; 1 is critical
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {
         "compliance",
@@ -34,7 +34,7 @@ struct Compliance {
              .within(0.2, 300.0)
              .logarithmic()
              .starts({1.5, 2.2, 3.3, 5.0, 7.5, 11.0, 16.0, 25.0, 40.0, 60.0}),
-         // What is damped more than that does not ring: it is a drag, or a command that comes early or late.
+         // A spring with more damping does not ring: it is a drag, or a command that comes early or late.
          parameter(damping, "damping")
              .unit("1")
              .within(1e-4, 2.0)

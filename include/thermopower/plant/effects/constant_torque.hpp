@@ -18,7 +18,7 @@ struct ConstantTorque {
     size_Nm  ///< the torque, N m; positive pushes towards positive angles
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {
         "constant_torque",

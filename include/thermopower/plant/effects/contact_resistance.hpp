@@ -8,8 +8,8 @@
 
 namespace thermopower::plant {
 
-/// A heat sink or a frame behind a contact: the surface gives it heat through the contact's resistance, and it loses heat
-/// to the air itself.
+/// A heat sink or a frame behind a contact. The surface gives it heat through the contact's resistance, and it loses heat
+/// to the air.
 ///
 /// The body is what it was without, heat capacity and loss; the sink comes on top of it. With one thermometer that is the
 /// same circuit as `second_thermal_mass` or `enclosure` with other constants of the body: what is known of those tells them apart.
@@ -24,7 +24,7 @@ struct ContactResistance {
     conductance_W_per_K  ///< from the sink to the air, W/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo info{
         "contact_resistance",

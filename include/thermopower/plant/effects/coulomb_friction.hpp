@@ -21,7 +21,7 @@ struct CoulombFriction {
     tail         ///< how slowly it becomes full beyond, see friction_tail()
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"coulomb_friction",
                       Submodel::mechanical_friction,

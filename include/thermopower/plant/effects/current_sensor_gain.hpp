@@ -18,7 +18,7 @@ struct CurrentSensorGain {
     gain  ///< reading by current
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"current_sensor_gain",
             Submodel::sensing_current,

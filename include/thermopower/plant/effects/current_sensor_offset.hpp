@@ -18,7 +18,7 @@ struct CurrentSensorOffset {
     offset_A  ///< reading at no current, A
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"current_sensor_offset",
             Submodel::sensing_current,

@@ -18,7 +18,7 @@ struct DeadTime {
     duty_lost  ///< part of each period that is lost, as duty
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"dead_time",
             Submodel::electrical,

@@ -18,7 +18,7 @@ struct DriveDeadband {
     band_A  ///< command up to which nothing happens, A
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"drive_deadband",
             Submodel::mechanical_drive,

@@ -32,7 +32,7 @@ struct DriveEfficiency {
     tail              ///< how slowly it becomes full beyond, see friction_tail()
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {
         "drive_efficiency",

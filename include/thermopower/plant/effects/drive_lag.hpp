@@ -18,7 +18,7 @@ struct DriveLag {
     lag_s  ///< time constant of the torque, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo info{
         "drive_lag",

@@ -19,7 +19,7 @@ struct Enclosure {
     conductance_W_per_K  ///< from the air in the box to the measured air, W/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "enclosure",

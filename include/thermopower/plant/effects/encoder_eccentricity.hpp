@@ -23,7 +23,7 @@ struct EncoderEccentricity {
     cycles_per_turn  ///< how often it repeats in a turn
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"encoder_eccentricity",
             Submodel::sensing_angle,

@@ -8,13 +8,13 @@
 
 namespace thermopower::plant {
 
-/// The thesis's heating law r(V, T) with voltage and temperature in each other's place: what a call with its arguments
-/// exchanged makes of it, and what mends a simulation that holds such a call. It has no parameters.
+/// The thesis's heating law r(V, T) with voltage and temperature exchanged. It is the result of a call with its arguments
+/// exchanged, and mends a simulation that holds such a call. It has no parameters.
 ///
 /// @snippet effects_examples.cpp ExchangedHeatingLaw
 /// How to: @ref diagnose_a_gap, @ref laws.
 struct ExchangedHeatingLaw {
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"law.exchanged_heating",
             Submodel::thermal_storage,

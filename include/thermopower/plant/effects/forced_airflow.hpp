@@ -20,7 +20,7 @@ struct ForcedAirflowEffect {
     exponent  ///< power of the airspeed that the loss grows with
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"forced_airflow",
             Submodel::thermal_loss,

@@ -21,7 +21,7 @@ struct IdleHeat {
     W  ///< heat into the body at all times, W
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"idle_heat",
             Submodel::thermal_heating,

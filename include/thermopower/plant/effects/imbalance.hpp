@@ -19,7 +19,7 @@ struct Imbalance {
     phase_rad  ///< added to the angle: at minus this the load hangs or stands, rad
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"imbalance",
                       Submodel::mechanical_load,

@@ -24,7 +24,7 @@ struct IronLoss {
     eddy_W_s2_per_rad2       ///< heat by the square of the rate, W s^2/rad^2
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo info{"iron_loss",
                     Submodel::thermal_heating,

@@ -21,7 +21,7 @@ struct LoadFriction {
     tail         ///< how slowly it becomes full beyond, see friction_tail()
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"load_friction",
                       Submodel::mechanical_friction,

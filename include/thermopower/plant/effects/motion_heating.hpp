@@ -19,7 +19,7 @@ struct MotionHeating {
     W_s2_per_rad2  ///< heat by the square of the rate, W s^2/rad^2
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"motion_heating",
             Submodel::thermal_heating,

@@ -20,7 +20,7 @@ struct NaturalConvectionEffect {
     reference_K  ///< rise at which the conductance is the model's, K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one{"natural_convection",
                    Submodel::thermal_loss,
@@ -39,7 +39,8 @@ struct NaturalConvectionEffect {
   }
 
   /// Whether the loss grows no faster than that of air that rises by itself, which is turbulent at most (n = 1/3; Churchill & Chu
-  /// 1975), and of a hot surface's radiation in it. What grows faster sets in somewhere: a fan, or a liquid that boils.
+  /// 1975), and of a hot surface's radiation in it. A loss that grows faster sets in somewhere: a fan, or a liquid that
+  /// boils.
   static bool rises_by_itself(const double* p) {
     constexpr double most = 0.6;
     return p[exponent] <= most;

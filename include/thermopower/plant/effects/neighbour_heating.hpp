@@ -18,7 +18,7 @@ struct NeighbourHeating {
     coupling_W_per_K  ///< conductance between neighbour and motor, W/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"neighbour_heating",
             Submodel::thermal_heating,

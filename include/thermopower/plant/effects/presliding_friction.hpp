@@ -21,7 +21,7 @@ struct PreslidingFriction {
     damping    ///< torque of bending by its rate, as a time: of the stiffness, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo info{
         "presliding_friction",

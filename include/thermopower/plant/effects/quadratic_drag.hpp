@@ -18,7 +18,7 @@ struct QuadraticDrag {
     Nm_s2_per_rad2  ///< torque by the square of the rate, N m s^2/rad^2
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "quadratic_drag",

@@ -19,7 +19,7 @@ struct Radiation {
     emissive_area_m2  ///< emissivity times the area that radiates, m^2
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"radiation",
             Submodel::thermal_loss,

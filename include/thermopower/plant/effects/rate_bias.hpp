@@ -18,7 +18,7 @@ struct RateBias {
     bias_dps  ///< reading at rest, deg/s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"rate_bias",
             Submodel::sensing_rate,

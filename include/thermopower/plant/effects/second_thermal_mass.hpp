@@ -19,7 +19,7 @@ struct SecondThermalMass {
     coupling_W_per_K  ///< conductance between winding and housing, W/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"second_thermal_mass",
             Submodel::thermal_storage,

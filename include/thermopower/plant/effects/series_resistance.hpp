@@ -18,7 +18,7 @@ struct SeriesResistance {
     ohm  ///< resistance of leads and switches, ohm
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"series_resistance",
             Submodel::electrical,

@@ -18,7 +18,7 @@ struct ServoDelay {
     delay_s  ///< time from what the servo measures to its torque, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"servo_delay",
             Submodel::mechanical_drive,

@@ -50,7 +50,7 @@ struct StribeckFriction {
     exponent         ///< power of the rate by which the rise falls
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"stribeck_friction",
                       Submodel::mechanical_friction,

@@ -18,7 +18,7 @@ struct SupplyPowerHeating {
     share  ///< part of what is lost between supply and winding that heats the motor
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"supply_power_heating",
             Submodel::thermal_heating,

@@ -19,7 +19,7 @@ struct SupplySag {
     V_per_Ah       ///< loss of voltage by charge taken, V/Ah
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"supply_sag",
             Submodel::electrical,

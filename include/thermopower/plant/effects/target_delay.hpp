@@ -18,7 +18,7 @@ struct TargetDelay {
     delay_s  ///< time from the recorded target to the servo that takes it, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"target_delay",
             Submodel::mechanical_drive,

@@ -18,7 +18,7 @@ struct ThermometerGain {
     gain  ///< part of the temperature rise that is shown
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"thermometer_gain",
             Submodel::sensing_temperature,

@@ -18,7 +18,7 @@ struct ThermometerLag {
     lag_s  ///< time constant of the thermometer, s
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "thermometer_lag",

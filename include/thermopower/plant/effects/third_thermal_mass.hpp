@@ -20,7 +20,7 @@ struct ThirdThermalMass {
     coupling_W_per_K  ///< conductance between surface and what soaks it up, W/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {
         "third_thermal_mass",

@@ -18,7 +18,7 @@ struct TorqueFade {
     per_K  ///< part of the torque constant lost by each kelvin above 25 degC, 1/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"torque_fade",
             Submodel::mechanical_drive,

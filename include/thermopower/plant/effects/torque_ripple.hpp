@@ -22,7 +22,7 @@ struct TorqueRipple {
     cycles_per_turn  ///< how often it repeats in a turn
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {
         "torque_ripple",

@@ -18,7 +18,7 @@ struct TorqueSaturation {
     limit_A  ///< largest command that acts, A
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     EffectInfo one = {"torque_saturation",
                       Submodel::mechanical_drive,

@@ -24,7 +24,7 @@ struct UnknownVoltage {
         "The voltage at the winding goes with its temperature in a way that no named cause has.",
         {CurveVariable::motor_C, CurveScale::supply_V}, "motor_C", "V", "V",
         {Need::current_model, Need::current_A, Need::motor_C},
-        "the same power cold and hot, current recorded");
+        "the same power twice, once cold and once hot, with the motor current logged");
   }
 
   /// Adds the voltage.

@@ -20,7 +20,7 @@ struct WarmFriction {
     per_K  ///< how fast friction falls with temperature, 1/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"warm_friction",
             Submodel::mechanical_friction,

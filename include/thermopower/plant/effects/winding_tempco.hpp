@@ -18,7 +18,7 @@ struct WindingTempco {
     tempco_per_K  ///< what the winding's temperature coefficient is larger by, 1/K
   };
 
-  /// What it is.
+  /// Its description, parameters and needs.
   static EffectInfo info() {
     return {"winding_tempco",
             Submodel::electrical,
@@ -26,7 +26,7 @@ struct WindingTempco {
             "The winding's resistance rises with temperature; the simulation had it constant.",
             {parameter(tempco_per_K, "tempco_per_K").unit("1/K").within(0.0, 0.02).starts({0.0})},
             {Need::ohmic_without_tempco, Need::motor_C},
-            "the same power cold and hot, current recorded"};
+            "the same power twice, once cold and once hot, with the motor current logged"};
   }
 
   /// Adds to the temperature coefficient.

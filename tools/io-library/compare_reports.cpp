@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include <thermopower/io/compare_reports.hpp>
+
+#include "html_text.hpp"
+
+#include <thermopower/io/input_error.hpp>
+#include <thermopower/io/sentences.hpp>
+#include <thermopower/io/summary.hpp>
+#include <thermopower/plant/variable_words.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace thermopower::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Of a 95 % interval in standard deviations.
+constexpr double interval_width = 3.92;
+// Two values that are further apart than that many standard deviations of their difference differ.
+constexpr double they_differ = 2.0;
+
+constexpr const char* report_format = "thermopower-gap-report/1";
+
+Json parsed(const NamedReport& report) {
+  Json json;
+  try {
+    json = Json::parse(report.text);
+  } catch (const Json::parse_error& error) {
+    throw InputError(report.name + ": expected a report that 'diagnose --report' wrote: " + error.what());
+  }
+  const std::string format = json.is_object() && json.contains("format") && json["format"].is_string()
+                                 ? json["format"].get<std::string>()
+                                 : std::string("missing");
+  if (format != report_format)
+    throw InputError(report.name + ": /format is " + format + ", expected " + report_format);
+  for (const char* key : {"verdict", "cause", "gap", "constants"})
+    if (!json.contains(key)) throw InputError(report.name + ": /" + key + " is missing");
+  return json;
+}
+
+double number_at(const Json& value) {
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+// A number of a report with its 95 % interval.
+struct Known {
+  double value = 0.0, low = 0.0, high = 0.0;
+
+  double deviation() const { return (high - low) / interval_width; }
+  std::string text() const {
+    return readable(value) + (std::isfinite(low) && high > low ? " " + interval_text(low, high) : "");
+  }
+};
+
+Known known(const Json& one, const char* key) {
+  Known result;
+  result.value = number_at(one.at(key));
+  const Json& interval = one.at("ci95");
+  result.low = interval.size() == 2 ? number_at(interval[0]) : result.value;
+  result.high = interval.size() == 2 ? number_at(interval[1]) : result.value;
+  return result;
+}
+
+// Standard deviations of their difference that two values are apart; none where nothing is known of that.
+std::optional<double> apart(const Known& a, const Known& b) {
+  const double deviation = std::hypot(a.deviation(), b.deviation());
+  if (!(deviation > 0.0) || !std::isfinite(deviation)) return std::nullopt;
+  return std::fabs(a.value - b.value) / deviation;
+}
+
+std::string difference(const Known& a, const Known& b, const std::string& unit) {
+  std::string text = a.text() + " -> " + b.text() + (unit.empty() || unit == "1" ? "" : " " + unit);
+  const std::optional<double> far = apart(a, b);
+  if (far && *far > they_differ)
+    return text + ": they differ, by " + readable(*far, 2) + " standard deviations";
+  if (far) return text + ": no difference beyond their errors";
+  return text;
+}
+
+std::string causes_of(const Json& report) {
+  std::string text;
+  for (const Json& one : report.at("cause"))
+    text += (text.empty() ? "" : " + ") + one.at("effect").get<std::string>();
+  return text.empty() ? "" : " by " + text;
+}
+
+const Json* cause_in(const Json& report, const std::string& effect) {
+  for (const Json& one : report.at("cause"))
+    if (one.at("effect") == effect) return &one;
+  return nullptr;
+}
+
+std::string word_of(const Json& verdict) {
+  std::string text = verdict.get<std::string>();
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string score(const Json& gap, const char* key) { return readable(number_at(gap.at(key))); }
+
+std::string compared(const NamedReport& name_a, const NamedReport& name_b, const Json& a, const Json& b) {
+  std::string out = summary_line("A", name_a.name + ": " + word_of(a.at("verdict")) + causes_of(a)) +
+                    summary_line("B", name_b.name + ": " + word_of(b.at("verdict")) + causes_of(b));
+  bool any = a.at("verdict") != b.at("verdict");
+  for (const Json& cause : a.at("cause")) {
+    const std::string effect = cause.at("effect");
+    const Json* const other = cause_in(b, effect);
+    if (other == nullptr) {
+      out += summary_line("only A", effect);
+      any = true;
+      continue;
+    }
+    for (const auto& [name, one] : cause.at("parameters").items())
+      if (other->at("parameters").contains(name))
+        out += summary_line(
+            "both", effect + ", " + name + " " +
+                        difference(known(one, "value"), known(other->at("parameters").at(name), "value"),
+                                   one.at("unit").get<std::string>()));
+  }
+  for (const Json& cause : b.at("cause"))
+    if (cause_in(a, cause.at("effect").get<std::string>()) == nullptr) {
+      out += summary_line("only B", cause.at("effect").get<std::string>());
+      any = true;
+    }
+  for (const auto& [name, one] : a.at("constants").items()) {
+    if (!b.at("constants").contains(name)) continue;
+    const Json& other = b.at("constants")[name];
+    const Known first = known(one, "fitted"), second = known(other, "fitted");
+    const std::optional<double> far = apart(first, second);
+    const bool configured = number_at(one.at("configured")) != number_at(other.at("configured"));
+    if (far && *far > they_differ)
+      out += summary_line("constant", name + " " + difference(first, second, ""));
+    if (configured)
+      out += summary_line("configured",
+                          name + " " + score(one, "configured") + " -> " + score(other, "configured"));
+    any = any || configured || (far && *far > they_differ);
+  }
+  char row[200];
+  std::snprintf(row, sizeof row, "\n  %-26s%22s%22s%22s\n", "RMSE, held out", "as configured", "with effect",
+                "noise floor");
+  std::string table;
+  for (const auto& [signal, gap] : a.at("gap").items()) {
+    if (!b.at("gap").contains(signal)) continue;
+    const Json& other = b.at("gap")[signal];
+    char cells[300];
+    const std::string name = plant::in_words(signal) + " / " + gap.at("unit").get<std::string>();
+    const auto both = [&](const char* key) { return score(gap, key) + " -> " + score(other, key); };
+    std::snprintf(cells, sizeof cells, "  %-26s%22s%22s%22s\n", name.c_str(), both("before").c_str(),
+                  both("after").c_str(), both("noise_floor").c_str());
+    table += cells;
+    if (gap.at("unit") != other.at("unit"))
+      table += summary_line("", "B has it in " + other.at("unit").get<std::string>());
+  }
+  if (!table.empty()) out += row + table;
+  for (const auto& [signal, gap] : a.at("gap").items())
+    if (!b.at("gap").contains(signal)) out += summary_line("only A", plant::in_words(signal) + " is judged");
+  for (const auto& [signal, gap] : b.at("gap").items())
+    if (!a.at("gap").contains(signal)) out += summary_line("only B", plant::in_words(signal) + " is judged");
+  if (!any) out += summary_line("", "Both say the same.");
+  return out;
+}
+
+}  // namespace
+
+std::string comparison(const NamedReport& a, const NamedReport& b) {
+  const Json first = parsed(a), second = parsed(b);
+  try {
+    return compared(a, b, first, second);
+  } catch (const Json::exception& error) {
+    throw InputError(a.name + " and " + b.name + ": not as reports are written: " + error.what());
+  }
+}
+
+}  // namespace thermopower::io

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Copyright (c) 2026 the thermopower authors
+
+#include "command.hpp"
+#include "program.hpp"
+#include "text_file.hpp"
+
+#include <thermopower/io.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace io = thermopower::io;
+
+Command add_compare(CLI::App& program) {
+  const auto asked = std::make_shared<std::vector<std::string>>();
+  CLI::App* const app = program.add_subcommand(
+      "compare", "say in what two reports differ: two units, before and after, two simulators");
+  app->add_option("report", *asked, "two reports that 'diagnose --report' wrote (JSON)")
+      ->required()
+      ->expected(2);
+  return {app, [asked] {
+            const auto text_of = [](const std::string& path) {
+              if (!std::filesystem::is_regular_file(path))
+                throw io::InputError(path + ": there is no such file");
+              return io::NamedReport{path, read_text(path)};
+            };
+            std::fputs(io::comparison(text_of((*asked)[0]), text_of((*asked)[1])).c_str(), stdout);
+            return made;
+          }};
+}
