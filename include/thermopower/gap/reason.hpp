@@ -34,8 +34,7 @@ inline const char* to_string(Reason reason) {
     case Reason::constants_moved:
       return "refitted constants alone bring every signal near its noise floor, and no effect is needed";
     case Reason::common_factor:
-      return "refitted constants alone bring every signal near its noise floor, but several are off by one common factor: look "
-             "for a unit, a gear or a supply";
+      return "several constants are off by one common factor: look for a unit, a gear or a supply before any cause is named";
     case Reason::constants_leave_a_rest:
       return "there is a gap; refitted constants predict held-out data best and leave a gap, and no effect does better";
     case Reason::cause_explains:

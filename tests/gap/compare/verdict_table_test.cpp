@@ -58,6 +58,15 @@ TEST_CASE("constants that leave a gap explain nothing") {
   CHECK(verdict_of({row(46.0, 8.0, 8.0)}, 1.0, true, false) == Verdict::unexplained);
 }
 
+TEST_CASE(
+    "where one factor is common to several constants, no cause is named, and none is denied by constants within known") {
+  DecisionNumbers numbers = numbers_of({row(20.0, 1.0, 1.0)}, 1.0);
+  numbers.common_factor = true;
+  CHECK(decide(numbers, true, false).reason == Reason::common_factor);
+  CHECK(decide(numbers, false, false).verdict == Verdict::unexplained);
+  CHECK(decide(numbers, true, true).reason == Reason::constants_within_known);
+}
+
 TEST_CASE("a cause near the floor explains, if it is sure") {
   CHECK(verdict_of({row(20.0, 15.0, 1.1)}, 0.95) == Verdict::explained);
   CHECK(verdict_of({row(20.0, 15.0, 1.1)}, 0.85) == Verdict::ambiguous);

@@ -94,3 +94,21 @@ TEST_CASE("a thermometer that only follows the air is not attached") {
   r.set("motor_C", motor);
   CHECK(has(findings(test::cased_model(), r), FindingKind::detached_sensor, Severity::error));
 }
+
+TEST_CASE("an axis that never moves under its drive says so, and one that turns at one rate does not") {
+  Recording still = test::recorded(test::RubbingAxis{1, 1.0, 0.0});
+  std::mt19937 numbers(5);
+  std::normal_distribution<double> noise;
+  Recording cruise = still;
+  for (const char* column : {"angle_deg", "rate_dps"}) {
+    Eigen::VectorXd values = still.column(column);
+    for (double& one : values) one = 12.0 * (column[0] == 'a') + 0.05 * noise(numbers);
+    still.set(column, values);
+  }
+  CHECK(has(findings(test::rubbing_model(), still), FindingKind::detached_sensor, Severity::error));
+  Eigen::VectorXd rates = cruise.column("rate_dps");
+  for (double& one : rates) one = 90.0 + 0.05 * noise(numbers);
+  cruise.remove("angle_deg");
+  cruise.set("rate_dps", rates);
+  CHECK_FALSE(has(findings(test::rubbing_model(), cruise), FindingKind::detached_sensor, Severity::error));
+}

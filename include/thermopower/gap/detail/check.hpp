@@ -80,6 +80,9 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
     for (const PreparedRecording& one : *all) units.add(one, spans[at++]);
   units.find(findings);
   if (!units.is_as_expected()) return;
+  check_motion_sensors(model, checked.train, [&](std::vector<Finding> found) {
+    for (Finding& finding : found) findings.push_back(std::move(finding));
+  });
   for (const auto* all : {&checked.train, &checked.held_out})
     for (const PreparedRecording& one : *all) {
       FindingList list(one.recording());

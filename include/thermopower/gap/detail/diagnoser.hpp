@@ -266,6 +266,7 @@ private:
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
     const std::vector<ConstantEstimate> refitted =
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
+    result_.numbers.common_factor = result_.numbers.common_factor || share_a_factor(refitted);
     const bool within_known = std::all_of(refitted.begin(), refitted.end(),
                                           [](const ConstantEstimate& one) { return one.within_known; });
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
@@ -277,9 +278,8 @@ private:
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
-    const bool by_constants = decided.reason == Reason::constants_within_known ||
-                              decided.reason == Reason::constants_moved ||
-                              decided.reason == Reason::common_factor;
+    const bool by_constants =
+        decided.reason == Reason::constants_within_known || decided.reason == Reason::constants_moved;
     const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                        decided.verdict == Verdict::partial;
     result_.constants = named && !by_constants ? constants_of(chosen, model_, weight) : refitted;
@@ -330,6 +330,21 @@ private:
     double readings = 0.0, most = 0.0;
     for (const double samples : candidate.train.samples) readings += samples, most = std::max(most, samples);
     return readings >= per_parameter * free && most >= least;
+  }
+
+  /// Whether all constants that moved by more than is known of them, two at least, moved by one factor: a supply of twice the
+  /// voltage looks like twice the resistance, heat capacity and conductance.
+  static bool share_a_factor(const std::vector<ConstantEstimate>& constants) {
+    constexpr double alike = 0.1;  // of the factor's logarithm, and least logarithm
+    double low = 1e300, high = -1e300;
+    int count = 0;
+    for (const ConstantEstimate& one : constants) {
+      if (one.within_known || one.is_place || !(one.fitted / one.configured > 0.0)) continue;
+      const double factor = std::log(one.fitted / one.configured);
+      low = std::min(low, factor), high = std::max(high, factor);
+      ++count;
+    }
+    return count >= 2 && low * high > 0.0 && high - low < alike;
   }
 
   /// Places of the constants that moved by more than is known of them.

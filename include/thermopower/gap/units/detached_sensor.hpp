@@ -4,16 +4,18 @@
 
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
+#include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/bench_at_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <variant>
+#include <utility>
 #include <vector>
 
 /// @file detached_sensor.hpp
-/// Thermometers that do not follow the power: one that nobody reads, and one that measures the air.
+/// Sensors that are not attached: thermometers that do not follow the power, and an axis whose sensors show no motion at all.
 
 namespace thermopower::gap::engine {
 
@@ -23,9 +25,10 @@ struct DetachedSensorThresholds {
   double least_K = 10.0;  ///< that the model's motor warms by: thermometers come in steps of a degree or two
   double share =
       0.05;  ///< of that by which the thermometer may differ from the air: constants are off by less
-  double accuracy_K = 2.0;  ///< of two thermometers in one air
-  double typical = 0.95;    ///< share of the samples that are compared
-  double follows = 0.25;    ///< share of the variance that a warming motor explains: it is attached
+  double level =
+      0.25;  ///< of that by which it may lie beside the air, wherever it lies: a warm motor lies higher
+  double typical = 0.95;  ///< share of the samples that are compared
+  double follows = 0.25;  ///< share of the variance that a warming motor explains: it is attached
   double least_gain =
       0.1;  ///< kelvin for each of the model's that a warming motor shows: constants are off by less
   double slowest = 10.0;        ///< times that the motor's time constant may be off, either way
@@ -71,11 +74,14 @@ inline void check_thermometer(const Model& model, const PreparedRecording& prepa
   const Eigen::VectorXd above = motor - inputs.ambient_C;
   std::vector<double> differences = finite_samples(above);
   if (differences.size() < limit.least_rows) return;
-  const double offset_K = median_of(differences);
-  for (double& one : differences) one = std::abs(one - offset_K);
-  const double most_K = limit.share * warms_K;
-  if (std::abs(offset_K) > std::max(limit.accuracy_K, most_K) ||
-      quantile_of(differences, limit.typical) > most_K)
+  // It follows the air, or lies somewhere and follows nothing.
+  const auto spread_K = [&](std::vector<double> values) {
+    const double middle = median_of(values);
+    for (double& one : values) one = std::abs(one - middle);
+    return quantile_of(values, limit.typical);
+  };
+  if (std::abs(median_of(differences)) > limit.level * warms_K ||
+      std::min(spread_K(differences), spread_K(samples)) > limit.share * warms_K)
     return;
   for (const double slower : {1.0 / limit.slowest, 1.0, limit.slowest}) {
     const Eigen::VectorXd rise = heated_rise(inputs, heat_W, slower * capacity, conductance);
@@ -88,10 +94,104 @@ inline void check_thermometer(const Model& model, const PreparedRecording& prepa
     xx -= x * x / n, xy -= x * y / n, yy -= y * y / n;
     if (xy > limit.least_gain * xx && xy * xy > limit.follows * xx * yy) return;
   }
-  list.add(FindingKind::detached_sensor, Severity::error, "motor_C",
-           "does not follow the power: it stays at the air's temperature, where the model's motor warms by " +
-               short_number(warms_K) + " K; is the sensor attached?",
-           "attach the sensor to the motor, or leave the column out");
+  list.add(
+      FindingKind::detached_sensor, Severity::error, "motor_C",
+      "does not follow the power: it stays near the air's temperature, where the model's motor warms by " +
+          short_number(warms_K) + " K; is the sensor attached?",
+      "attach the sensor to the motor, or leave the column out");
+}
+
+/// Thresholds of an axis that never moves. Held by tests/gap/units/unit_posterior_test.cpp.
+struct StillAxisThresholds {
+  double noise = 12.0;  ///< times the noise between rows within which all readings lie: it never moved
+  double moves = 20.0;  ///< times that range that the model's axis moves by, and at least a degree
+  Eigen::Index least_rows = 50;
+};
+
+/// The widest the readings of a sensor lie apart, and what noise alone makes of it; both 0 without readings.
+struct ReadingRange {
+  double range = 0.0, noise = 0.0;
+};
+
+/// @param values  with NaN where nothing was read
+inline ReadingRange range_of(const Eigen::VectorXd& values) {
+  std::vector<double> steps;
+  double low = 1e300, high = -1e300, last = std::nan("");
+  for (const double one : values) {
+    if (!std::isfinite(one)) continue;
+    low = std::min(low, one), high = std::max(high, one);
+    if (std::isfinite(last)) steps.push_back(one - last);
+    last = one;
+  }
+  if (steps.empty()) return {};
+  double square = 0.0;
+  for (const double one : steps) square += one * one;
+  return {high - low, std::sqrt(0.5 * square / static_cast<double>(steps.size()))};
+}
+
+/// How far a rigid axis would turn by a recorded drive, deg: what the model says, with its own friction and nothing else.
+inline double travel_deg(const Model& model, const Inputs& inputs) {
+  const RigidAxisModel& axis = *model.axis;
+  const Eigen::VectorXd& drive = plant::command(inputs, axis.voltage_driven());
+  const double torque = axis.torque_constant_Nm_per_A;
+  const double per_drive = axis.voltage_driven() ? torque / axis.resistance_ohm : torque;
+  const double damping = axis.viscous_Nms_per_rad + (axis.voltage_driven() ? torque * per_drive : 0.0);
+  double widest = 0.0;
+  for (const RunSpan& run : inputs.runs) {
+    double angle = 0.0, rate = 0.0, low = 0.0, high = 0.0;
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      const double step_s = inputs.t_s[i] - inputs.t_s[i - 1];
+      const double push = std::isfinite(drive[i - 1]) ? per_drive * drive[i - 1] : 0.0;
+      const double stays = std::exp(-step_s * damping / axis.inertia_kgm2);
+      const double end = damping > 0.0 ? push / damping : rate + push * step_s / axis.inertia_kgm2;
+      rate = damping > 0.0 ? stays * rate + (1.0 - stays) * end : end;
+      angle += rate * step_s * plant::deg_per_rad;
+      low = std::min(low, angle), high = std::max(high, angle);
+    }
+    widest = std::max(widest, high - low);
+  }
+  return widest;
+}
+
+/// Whether angle and rate show no motion in a whole recording whose drive would turn the model's axis far.
+inline bool shows_no_motion(const Model& model, const Inputs& inputs) {
+  constexpr StillAxisThresholds limit;
+  if (!model.axis || model.own || inputs.closed_loop || inputs.rows() < limit.least_rows ||
+      plant::command(inputs, model.axis->voltage_driven()).size() == 0)
+    return false;
+  const bool angle = inputs.judged(Signal::angle_deg), rate = inputs.judged(Signal::rate_dps);
+  if (!angle && !rate) return false;
+  const ReadingRange turned = angle ? range_of(inputs.of(Signal::angle_deg)) : ReadingRange();
+  if (angle && turned.range > limit.noise * turned.noise) return false;
+  if (rate) {  // an axis that turns at one rate moves
+    const Eigen::VectorXd& rates = inputs.of(Signal::rate_dps);
+    const double noise = range_of(rates).noise;
+    for (const double one : rates)
+      if (std::abs(one) > limit.noise * noise) return false;
+  }
+  return travel_deg(model, inputs) > std::max(1.0, limit.moves * turned.range);
+}
+
+/// Adds a finding to every recording in which an axis never moved: nothing can be learned from it, whether a sensor is loose or the
+/// axis is held. Where others show a motion, it stops nothing.
+/// @param train  what a model is fitted to
+/// @param add    takes a recording and its severity
+template <class Add>
+void check_motion_sensors(const Model& model, const std::vector<PreparedRecording>& train, Add&& add) {
+  std::size_t still = 0;
+  for (const PreparedRecording& one : train) still += shows_no_motion(model, one.inputs()) ? 1 : 0;
+  const Severity severity = still == train.size() ? Severity::error : Severity::warning;
+  for (const PreparedRecording& one : train) {
+    if (!shows_no_motion(model, one.inputs())) continue;
+    FindingList list(one.recording());
+    const bool angle = one.inputs().judged(Signal::angle_deg);
+    list.add(FindingKind::detached_sensor, severity, angle ? "angle_deg" : "rate_dps",
+             "shows no motion, where the model's axis turns by " +
+                 short_number(travel_deg(model, one.inputs())) +
+                 " deg; is the sensor attached, and the axis free?",
+             "attach the sensor to the axis and free it, or leave the recording out");
+    add(list.take());
+  }
 }
 
 }  // namespace thermopower::gap::engine
