@@ -543,6 +543,7 @@ TEST_CASE("a delay is found where the command changes at each row and was there 
         axis.commanded_before = commanded_before;
         const Diagnosis diagnosis =
             diagnose(test::LateAxis::model(), {axis.recording(1)}, {axis.recording(2)});
+        INFO(diagnosis.reason);
         CHECK(diagnosis.verdict == Verdict::explained);
         REQUIRE(diagnosis.cause.size() == 1);
         CHECK(diagnosis.cause.front().effect == "actuation_delay");

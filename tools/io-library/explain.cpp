@@ -135,6 +135,8 @@ constexpr ReasonNotes reasons[] = {
     {Reason::configured_model_passes, "Record what the simulation will be used for."},
     {Reason::constants_within_known, "Take the refitted constants over (--augmented): they cost nothing."},
     {Reason::constants_moved, "Measure the constant that moved by itself."},
+    {Reason::common_factor,
+     "Read unit, gear ratio, supply and clock once more; record again with the right one."},
     {Reason::constants_leave_a_rest, "Vary one input at a time, over its whole range."},
     {Reason::cause_explains, "The experiment under 'next' confirms it."},
     {Reason::several_explain, "The experiment under 'next' tells them apart."},

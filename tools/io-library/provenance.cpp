@@ -50,7 +50,7 @@ std::string path_for_others(const std::string& path) {
 }
 
 std::string provenance_line(const Provenance& made_of) {
-  if (!made_of.told()) return {};
+  if (!is_told(made_of)) return {};
   std::string text;
   if (!made_of.model.empty()) text += "Model " + files({made_of.model}) + ". ";
   if (!made_of.recordings.empty()) {

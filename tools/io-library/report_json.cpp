@@ -180,7 +180,7 @@ Json report(const Diagnosis& diagnosis, const std::vector<EffectInfo>& effects, 
   root["next_experiment"] = diagnosis.next_experiment;
   root["reason"] = diagnosis.reason;
   root["words"] = sentences(diagnosis, effects);
-  if (made_of.told())
+  if (is_told(made_of))
     root["made_of"] = {{"version", version_text()},
                        {"model", made_of.model},
                        {"recordings", made_of.recordings},

@@ -16,10 +16,12 @@ struct Provenance {
   std::vector<std::string> held_out;    ///< paths of those to judge on; empty: a part of each recording
   std::vector<std::string> options;     ///< as typed, one each, such as `--horizon 0.2`
   std::string date;                     ///< such as `2026-03-01`; empty: not told
-
-  /// Whether there is anything to tell.
-  bool told() const { return !model.empty() || !recordings.empty() || !date.empty(); }
 };
+
+/// @brief Whether there is anything to tell.
+inline bool is_told(const Provenance& made_of) {
+  return !made_of.model.empty() || !made_of.recordings.empty() || !made_of.date.empty();
+}
 
 /// @brief Today as Provenance tells it (UTC), or the day of the environment's SOURCE_DATE_EPOCH.
 std::string today();

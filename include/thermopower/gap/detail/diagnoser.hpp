@@ -266,9 +266,14 @@ private:
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
     const std::vector<ConstantEstimate> refitted =
         constants_of(constants, model_, only_constants ? weight : correlation_of(constants, attempt.problem));
-    result_.numbers.common_factor = result_.numbers.common_factor || share_a_factor(refitted);
-    const bool within_known = std::all_of(refitted.begin(), refitted.end(),
-                                          [](const ConstantEstimate& one) { return one.within_known; });
+    const auto are_within = [](const std::vector<ConstantEstimate>& list) {
+      return std::all_of(list.begin(), list.end(),
+                         [](const ConstantEstimate& one) { return one.within_known; });
+    };
+    result_.numbers.common_factor =
+        only_constants ? result_.numbers.common_factor || share_a_factor(refitted)
+                       : result_.numbers.common_factor && !are_within(constants_of(chosen, model_, weight));
+    const bool within_known = are_within(refitted);
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
                                              : decide(result_.numbers, only_constants, within_known);
     const bool is_named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||

@@ -105,7 +105,7 @@ inline void check_thermometer(const Model& model, const PreparedRecording& prepa
 struct StillAxisThresholds {
   double noise = 12.0;  ///< times the noise between rows within which all readings lie: it never moved
   double moves = 20.0;  ///< times that range that the model's axis moves by, and at least a degree
-  Eigen::Index least_rows = 50;
+  Eigen::Index least_rows = 50;  ///< of a recording: fewer say nothing
 };
 
 /// The widest the readings of a sensor lie apart, and what noise alone makes of it; both 0 without readings.

@@ -81,7 +81,8 @@ inline void measure_axis(const Model& model, const PreparedRecording& prepared, 
     drive.value = std::abs(scale * inertia / effort.inertia.value * effort.inertia.partial);
     drive.sd = std::max(least_sd, -std::log(effort.inertia.partial));
   }
-  to[UnitMeasure::drive].forwards_nats = effort.forwards_nats * (scale < 0.0 ? -1.0 : 1.0);
+  to[UnitMeasure::drive].forwards_nats =
+      motion.sign_with_delays(closer, effort.forwards_nats) * (scale < 0.0 ? -1.0 : 1.0);
   if (EffortOnMotion::is_told(effort.drag) && drag > 0.0 && effort.drag.value > 0.0) {
     to[UnitMeasure::drag].value = std::abs(scale * drag / effort.drag.value * effort.drag.partial);
     to[UnitMeasure::drag].sd = std::max(least_sd, -std::log(effort.drag.partial));

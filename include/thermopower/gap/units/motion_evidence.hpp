@@ -167,6 +167,19 @@ public:
     return best;
   }
 
+  /// The sign of the effort, as EffortOnMotion::forwards_nats has it. An effort that acts some rows later than its stamp looks
+  /// like one of the other sign where it changes from row to row: with the right delay it tells more.
+  /// @param at_once  the sign without a delay
+  double sign_with_delays(bool by_rate, double at_once) const {
+    constexpr Eigen::Index rows_late = 4;
+    double told = at_once;
+    for (Eigen::Index late = 1; late <= rows_late && at_once < 0.0; ++late) {
+      const double delayed = effort(by_rate, -late).forwards_nats;
+      if (delayed >= std::abs(told)) told = delayed;
+    }
+    return told;
+  }
+
   /// The target by the motion that follows it. @param target  of the angle or of the rate
   ColumnRatio target_by(const Eigen::VectorXd& target, const Eigen::VectorXd& motion) const {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
@@ -273,7 +286,7 @@ private:
   /// Adds one interval of everything but the acceleration.
   void add(Window& window, const ReadRows::Part& part, double rate, const Reading& reading) const {
     for (Eigen::Index row = part.row; row < part.next; ++row) {
-      const Eigen::Index later = std::min(row + reading.earlier, command_.size() - 1);
+      const Eigen::Index later = std::clamp<Eigen::Index>(row + reading.earlier, 0, command_.size() - 1);
       window.response += part.weight * command_[later] * (t_s_[row + 1] - t_s_[row]);
       if (has_torque())
         window.terms[window.terms.size() - 1] += part.weight * torque_[row] * (t_s_[row + 1] - t_s_[row]);
