@@ -23,10 +23,10 @@ namespace thermopower::gap::design {
 
 /// What a design may be told.
 struct DesignOptions {
-  SearchSettings search = {};
-  double sure = 0.95;         ///< probability from which on an explanation is sure enough, 0.5..1
-  double worth_doing = 0.75;  ///< an experiment is proposed where it is expected to be right so often, 0..1
-  unsigned seed = 1;          ///< the same seed gives the same design
+  SearchSettings search = {};  ///< how much is tried
+  double sure = 0.95;          ///< probability from which on an explanation is sure enough, 0.5..1
+  double worth_doing = 0.75;   ///< an experiment is proposed where it is expected to be right so often, 0..1
+  unsigned seed = 1;           ///< the same seed gives the same design
 };
 
 /// Designs the experiment that best tells apart what a diagnosis leaves open.

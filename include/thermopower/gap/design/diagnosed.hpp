@@ -12,8 +12,8 @@ namespace thermopower::gap::design {
 
 /// A signal that will be recorded, and its noise.
 struct Watched {
-  Signal signal = Signal::motor_C;
-  double noise = 1.0;  ///< standard deviation in the signal's unit, > 0
+  Signal signal = Signal::motor_C;  ///< that is watched
+  double noise = 1.0;               ///< standard deviation in the signal's unit, > 0
 };
 
 /// What a diagnosis leaves open, as a design needs it.

@@ -51,7 +51,7 @@ inline std::optional<std::string> lacking_for(const DiagnosedGap& gap, const Lim
 
 /// Limits of which one is raised.
 struct RaisedLimit {
-  Limits limits;
+  Limits limits;      ///< with the one that is raised
   std::string field;  ///< of the limits
   double to = 0.0;    ///< its new value
 };

@@ -32,9 +32,10 @@ inline const char* to_string(Ending ending) {
 
 /// What a class of explanations predicts of one signal.
 struct PredictedSignal {
-  Signal signal = Signal::motor_C;
-  Eigen::VectorXd middle;     ///< at the fit of the likeliest member, a value for each row of the schedule
-  Eigen::VectorXd low, high;  ///< the range of what its parameters leave open: nine of ten draws lie within
+  Signal signal = Signal::motor_C;  ///< that is predicted
+  Eigen::VectorXd middle;  ///< at the fit of the likeliest member, a value for each row of the schedule
+  Eigen::VectorXd low;     ///< where the range begins in which nine of ten draws of its parameters lie
+  Eigen::VectorXd high;    ///< where that range ends
 };
 
 /// Explanations that no experiment within the limits tells apart.
@@ -51,17 +52,17 @@ struct ExplanationClass {
 
 /// The next experiment.
 struct Design {
-  Ending ending = Ending::nothing_possible;
-  std::string sentence;                   ///< the same in words, with numbers
-  Recording schedule;                     ///< only of Ending::schedule
-  std::vector<ExplanationClass> classes;  ///< likeliest first
+  Ending ending = Ending::nothing_possible;  ///< how it ended
+  std::string sentence;                      ///< the same in words, with numbers
+  Recording schedule;                        ///< only of Ending::schedule
+  std::vector<ExplanationClass> classes;     ///< likeliest first
   double expected_right =
       0.0;  ///< probability that the likeliest class after the experiment is the true one, 0..1
   double best_apart =
       0.0;  ///< the largest separation of two explanations that was reached, in standard deviations
-  std::string limit_to_raise;  ///< field of the limits; empty where none helps or none is needed
-  double raise_to = 0.0;       ///< to what, in its unit
-  std::size_t experiments_tried = 0;
+  std::string limit_to_raise;         ///< field of the limits; empty where none helps or none is needed
+  double raise_to = 0.0;              ///< to what, in its unit
+  std::size_t experiments_tried = 0;  ///< that the search simulated
 };
 
 }  // namespace thermopower::gap::design

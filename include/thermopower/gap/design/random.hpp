@@ -12,6 +12,7 @@ namespace thermopower::gap::design {
 /// How to: @ref design_the_next_experiment.
 class Random {
 public:
+  /// @param seed  the same seed draws the same numbers
   explicit Random(unsigned seed) : engine_(seed) {}
 
   /// From 0 to 1, 1 not included.

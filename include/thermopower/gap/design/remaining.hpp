@@ -15,8 +15,8 @@ namespace thermopower::gap::design {
 
 /// An explanation that is still possible, and whether it predicts all data as well as the likeliest one.
 struct StillOpen {
-  Possible explanation;
-  bool tied = false;  ///< whatever its probability: only what was known before the data speaks against it
+  Possible explanation;  ///< that is still open
+  bool tied = false;     ///< whatever its probability: only what was known before the data speaks against it
 };
 
 /// The explanations that an experiment has to tell apart: those that have one per cent or more, those that predict held-out data as

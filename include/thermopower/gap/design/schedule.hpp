@@ -28,7 +28,7 @@ enum class Shape {
 ///
 /// How to: @ref design_the_next_experiment.
 struct Piece {
-  Shape shape = Shape::rest;
+  Shape shape = Shape::rest;   ///< what it does
   double duration_s = 1.0;     ///< how long, s, > 0
   double level = 0.0;          ///< middle, -1..1: 0 is at rest, 1 the largest value and -1 the smallest
   double size = 0.0;           ///< amplitude around the middle, 0..1
@@ -87,8 +87,8 @@ struct Course {
 ///
 /// How to: @ref design_the_next_experiment.
 struct Experiment {
-  std::vector<Course> courses;
-  double scale = 1.0;  ///< multiplies everything, 0..1: how far the limits of the motion allow it
+  std::vector<Course> courses;  ///< of the inputs, one each
+  double scale = 1.0;           ///< multiplies everything, 0..1: how far the limits of the motion allow it
 
   /// How long it takes, s: the longest course.
   double duration_s() const {

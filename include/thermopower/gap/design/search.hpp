@@ -31,8 +31,8 @@ struct SearchSettings {
 
 /// An experiment that keeps the limits, and what it tells apart.
 struct Tried {
-  Experiment experiment;
-  Recording schedule;
+  Experiment experiment;    ///< what was tried
+  Recording schedule;       ///< its inputs, row by row
   Separations apart;        ///< of each pair of explanations
   double duration_s = 0.0;  ///< of the schedule
 };

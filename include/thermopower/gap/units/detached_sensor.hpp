@@ -110,7 +110,8 @@ struct StillAxisThresholds {
 
 /// The widest the readings of a sensor lie apart, and what noise alone makes of it; both 0 without readings.
 struct ReadingRange {
-  double range = 0.0, noise = 0.0;
+  double range = 0.0;  ///< between the lowest and the highest reading
+  double noise = 0.0;  ///< standard deviation of one reading, from the steps between them
 };
 
 /// @param values  with NaN where nothing was read

@@ -115,9 +115,10 @@ public:
 
   /// What all parts share beside their units: the logarithms by which measures are off, and the air.
   struct Shared {
-    std::array<double, unit_measure_count> measures{};
-    double air_C = 0.0;
+    std::array<double, unit_measure_count> measures{};  ///< logarithms of what the model is off by
+    double air_C = 0.0;                                 ///< temperature of the air where none is recorded
   };
+  /// What the recordings share, with the units given.
   Shared shared_by(const Assignment& units) const {
     Shared all;
     for (std::size_t k = 0; k < unit_measure_count; ++k)
