@@ -122,7 +122,7 @@ TEST_CASE(
   const std::string here = THERMOPOWER_JOINTS;
   const std::string files =
       recorded(here + "/frame.json", here + "/frame_train.csv", here + "/frame_heldout.csv");
-  check_quotes("docs/how-to/motor-on-a-frame.md", 8,
+  check_quotes("docs/how-to/motor-on-a-frame.md", 7,
                diagnosed(files) + diagnosed(files + " --without contact_resistance") +
                    diagnosed(recorded(here + "/bolted.json", here + "/bolted_train.csv",
                                       here + "/bolted_heldout.csv")));
