@@ -104,18 +104,17 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
   const bool is_proven = 1.0 - numbers.share.most >= limit.material;
   if (!is_proven && numbers.configured <= limit.near_floor && numbers.twice_horizon <= limit.near_floor)
     return {Verdict::no_gap, Reason::configured_model_passes};
-  if (only_constants) {
-    // Near the floor as configured, too, and no better: the gap shows in longer windows, and constants do not close it.
-    const bool closes_nothing = !is_proven && numbers.configured <= limit.near_floor;
-    if (!near || closes_nothing) return {Verdict::unexplained, Reason::constants_leave_a_rest};
-    if (numbers.common_factor && !within_known) return {Verdict::unexplained, Reason::common_factor};
+  // Near the floor as configured, too, and no better: the gap shows in longer windows, and constants do not close it.
+  const bool closes_nothing = !is_proven && numbers.configured <= limit.near_floor;
+  if (only_constants && (!near || closes_nothing))
+    return {Verdict::unexplained, Reason::constants_leave_a_rest};
+  // One factor in a unit, a gear or a supply does what the moved constants do, alone or beside an effect.
+  if (near && numbers.common_factor && !within_known) return {Verdict::unexplained, Reason::common_factor};
+  if (only_constants)
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
-  }
   // An explanation at the floor closes the gap. It need not beat constants that do, too: their moves count in its
   // probability.
   const bool closes = is_proven && numbers.share.of_refitted_constants <= limit.of_constants;
-  // One factor in a unit, a gear or a supply does what the moved constants beside the effect do: not a cause alone.
-  if (near && numbers.common_factor && !within_known) return {Verdict::unexplained, Reason::common_factor};
   if (near && within_known && numbers.probability < limit.sure && numbers.refitted <= limit.near_floor)
     return {Verdict::explained, Reason::constants_within_known};
   if (near)

@@ -372,6 +372,11 @@ inline double misfit_of(const SignalSums& sums, const std::array<double, signal_
   return deviance;
 }
 
+/// Deviance of a candidate that was weighed, without what it costs.
+inline double misfit_of(const Candidate& candidate) {
+  return candidate.train_deviance + candidate.held_out_deviance;
+}
+
 /// Deviance of every candidate and its probability among them; 0 for those that end on their bounds or were not
 /// judged on held-out data.
 ///
@@ -425,8 +430,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
   // Standard error of how much better one fits than the other, pooled; or as large as leaves the difference as many
   // standard errors large as it is block by block, where that is more.
   const auto uncertainty = [&](const Candidate& one, const Candidate& other) {
-    const auto fit = [](const Candidate& of) { return of.train_deviance + of.held_out_deviance; };
-    const bool first = fit(one) < fit(other);
+    const bool first = misfit_of(one) < misfit_of(other);
     const Candidate &good = first ? one : other, &bad = first ? other : one;
     const double pooled = std::hypot(standard_error(bad.train, good.train, weight.correlation),
                                      standard_error(bad.held_out, good.held_out, weight.held_out));
@@ -434,7 +438,8 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     by_block.add(bad.train, good.train, merged(bad.train, weight.correlation), weight.correlation);
     by_block.add(bad.held_out, good.held_out, merged(bad.held_out, weight.held_out), weight.held_out);
     if (!by_block.decides(is_at_the_noise(good))) return pooled;
-    return std::min(pooled, (fit(bad) - fit(good)) / by_block.value() * by_block.standard_error());
+    return std::min(pooled,
+                    (misfit_of(bad) - misfit_of(good)) / by_block.value() * by_block.standard_error());
   };
   if (best == nullptr) {
     for (Candidate& one : candidates) one.probability = 0.0;

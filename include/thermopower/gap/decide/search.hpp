@@ -169,19 +169,9 @@ public:
   /// @param place  of the set among the candidates
   std::vector<Promise> simpler_instead_of(const std::vector<Candidate>& candidates, std::size_t place,
                                           const std::vector<Explanation>& singles) const {
-    const Explanation& set = candidates[place].explanation;
-    std::vector<Promise> sets;
-    for (std::size_t member = 0; member < set.effects.size(); ++member)
-      for (const Explanation& single : singles) {
-        const EffectInfo& now = set.effects[member]->info;
-        if (set.includes(single) || single.effects.front()->info.submodel != now.submodel ||
-            single.effects.front()->info.parameters.size() >= now.parameters.size())
-          continue;
-        Explanation other = set;
-        other.effects[member] = single.effects.front();
-        if (!is_known(candidates, other)) sets.push_back({{}, place, std::move(other)});
-      }
-    return sets;
+    return exchanged(candidates, place, singles, [](const EffectInfo& single, const EffectInfo& member) {
+      return single.parameters.size() < member.parameters.size();
+    });
   }
 
   /// Fits candidates of as many causes as the best ones, or fewer, once more from the ends of those in sight of the very
@@ -401,23 +391,36 @@ private:
     return static_cast<std::size_t>(&one - candidates.data());
   }
 
-  /// Adds the best set again with one member after another exchanged for its relatives, the causes of the same submodel. Of
-  /// two causes that do the same beside a third, only one may have been tried.
+  /// A set with one member after another exchanged for its relatives, the causes of the same submodel; those that are not among
+  /// the candidates yet.
+  /// @param place   of the set among the candidates
+  /// @param counts  takes a relative and the member: whether the one may stand for the other
+  template <class Counts>
+  static std::vector<Promise> exchanged(const std::vector<Candidate>& candidates, std::size_t place,
+                                        const std::vector<Explanation>& singles, Counts&& counts) {
+    const Explanation& set = candidates[place].explanation;
+    std::vector<Promise> sets;
+    for (std::size_t at = 0; at < set.effects.size(); ++at)
+      for (const Explanation& single : singles) {
+        const EffectInfo& member = set.effects[at]->info;
+        if (single.effects.empty() || set.includes(single) ||
+            single.effects.front()->info.submodel != member.submodel ||
+            !counts(single.effects.front()->info, member))
+          continue;
+        Explanation other = set;
+        other.effects[at] = single.effects.front();
+        if (!is_known(candidates, other)) sets.push_back({{}, place, std::move(other)});
+      }
+    return sets;
+  }
+
+  /// Adds the best set again with its members exchanged for their relatives: of two that do the same beside a third, only one
+  /// may have been tried.
   void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
     const Candidate& near = fittest(candidates);
-    const std::size_t place = place_of(candidates, near);
-    const Explanation& leader = near.explanation;
-    if (leader.size() < 2) return;
-    std::vector<Promise> tries;
-    for (std::size_t member = 0; member < leader.effects.size(); ++member)
-      for (const Explanation& single : singles) {
-        if (single.effects.empty() || leader.includes(single) ||
-            single.effects.front()->info.submodel != leader.effects[member]->info.submodel)
-          continue;
-        Explanation other = leader;
-        other.effects[member] = single.effects.front();
-        if (!is_known(candidates, other)) tries.push_back({{}, place, std::move(other)});
-      }
+    if (near.explanation.size() < 2) return;
+    const std::vector<Promise> tries = exchanged(candidates, place_of(candidates, near), singles,
+                                                 [](const EffectInfo&, const EffectInfo&) { return true; });
     if (tries.empty()) return;
     const FirstLook look(near, glimpse_, coarse_);
     add_fitted(candidates, tries, Attribution(look.some, look.few));

@@ -258,9 +258,6 @@ private:
     result_.numbers = numbers_of(result_.gap, choice.probability);
     if (effort_leads_) result_.numbers.share = share_left({result_.gap.back()});
     result_.numbers.together = choice.together;
-    result_.numbers.common_factor =
-        std::any_of(result_.findings.begin(), result_.findings.end(),
-                    [](const Finding& one) { return one.kind == FindingKind::common_factor; });
     if (result_.numbers.configured <= verdict_limits.near_floor)
       result_.numbers.twice_horizon = at_twice_the_horizon();
     Candidate constants = only_constants ? chosen : likeliest_constants(candidates);
@@ -270,9 +267,13 @@ private:
       return std::all_of(list.begin(), list.end(),
                          [](const ConstantEstimate& one) { return one.within_known; });
     };
+    const std::vector<ConstantEstimate> of_chosen =
+        only_constants ? refitted : constants_of(chosen, model_, weight);
+    const bool is_found =
+        std::any_of(result_.findings.begin(), result_.findings.end(),
+                    [](const Finding& one) { return one.kind == FindingKind::common_factor; });
     result_.numbers.common_factor =
-        only_constants ? result_.numbers.common_factor || share_a_factor(refitted)
-                       : result_.numbers.common_factor && !are_within(constants_of(chosen, model_, weight));
+        only_constants ? is_found || share_a_factor(refitted) : is_found && !are_within(of_chosen);
     const bool within_known = are_within(refitted);
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
                                              : decide(result_.numbers, only_constants, within_known);
@@ -287,7 +288,7 @@ private:
         decided.reason == Reason::constants_within_known || decided.reason == Reason::constants_moved;
     const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                        decided.verdict == Verdict::partial;
-    result_.constants = named && !by_constants ? constants_of(chosen, model_, weight) : refitted;
+    result_.constants = named && !by_constants ? of_chosen : refitted;
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
     if (by_constants) {

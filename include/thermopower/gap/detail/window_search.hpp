@@ -176,10 +176,10 @@ public:
     const Candidate& best = attempt_.candidates[likeliest(attempt_.candidates)];
     std::vector<Promise> sets;
     std::size_t found = 0;
-    const auto misfit = [](const Candidate& of) { return of.train_deviance + of.held_out_deviance; };
     for (const std::size_t place : by_deviance(attempt_.candidates)) {
       const Candidate& one = attempt_.candidates[place];
-      if (!one.on_bounds || one.explanation.effects.size() < 2 || !(misfit(one) < misfit(best))) continue;
+      if (!one.on_bounds || one.explanation.effects.size() < 2 || !(misfit_of(one) < misfit_of(best)))
+        continue;
       if (++found > tried) break;
       for (Promise& set : search_->simpler_instead_of(attempt_.candidates, place, effects()))
         sets.push_back(std::move(set));

@@ -179,16 +179,16 @@ inline bool shows_no_motion(const Model& model, const Inputs& inputs) {
 /// @param add    takes a recording and its severity
 template <class Add>
 void check_motion_sensors(const Model& model, const std::vector<PreparedRecording>& train, Add&& add) {
-  std::size_t still = 0;
-  for (const PreparedRecording& one : train) still += shows_no_motion(model, one.inputs()) ? 1 : 0;
-  const Severity severity = still == train.size() ? Severity::error : Severity::warning;
-  for (const PreparedRecording& one : train) {
-    if (!shows_no_motion(model, one.inputs())) continue;
-    FindingList list(one.recording());
-    const bool angle = one.inputs().judged(Signal::angle_deg);
+  std::vector<const PreparedRecording*> still;
+  for (const PreparedRecording& one : train)
+    if (shows_no_motion(model, one.inputs())) still.push_back(&one);
+  const Severity severity = still.size() == train.size() ? Severity::error : Severity::warning;
+  for (const PreparedRecording* one : still) {
+    FindingList list(one->recording());
+    const bool angle = one->inputs().judged(Signal::angle_deg);
     list.add(FindingKind::detached_sensor, severity, angle ? "angle_deg" : "rate_dps",
              "shows no motion, where the model's axis turns by " +
-                 short_number(travel_deg(model, one.inputs())) +
+                 short_number(travel_deg(model, one->inputs())) +
                  " deg; is the sensor attached, and the axis free?",
              "attach the sensor to the axis and free it, or leave the recording out");
     add(list.take());

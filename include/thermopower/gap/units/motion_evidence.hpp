@@ -172,8 +172,9 @@ public:
   /// @param at_once  the sign without a delay
   double sign_with_delays(bool by_rate, double at_once) const {
     constexpr Eigen::Index rows_late = 4;
+    if (!(at_once < 0.0)) return at_once;
     double told = at_once;
-    for (Eigen::Index late = 1; late <= rows_late && at_once < 0.0; ++late) {
+    for (Eigen::Index late = 1; late <= rows_late; ++late) {
       const double delayed = effort(by_rate, -late).forwards_nats;
       if (delayed >= std::abs(told)) told = delayed;
     }
