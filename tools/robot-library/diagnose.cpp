@@ -64,7 +64,15 @@ public:
     out_.robot = robot;
   }
 
-  RobotDiagnosis run(const Log& log, const std::vector<Log>& held_out) {
+  RobotDiagnosis run(const Log& recorded, const std::vector<Log>& held_out) {
+    Log log = recorded;
+    const Wiring wiring = check_wiring(body_, out_.robot, log, options_.wiring);
+    out_.wiring = wiring.findings;
+    target_delay_s_ = wiring.target_delay_s;
+    if (!options_.as_recorded) {
+      mend(wiring, log);
+      mend(wiring, out_.robot);
+    }
     out_.log = log.file;
     out_.notes = log.notes;
     Log train = log, judged;
@@ -73,6 +81,7 @@ public:
       judged = part_of(log, true, options_.held_out_share);
     } else {
       judged = together(held_out);
+      if (!options_.as_recorded) mend(wiring, judged);
     }
     refuse(log);
     train_ = prepare(train);
@@ -280,7 +289,7 @@ private:
     JointFitter fitter(problem, options_.fit);
     const JointFit inverse = fitter.exactly(list(families));
     JointDynamics d = with_terms(joint(j), problem, inverse);
-    d.delay_s = out_.effort_is_measured ? 0.0 : out_.delay_s;
+    d.delay_s = out_.effort_is_measured ? target_delay_s_ : out_.delay_s;
     return d;
   }
 
@@ -709,6 +718,7 @@ private:
   Options options_;
   RobotDiagnosis out_;
   Prepared train_, held_;
+  double target_delay_s_ = 0.0;  // of the targets, told by the measured efforts
   std::vector<JointFit> fits_;
   std::vector<double> effort_rms_;
   std::vector<Families> chosen_, told_;

@@ -46,6 +46,36 @@ Json json_of(const Term& term) {
           {"predicts_alike", alike}};
 }
 
+const char* quantity_word(Role role) {
+  switch (role) {
+    case Role::position:
+      return "position";
+    case Role::velocity:
+      return "velocity";
+    case Role::effort:
+      return "effort";
+    case Role::target:
+      return "target";
+    default:
+      return "all";
+  }
+}
+
+Json json_of(const std::vector<WiringFinding>& findings, const Robot& robot) {
+  Json out = Json::array();
+  for (const WiringFinding& one : findings) {
+    Json joints = Json::array();
+    for (const int j : one.joints) joints.push_back(robot.joints[static_cast<std::size_t>(j)].name);
+    out.push_back({{"kind", to_string(one.fault)},
+                   {"quantity", quantity_word(one.quantity)},
+                   {"joints", joints},
+                   {"number", number(one.number)},
+                   {"action", one.mended ? "mended" : "none"},
+                   {"text", one.text}});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string robot_json(const RobotDiagnosis& robot) {
@@ -59,7 +89,7 @@ std::string robot_json(const RobotDiagnosis& robot) {
            {"effort", robot.effort_is_measured ? "measured" : "from_targets"},
            {"delay_s", number(robot.delay_s)},
            {"on_ground", robot.stands_on_ground},
-           {"wiring", robot.wiring},
+           {"wiring", json_of(robot.wiring, robot.robot)},
            {"notes", robot.notes},
            {"tracking", json_of(robot.tracking, "rad")}};
   Json joints = Json::array();

@@ -5,6 +5,7 @@
 #include "command_options.hpp"
 #include "program.hpp"
 #include "progress.hpp"
+#include "robot_command.hpp"
 
 #include <thermopower/gap.hpp>
 #include <thermopower/io.hpp>
@@ -53,12 +54,23 @@ Command add_check(CLI::App& program) {
   const auto asked = std::make_shared<Arguments>();
   CLI::App* const app = program.add_subcommand(
       "check", "say what is wrong with recordings, and what they can show; nothing is fitted");
-  app->add_option("--model", asked->model, "the simulation under test (JSON)")->required();
+  const auto robot = std::make_shared<RobotArguments>();
+  app->add_option(
+      "--model", asked->model,
+      "the simulation under test (JSON); a whole robot instead: --mjcf or --urdf without --model");
+  app->add_option("--mjcf", asked->mjcf, "a whole robot as MJCF, whose log is checked");
+  app->add_option("--urdf", asked->urdf, "the same as URDF");
   add_recordings(*app, *asked, "a recording");
   app->add_option("--heldout", asked->held_out, "a recording to judge on; may be repeated");
   app->add_option("--report", asked->report, "write the same for machines (JSON)");
   add_horizon(*app, *asked)->capture_default_str();
   add_as_recorded(*app, *asked);
   add_column_choices(*app, *asked);
-  return {app, [asked] { return check(*asked); }};
+  add_robot_options(*app, *robot);
+  return {app, [asked, robot] {
+            if (is_robot(*asked)) return check_robot(*asked, *robot);
+            if (asked->model.empty())
+              throw UsageError("--model is required, or --mjcf or --urdf for a whole robot");
+            return check(*asked);
+          }};
 }

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -81,16 +82,61 @@ void set_gains(robot::Robot& body, const char* option, const std::vector<std::st
   }
 }
 
-}  // namespace
+/// A robot's file with its gains, and the logs.
+struct Loaded {
+  std::unique_ptr<robot::MujocoBody> body;
+  robot::Robot joints;
+  std::vector<robot::Log> logs, held_out;
+};
 
-int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
+const std::string& robot_path(const Arguments& arguments) {
   if (!arguments.mjcf.empty() && !arguments.urdf.empty())
     throw UsageError("--mjcf and --urdf are two robots; expected one");
+  return arguments.mjcf.empty() ? arguments.urdf : arguments.mjcf;
+}
+
+Loaded load(const Arguments& arguments, const RobotArguments& asked) {
+  Loaded out;
+  out.body = std::make_unique<robot::MujocoBody>(robot_path(arguments));
+  out.joints = out.body->robot();
+  set_gains(out.joints, "--kp", asked.kp, &robot::Joint::kp);
+  set_gains(out.joints, "--kd", asked.kd, &robot::Joint::kd);
+  std::vector<std::pair<std::string, std::string>> renamed;
+  for (const std::string& text : asked.renamed) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw UsageError("--joint " + text + ": expected LOG=MODEL, as in --joint hip_l=FL_hip_joint");
+    renamed.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  for (const std::string& one : arguments.recordings)
+    out.logs.push_back(robot::read_robot_log(one, out.joints, renamed));
+  for (const std::string& one : arguments.held_out)
+    out.held_out.push_back(robot::read_robot_log(one, out.joints, renamed));
+  return out;
+}
+
+}  // namespace
+
+int check_robot(const Arguments& arguments, const RobotArguments& asked) {
+  robot::Wiring wiring;
+  {
+    Progress progress;
+    const Loaded loaded = load(arguments, asked);
+    progress.stage("checking");
+    wiring = robot::check_wiring(*loaded.body, loaded.joints, robot::together(loaded.logs));
+  }
+  for (const robot::WiringFinding& one : wiring.findings) std::printf("Wiring: %s.\n", one.text.c_str());
+  if (wiring.findings.empty())
+    std::puts("The wiring is sound: joints, signs, units, zeros and gains fit each other.");
+  return made;
+}
+
+int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
   for (const std::string* other : {&arguments.predictions, &arguments.header})
     if (!other->empty())
       throw UsageError(
           "--predictions and --header are of a single actuator; a robot has --report and --augmented");
-  const std::string& path = arguments.mjcf.empty() ? arguments.urdf : arguments.mjcf;
+  const std::string& path = robot_path(arguments);
   for (const std::string* output : {&arguments.report, &arguments.html, &arguments.augmented})
     if (!output->empty() && plain_path(*output) == plain_path(path))
       throw UsageError("'" + *output + "' is named twice; an output must not be an input");
@@ -100,26 +146,13 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
   robot::RobotDiagnosis diagnosis;
   {
     Progress progress;
-    const robot::MujocoBody body(path);
-    robot::Robot joints = body.robot();
-    set_gains(joints, "--kp", asked.kp, &robot::Joint::kp);
-    set_gains(joints, "--kd", asked.kd, &robot::Joint::kd);
-    std::vector<std::pair<std::string, std::string>> renamed;
-    for (const std::string& text : asked.renamed) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos || equals == 0)
-        throw UsageError("--joint " + text + ": expected LOG=MODEL, as in --joint hip_l=FL_hip_joint");
-      renamed.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-    }
-    std::vector<robot::Log> logs, held_out;
-    for (const std::string& one : arguments.recordings)
-      logs.push_back(robot::read_robot_log(one, joints, renamed));
-    for (const std::string& one : arguments.held_out)
-      held_out.push_back(robot::read_robot_log(one, joints, renamed));
+    const Loaded loaded = load(arguments, asked);
+    const robot::MujocoBody& body = *loaded.body;
     robot::Options options;
     options.in_the_air = asked.in_air;
+    options.as_recorded = arguments.as_recorded;
     progress.stage("diagnosing");
-    diagnosis = robot::diagnose(body, joints, robot::together(logs), held_out, options);
+    diagnosis = robot::diagnose(body, loaded.joints, robot::together(loaded.logs), loaded.held_out, options);
     diagnosis.notes.insert(diagnosis.notes.begin(), body.notes().begin(), body.notes().end());
     progress.stage("writing");
     if (!arguments.report.empty()) outputs.put(arguments.report, robot::robot_json(diagnosis));
@@ -144,6 +177,10 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
 int diagnose_robot(const Arguments&, const RobotArguments&) {
   throw UsageError(
       "a whole robot needs MuJoCo, which this program was built without: install libmujoco-dev and build it again");
+}
+
+int check_robot(const Arguments& arguments, const RobotArguments& robot) {
+  return diagnose_robot(arguments, robot);
 }
 
 #endif

@@ -28,3 +28,7 @@ inline bool is_robot(const Arguments& arguments) {
 /// @brief Diagnoses a whole robot. @return exit status of the program
 /// @throws UsageError, also where the program was built without MuJoCo
 int diagnose_robot(const Arguments& arguments, const RobotArguments& robot);
+
+/// @brief Says what is wrong in the wiring of a robot's log; nothing is fitted. @return exit status of the program
+/// @throws UsageError, also where the program was built without MuJoCo
+int check_robot(const Arguments& arguments, const RobotArguments& robot);

@@ -7,6 +7,7 @@
 #include <thermopower/robot/joint_fit.hpp>
 #include <thermopower/robot/log.hpp>
 #include <thermopower/robot/series.hpp>
+#include <thermopower/robot/wiring.hpp>
 
 #include <vector>
 
@@ -16,8 +17,10 @@ namespace thermopower::robot {
 struct Options {
   SmoothingOptions smoothing;   ///< of the log
   FitOptions fit;               ///< of each joint
+  WiringOptions wiring;         ///< of what is checked before
   double held_out_share = 0.3;  ///< end of each run that is kept for judging, where no other log is
   double latest_rows = 4.0;     ///< longest delay of the bus that is looked for, in rows
+  bool as_recorded = false;     ///< the wiring's findings are said, and the log stays as it is
   bool in_the_air = false;      ///< the user says that nothing touches the robot
   double ground_share = 0.3;    ///< share of the weight in the limbs' efforts above which the robot stands
 };
@@ -27,6 +30,7 @@ Log together(const std::vector<Log>& logs);
 
 /// @brief Diagnoses a whole robot: which joint, which effect, how far.
 ///
+/// First the wiring is checked (check_wiring()), and the log is put right.
 /// With the measured motion the rigid body says for each row what it asks of each joint, so that a robot of n joints becomes n single
 /// joints. In each of them the causes are found by regression of the effort on the motion. Joints that are built alike are compared.
 /// What was found goes back into the whole robot, and its simulation under the logged targets is judged on rows that no fit has seen.

@@ -6,6 +6,7 @@
 #include <thermopower/robot/family.hpp>
 #include <thermopower/robot/groups.hpp>
 #include <thermopower/robot/joint_fit.hpp>
+#include <thermopower/robot/wiring.hpp>
 
 #include <limits>
 #include <string>
@@ -96,7 +97,7 @@ struct RobotDiagnosis {
   double delay_s = 0.0;                ///< of the whole bus
   bool effort_is_measured = false;     ///< else it follows from targets and gains
   bool stands_on_ground = false;       ///< the legs carry a load that nobody logged
-  std::vector<std::string> wiring;     ///< findings about the log, before any physics: one sentence each
+  std::vector<WiringFinding> wiring;   ///< findings about the log, before any physics
   std::vector<std::string> notes;      ///< what else is worth knowing
   std::vector<JointDiagnosis> joints;  ///< in the order of the model
   std::vector<GroupDiagnosis> groups;  ///< of joints that are built alike

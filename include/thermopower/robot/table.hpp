@@ -109,7 +109,8 @@ inline std::string table_text(const RobotDiagnosis& robot) {
                     (robot.effort_is_measured ? "as measured" : "from targets and gains") + ".\n";
   if (robot.delay_s > 0.0)
     out += "The whole bus is late by " + detail::number_text(1e3 * robot.delay_s) + " ms.\n";
-  for (const std::string& one : robot.wiring) out += "Wiring: " + one + ".\n";
+  for (const WiringFinding& one : robot.wiring)
+    out += "Wiring: " + one.text + (one.mended ? " (put right here; --as-recorded leaves it)" : "") + ".\n";
   for (const std::string& one : robot.notes) out += "Note: " + one + ".\n";
   if (std::isfinite(robot.tracking.before))
     out += "All joints together track their log with an error of " +
