@@ -195,6 +195,66 @@ class Diagnosing(unittest.TestCase):
         self.assertIn("motor_temp", repr(found))
 
 
+class Fleets(unittest.TestCase):
+    @staticmethod
+    def write(folder, name, columns):
+        path = os.path.join(folder, name)
+        np.savetxt(path, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments="")
+        return path
+
+    def test_rows_and_tables_give_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.write(folder, f"u{i}.csv", motor(900, i)) for i in range(4)]
+            model = os.path.join(folder, "model.json")
+            with open(model, "w", encoding="utf-8") as file:
+                json.dump(MODEL, file)
+            day = datetime.date(2026, 3, 1)
+            rows = [{"log": path, "model": model, "unit": f"U{i}", "time": day if i else None} for i, path in enumerate(logs)]
+            rows.append({"log": os.path.join(folder, "absent.csv"), "model": model, "unit": "U9"})
+            found = thermopower.fleet(rows, os.path.join(folder, "out"), workers=2)
+            self.assertFalse(found.complete)  # one log is not there
+            self.assertEqual(len(found.units), 4)
+            self.assertEqual([one.own_cause for one in found.units], ["winding_tempco"] * 4)
+            self.assertIn("4 units", str(found))
+            with open(found.page, encoding="utf-8") as file:
+                self.assertIn("</html>", file.read())
+            self.assertEqual(pickle.loads(pickle.dumps(found)).as_dict(), found.as_dict())
+            # The same rows as a table of one's own, in one process and without pages.
+            with open(os.path.join(folder, "manifest.csv"), "w", encoding="utf-8") as file:
+                file.write("log,model,unit,time\n")
+                for row in rows:
+                    file.write(f"{os.path.basename(row['log'])},model.json,{row['unit']},{row.get('time') or ''}\n")
+            again = thermopower.fleet(os.path.join(folder, "manifest.csv"), os.path.join(folder, "again"), workers=1, pages=False)
+            self.assertEqual(again.as_dict()["units"], found.as_dict()["units"])
+            with self.assertRaisesRegex(thermopower.InputError, "did you mean winding_tempco"):
+                thermopower.fleet(rows, os.path.join(folder, "out"), without=["winding_tempc"])
+
+    def test_ctrl_c_ends_it_and_the_same_call_resumes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.write(folder, f"u{i}.csv", motor(1800, i)) for i in range(40)]
+            with open(os.path.join(folder, "model.json"), "w", encoding="utf-8") as file:
+                json.dump(MODEL, file)
+            script = textwrap.dedent("""
+                import os, sys, thermopower
+                print("begun", flush=True)
+                rows = [{"log": os.path.join(sys.argv[1], f"u{i}.csv"), "model": os.path.join(sys.argv[1], "model.json")} for i in range(40)]
+                try:
+                    thermopower.fleet(rows, os.path.join(sys.argv[1], "out"), workers=1, pages=False)
+                except KeyboardInterrupt:
+                    print("interrupted", flush=True)
+            """)
+            child = subprocess.Popen([sys.executable, "-B", "-c", script, folder], stdout=subprocess.PIPE, text=True)
+            self.assertEqual(child.stdout.readline(), "begun\n")
+            reports = os.path.join(folder, "out", "reports")
+            while child.poll() is None and not (os.path.isdir(reports) and any(one.endswith(".json") for one in os.listdir(reports))):
+                time.sleep(0.05)
+            child.send_signal(signal.SIGINT)
+            self.assertIn("interrupted", child.communicate(timeout=60)[0])
+            done = [one for one in os.listdir(reports) if one.endswith(".json")]
+            self.assertGreater(len(done), 0)
+            self.assertLess(len(done), len(logs))
+
+
 class Predicting(unittest.TestCase):
     def test_from_inputs_alone(self):
         t = np.arange(0.0, 3000.0, 1.0)

@@ -84,6 +84,36 @@ TEST_CASE("a joint's constants are where MuJoCo and robots look for them") {
   CHECK_THAT(robot.left_out[0], ContainsSubstring("A to N m: 0.05"));
 }
 
+TEST_CASE("a servo is a position or velocity actuator, in newton metres and radians") {
+  Model model = axis();
+  model.name = "left_knee";
+  thermopower::plant::PositionPidServo servo;
+  servo.kp_A_per_deg = 0.04;
+  servo.kd_A_s_per_deg = 0.002;
+  servo.ki_A_per_deg_s = 0.5;
+  servo.limit_A = 2.0;
+  model.servo = servo;
+  const io::SimulatorFile file = io::mjcf(model, "a test");
+  // 0.04 A/deg at 0.05 N m/A are 0.114591559 N m/rad; 2 A are 0.1 N m.
+  CHECK_THAT(file.text,
+             ContainsSubstring("<joint name=\"left_knee\"") &&
+                 ContainsSubstring("<position name=\"servo\" joint=\"left_knee\" kp=\"0.1145915") &&
+                 ContainsSubstring("kv=\"0.0057295") && ContainsSubstring("forcerange=\"-0.1 0.1\"") &&
+                 ContainsSubstring("the control is the servo's target in rad."));
+  REQUIRE(file.left_out.size() == 2);
+  CHECK_THAT(file.left_out[0], ContainsSubstring("ki_A_per_deg_s 0.5"));
+  CHECK_THAT(file.left_out[1], ContainsSubstring("period_s 0.001"));
+  // A lower limit that was found is the servo's, too.
+  model.effects["torque_saturation"] = {{"A", 1.5}};
+  CHECK_THAT(io::mjcf(model, "a test").text, ContainsSubstring("forcerange=\"-0.075"));
+  CHECK_THAT(io::urdf(model, "a test").text, ContainsSubstring("kp_A_per_deg 0.04"));
+  thermopower::plant::VelocityPiServo velocity;
+  velocity.kp_A_s_per_deg = 0.01;
+  model.servo = velocity;
+  CHECK_THAT(io::mjcf(model, "a test").text,
+             ContainsSubstring("<velocity name=\"servo\"") && ContainsSubstring("target in rad/s."));
+}
+
 TEST_CASE("nothing is dropped in silence: each effect is in the file or in the list, with its numbers") {
   Model model = axis();
   model.effects["cogging"] = {{"sin_Nm", 0.011}, {"cos_Nm", 0.012}, {"cycles_per_turn", 7.0}};

@@ -6,11 +6,14 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <variant>
 
 namespace thermopower::io {
 namespace {
 
-constexpr double gravity_m_per_s2 = 9.81, quarter_turn_rad = 1.5707963267948966;
+constexpr double gravity_m_per_s2 = 9.81, quarter_turn_rad = 1.5707963267948966,
+                 degrees_per_rad = 57.29577951308232;
 // A mass off the axis adds to the inertia: it is put so near that this is a hundredth of it, and taken off again.
 constexpr double share_of_inertia = 0.01;
 
@@ -41,9 +44,19 @@ std::string attribute_text(const std::string& text) {
   return out.empty() ? "axis" : out;
 }
 
+/// A servo as a simulator of bodies runs it, at every step.
+struct DescribedServo {
+  bool position = true;      // else it holds a rate
+  double Nm_per_rad = 0.0;   // of a position servo
+  double Nms_per_rad = 0.0;  // against the rate
+  double largest_Nm = 0.0;
+  std::vector<std::string> left_out;
+};
+
 struct Described {
   plant::JointDescription joint;
   const char* control = "A";  // unit of the drive
+  std::optional<DescribedServo> servo;
   std::vector<std::string> left_out;
 };
 
@@ -69,14 +82,7 @@ public:
 
   Described read() {
     for (const auto& [id, parameters] : model_.effects) take(id, parameters);
-    if (model_.has_servo()) {
-      std::string text = "servo:";
-      for (const NamedConstant& one : model_.constants())
-        if (one.block == "servo")
-          text += (text.back() == ':' ? " " : ", ") + one.name + " " + number(one.value);
-      described_.left_out.push_back(text +
-                                    "; it is sampled, and belongs to the program that sets the control");
-    }
+    read_servo();
     if (model_.has_current() || model_.has_thermal())
       described_.left_out.push_back(
           "the motor's current and temperature: the drive has neither a winding nor a body that warms");
@@ -84,6 +90,37 @@ public:
   }
 
 private:
+  void read_servo() {
+    const double Nm_per_A = model_.axis->torque_constant_Nm_per_A;
+    DescribedServo servo;
+    const auto common = [&](const auto& one, double integral, const char* integral_name) {
+      servo.largest_Nm = one.limit_A * std::fabs(Nm_per_A);
+      const plant::JointDescription& joint = described_.joint;
+      if (joint.largest_drive)
+        servo.largest_Nm = std::fmin(servo.largest_Nm, *joint.largest_drive * std::fabs(joint.Nm_per_drive));
+      if (integral != 0.0)
+        servo.left_out.push_back("servo: " + std::string(integral_name) + " " + number(integral) +
+                                 "; MuJoCo's servo has no integral");
+      servo.left_out.push_back("servo: period_s " + number(one.period_s) + ", delay_s " +
+                               number(one.delay_s) + "; MuJoCo's servo acts at every step and at once");
+      if (joint.lag_s)
+        servo.left_out.push_back("drive_lag: lag_s " + number(*joint.lag_s) +
+                                 "; the torque of MuJoCo's servo follows at once");
+    };
+    if (const auto* position = std::get_if<plant::PositionPidServo>(&model_.servo)) {
+      servo.Nm_per_rad = position->kp_A_per_deg * degrees_per_rad * Nm_per_A;
+      servo.Nms_per_rad = position->kd_A_s_per_deg * degrees_per_rad * Nm_per_A;
+      common(*position, position->ki_A_per_deg_s, "ki_A_per_deg_s");
+    } else if (const auto* velocity = std::get_if<plant::VelocityPiServo>(&model_.servo)) {
+      servo.position = false;
+      servo.Nms_per_rad = velocity->kp_A_s_per_deg * degrees_per_rad * Nm_per_A;
+      common(*velocity, velocity->ki_A_per_deg, "ki_A_per_deg");
+    } else {
+      return;
+    }
+    described_.servo = std::move(servo);
+  }
+
   void take(const std::string& id, const EffectParameters& given) {
     const CatalogueEntry* entry = catalogue_.find(id);
     if (entry == nullptr || entry->info.in_a_joint == nullptr) {
@@ -116,10 +153,10 @@ private:
   Described described_;
 };
 
-std::string comment(const std::string& origin, const std::string& unit,
+std::string comment(const std::string& origin, const std::string& control,
                     const std::vector<std::string>& left_out) {
   std::string text =
-      "<!-- " + comment_text(origin) + "\n     Units: SI, radians; the control is the drive in " + unit + ".";
+      "<!-- " + comment_text(origin) + "\n     Units: SI, radians; the control is " + control + ".";
   for (const std::string& one : left_out) text += "\n     Left out: " + comment_text(one);
   return text + " -->\n";
 }
@@ -128,6 +165,45 @@ std::string inertial(double inertia, double mass, double x, double y) {
   const std::string one = number(inertia);
   return "<inertial pos=\"" + number(x) + " " + number(y) + " 0\" mass=\"" + number(mass) +
          "\" diaginertia=\"" + one + " " + one + " " + one + "\"/>";
+}
+
+// Geometry that one can see, without mass or contact.
+const std::string seen = "contype=\"0\" conaffinity=\"0\" rgba=\"0.3 0.5 0.7 1\"";
+
+std::string drive_actuator(const Model& model, const plant::JointDescription& joint,
+                           const std::string& name) {
+  std::string out;
+  if (model.axis->voltage_driven()) {
+    const std::string constant = number(model.axis->torque_constant_Nm_per_A);
+    out += "    <!-- Where MuJoCo has it, the same motor is <dcmotor name=\"drive\" joint=\"" +
+           comment_text(name) + "\" motorconst=\"" + constant + " " + constant + "\" resistance=\"" +
+           number(model.axis->resistance_ohm) + "\"/> -->\n";
+  }
+  out += "    <general name=\"drive\" joint=\"" + name + "\" gear=\"1\" gaintype=\"fixed\" gainprm=\"" +
+         number(joint.Nm_per_drive) + "\"";
+  if (joint.offset_Nm != 0.0 || joint.back_emf_Nms_per_rad > 0.0)
+    out += " biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) + " 0 " +
+           number(-joint.back_emf_Nms_per_rad) + "\"";
+  if (joint.lag_s) out += " dyntype=\"filter\" dynprm=\"" + number(*joint.lag_s) + "\"";
+  if (joint.largest_drive)
+    out += " ctrllimited=\"true\" ctrlrange=\"" + number(-*joint.largest_drive) + " " +
+           number(*joint.largest_drive) + "\"";
+  return out + "/>\n";
+}
+
+std::string servo_actuator(const DescribedServo& servo, const plant::JointDescription& joint,
+                           const std::string& name) {
+  const std::string limit = number(servo.largest_Nm);
+  std::string out = std::string("    <") + (servo.position ? "position" : "velocity") +
+                    " name=\"servo\" joint=\"" + name + "\"";
+  if (servo.position) out += " kp=\"" + number(servo.Nm_per_rad) + "\"";
+  out += " kv=\"" + number(servo.Nms_per_rad) + "\" forcelimited=\"true\" forcerange=\"-" + limit + " " +
+         limit + "\"/>\n";
+  if (joint.offset_Nm != 0.0)
+    out += "    <general name=\"constant_torque\" joint=\"" + name +
+           "\" gaintype=\"fixed\" gainprm=\"0\" biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) +
+           " 0 0\"/>\n";
+  return out;
 }
 
 }  // namespace
@@ -149,15 +225,25 @@ SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogu
     about_centre = near - mass * radius * radius;
   }
   SimulatorFile file{{}, described.left_out};
+  if (described.servo)
+    file.left_out.insert(file.left_out.end(), described.servo->left_out.begin(),
+                         described.servo->left_out.end());
+  const std::string control = !described.servo            ? "the drive in " + std::string(described.control)
+                              : described.servo->position ? "the servo's target in rad"
+                                                          : "the servo's target in rad/s";
+  const std::string name = attribute_text(model.name);
   std::string& out = file.text;
-  out = comment(origin, described.control, described.left_out) + "<mujoco model=\"" +
-        attribute_text(model.name) + "\">\n";
+  out = comment(origin, control, file.left_out) + "<mujoco model=\"" + name + "\">\n";
   out += "  <compiler angle=\"radian\" inertiafromgeom=\"false\" boundmass=\"0\" boundinertia=\"0\"/>\n";
   out += "  <option timestep=\"0.0001\" gravity=\"0 " + number(joint.imbalance ? -gravity_m_per_s2 : 0.0) +
          " 0\"/>\n";
+  // Against the limit of a servo, what a motor at a voltage loses by its rate is outside: it is a damping of the joint.
+  const double damping = joint.damping_Nms_per_rad + (described.servo ? joint.back_emf_Nms_per_rad : 0.0);
   out +=
-      "  <worldbody>\n    <body name=\"driven\">\n      <joint name=\"axis\" type=\"hinge\" axis=\"0 0 1\" damping=\"" +
-      number(joint.damping_Nms_per_rad) + "\" frictionloss=\"" + number(joint.friction_Nm) + "\"";
+      "  <worldbody>\n    <light pos=\"0 0 2\"/>\n    <geom type=\"cylinder\" size=\"0.03 0.02\" pos=\"0 0 -0.03\" " +
+      seen + "/>\n    <body name=\"driven\">\n      <joint name=\"" + name +
+      "\" type=\"hinge\" axis=\"0 0 1\" damping=\"" + number(damping) + "\" frictionloss=\"" +
+      number(joint.friction_Nm) + "\"";
   // MuJoCo's own softness would turn dry friction into a viscous one up to several degrees a second. Two steps of
   // the simulation are the hardest that it takes, and it makes them of anything harder.
   if (joint.friction_Nm > 0.0)
@@ -167,25 +253,21 @@ SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogu
            number(joint.spring->centre_rad) + "\"";
   out +=
       "/>\n      <!-- In a model whose bodies already have an inertia about this axis, give the joint what is missing of it to " +
-      number(near) + " kg m^2 as armature. -->\n      " + inertial(about_centre, mass, x, y) + "\n";
+      number(near) + " kg m^2 as armature. -->\n      " + inertial(about_centre, mass, x, y) +
+      "\n      <geom type=\"capsule\" fromto=\"0 0 0 0.15 0 0\" size=\"0.012\" " + seen + "/>\n";
   if (joint.far_side) {
     const double reduced = near * far / (near + far), w = joint.far_side->rad_per_s;
     out +=
         "      <body name=\"far\">\n        <joint name=\"compliance\" type=\"hinge\" axis=\"0 0 1\" stiffness=\"" +
         number(reduced * w * w) + "\" damping=\"" + number(2.0 * joint.far_side->damping * w * reduced) +
-        "\"/>\n        " + inertial(far, far, 0.0, 0.0) + "\n      </body>\n";
+        "\"/>\n        " + inertial(far, far, 0.0, 0.0) +
+        "\n        <geom type=\"box\" size=\"0.02 0.02 0.02\" pos=\"0.17 0 0\" " + seen +
+        "/>\n      </body>\n";
   }
   out +=
-      "    </body>\n  </worldbody>\n  <actuator>\n    <general name=\"drive\" joint=\"axis\" gear=\"1\" gaintype=\"fixed\" gainprm=\"" +
-      number(joint.Nm_per_drive) + "\"";
-  if (joint.offset_Nm != 0.0 || joint.back_emf_Nms_per_rad > 0.0)
-    out += " biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) + " 0 " +
-           number(-joint.back_emf_Nms_per_rad) + "\"";
-  if (joint.lag_s) out += " dyntype=\"filter\" dynprm=\"" + number(*joint.lag_s) + "\"";
-  if (joint.largest_drive)
-    out += " ctrllimited=\"true\" ctrlrange=\"" + number(-*joint.largest_drive) + " " +
-           number(*joint.largest_drive) + "\"";
-  out += "/>\n  </actuator>\n</mujoco>\n";
+      "    </body>\n  </worldbody>\n  <actuator>\n" +
+      (described.servo ? servo_actuator(*described.servo, joint, name) : drive_actuator(model, joint, name)) +
+      "  </actuator>\n</mujoco>\n";
   return file;
 }
 
@@ -193,6 +275,14 @@ SimulatorFile urdf(const Model& model, const std::string& origin, const Catalogu
   const Described described = Reader(model, catalogue).read();
   const plant::JointDescription& joint = described.joint;
   SimulatorFile file{{}, described.left_out};
+  if (model.has_servo()) {
+    std::string text = "servo:";
+    for (const NamedConstant& one : model.constants())
+      if (one.block == "servo")
+        text += (text.back() == ':' ? " " : ", ") + one.name + " " + number(one.value);
+    file.left_out.push_back(text + "; URDF has no servo");
+  }
+  const std::string name = attribute_text(model.name);
   file.left_out.insert(file.left_out.begin(), std::string(described.control) +
                                                   " to N m: " + number(joint.Nm_per_drive) +
                                                   "; a joint is driven by its torque");
@@ -214,12 +304,14 @@ SimulatorFile urdf(const Model& model, const std::string& origin, const Catalogu
   const std::string one = number(joint.inertia_kgm2);
   std::string& out = file.text;
   out =
-      "<?xml version=\"1.0\"?>\n" + comment(origin, described.control, file.left_out) + "<robot name=\"" +
-      attribute_text(model.name) +
-      "\">\n  <link name=\"base\"/>\n  <link name=\"driven\">\n    <inertial>\n      <mass value=\"" + one +
-      "\"/>\n      <inertia ixx=\"" + one + "\" ixy=\"0\" ixz=\"0\" iyy=\"" + one + "\" iyz=\"0\" izz=\"" +
-      one +
-      "\"/>\n    </inertial>\n  </link>\n  <joint name=\"axis\" type=\"continuous\">\n    <parent link=\"base\"/>\n"
+      "<?xml version=\"1.0\"?>\n" +
+      comment(origin, "the drive in " + std::string(described.control), file.left_out) + "<robot name=\"" +
+      name +
+      "\">\n  <link name=\"base\">\n    <visual><geometry><cylinder length=\"0.04\" radius=\"0.03\"/></geometry></visual>\n  </link>\n"
+      "  <link name=\"driven\">\n    <visual><origin xyz=\"0.075 0 0\"/><geometry><box size=\"0.15 0.02 0.02\"/></geometry></visual>\n    <inertial>\n      <mass value=\"" +
+      one + "\"/>\n      <inertia ixx=\"" + one + "\" ixy=\"0\" ixz=\"0\" iyy=\"" + one +
+      "\" iyz=\"0\" izz=\"" + one + "\"/>\n    </inertial>\n  </link>\n  <joint name=\"" + name +
+      "\" type=\"continuous\">\n    <parent link=\"base\"/>\n"
       "    <child link=\"driven\"/>\n    <axis xyz=\"0 0 1\"/>\n    <dynamics damping=\"" +
       number(joint.damping_Nms_per_rad + joint.back_emf_Nms_per_rad) + "\" friction=\"" +
       number(joint.friction_Nm) + "\"/>\n";

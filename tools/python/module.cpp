@@ -5,6 +5,7 @@
 // thermopower/__init__.py, is what users see.
 
 #include "dual_numbers.hpp"
+#include "fleet.hpp"
 #include "own_effect.hpp"
 #include "nearest_name.hpp"
 #include "own_plant.hpp"
@@ -246,6 +247,37 @@ std::vector<Signals> simulate(const std::vector<gap::Model>& models, const std::
   return all;
 }
 
+/// A fleet, in processes that are forked here. @return whether every log has a report
+bool fleet(const std::string& manifest, const std::string& out, unsigned workers, bool pages, Arguments each,
+           std::optional<double> horizon_s) {
+  expect_effects(each.without, gap::standard_catalogue());
+  for (const std::string& one : each.columns) io::parse_column_choice(one);
+  gap::Options checked;
+  if (horizon_s) checked.horizon_s = each.horizon_s = *horizon_s;
+  checked.validate();
+  FleetArguments work;
+  work.manifest = manifest;
+  work.out = out;
+  work.workers = workers;
+  work.pages = pages;
+  work.quiet = true;
+  work.options = options_of_fleet(each, horizon_s.has_value());
+  work.diagnose = [&each](const FleetDiagnosis& one) { return diagnose_of_fleet(one, each); };
+  work.stop = [] {
+    const py::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() == 0) return false;
+    PyErr_Clear();  // raised below
+    return true;
+  };
+  try {
+    const py::gil_scoped_release released;
+    return run_fleet(work) == made;
+  } catch (const FleetStopped&) {
+  }
+  PyErr_SetNone(PyExc_KeyboardInterrupt);
+  throw py::error_already_set();
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_thermopower, module) {
@@ -253,6 +285,7 @@ PYBIND11_MODULE(_thermopower, module) {
   // Where a module of one's own turned a bad value down, and where a file or an argument cannot be read.
   py::register_exception<gap::InvalidInput>(module, "InvalidInput", PyExc_ValueError);
   py::register_exception<io::InputError>(module, "InputError", PyExc_ValueError);
+  py::register_exception<io::OutputError>(module, "OutputError", PyExc_OSError);
   py::class_<gap::Recording>(module, "Recording")
       .def(py::init(&recording_of))
       .def_readonly("name", &gap::Recording::name)
@@ -316,6 +349,14 @@ PYBIND11_MODULE(_thermopower, module) {
   module.def("diagnose", &diagnose);
   module.def("check", &check);
   module.def("simulate", &simulate);
+  module.def("fleet", [](const std::string& manifest, const std::string& out, unsigned workers, bool pages,
+                         std::vector<std::string> columns, std::vector<std::string> without,
+                         std::optional<double> horizon_s) {
+    Arguments each;
+    each.columns = std::move(columns);
+    each.without = std::move(without);
+    return fleet(manifest, out, workers, pages, std::move(each), horizon_s);
+  });
   module.def("effects", [] { return io::catalogue_text(gap::standard_catalogue().list()); });
   module.def("normalised", [](const std::string& model) { return io::to_json(model_of(model)); });
   module.def("explain", [](const std::string& code) {

@@ -128,7 +128,8 @@ private:
       if (pool.busy() == 0 && elsewhere.empty()) continue;
       // Should one of the others die, its log is free again.
       const bool look_again = !elsewhere.empty() && pool.has_room();
-      if (const auto answer = pool.wait(look_again ? 50 : -1)) {
+      if (arguments_.stop && arguments_.stop()) throw FleetStopped();
+      if (const auto answer = pool.wait(look_again ? 50 : arguments_.stop ? 100 : -1)) {
         take(*answer, elsewhere);
       } else {
         waiting_.insert(waiting_.end(), elsewhere.begin(), elsewhere.end());
@@ -225,7 +226,7 @@ private:
 
   void tell_progress() {
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (seconds < 1.0 || isatty(STDERR_FILENO) == 0 || done_ <= 0.0) return;
+    if (arguments_.quiet || seconds < 1.0 || isatty(STDERR_FILENO) == 0 || done_ <= 0.0) return;
     told_ = true;
     std::fprintf(stderr, "\r\033[K%zu of %zu logs, %.0f s left", kept_ + ended_, logs_.size(),
                  seconds * std::max(0.0, to_do_ - done_) / done_);
@@ -234,7 +235,7 @@ private:
   /// What the hand-out costs: time in which workers might have run and did not.
   void tell_cost() const {
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (diagnosed_ == 0) return;
+    if (diagnosed_ == 0 || arguments_.quiet) return;
     std::printf(
         "%zu diagnoses in %.2f s with %u at a time: %.2f ms of work each, workers busy %.1f %%, %.2f ms a log "
         "lost between them\n",
@@ -287,7 +288,8 @@ private:
       const auto when = fs::last_write_time(out_ / "summary.txt", error);
       if (!error && when >= begun_) {
         close(lock);
-        std::printf("%zu logs: another process of this fleet wrote the results\n", logs_.size());
+        if (!arguments_.quiet)
+          std::printf("%zu logs: another process of this fleet wrote the results\n", logs_.size());
         return without == 0 ? 0 : 3;
       }
     }
@@ -295,6 +297,7 @@ private:
     without = write_fleet_results(all, out_.string());
     unlink(gate.c_str());
     close(lock);
+    if (arguments_.quiet) return without == 0 ? 0 : 3;
     std::printf("%zu logs: %zu reports were there, %zu are new, %zu have none\n", logs_.size(),
                 logs_.size() - new_ - without, new_, without);
     for (const FleetLog& one : all)
@@ -321,6 +324,36 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::string> options_of_fleet(const Arguments& each, bool horizon) {
+  std::vector<std::string> options;
+  for (const std::string& one : each.columns) options.insert(options.end(), {"--column", one});
+  for (const std::string& one : each.without) options.insert(options.end(), {"--without", one});
+  if (horizon) {
+    // No two numbers have the same text.
+    std::string text = std::to_string(each.horizon_s);
+    char exact[40];
+    std::snprintf(exact, sizeof exact, "%.17g", each.horizon_s);
+    if (std::stod(text) != each.horizon_s) text = exact;
+    options.insert(options.end(), {"--horizon", text});
+  }
+  return options;
+}
+
+std::string diagnose_of_fleet(const FleetDiagnosis& one, const Arguments& asked) {
+  Arguments arguments = asked;
+  arguments.model = one.model;
+  arguments.recordings = {one.recording};
+  if (!one.held_out.empty()) arguments.held_out = {one.held_out};
+  if (!one.map.empty()) arguments.maps = {one.map};
+  arguments.report = one.report;
+  arguments.html = one.page;
+  arguments.threads = 1;
+  arguments.of_fleet = true;
+  std::string fault;
+  guarded([&] { return diagnose(arguments); }, fault);
+  return fault;
+}
 
 int run_fleet(const FleetArguments& arguments) {
   const std::vector<ManifestLog> logs = read_manifest(arguments.manifest, arguments.options);

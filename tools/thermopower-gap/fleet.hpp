@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "program.hpp"
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -29,7 +31,19 @@ struct FleetArguments {
   /// Diagnoses a log on one thread and writes what is asked for; must not throw. @return what is wrong; empty where all
   /// was written
   std::function<std::string(const FleetDiagnosis&)> diagnose;
+  bool quiet = false;  ///< prints nothing on any stream
+  std::function<bool()>
+      stop;  ///< asked ten times a second; true ends the fleet, whose reports so far stay. May be empty
 };
+
+/// What run_fleet() throws where `stop` said so.
+struct FleetStopped {};
+
+/// @brief A diagnosis of one log of a fleet, for FleetArguments::diagnose. @param asked  the options of every log @return what is wrong
+std::string diagnose_of_fleet(const FleetDiagnosis& one, const Arguments& asked);
+
+/// @brief The options of every diagnosis as text, for FleetArguments::options. @param horizon  whether it was asked for
+std::vector<std::string> options_of_fleet(const Arguments& each, bool horizon);
 
 /// @brief Diagnoses every log of a manifest, in processes that take one log after the other, largest first, writes one report per log, and
 /// what all of them say together. Reports that are there are kept, so that the same command resumes; several of the same

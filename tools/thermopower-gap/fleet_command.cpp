@@ -8,39 +8,10 @@
 
 #include <thermopower/plant/standard_catalogue.hpp>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
 namespace gap = thermopower::gap;
-
-namespace {
-
-/// Diagnoses one log of a fleet. @return what is wrong; empty where its report is written
-std::string diagnose_one(const FleetDiagnosis& asked, Arguments arguments) {
-  arguments.model = asked.model;
-  arguments.recordings = {asked.recording};
-  if (!asked.held_out.empty()) arguments.held_out = {asked.held_out};
-  if (!asked.map.empty()) arguments.maps = {asked.map};
-  arguments.report = asked.report;
-  arguments.html = asked.page;
-  arguments.threads = 1;
-  arguments.of_fleet = true;
-  std::string fault;
-  guarded([&] { return diagnose(arguments); }, fault);
-  return fault;
-}
-
-// No two numbers have the same.
-std::string text_of(double value) {
-  std::string text = std::to_string(value);
-  if (std::stod(text) == value) return text;
-  char exact[40];
-  std::snprintf(exact, sizeof exact, "%.17g", value);
-  return exact;
-}
-
-}  // namespace
 
 Command add_fleet(CLI::App& program) {
   struct Asked {
@@ -70,13 +41,8 @@ Command add_fleet(CLI::App& program) {
             const Arguments& each = asked->each;
             check_ids(each.without, gap::standard_catalogue());
             for (const std::string& one : each.columns) expect_choice(one);
-            for (const std::string& one : each.columns)
-              work.options.insert(work.options.end(), {"--column", one});
-            for (const std::string& one : each.without)
-              work.options.insert(work.options.end(), {"--without", one});
-            if (horizon->count() > 0)
-              work.options.insert(work.options.end(), {"--horizon", text_of(each.horizon_s)});
-            work.diagnose = [&each](const FleetDiagnosis& one) { return diagnose_one(one, each); };
+            work.options = options_of_fleet(each, horizon->count() > 0);
+            work.diagnose = [&each](const FleetDiagnosis& one) { return diagnose_of_fleet(one, each); };
             return run_fleet(work);
           }};
 }

@@ -3,6 +3,7 @@
 
 #include "fleet_results.hpp"
 
+#include "chart.hpp"
 #include "html_text.hpp"
 #include "report_style.hpp"
 
@@ -99,8 +100,8 @@ private:
     std::string causes;
     for (const pool::Family& one : verdict_.families) {
       if (!causes.empty()) causes += "<br>";
-      causes += io::breakable(family_name(one)) + ": " + std::to_string(std::lround(one.prevalence.units)) +
-                " units";
+      causes += io::breakable(family_name(one)) + ": " +
+                count_of(static_cast<std::size_t>(std::lround(one.prevalence.units)), "unit", "units");
     }
     fact("Families", std::to_string(verdict_.families.size()), causes);
     fact("Odd units", std::to_string(odd_count()),
@@ -233,8 +234,67 @@ private:
                 date_of(one.drift.since) + (one.drift.kind == pool::DriftKind::slope ? " to " : " and ") +
                 date_of(one.drift.until) + "</td></tr>\n";
       }
-    if (any) out_ += "</table>\n";
+    if (!any) return;
+    out_ += "</table>\n";
+    constexpr std::size_t most = 24;
+    std::size_t drawn = 0, count = 0;
+    for (const pool::UnitVerdict& unit : verdict_.units) count += unit.drifts.size();
+    for (const pool::UnitVerdict& unit : verdict_.units)
+      for (const pool::UnitDrift& one : unit.drifts)
+        if (drawn++ < most) out_ += io::to_html(course(unit, one));
+    if (count > most)
+      out_ += "<p class=\"soft\">The first " + std::to_string(most) + " of " + std::to_string(count) +
+              " are drawn.</p>\n";
   }
+
+  /// The values of a unit's logs over time, with their 95 % intervals, and the course that was found.
+  io::Chart course(const pool::UnitVerdict& unit, const pool::UnitDrift& one) const {
+    const pool::Family& family = *family_of(unit);
+    const auto c = static_cast<std::size_t>(
+        std::find(family.coordinates.begin(), family.coordinates.end(), one.coordinate) -
+        family.coordinates.begin());
+    const auto shown = [&](double at) { return shown_value(at, family.logarithmic[c]); };
+    const pool::TimeSeries& logs = one.series;
+    const double first = logs.time.front();
+    io::Series values{
+        "each log, with its 95 % interval", "missing", io::Series::Style::points, {}, {}, {}, {}};
+    io::Series bars{"", "missing", io::Series::Style::interval, {}, {}, {}, {}};
+    io::Series fitted{"the drift", "augmented", io::Series::Style::line, {}, {}, {}, {}};
+    double sum = 0.0, weighed = 0.0;
+    // What is left when the drift is taken off says where it begins.
+    const auto drifted = [&](std::size_t i) {
+      if (one.drift.kind == pool::DriftKind::slope) return one.drift.per_day * (logs.time[i] - first);
+      return logs.time[i] >= middle_of(one.drift) ? one.drift.size : 0.0;
+    };
+    for (std::size_t i = 0; i < logs.at.size(); ++i) {
+      const double variance = logs.variance[i] + family.scatter[c].variance,
+                   reach = 1.96 * std::sqrt(variance);
+      sum += 1.0 / std::max(variance, 1e-300);
+      weighed += (logs.at[i] - drifted(i)) / std::max(variance, 1e-300);
+      for (io::Series* series : {&values, &bars}) {
+        series->x.push_back(logs.time[i] - first);
+        series->y.push_back(shown(logs.at[i]));
+      }
+      bars.low.push_back(shown(logs.at[i] - reach));
+      bars.high.push_back(shown(logs.at[i] + reach));
+    }
+    for (std::size_t i = 0; i < logs.at.size(); ++i) {
+      fitted.x.push_back(logs.time[i] - first);
+      fitted.y.push_back(shown(weighed / sum + drifted(i)));
+    }
+    io::Chart chart;
+    chart.title = unit.unit + ": " + parameter_name(one.coordinate);
+    chart.x_label = "days since " + date_of(first);
+    chart.y_label =
+        unit.unit + ": " + parameter_name(one.coordinate) +
+        (parameter_name(one.coordinate) != one.coordinate ? ", as a share of the configured" : "");
+    chart.series = {bars, values, fitted};
+    chart.height = 150;
+    return chart;
+  }
+
+  /// Between the logs between which a change lies.
+  static double middle_of(const pool::Drift& drift) { return 0.5 * (drift.since + drift.until); }
 
   void weak_effects() {
     if (verdict_.weak.empty() || !verdict_.weak.front().stands) return;
@@ -254,8 +314,8 @@ private:
   void strips(const pool::Family& family) {
     const auto index = static_cast<int>(&family - verdict_.families.data());
     out_ += "<h2>Family: " + io::breakable(family_name(family)) + ", " +
-            std::to_string(std::lround(family.prevalence.units)) + " units</h2>\n<p class=\"soft\">" +
-            io::percent_html(family.prevalence.share90.low) + " to " +
+            count_of(static_cast<std::size_t>(std::lround(family.prevalence.units)), "unit", "units") +
+            "</h2>\n<p class=\"soft\">" + io::percent_html(family.prevalence.share90.low) + " to " +
             io::percent_html(family.prevalence.share90.high) +
             " of all units, with nine tenths certainty.</p>\n";
     if (family.spread.size() == 0) {

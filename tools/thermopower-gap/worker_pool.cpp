@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -91,6 +92,7 @@ WorkerPool::Worker WorkerPool::start() const {
 // In the worker, which has nothing to say to a terminal. It goes when its line is closed, be it by the death of the
 // process at the other end.
 void WorkerPool::serve(int line) const {
+  std::signal(SIGINT, SIG_DFL);  // of Python, it would only be noted
   const int nothing = open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, stream);
   if (nothing > STDERR_FILENO) close(nothing);

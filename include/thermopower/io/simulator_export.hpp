@@ -18,7 +18,10 @@ struct SimulatorFile {
 };
 
 /// @brief The axis of a model, with its effects, as a model of MuJoCo (MJCF): one hinge and one actuator whose control
-/// is the drive in A, or in V where a voltage drives the motor. It loads as it stands, in MuJoCo 2.2 and later; joint and actuator can be copied from it.
+/// is the drive in A, or in V where a voltage drives the motor. The hinge has the model's name. It loads as it stands, in MuJoCo 2.2
+/// and later; joint and actuator can be copied from it.
+///
+/// A model with a servo becomes `<position kp kv>` or `<velocity kv>`, whose control is the target in rad or rad/s (MuJoCo 3.1 and later).
 ///
 /// Exact: inertia, damping, torque constant, spring, constant torque, saturation, lag of the drive, imbalance (as a
 /// mass off the axis), compliance (as a second hinge). Nearly: dry friction as `frictionloss`, which has no transition.

@@ -18,6 +18,7 @@ columns are named as in those files (`t_s`, `motor_C`, `drive_A`, ...), and a co
 1.5
 """
 
+import csv
 import json
 import os
 import shlex
@@ -25,12 +26,12 @@ import shlex
 import numpy as np
 
 from . import _thermopower
-from ._thermopower import InputError, InvalidInput
+from ._thermopower import InputError, InvalidInput, OutputError
 
 __version__ = _thermopower.version
 
-__all__ = ["Check", "Columns", "Diagnosis", "Effect", "InputError", "InvalidInput", "Part", "Plant", "Text", "check", "columns", "compare", "curve",
-           "diagnose", "effects", "explain", "parameter", "predict", "read_model", "simulate"]
+__all__ = ["Check", "Columns", "Diagnosis", "Effect", "Fleet", "InputError", "InvalidInput", "OutputError", "Part", "Plant", "Text", "check", "columns",
+           "compare", "curve", "diagnose", "effects", "explain", "fleet", "parameter", "predict", "read_model", "simulate"]
 
 
 class Text(str):
@@ -422,6 +423,78 @@ class Diagnosis(Part):
         return figure
 
 
+class Fleet(Part):
+    """What many logs say together: the keys of fleet.json as attributes; it prints as the program's summary."""
+
+    def __init__(self, out, complete):
+        with open(os.path.join(out, "fleet.json"), encoding="utf-8") as file:
+            super().__init__(json.load(file))
+        self._out, self._complete = out, complete
+
+    def __repr__(self):
+        with open(os.path.join(self._out, "summary.txt"), encoding="utf-8") as file:
+            return file.read()
+
+    __str__ = __repr__
+
+    def __dir__(self):
+        return super().__dir__() + ["complete", "out", "page", "table"]
+
+    def __getstate__(self):
+        return dict(self.__dict__)
+
+    def __setstate__(self, state):
+        self.__dict__.update(state)
+
+    @property
+    def out(self):
+        """Folder of the results."""
+        return self._out
+
+    @property
+    def page(self):
+        """Path of the fleet's page; each log has one of its own behind it."""
+        return os.path.join(self._out, "fleet.html")
+
+    @property
+    def complete(self):
+        """Whether every log has a report; table("logs") says why one has none."""
+        return self._complete
+
+    def table(self, of="units"):
+        """The units, or the "logs", as a pandas DataFrame, one row each."""
+        import pandas
+
+        if of not in ("units", "logs"):
+            raise InvalidInput(f"table: of is '{of}'; expected units or logs")
+        return pandas.read_csv(os.path.join(self._out, of + ".csv"))
+
+
+def _cell(value):
+    """A cell of a manifest: nothing for None and nan, a date as ISO 8601."""
+    if value is None or value != value:
+        return ""
+    return value.isoformat() if hasattr(value, "isoformat") else str(value)
+
+
+def _manifest(logs, out):
+    """Writes rows as a manifest, with paths from its folder on."""
+    rows = logs.to_dict("records") if hasattr(logs, "to_dict") else [dict(one) for one in logs]
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    os.makedirs(out, exist_ok=True)
+    path = os.path.join(out, "manifest.csv")
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(names)
+        for row in rows:
+            cells = {name: _cell(row.get(name)) for name in names}
+            for name in ("log", "model", "heldout", "map"):
+                if cells.get(name):
+                    cells[name] = os.path.relpath(cells[name], out)
+            table.writerow([cells[name] for name in names])
+    return path
+
+
 def _choices(columns):
     """columns= as a list of NAME=HEADER[:UNIT]; a text is what a finding says to type: '--column a=b --column c=d'."""
     words = shlex.split(columns) if isinstance(columns, str) else [str(one) for one in columns]
@@ -630,6 +703,20 @@ def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, c
     """Predicts from inputs alone: what was not measured starts at the air's temperature and at rest, or as start says
     (such as {"motor_C": 40.0}). Lists as in simulate()."""
     return _simulate(models, recordings, dict(start or {}), horizon_s, True, threads, columns, effects)
+
+
+def fleet(logs, out, workers=0, pages=True, columns=(), without=(), horizon_s=None):
+    """Diagnoses every log of a table, several at a time, and says what all of them say together. The same call resumes.
+
+    logs: path of a table (CSV) whose paths count from its folder; or its rows, a DataFrame or a list of dicts, which are
+    written to out/manifest.csv. Columns are log and model, and where needed unit, time (a date), heldout and map.
+    out: folder of the results, the same as those of the program. workers: processes at a time, 0 for one per core.
+    pages: a page for each log, too. columns, without, horizon_s: as in diagnose(), for every log. Ctrl-C ends it; the reports
+    so far stay.
+    """
+    out = os.fspath(out)
+    manifest = os.fspath(logs) if isinstance(logs, (str, os.PathLike)) else _manifest(logs, out)
+    return Fleet(out, _thermopower.fleet(manifest, out, workers, pages, _choices(columns), list(without), horizon_s))
 
 
 def effects():

@@ -50,6 +50,7 @@ inline const char* to_string(Oddity oddity) {
 struct UnitDrift {
   std::string coordinate;  ///< its name
   Drift drift;             ///< how it went
+  TimeSeries series;       ///< the values of the unit's logs
 };
 
 /// One unit after the fleet was looked at.
@@ -397,7 +398,7 @@ private:
         bool dated = series.time.size() > 1;
         for (const double time : series.time) dated = dated && std::isfinite(time);
         if (!dated || !(series.time.back() > series.time.front())) continue;
-        found.push_back({i, {family.coordinates[c], find_drift(series, family.scatter[c])}});
+        found.push_back({i, {family.coordinates[c], find_drift(series, family.scatter[c]), series}});
         p.push_back(found.back().second.drift.p);
       }
     }
