@@ -217,16 +217,21 @@ std::string code_pages_markdown() {
       if (!option && text.compare(i, 2, "--") == 0) plain += '`', option = true;
       else if (option && std::isalnum(static_cast<unsigned char>(text[i])) == 0 && text[i] != '-')
         plain += '`', option = false;
-      plain += text[i] == '<' ? "&lt;" : text[i] == '>' ? "&gt;" : std::string(1, text[i]);
+      plain += text[i] == '<'   ? "&lt;"
+               : text[i] == '>' ? "&gt;"
+               : text[i] == '|' ? "&#124;"
+                                : std::string(1, text[i]);
     }
     return option ? plain + '`' : plain;
   };
   for (const CodePage& page : every_page({})) {
     if (page.kind != kind) out += (kind.empty() ? "## " : "\n## ") + capital(page.kind) + "s\n";
     kind = page.kind;
-    out += "\n### `" + page.code + "`\n\n";
-    for (const CodeSection& one : page.sections)
-      out += "- **" + one.heading + ":** " + (one.is_code ? "`" + one.text + "`" : literal(one.text)) + "\n";
+    out += "\n### `" + page.code + "`\n\n| | |\n|---|---|\n";
+    for (const CodeSection& one : page.sections) {
+      const bool is_code = one.is_code && one.text.find('|') == std::string::npos;  // it would end the cell
+      out += "| " + one.heading + " | " + (is_code ? "`" + one.text + "`" : literal(one.text)) + " |\n";
+    }
   }
   return out;
 }

@@ -169,9 +169,9 @@ void expect_starts(const std::map<std::string, double>& starts, const gap::Model
   }
 }
 
-Result diagnose(const gap::Model& model, const std::vector<py::dict>& effects,
-                std::vector<gap::Recording> train, std::vector<gap::Recording> held_out,
-                gap::Options options) {
+Result diagnose_recordings(const gap::Model& model, const std::vector<py::dict>& effects,
+                           std::vector<gap::Recording> train, std::vector<gap::Recording> held_out,
+                           gap::Options options) {
   options.validate();
   Result result;
   result.catalogue = catalogue_with(effects);
@@ -346,7 +346,7 @@ PYBIND11_MODULE(_thermopower, module) {
     return model_of(json, catalogue_with(effects));
   });
   module.def("own_plant", &thermopower::python::own_plant);
-  module.def("diagnose", &diagnose);
+  module.def("diagnose", &diagnose_recordings);
   module.def("check", &check);
   module.def("simulate", &simulate);
   module.def("fleet", [](const std::string& manifest, const std::string& out, unsigned workers, bool pages,
