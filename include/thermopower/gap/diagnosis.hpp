@@ -187,6 +187,13 @@ struct ShareLeft {
   double of_refitted_constants = 1.0;  ///< of what refitted constants leave
 };
 
+/// Whether one factor explains several constants (FindingKind::common_factor).
+enum class CommonFactor {
+  none,              ///< it does not
+  may_be_constant,  ///< it does, and a single constant does, too: a factor of the command, as `torque_constant_Nm_per_A` has it
+  of_no_constant     ///< it does, and no single constant does: a clock, a supply
+};
+
 /// Every number that the verdict relies on.
 struct DecisionNumbers {
   double configured = 0.0;  ///< largest multiple of the noise floor, as configured
@@ -198,7 +205,7 @@ struct DecisionNumbers {
   ShareLeft share;           ///< what the likeliest explanation leaves
   double probability = 0.0;  ///< of the likeliest explanation's class
   double together = 0.0;     ///< of that class and the alternatives
-  bool common_factor = false;  ///< one factor explains several constants (FindingKind::common_factor)
+  CommonFactor common_factor = CommonFactor::none;  ///< of several constants
 };
 
 /// Correlation of the estimates of the chosen explanation. Near 1 or -1 the training data show little more than one

@@ -34,7 +34,7 @@ inline const char* to_string(Reason reason) {
     case Reason::constants_moved:
       return "refitted constants alone bring every signal near its noise floor, and no effect is needed";
     case Reason::common_factor:
-      return "several constants are off by one common factor: look for a unit, a gear or a supply before any cause is named";
+      return "one factor does what several constants would have to: look for a unit, a gear or a supply before a constant is blamed";
     case Reason::constants_leave_a_rest:
       return "there is a gap; refitted constants predict held-out data best and leave a gap, and no effect does better";
     case Reason::cause_explains:

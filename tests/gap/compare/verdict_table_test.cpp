@@ -59,11 +59,14 @@ TEST_CASE("constants that leave a gap explain nothing") {
 }
 
 TEST_CASE(
-    "where one factor is common to several constants, no cause is named, and none is denied by constants within known") {
+    "where one factor is common to several constants, nothing is explained; a constant that may be that factor is one of "
+    "several answers") {
   DecisionNumbers numbers = numbers_of({row(20.0, 1.0, 1.0)}, 1.0);
-  numbers.common_factor = true;
+  numbers.common_factor = CommonFactor::of_no_constant;
   CHECK(decide(numbers, true, false).reason == Reason::common_factor);
   CHECK(decide(numbers, false, false).verdict == Verdict::unexplained);
+  numbers.common_factor = CommonFactor::may_be_constant;
+  CHECK(decide(numbers, true, false).verdict == Verdict::ambiguous);
   CHECK(decide(numbers, true, true).reason == Reason::constants_within_known);
 }
 

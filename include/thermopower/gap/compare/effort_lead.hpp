@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/compare/bootstrap_weights.hpp>
 #include <thermopower/gap/compare/choice.hpp>
+#include <thermopower/gap/compare/verdict_table.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/fit/explanation.hpp>
 #include <thermopower/gap/propose/effort_problem.hpp>
@@ -82,25 +83,22 @@ public:
   /// The explanations, with their probabilities.
   std::vector<Candidate>& candidates() { return candidates_; }
 
-  /// The answer: the set that forward selection stops at, with the class of what predicts alike.
-  Answer answer() {
-    Answer found;
-    const InverseScore told = effort_.told();
+  /// The answer: the set that forward selection stops at, with the class of what predicts alike. Where that class is not likely, and a
+  /// part of the set has one that is, that part.
+  /// @param set  of the effort
+  Answer answer(const InverseScore& set) const {
+    const std::vector<const CatalogueEntry*> told = sorted(set.effects);
+    std::size_t whole = 0;
     for (std::size_t i = 0; i < candidates_.size(); ++i)
-      if (sorted(candidates_[i].explanation.effects) == sorted(told.effects)) found.chosen = i;
-    const Explanation& chosen = candidates_[found.chosen].explanation;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      const bool alike = candidates_[i].explanation.includes(chosen) ||
-                         likeness(signatures_[i], signatures_[found.chosen]) >= alike_from;
-      if (alike) found.probability += candidates_[i].probability;
-      const bool is_rival = i != found.chosen && i > 0 && !candidates_[i].explanation.includes(chosen) &&
-                            candidates_[i].probability > decision.alternative;
-      if (is_rival) found.alternatives.push_back(i);
+      if (sorted(candidates_[i].explanation.effects) == told) whole = i;
+    Answer found = answer_of(whole);
+    if (found.probability >= verdict_limits.likely) return found;
+    for (std::size_t i = 1; i < candidates_.size(); ++i) {
+      if (!candidates_[whole].explanation.includes(candidates_[i].explanation)) continue;
+      Answer part = answer_of(i);
+      if (part.probability >= verdict_limits.likely && part.probability > found.probability)
+        found = std::move(part);
     }
-    found.together = found.probability;
-    for (const std::size_t i : found.alternatives)
-      if (likeness(signatures_[i], signatures_[found.chosen]) < alike_from)
-        found.together += candidates_[i].probability;
     return found;
   }
 
@@ -111,6 +109,23 @@ private:
   static std::vector<const CatalogueEntry*> sorted(std::vector<const CatalogueEntry*> list) {
     std::sort(list.begin(), list.end());
     return list;
+  }
+
+  /// A candidate as the answer.
+  Answer answer_of(std::size_t place) const {
+    Answer found;
+    found.chosen = place;
+    const Explanation& chosen = candidates_[place].explanation;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const bool is_more = candidates_[i].explanation.includes(chosen);
+      const bool alike = likeness(signatures_[i], signatures_[place]) >= alike_from;
+      if (is_more || alike) found.probability += candidates_[i].probability;
+      if (i == place || i == 0 || is_more || !(candidates_[i].probability > decision.alternative)) continue;
+      found.alternatives.push_back(i);
+      if (!alike) found.together += candidates_[i].probability;
+    }
+    found.together += found.probability;
+    return found;
   }
 
   void weigh_all(const std::vector<InverseScore>& scores) {

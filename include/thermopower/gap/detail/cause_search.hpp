@@ -6,6 +6,7 @@
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
 #include <thermopower/gap/detail/window_search.hpp>
+#include <thermopower/gap/propose/inverse_score.hpp>
 
 #include <cstddef>
 #include <utility>
@@ -23,11 +24,13 @@ class CauseSearch {
 public:
   /// All of them must outlive this object.
   /// @param where  in which submodels the measured rows themselves say that something is missing
+  /// @param told   what the effort tells, given the motion; without effects where it tells nothing
   CauseSearch(const Posing& posing, const std::vector<Inputs>& train, const std::vector<Inputs>& held_out,
-              const std::vector<Location>& where)
+              const std::vector<Location>& where, const InverseScore& told)
       : posing_(posing),
         as_judged_(posing, train, held_out),
         train_(train),
+        told_(told),
         suspects_(suspects_among(where)),
         blames_a_load_(!where.empty() && where.front().submodel == plant::Submodel::mechanical_load) {}
 
@@ -65,6 +68,7 @@ private:
     }
     search.look_at_rows();
     search.try_sets();
+    search.try_told(told_);
     search.try_curves();
     search.decide();
     search.try_beside_dear_constants();
@@ -76,6 +80,7 @@ private:
   const Posing& posing_;
   AsJudged as_judged_;
   const std::vector<Inputs>& train_;
+  const InverseScore& told_;
   std::vector<plant::SubmodelName> suspects_;
   bool blames_a_load_;
 };

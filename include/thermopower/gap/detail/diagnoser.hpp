@@ -62,7 +62,8 @@ public:
     if (effort_is_measured() && effort_->loop().kind == LoopKind::closed_recorded) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
-    Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where).run();
+    const InverseScore proposed = effort_is_measured() ? effort_->told() : InverseScore();
+    Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where, proposed).run();
     const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
     const Answer answer = choose(attempt.candidates, model_);
     // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap.
@@ -125,8 +126,20 @@ private:
     EffortLead lead(*effort_, attempt.problem);
     if (!lead.is_told()) return std::nullopt;
     effort_leads_ = true;
-    const Answer answer = lead.answer();
+    Answer answer = lead.answer(effort_->told());
     take(lead, answer, attempt);
+    // A curve must not lose in the motion, either: between its knots it may be anything.
+    constexpr double loses = 2.0;
+    const Candidate &chosen = attempt.candidates[answer.chosen], &constants = attempt.candidates.front();
+    if (has_curve(chosen.explanation.effects) &&
+        largest_noise_multiple(chosen.held_out) > loses * largest_noise_multiple(constants.held_out)) {
+      if (effort_->told_by_name().effects.empty()) {
+        effort_leads_ = false;
+        return std::nullopt;
+      }
+      answer = lead.answer(effort_->told_by_name());
+      take(lead, answer, attempt);
+    }
     return std::make_pair(std::move(attempt), answer);
   }
 
@@ -162,9 +175,16 @@ private:
   /// One belief: constants and causes that predict the motion must not need another effort than the one that was recorded. In a
   /// closed loop a flywheel predicts the motion best, and would need many times the effort. What predicts the motion to the noise
   /// from the recorded effort needs no other one.
+  /// Where a controller makes the effort, a cause that the effort has no use for loses, too. A cause with a name that brings the motion to
+  /// the noise loses only to causes with names.
   /// @return whether the likeliest explanation is denied
-  bool leave_out_what_effort_denies(std::vector<Candidate>& candidates) const {
+  bool leave_out_what_effort_denies(std::vector<Candidate>& candidates) {
     constexpr double hardly = 1e-3, worse = 1.15;
+    const auto has_no_use = [&](const Explanation& of) {
+      return effort_->loop().is_closed() &&
+             std::any_of(of.effects.begin(), of.effects.end(),
+                         [&](const CatalogueEntry* one) { return effort_->has_no_use_for(*one); });
+    };
     const std::size_t best = likeliest(candidates);
     bool denied_best = false;
     double left = 0.0;
@@ -172,9 +192,13 @@ private:
       Candidate& one = candidates[i];
       const bool reaches_the_floor =
           one.held_out.any() && largest_noise_multiple(one.held_out) <= decision.near_floor;
-      if (one.probability > hardly && i > 0 && !reaches_the_floor) {
+      if (one.probability > hardly && i > 0) {
         const ParameterPoint point = point_of(model_, one.explanation, one.list, one.fit.point);
-        if (effort_->times_refitted(point.factors, added(point)) > worse) {
+        const bool needs_another =
+            !reaches_the_floor && effort_->times_refitted(point.factors, added(point)) > worse;
+        const bool may_lose =
+            !reaches_the_floor || has_curve(one.explanation.effects) || !has_curve(effort_->told().effects);
+        if (needs_another || (may_lose && has_no_use(one.explanation))) {
           one.probability = 0.0;
           denied_best = denied_best || i == best;
         }
@@ -184,6 +208,11 @@ private:
     if (left > 0.0)
       for (Candidate& one : candidates) one.probability /= left;
     return denied_best;
+  }
+
+  static bool has_curve(const std::vector<const CatalogueEntry*>& effects) {
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const CatalogueEntry* one) { return one->info.curve.has_value(); });
   }
 
   static std::vector<plant::AddedEffect<double>> added(const ParameterPoint& point) {
@@ -236,6 +265,16 @@ private:
     return worst;
   }
 
+  /// What a cause that the effort tells leaves of the gap: of the effort or, if that is less and the cause makes the effort no worse, of
+  /// the motion.
+  ShareLeft share_of_effort_or_motion() const {
+    const std::vector<GapScore> motion(result_.gap.begin(), result_.gap.end() - 1);
+    const ShareLeft of_effort = share_left({result_.gap.back()}), of_motion = share_left(motion);
+    const bool is_no_worse = of_effort.of_refitted_constants <= 1.0 && of_effort.of_configured <= 1.0;
+    return is_no_worse && of_motion.of_refitted_constants < of_effort.of_refitted_constants ? of_motion
+                                                                                          : of_effort;
+  }
+
   /// What the chosen explanation comes to: the table, the verdict that it says, and what goes with that.
   void report(Attempt& attempt, const Answer& choice) {
     std::vector<Candidate>& candidates = attempt.candidates;
@@ -256,7 +295,7 @@ private:
           rivals_of(candidates, choice.chosen, model_), options_, catalogue_);
     add_effort(chosen);
     result_.numbers = numbers_of(result_.gap, choice.probability);
-    if (effort_leads_) result_.numbers.share = share_left({result_.gap.back()});
+    if (effort_leads_) result_.numbers.share = share_of_effort_or_motion();
     result_.numbers.together = choice.together;
     if (result_.numbers.configured <= verdict_limits.near_floor)
       result_.numbers.twice_horizon = at_twice_the_horizon();
@@ -269,11 +308,10 @@ private:
     };
     const std::vector<ConstantEstimate> of_chosen =
         only_constants ? refitted : constants_of(chosen, model_, weight);
-    const bool is_found =
-        std::any_of(result_.findings.begin(), result_.findings.end(),
-                    [](const Finding& one) { return one.kind == FindingKind::common_factor; });
-    result_.numbers.common_factor =
-        only_constants ? is_found || share_a_factor(refitted) : is_found && !are_within(of_chosen);
+    if (only_constants || !are_within(of_chosen)) result_.numbers.common_factor = common_factor_found();
+    const bool is_shared = only_constants ? share_a_factor(refitted) : is_another_supply(chosen, of_chosen);
+    if (result_.numbers.common_factor == CommonFactor::none && is_shared)
+      result_.numbers.common_factor = CommonFactor::of_no_constant;
     const bool within_known = are_within(refitted);
     Decision decided = ran_away(result_.gap) ? Decision{Verdict::insufficient, Reason::simulation_runs_away}
                                              : decide(result_.numbers, only_constants, within_known);
@@ -284,14 +322,15 @@ private:
     result_.verdict = decided.verdict;
     result_.why = decided.reason;
     result_.reason = to_string(decided.reason);
-    const bool by_constants =
-        decided.reason == Reason::constants_within_known || decided.reason == Reason::constants_moved;
+    const bool by_constants = decided.reason == Reason::constants_within_known ||
+                              decided.reason == Reason::constants_moved ||
+                              (decided.reason == Reason::common_factor && only_constants);
     const bool named = decided.verdict == Verdict::explained || decided.verdict == Verdict::ambiguous ||
                        decided.verdict == Verdict::partial;
     result_.constants = named && !by_constants ? of_chosen : refitted;
     note_recalibration(result_);
     if (!named || by_constants) keep_constants_alone(result_, model_);
-    if (by_constants) {
+    if (named && by_constants) {
       if (within_known) constants.explanation = fewest_constants(attempt.problem, constants).explanation;
       else constants.explanation.released = beyond_known(refitted);
       name_causes(result_, candidates,
@@ -310,6 +349,29 @@ private:
     result_.next_experiment = next_experiment(result_, candidates, choice, model_, catalogue_);
     result_.predictions =
         predictions_of(model_, result_.augmented, full, held_out_inputs_, held_out_rows_, catalogue_);
+  }
+
+  /// Whether a supply that nobody recorded does what an explanation needs two changes for: at 1/gain of the nominal voltage, a winding
+  /// of gain squared times the resistance is heated alike, and its current is read by the gain.
+  bool is_another_supply(const Candidate& one, const std::vector<ConstantEstimate>& constants) const {
+    constexpr double alike = 0.1;  // of the logarithm
+    const bool is_recorded = std::all_of(train_recordings_.begin(), train_recordings_.end(),
+                                         [](const Recording& log) { return log.has("supply_V"); });
+    const CatalogueEntry* const gain = catalogue_.find("current_sensor_gain");
+    if (is_recorded || !model_.supply || gain == nullptr || one.place_of(*gain, "gain") == one.list.size())
+      return false;
+    const double by = 2.0 * std::log(one.value(one.place_of(*gain, "gain")));
+    return std::any_of(constants.begin(), constants.end(), [&](const ConstantEstimate& constant) {
+      return constant.name == "resistance" && std::abs(std::log(constant.fitted / constant.configured) - by) < alike;
+    });
+  }
+
+  /// What the columns say of a factor that several constants have in common.
+  CommonFactor common_factor_found() const {
+    for (const Finding& one : result_.findings)
+      if (one.kind == FindingKind::common_factor)
+        return one.column == "t_s" ? CommonFactor::of_no_constant : CommonFactor::may_be_constant;
+    return CommonFactor::none;
   }
 
   /// The likeliest explanation by constants alone; where all of these are as good as excluded, the one that leaves least and moves

@@ -6,6 +6,7 @@
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/compare/choice.hpp>
+#include <thermopower/gap/compare/effort_lead.hpp>
 #include <thermopower/gap/detail/as_judged.hpp>
 #include <thermopower/gap/detail/attempt.hpp>
 #include <thermopower/gap/detail/posing.hpp>
@@ -116,6 +117,15 @@ public:
     }
     if (search_->refine_shapes(attempt_.candidates)) renew();
     look_at_rows();
+  }
+
+  /// What the effort tells, from where it has it: its set may hold a cause that alone does nothing for the motion.
+  void try_told(const InverseScore& told) {
+    if (told.effects.empty() || told.effects.size() > static_cast<std::size_t>(options_.effects_at_once)) return;
+    const Candidate start = candidate_of(told, attempt_.problem);
+    if (is_known(attempt_.candidates, start.explanation)) return;
+    search_->add_whatever_the_room(attempt_.candidates, {{{0.0, {start.fit.point}}, 0, start.explanation}});
+    renew();
   }
 
   /// Curves, beside everything that has a name: they could bend to what one or two named causes do, and say less. Where one

@@ -166,46 +166,21 @@ public:
   }
 
   /// The proposals of held-out effort: single effects, and sets by forward selection. Those that are told first, then by
-  /// share.
+  /// share. Curves come after everything that has a name: beside the set that was told, in place of its members that act where the curve
+  /// does, and alone. They could bend to what named causes do, and must lower the effort materially below those.
   std::vector<InverseProposal> proposals() {
     std::vector<InverseProposal> list;
     if (!is_judged()) return list;
     InverseScore now = nothing_;
-    for (int step = 0; step < propose_thresholds.most_causes; ++step) {
-      std::vector<InverseProposal> tried;
-      // Of equals the one with the fewest parameters comes first, then the first of the catalogue.
-      const auto place = [&](const InverseProposal& one) {
-        std::ptrdiff_t last = 0;
-        for (const plant::CatalogueEntry* effect : one.score.effects)
-          if (std::find(now.effects.begin(), now.effects.end(), effect) == now.effects.end())
-            last = effect - catalogue_.entries().data();
-        return std::make_pair(parameter_count(one.score), last);
-      };
-      for (const plant::CatalogueEntry& entry : catalogue_.entries()) {
-        if (!entry.hooks.any_axis() || model_.effects.count(entry.info.id) > 0) continue;
-        if (std::find(now.effects.begin(), now.effects.end(), &entry) != now.effects.end()) continue;
-        std::vector<const plant::CatalogueEntry*> set = now.effects;
-        if (step > 0 && !promises(set, entry)) continue;
-        set.push_back(&entry);
-        const InverseScore& one = score(set);
-        if (!one.judged || one.refusal != InverseRefusal::none) continue;
-        tried.push_back({one, is_material(now, one), false, weighed(one)});
+    for (const bool with_curves : {false, true}) {
+      while (now.effects.size() < static_cast<std::size_t>(propose_thresholds.most_causes)) {
+        std::vector<InverseProposal> tried = next_to(now, with_curves);
+        const bool goes_on = !tried.empty() && tried.front().is_told;
+        if (goes_on) tried.front().leads = true, now = tried.front().score;
+        list.insert(list.end(), tried.begin(), tried.end());
+        if (!goes_on) break;
       }
-      std::stable_sort(tried.begin(), tried.end(), [](const InverseProposal& a, const InverseProposal& b) {
-        return a.weighed < b.weighed;
-      });
-      if (!tried.empty()) {
-        const double tied = tried.front().weighed * (1.0 + propose_thresholds.tied);
-        const auto first = std::min_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) {
-          const bool a_tied = a.weighed <= tied, b_tied = b.weighed <= tied;
-          return a_tied != b_tied ? a_tied : a_tied && place(a) < place(b);
-        });
-        std::rotate(tried.begin(), first, first + 1);
-      }
-      if (!tried.empty()) tried.front().leads = tried.front().is_told;
-      list.insert(list.end(), tried.begin(), tried.end());
-      if (tried.empty() || !tried.front().is_told) break;
-      now = tried.front().score;
+      (with_curves ? told_ : told_by_name_) = now;
     }
     std::stable_sort(list.begin(), list.end(), [](const InverseProposal& a, const InverseProposal& b) {
       return a.is_told != b.is_told ? a.is_told : a.weighed < b.weighed;
@@ -214,11 +189,31 @@ public:
   }
 
   /// The set that forward selection stops at; that of nothing() where it tells none.
-  InverseScore told() {
-    InverseScore best = nothing_;
-    for (const InverseProposal& one : proposals())
-      if (one.leads && one.score.effects.size() > best.effects.size()) best = one.score;
-    return best;
+  const InverseScore& told() {
+    if (!told_) proposals();
+    if (!told_) told_ = told_by_name_ = nothing_;
+    return *told_;
+  }
+  /// The same without curves.
+  const InverseScore& told_by_name() {
+    told();
+    return *told_by_name_;
+  }
+
+  /// Whether the effort, which tells of other causes, has no use for this one: alone it does not lower held-out effort materially, nor
+  /// beside what is told. Nothing is said of a cause that no effort tells.
+  bool has_no_use_for(const plant::CatalogueEntry& cause) {
+    const InverseScore best = told();
+    const bool is_told =
+        std::find(best.effects.begin(), best.effects.end(), &cause) != best.effects.end();
+    if (best.effects.empty() || is_told || why_not(cause) != InverseRefusal::none) return false;
+    const auto helps = [&](const InverseScore& without) {
+      std::vector<const plant::CatalogueEntry*> set = without.effects;
+      set.push_back(&cause);
+      const InverseScore& with = score(set);
+      return !with.judged || (with.refusal == InverseRefusal::none && is_material(without, with));
+    };
+    return !helps(nothing_) && !helps(best);
   }
 
 private:
@@ -230,6 +225,49 @@ private:
   };
 
   static constexpr double small_share = 0.02;  ///< of the effort's RMS: less is nobody's loss
+
+  /// A set and each further effect, the best first: what lowers the effort most for its parameters. Of equals the one with the fewest
+  /// parameters comes first, then the first of the catalogue.
+  std::vector<InverseProposal> next_to(const InverseScore& now, bool curves) {
+    std::vector<InverseProposal> tried;
+    const auto place = [&](const InverseProposal& one) {
+      std::ptrdiff_t last = 0;
+      for (const plant::CatalogueEntry* effect : one.score.effects)
+        if (std::find(now.effects.begin(), now.effects.end(), effect) == now.effects.end())
+          last = effect - catalogue_.entries().data();
+      return std::make_pair(parameter_count(one.score), last);
+    };
+    const auto add = [&](const std::vector<const plant::CatalogueEntry*>& set) {
+      const InverseScore& one = score(set);
+      if (one.judged && one.refusal == InverseRefusal::none)
+        tried.push_back({one, is_material(now, one), false, weighed(one)});
+    };
+    for (const plant::CatalogueEntry& entry : catalogue_.entries()) {
+      if (!entry.hooks.any_axis() || model_.effects.count(entry.info.id) > 0) continue;
+      if (static_cast<bool>(entry.info.curve) != curves) continue;
+      if (std::find(now.effects.begin(), now.effects.end(), &entry) != now.effects.end()) continue;
+      std::vector<const plant::CatalogueEntry*> set = now.effects, others;
+      for (const plant::CatalogueEntry* one : set)
+        if (one->info.submodel != entry.info.submodel) others.push_back(one);
+      const bool replaces = curves && others.size() < set.size();
+      if (!replaces && !set.empty() && !promises(set, entry)) continue;
+      if (replaces) set = others;
+      set.push_back(&entry);
+      add(set);
+      if (curves && set.size() > 1) add({&entry});
+    }
+    std::stable_sort(tried.begin(), tried.end(), [](const InverseProposal& a, const InverseProposal& b) {
+      return a.weighed < b.weighed;
+    });
+    if (tried.empty()) return tried;
+    const double tied = tried.front().weighed * (1.0 + propose_thresholds.tied);
+    const auto first = std::min_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) {
+      const bool a_tied = a.weighed <= tied, b_tied = b.weighed <= tied;
+      return a_tied != b_tied ? a_tied : a_tied && place(a) < place(b);
+    });
+    std::rotate(tried.begin(), first, first + 1);
+    return tried;
+  }
 
   /// The residual of held-out effort after dry friction, a constant and a load of the angle, of any size, are taken out.
   Eigen::VectorXd without_plain_torques(const Eigen::VectorXd& left) const {
@@ -502,6 +540,7 @@ private:
   double samples_as_one_ = 1.0;
   double least_share_ = 1.0;
   InverseScore nothing_;
+  std::optional<InverseScore> told_, told_by_name_;
   std::map<std::vector<const plant::CatalogueEntry*>, Scored> scores_;
 };
 

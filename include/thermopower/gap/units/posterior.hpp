@@ -33,6 +33,7 @@ struct UnitBeliefs {
   double constant_sd = 0.05;      ///< of the logarithm of a constant, as KnownConstants::uncertainty
   double drag_sd = 0.3;           ///< of the logarithm of a drag: most are fitted without friction
   double farthest_factor = 30.0;  ///< that a constant is off by, as KnownConstants::farthest_factor
+  double farthest_drive = 100.0;  ///< the same of what two constants come to, inertia and torque constant
   double near_drive = 1.6;        ///< factor that a drive's constants may be off beside a wrong unit
   double near_heat = 6.0;         ///< the same of a circuit or a body, which hides heat from its thermometer
   double beyond = 10.0;           ///< price of a constant that is further off
@@ -91,7 +92,7 @@ public:
     // A torque constant moves both.
     sum += std::max(shared({UnitMeasure::drive}, units).best + shared({UnitMeasure::drag}, units).best,
                     shared({UnitMeasure::drive, UnitMeasure::drag}, units).best);
-    return sum + air(units).best;
+    return sum + air(units).best + start(units).best;
   }
 
   /// Whether a common hypothesis holds in every part: what it leaves of the measures that it changes is near 1.
@@ -117,6 +118,7 @@ public:
   struct Shared {
     std::array<double, unit_measure_count> measures{};  ///< logarithms of what the model is off by
     double air_C = 0.0;                                 ///< temperature of the air where none is recorded
+    double start_K = 0.0;                               ///< of the coldest motor above its air
   };
   /// What the recordings share, with the units given.
   Shared shared_by(const Assignment& units) const {
@@ -124,6 +126,7 @@ public:
     for (std::size_t k = 0; k < unit_measure_count; ++k)
       all.measures[k] = shared({static_cast<UnitMeasure>(k)}, units).at;
     all.air_C = air(units).at;
+    all.start_K = start(units).at;
     return all;
   }
 
@@ -144,6 +147,8 @@ public:
       if (here.is_told) sum -= misfit((here.value - shared.measures[k]) / here.sd);
     }
     if (parts_[part].air.is_known()) sum -= misfit((air_of(part, one) - shared.air_C) / beliefs.air_sd_K);
+    if (parts_[part].motor.is_known())
+      sum -= misfit((start_of(part, one) - shared.start_K) / beliefs.start_sd_K);
     return sum;
   }
 
@@ -260,11 +265,6 @@ private:
       return factor == 1.0 && range.whole_numbers ? beliefs.whole_kelvin : 0.0;
     };
     sum += price_of("motor_C", of.motor) + price_of("ambient_C", of.air);
-    if (of.motor.is_known()) {
-      const double above_K =
-          one.celsius("motor_C", of.motor.low) - (of.air.is_known() ? air_C : beliefs.room_C);
-      sum += std::min(moved(above_K, beliefs.start_sd_K), beliefs.most_start);
-    }
     if (std::isfinite(of.air_offset_K)) {
       const double expected_K = one.recorded("motor_C", air_C) - of.air.typical;
       const double sd_K = std::max(beliefs.offset_sd_K, beliefs.offset_share * std::abs(expected_K));
@@ -289,7 +289,8 @@ private:
     const bool loose =
         kind == UnitMeasure::drag || kind == UnitMeasure::supply || kind == UnitMeasure::target;
     const double price = moved(by, loose ? beliefs.drag_sd : beliefs.constant_sd);
-    const bool is_far = kind != UnitMeasure::drag && std::abs(by) > std::log(beliefs.farthest_factor);
+    const double farthest = kind == UnitMeasure::drive ? beliefs.farthest_drive : beliefs.farthest_factor;
+    const bool is_far = kind != UnitMeasure::drag && std::abs(by) > std::log(farthest);
     return price + (is_far ? beliefs.beyond : 0.0);
   }
 
@@ -316,6 +317,25 @@ private:
       return std::min(0.5 * far * far, beliefs.most_air);
     };
     return likeliest(all, price_of, beliefs.room_C);
+  }
+
+  double start_of(std::size_t part, const UnitHypothesis& one) const {
+    const UnitEvidence& of = parts_[part];
+    const bool is_recorded = of.air.is_known() && one.exchanged.first.empty();
+    const double air_C = is_recorded ? one.celsius("ambient_C", of.air.typical) : beliefs.room_C;
+    return one.celsius("motor_C", of.motor.low) - air_C;
+  }
+
+  /// How warm motors are where recordings begin is a habit of their source: it is priced once.
+  Best start(const Assignment& units) const {
+    std::vector<Deviation> all;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (parts_[i].motor.is_known() && units[i]->exchanged.first.empty())
+        all.push_back({true, start_of(i, *units[i]), beliefs.start_sd_K});
+    const auto price_of = [](double at) {
+      return std::min(moved(at, beliefs.start_sd_K), beliefs.most_start);
+    };
+    return likeliest(all, price_of, 0.0);
   }
 
   /// Of the shift that was expected and those that single deviations have, the likeliest.
