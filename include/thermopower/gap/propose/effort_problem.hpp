@@ -211,7 +211,8 @@ public:
       std::vector<const plant::CatalogueEntry*> set = without.effects;
       set.push_back(&cause);
       const InverseScore& with = score(set);
-      return !with.judged || (with.refusal == InverseRefusal::none && is_material(without, with));
+      return !with.judged || with.refusal == InverseRefusal::of_stamps ||
+             (with.refusal == InverseRefusal::none && is_material(without, with));
     };
     return !helps(nothing_) && !helps(best);
   }
@@ -435,9 +436,12 @@ private:
       }
     result.log_density = log_density(left);
     score.refusal = left.flat * 2 > left.effort.size() ? InverseRefusal::switches_off : InverseRefusal::none;
-    for (std::size_t e = 0; e < effects.size() && score.refusal == InverseRefusal::none; ++e)
-      score.refusal =
-          why_not_with(*effects[e], fit.point.effects[e].parameters, model_, train_rows_->rate_rad_per_s);
+    for (std::size_t e = 0; e < effects.size() && score.refusal == InverseRefusal::none; ++e) {
+      const std::vector<double>& parameters = fit.point.effects[e].parameters;
+      score.refusal = is_of_stamps(*effects[e], parameters)
+                          ? InverseRefusal::of_stamps
+                          : why_not_with(*effects[e], parameters, model_, train_rows_->rate_rad_per_s);
+    }
     const Eigen::VectorXd gains = effects.empty()
                                       ? Eigen::VectorXd(Eigen::VectorXd::Zero(result.log_density.size()))
                                       : Eigen::VectorXd(result.log_density - scores_.at({}).log_density);

@@ -46,6 +46,7 @@ enum class InverseRefusal {
   drives_the_motion,  ///< as friction it would have to push; its best size is 0
   vanishes,           ///< its best size is 0
   not_itself,         ///< with the best parameters it is not what it is called, or stands on a bound
+  of_stamps,          ///< a delay so short that the stamps of the rows may be off by as much
   switches_off        ///< it takes the drive away, so that any effort would do
 };
 
@@ -70,6 +71,8 @@ inline const char* to_string(InverseRefusal refusal) {
       return "vanishes";
     case InverseRefusal::not_itself:
       return "not itself";
+    case InverseRefusal::of_stamps:
+      return "of stamps";
     case InverseRefusal::switches_off:
       return "switches the drive off";
   }

@@ -33,7 +33,7 @@ struct ProposeThresholds {
   /// Share of the residual's variance by which an effort must fit better as a measurement at its stamp than as a held
   /// value.
   double stamped = 0.1;
-  double least_delay_samples = 0.5;  ///< a delay that is less than this is one of stamps
+  double least_delay_samples = 0.75;  ///< a delay that is less than this may be one of stamps
   double longest_delay_rows = 8.0;   ///< from effort to torque
   double longest_delay_s = 0.02;     ///< the same, where rows are rare: the larger counts
   double flat = 0.1;           ///< of the drive's torque per effort: a drive that gives less has switched off
