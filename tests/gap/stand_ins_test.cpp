@@ -200,6 +200,6 @@ TEST_CASE("causes are named beside a third one, though the viscous friction was 
   const Diagnosis all = diagnose(model, train, held_out);
   INFO(all.reason);
   CHECK(all.verdict == Verdict::explained);
-  CHECK(test::causes_in_order(all) ==
+  CHECK(test::causes_of(all) ==
         std::vector<std::string>{"cable_spring", "coulomb_friction", "torque_ripple"});
 }

@@ -189,9 +189,9 @@ struct ShareLeft {
 
 /// Whether one factor explains several constants (FindingKind::common_factor).
 enum class CommonFactor {
-  none,              ///< it does not
+  none,  ///< it does not
   may_be_constant,  ///< it does, and a single constant does, too: a factor of the command, as `torque_constant_Nm_per_A` has it
-  of_no_constant     ///< it does, and no single constant does: a clock, a supply
+  of_no_constant  ///< it does, and no single constant does: a clock, a supply
 };
 
 /// Every number that the verdict relies on.

@@ -110,8 +110,9 @@ inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool
     return {Verdict::unexplained, Reason::constants_leave_a_rest};
   // One factor in a unit, a gear or a supply does what the moved constants do, alone or beside an effect.
   if (near && numbers.common_factor != CommonFactor::none && !within_known)
-    return {numbers.common_factor == CommonFactor::may_be_constant ? Verdict::ambiguous : Verdict::unexplained,
-            Reason::common_factor};
+    return {
+        numbers.common_factor == CommonFactor::may_be_constant ? Verdict::ambiguous : Verdict::unexplained,
+        Reason::common_factor};
   if (only_constants)
     return {Verdict::explained, within_known ? Reason::constants_within_known : Reason::constants_moved};
   // An explanation at the floor closes the gap. It need not beat constants that do, too: their moves count in its

@@ -55,7 +55,7 @@ public:
     result_.missing_quantities = std::move(found.quantities);
     stage("where");
     if (model_.axis && !model_.own) {
-      effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_);
+      effort_.emplace(model_, catalogue_, train_inputs_, held_out_inputs_, options_.without);
       result_.loop = to_string(effort_->loop().kind);
     }
     // Where a target is recorded the loop is known to be closed: motion tells next to nothing, and no search is needed.
@@ -276,7 +276,7 @@ private:
     const ShareLeft of_effort = share_left({result_.gap.back()}), of_motion = share_left(motion);
     const bool is_no_worse = of_effort.of_refitted_constants <= 1.0 && of_effort.of_configured <= 1.0;
     return is_no_worse && of_motion.of_refitted_constants < of_effort.of_refitted_constants ? of_motion
-                                                                                          : of_effort;
+                                                                                            : of_effort;
   }
 
   /// What the chosen explanation comes to: the table, the verdict that it says, and what goes with that.
@@ -366,7 +366,8 @@ private:
       return false;
     const double by = 2.0 * std::log(one.value(one.place_of(*gain, "gain")));
     return std::any_of(constants.begin(), constants.end(), [&](const ConstantEstimate& constant) {
-      return constant.name == "resistance" && std::abs(std::log(constant.fitted / constant.configured) - by) < alike;
+      return constant.name == "resistance" &&
+             std::abs(std::log(constant.fitted / constant.configured) - by) < alike;
     });
   }
 

@@ -121,7 +121,8 @@ public:
 
   /// What the effort tells, from where it has it: its set may hold a cause that alone does nothing for the motion.
   void try_told(const InverseScore& told) {
-    if (told.effects.empty() || told.effects.size() > static_cast<std::size_t>(options_.effects_at_once)) return;
+    if (told.effects.empty() || told.effects.size() > static_cast<std::size_t>(options_.effects_at_once))
+      return;
     const Candidate start = candidate_of(told, attempt_.problem);
     if (is_known(attempt_.candidates, start.explanation)) return;
     search_->add_whatever_the_room(attempt_.candidates, {{{0.0, {start.fit.point}}, 0, start.explanation}});

@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -45,9 +46,10 @@ namespace thermopower::gap::engine {
 class EffortProblem {
 public:
   /// Keeps references to model and catalogue: both must outlive this object. The inputs need not.
+  /// @param without  ids of effects that are not proposed
   EffortProblem(const Model& model, const Catalogue& catalogue, const std::vector<Inputs>& train,
-                const std::vector<Inputs>& held_out)
-      : model_(model), catalogue_(catalogue) {
+                const std::vector<Inputs>& held_out, const std::vector<std::string>& without = {})
+      : model_(model), catalogue_(catalogue), without_(without) {
     if (!model.axis || model.own) return;
     const SampledMotion sampled(model, catalogue, train, propose_thresholds.most_samples);
     loop_ = loop_of(model, train);
@@ -204,8 +206,7 @@ public:
   /// beside what is told. Nothing is said of a cause that no effort tells.
   bool has_no_use_for(const plant::CatalogueEntry& cause) {
     const InverseScore best = told();
-    const bool is_told =
-        std::find(best.effects.begin(), best.effects.end(), &cause) != best.effects.end();
+    const bool is_told = std::find(best.effects.begin(), best.effects.end(), &cause) != best.effects.end();
     if (best.effects.empty() || is_told || why_not(cause) != InverseRefusal::none) return false;
     const auto helps = [&](const InverseScore& without) {
       std::vector<const plant::CatalogueEntry*> set = without.effects;
@@ -245,6 +246,7 @@ private:
     };
     for (const plant::CatalogueEntry& entry : catalogue_.entries()) {
       if (!entry.hooks.any_axis() || model_.effects.count(entry.info.id) > 0) continue;
+      if (std::find(without_.begin(), without_.end(), entry.info.id) != without_.end()) continue;
       if (static_cast<bool>(entry.info.curve) != curves) continue;
       if (std::find(now.effects.begin(), now.effects.end(), &entry) != now.effects.end()) continue;
       std::vector<const plant::CatalogueEntry*> set = now.effects, others;
@@ -534,6 +536,7 @@ private:
 
   const Model& model_;
   const Catalogue& catalogue_;
+  std::vector<std::string> without_;
   LoopEvidence loop_;
   InverseRefusal refusal_ = InverseRefusal::no_effort;
   std::map<const plant::CatalogueEntry*, bool> judgeable_;

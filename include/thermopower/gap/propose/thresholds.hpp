@@ -34,8 +34,8 @@ struct ProposeThresholds {
   /// value.
   double stamped = 0.1;
   double least_delay_samples = 0.75;  ///< a delay that is less than this may be one of stamps
-  double longest_delay_rows = 8.0;   ///< from effort to torque
-  double longest_delay_s = 0.02;     ///< the same, where rows are rare: the larger counts
+  double longest_delay_rows = 8.0;    ///< from effort to torque
+  double longest_delay_s = 0.02;      ///< the same, where rows are rare: the larger counts
   double flat = 0.1;           ///< of the drive's torque per effort: a drive that gives less has switched off
   double least_effort = 2e-3;  ///< of the effort's RMS: smaller residuals are not compared
   double least_reduction = 0.07;  ///< of the held-out residual, for a proposal

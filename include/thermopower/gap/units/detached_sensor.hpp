@@ -30,7 +30,7 @@ struct DetachedSensorThresholds {
   double typical = 0.95;  ///< share of the samples that are compared
   double follows = 0.25;  ///< share of the variance that a warming motor explains: it is attached
   double least_gain =
-      0.03;  ///< kelvin for each of the model's that a warming motor shows: constants are off by less
+      0.1;  ///< kelvin for each of the model's that a warming motor shows: constants are off by less
   double slowest = 10.0;        ///< times that the motor's time constant may be off, either way
   std::size_t least_rows = 20;  ///< samples
 };

@@ -208,9 +208,8 @@ private:
       const WarmingTold then = warming(recording_.column(b), &recording_.column(a));
       return then.is_told();
     }
-    // What warms with the heat is a temperature.
-    if (b == "motor_C" || a == "motor_C")
-      if (warming_.heat.partial > limit.heating) return false;
+    // What warms with the heat is no supply.
+    if (a == "motor_C" && warming_.heat.partial > limit.heating) return false;
     if (!std::holds_alternative<OhmicCurrentModel>(model_.current) || !recording_.has("power_param") ||
         !recording_.has("current_A") ||
         (current_.is_one() && std::abs(std::log(std::abs(current_.value))) < std::log(limit.sound)))
