@@ -12,6 +12,7 @@
 #include <thermopower/gap/propose/loop_kind.hpp>
 #include <thermopower/gap/propose/plain_fit.hpp>
 #include <thermopower/gap/propose/sampled_motion.hpp>
+#include <thermopower/gap/propose/weighed_score.hpp>
 #include <thermopower/plant/catalogue.hpp>
 
 #include <Eigen/Core>
@@ -509,29 +510,6 @@ private:
       }
     const double ratio = squares > 0.0 ? std::clamp(products / squares, 0.0, 0.95) : 0.0;
     return (1.0 + ratio) / (1.0 - ratio);
-  }
-
-  static int parameter_count(const InverseScore& score) {
-    return static_cast<int>(std::count_if(score.parameters.begin(), score.parameters.end(),
-                                          [](const InverseEstimate& one) { return one.fitted; }));
-  }
-
-  static double weighed(const InverseScore& score) {
-    return score.share * (1.0 + propose_thresholds.per_parameter * parameter_count(score));
-  }
-
-  /// Whether a set lowers held-out effort by a share that matters, and by more than chance over blocks.
-  static bool is_material(const InverseScore& before, const InverseScore& after) {
-    if (after.share > (1.0 - propose_thresholds.least_reduction) * before.share) return false;
-    if (after.share > before.share - propose_thresholds.least_share) return false;
-    const std::size_t n = after.block_gain.size();
-    Eigen::VectorXd gain(static_cast<Eigen::Index>(n));
-    for (std::size_t b = 0; b < n; ++b)
-      gain[static_cast<Eigen::Index>(b)] = after.block_gain[b] - before.block_gain[b];
-    if (n < 2) return gain.size() == 1 && gain[0] > 0.0;
-    const double mean = gain.mean(),
-                 error = std::sqrt((gain.array() - mean).square().sum() / static_cast<double>(n * (n - 1)));
-    return mean >= propose_thresholds.least_deviations * error && mean > 0.0;
   }
 
   const Model& model_;
