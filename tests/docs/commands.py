@@ -119,7 +119,7 @@ class Checker:
 
     def check_gap(self, place, words):
         if not words or words[0] not in self.subcommands:
-            self.fail(place, f"'{' '.join(words[:1])}' is no subcommand of thermopower-gap")
+            self.fail(place, f"'{' '.join(words[:1])}' is not a subcommand of thermopower-gap")
             return
         for word in words[1:]:
             if word.startswith("--") and word.split("=")[0] not in self.options[words[0]]:

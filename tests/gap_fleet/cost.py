@@ -41,8 +41,9 @@ class Run:
         self.megabytes = used.ru_maxrss / 1024.0
         if os.waitstatus_to_exitcode(status) not in (0, 3):
             sys.exit(f"{' '.join(command)} failed:\n{self.text}")
-        told = re.search(r"diagnoses in ([\d.]+) s with (\d+) at a time: ([\d.]+) ms of work each, workers busy ([\d.]+) %, ([\d.]+)", self.text)
-        self.handing, self.busy, self.lost = (float(told[1]), float(told[4]), float(told[5])) if told else (0.0, 0.0, 0.0)
+        told = re.search(r"(\d+) diagnos[ei]s in ([\d.]+) s with (\d+) at a time: ([\d.]+) ms of work each, workers busy ([\d.]+) %", self.text)
+        self.handing, self.busy = (float(told[2]), float(told[5])) if told else (0.0, 0.0)
+        self.lost = 10.0 * float(told[2]) * float(told[3]) * (100.0 - self.busy) / float(told[1]) if told else 0.0  # ms a log
 
 
 def fleet(program, manifest, out, workers=1, under=()):

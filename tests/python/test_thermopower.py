@@ -216,6 +216,8 @@ class Fleets(unittest.TestCase):
             self.assertEqual(len(found.units), 4)
             self.assertEqual([one.own_cause for one in found.units], ["winding_tempco"] * 4)
             self.assertIn("4 units", str(found))
+            self.assertIn("drift not judged (no unit has four dated logs)", str(found))
+            self.assertIn("1 log without a statement", str(found))
             with open(found.page, encoding="utf-8") as file:
                 self.assertIn("</html>", file.read())
             self.assertEqual(pickle.loads(pickle.dumps(found)).as_dict(), found.as_dict())

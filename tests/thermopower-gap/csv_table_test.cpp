@@ -200,7 +200,7 @@ TEST_CASE("what --column cannot mean is said") {
   };
   CHECK_THAT(said("motor_C"), ContainsSubstring("expected NAME=HEADER"));
   CHECK_THAT(said("motor_C=temp:degX"),
-             ContainsSubstring("'degX' is no unit of motor_C; expected one of degC"));
+             ContainsSubstring("'degX' is not a unit of motor_C; expected one of degC"));
   CHECK_THAT(said("wind=fan:rpm"), ContainsSubstring("takes none"));
   CHECK(said("motor_C=temp") == "nothing");
   const std::string text = "t_s,a\n0,1\n";

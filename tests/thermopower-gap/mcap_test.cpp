@@ -353,10 +353,10 @@ TEST_CASE("a wish that cannot be granted is answered with file, topic, field and
       "a.mcap: column 'motor_C': there is no topic for '/nowhere.x'; found '/joint_states', '/motor/temperature', "
       "'/imu', '/elbow/command', '/battery'");
   CHECK(has(error("motor_C=/imu.angular_velocity"),
-            "'/imu.angular_velocity' is no number in any of 60 messages"));
+            "'/imu.angular_velocity' is not a number in any of 60 messages"));
   CHECK(has(error("angle_deg=/joint_states.position[knee]"), "its list names "));
   CHECK(has(error("angle_deg=/joint_states.position[knee]"), "'elbow'"));
-  CHECK(has(error("angle_deg=/joint_states.position[7]"), "is no number in any of 120"));
+  CHECK(has(error("angle_deg=/joint_states.position[7]"), "is not a number in any of 120"));
   CHECK(has(error("motor_C=/battery.serial_number"), "message 1 of /battery ("));
   CHECK(has(error("motor_C=/battery.serial_number"), "field 'serial_number' is the text "));
   CHECK(has(error("angle_deg=/joint_states.position["), "expected a ']'"));
@@ -394,7 +394,7 @@ TEST_CASE("a definition that cannot be understood is answered with its line") {
   CHECK(has(error("float64\n"), "line 1 of its definition: 'float64' alone"));
   CHECK(has(error("float64[x] a\n"), "expected the length of an array"));
   CHECK(has(error("float64[2 a\n"), "expected a ']'"));
-  CHECK(has(error("float64 a-b\n"), "is no name of a field"));
+  CHECK(has(error("float64 a-b\n"), "is not a name of a field"));
   CHECK(has(error("Q q\n"), "contains itself"));
 }
 
@@ -515,9 +515,9 @@ TEST_CASE("a mapping file says what is wrong in which line") {
   CHECK(map[1].offset == 273.15);
   const auto error = [](const char* text) { return error_of([&] { io::parse_column_map("m.txt", text); }); };
   CHECK(has(error("a=b\nangle_deg=x:furlong\n"),
-            "m.txt:2: 'angle_deg=x:furlong': 'furlong' is no unit of angle_deg"));
+            "m.txt:2: 'angle_deg=x:furlong': 'furlong' is not a unit of angle_deg"));
   CHECK(has(error("a\n"), "m.txt:1: 'a': expected NAME=HEADER"));
-  CHECK(has(error("a=b\na=c\n"), "m.txt:2: 'a' is there twice"));
-  CHECK(has(error("a=b\nc=b\n"), "m.txt:2: 'b' is there twice"));
+  CHECK(has(error("a=b\na=c\n"), "m.txt:2: 'a' appears twice"));
+  CHECK(has(error("a=b\nc=b\n"), "m.txt:2: 'b' appears twice"));
   CHECK(has(error("# none\n"), "m.txt: no line"));
 }

@@ -181,8 +181,8 @@ TEST_CASE("the list proposes the axis that moves") {
 TEST_CASE("what is no capture is answered with its line") {
   const std::string answer = golden("v1_answer_rt4_real.hex");
   CHECK(error_of(">\n") == "line.txt:1: a direction alone; expected a time after it");
-  CHECK(has(error_of("< 1 3e 1\n"), "line.txt:1: '1' is no byte; expected two hexadecimal digits"));
-  CHECK(has(error_of("< 1 3e zz\n"), "'zz' is no byte"));
+  CHECK(has(error_of("< 1 3e 1\n"), "line.txt:1: '1' is not a byte; expected two hexadecimal digits"));
+  CHECK(has(error_of("< 1 3e zz\n"), "'zz' is not a byte"));
   CHECK(has(error_of("< 1 3eaa\n"), "expected a blank between bytes"));
   CHECK(has(error_of("< x 3e\n"), "'x' is no time"));
   CHECK(has(error_of("< 2 3e\n< 1 3e\n"), "line.txt:2: the time lies before that of the block above"));

@@ -73,14 +73,14 @@ std::vector<Frame> frames_of(const std::string& name, const std::string& text) {
     if (word[0].front() != '(' || word[0].back() != ')' || word.size() < 3) fail("no time in this line");
     Frame frame;
     if (!read_ns(word[0].substr(1, word[0].size() - 2), frame.ns))
-      fail(excerpt(word[0]) + " is no time in seconds");
+      fail(excerpt(word[0]) + " is not a time in seconds");
     const std::size_t mark = word[2].find('#');
     if (mark != std::string::npos) {
       const bool fd = mark + 1 < word[2].size() && word[2][mark + 1] == '#';
       std::string data = word[2].substr(mark + (fd ? 3 : 1));
       if (!data.empty() && data[0] == 'R') continue;  // a request, which holds nothing
       if (!read_hex(word[2].substr(0, mark), frame.id) || !read_bytes(data, frame.bytes))
-        fail(excerpt(word[2]) + " is no frame");
+        fail(excerpt(word[2]) + " is not a frame");
     } else {
       std::string data;
       for (std::size_t i = 4; i < word.size(); ++i) data += word[i].size() == 2 ? word[i] : std::string();
@@ -205,7 +205,7 @@ RecordingFile candump_as_recording(const std::string& name, const std::string& t
     if (!signal)
       fail(
           excerpt(choice.header) +
-          " is no place in a frame; expected identifier, type and byte, such as 141.i16@4, or 141#A1.i16@4 for frames that begin with A1 (u8 i8 u16 i16 u32 i32 f32, and be behind it for the high byte first)");
+          " is not a place in a frame; expected identifier, type and byte, such as 141.i16@4, or 141#A1.i16@4 for frames that begin with A1 (u8 i8 u16 i16 u32 i32 f32, and be behind it for the high byte first)");
     const std::string of = choice.header.substr(0, choice.header.find('.'));
     Stream& stream = streams[of];
     stream.name = of;

@@ -200,9 +200,10 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
     double bit = 0.0;
     if (encoding.compare(0, 4, "sign") != 0 || !read_number(encoding.substr(4), bit) ||
         bit != std::floor(bit) || bit > 31.0)
-      fail(excerpt(encoding) +
-           " is no way to hold a number; expected sign15 or another bit up to sign31, which is the sign of a "
-           "register with sign and magnitude");
+      fail(
+          excerpt(encoding) +
+          " is not a way to hold a number; expected sign15 or another bit up to sign31, which is the sign of a "
+          "register with sign and magnitude");
     choice.sign_bit = static_cast<int>(bit);
     unit.resize(comma);
   }
@@ -217,7 +218,7 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   if (ending == "_deg") known += ", or how many counts a turn has, such as 4096";
   if (ending == "_dps") known += ", or counts a turn per second, such as 4096/s";
   if (ending == "power_param") known += ", or what full power is";
-  fail(excerpt(unit) + " is no unit of " + choice.name +
+  fail(excerpt(unit) + " is not a unit of " + choice.name +
        (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
   return choice;
 }
@@ -243,7 +244,7 @@ std::string unknown_name(const ColumnChoice& choice, const std::vector<std::stri
   if (nearest.empty() && !is_known(choice.header)) return {};
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-  return excerpt(choice.name) + " is no name of the format" +
+  return excerpt(choice.name) + " is not a name of the format" +
          (nearest.empty() ? ", and " + choice.header + " would be lost under it."
                           : "; did you mean " + nearest + "?") +
          " Expected one of " + list +
@@ -269,10 +270,10 @@ std::vector<ColumnChoice> parse_column_map(const std::string& name, const std::s
     }
     const ColumnChoice choice = parse_choice(where, line);
     for (const ColumnChoice& other : choices) {
-      if (other.name == choice.name) throw InputError(where + excerpt(choice.name) + " is there twice");
+      if (other.name == choice.name) throw InputError(where + excerpt(choice.name) + " appears twice");
       if (other.header == choice.header)
         throw InputError(where + excerpt(choice.header) +
-                         " is there twice; expected one name for each column");
+                         " appears twice; expected one name for each column");
     }
     choices.push_back(choice);
   }

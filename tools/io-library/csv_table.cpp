@@ -219,7 +219,8 @@ private:
       return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
     });
     if (static_cast<std::size_t>(controls) > stray)
-      fail(1, {}, "not a CSV, MCAP or SimpleBGC capture: bytes that are no text; expected CSV text in UTF-8");
+      fail(1, {},
+           "not a CSV, MCAP or SimpleBGC capture: bytes that are not text; expected CSV text in UTF-8");
   }
 
   std::string column_name() const {
@@ -456,7 +457,7 @@ private:
     if (table_.rows > 0 || any_digit) return expected;
     return unit_word(word).dimension == Dimension::none
                ? expected
-               : " is no number: this looks like a row of units; delete it (--column NAME=HEADER:UNIT says a unit)";
+               : " is not a number: this looks like a row of units; delete it (--column NAME=HEADER:UNIT says a unit)";
   }
 
   // Whether the first row below the header holds units in the place of numbers.
@@ -486,7 +487,7 @@ private:
       const std::vector<std::string> known = units_of(names_[i]);
       if (std::find(known.begin(), known.end(), unit.unit) == known.end())
         fail(line_, header_[i],
-             "the row of units says " + excerpt(units_[i]) + ", which is no unit of " + names_[i] +
+             "the row of units says " + excerpt(units_[i]) + ", which is not a unit of " + names_[i] +
                  "; --column " + names_[i] + "=" + header_[i] + ":" + known.front() + " says another one");
       choice = parse_column_choice(names_[i] + "=" + header_[i] + ":" + unit.unit);
     }

@@ -265,7 +265,7 @@ private:
       for (const std::string& name : candidate->words)
         if (names.size() < 120) names += (names.empty() ? "" : ", ") + excerpt(name);
     fail(one.choice.name,
-         where + " is no number in any of " + std::to_string(topic.messages) + " messages" +
+         where + " is not a number in any of " + std::to_string(topic.messages) + " messages" +
              (names.empty() ? "; expected a field that holds one ('thermopower-gap columns' lists them)"
                             : "; its list names " + names));
   }

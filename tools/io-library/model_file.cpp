@@ -488,7 +488,8 @@ private:
       if (found != read.uncertainty.end()) model.uncertainty[constant] = found->second;
       for (const auto& other : read.uncertainty)
         if (other.first != "." + field && field != "resistance_ohm" && field != "tempco_per_K")
-          fail(below(below(at, "uncertainty"), other.first.substr(1)), "is no constant; expected " + field);
+          fail(below(below(at, "uncertainty"), other.first.substr(1)),
+               "is not a constant; expected " + field);
     };
     each(block, "/network", "nodes", true,
          [&](const Json& one, const std::string& at, const std::string& name) {

@@ -154,7 +154,7 @@ private:
   // False where the array holds no numbers, or is no table.
   bool parse(const std::string& npy, Array& array) const {
     if (npy.size() < 12 || npy.compare(0, 6, "\x93NUMPY") != 0)
-      fail(excerpt(array.name) + " is no array of numpy");
+      fail(excerpt(array.name) + " is not an array of numpy");
     const bool wide = npy[6] >= 2;
     std::size_t size = 0;
     for (std::size_t i = 0; i < (wide ? 4u : 2u); ++i)

@@ -69,7 +69,7 @@ RecordingFile to_recording(CsvTable table) {
                              ranges(table.restarts)});
   for (const auto& name : table.ignored_text) {
     file.findings.push_back({FindingKind::text_column_ignored, Severity::note, table.file, name,
-                             "holds text and is no run label; it is not used"});
+                             "holds text and is not a run label; it is left out"});
   }
   if (!table.ends_with_line_break) {
     file.findings.push_back(

@@ -66,19 +66,19 @@ void Ros2Schema::read_line(std::string line, std::size_t number, Type& type) {
   words >> third;
   if (name.find('=') != std::string::npos || third.rfind("=", 0) == 0) return;  // a constant
   const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  if (!std::all_of(name.begin(), name.end(), plain)) fail(excerpt(name) + " is no name of a field");
+  if (!std::all_of(name.begin(), name.end(), plain)) fail(excerpt(name) + " is not a name of a field");
   Field field;
   field.name = name;
   field.line = number;
   const std::size_t bracket = what.find('[');
   if (bracket != std::string::npos) {
     const std::string inside = what.substr(bracket + 1, what.size() - bracket - 2);
-    if (what.back() != ']') fail(excerpt(what) + " is no type; expected a ']' at its end");
+    if (what.back() != ']') fail(excerpt(what) + " is not a type; expected a ']' at its end");
     field.many = inside.empty() || inside.rfind("<=", 0) == 0 ? Many::counted : Many::fixed;
     if (field.many == Many::fixed) {
       const auto [end, error] = std::from_chars(inside.data(), inside.data() + inside.size(), field.count);
       if (error != std::errc() || end != inside.data() + inside.size() || field.count == 0)
-        fail(excerpt(what) + " is no type; expected the length of an array in brackets");
+        fail(excerpt(what) + " is not a type; expected the length of an array in brackets");
     }
     what.erase(bracket);
   }

@@ -217,7 +217,7 @@ private:
     const auto [last, error] = std::from_chars(line_.data() + at, line_.data() + end, seconds);
     if (error != std::errc() || last != line_.data() + end || !(std::fabs(seconds) < 9e9))
       fail(excerpt(line_.substr(at, end - at)) +
-           " is no time; expected seconds, or a date as 'socat -x' writes it");
+           " is not a time; expected seconds, or a date as 'socat -x' writes it");
     return std::llround(seconds * static_cast<double>(ns_per_s));
   }
 
@@ -247,7 +247,7 @@ private:
       const std::size_t end = std::min(at + 2, line_.size());
       const auto [last, error] = std::from_chars(line_.data() + at, line_.data() + end, byte, 16);
       if (error != std::errc() || last != line_.data() + at + 2)
-        fail(excerpt(line_.substr(at, 2)) + " is no byte; expected two hexadecimal digits");
+        fail(excerpt(line_.substr(at, 2)) + " is not a byte; expected two hexadecimal digits");
       bytes_.push_back(static_cast<std::uint8_t>(byte));
       at += 2;
     }

@@ -236,12 +236,9 @@ private:
   void tell_cost() const {
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     if (diagnosed_ == 0 || arguments_.quiet) return;
-    std::printf(
-        "%zu diagnoses in %.2f s with %u at a time: %.2f ms of work each, workers busy %.1f %%, %.2f ms a log "
-        "lost between them\n",
-        diagnosed_, seconds, workers_, 1e3 * busy_ / static_cast<double>(diagnosed_),
-        100.0 * busy_ / (seconds * workers_),
-        1e3 * std::max(0.0, seconds * workers_ - busy_) / static_cast<double>(diagnosed_));
+    std::printf("%zu %s in %.2f s with %u at a time: %.2f ms of work each, workers busy %.1f %%\n",
+                diagnosed_, diagnosed_ == 1 ? "diagnosis" : "diagnoses", seconds, workers_,
+                1e3 * busy_ / static_cast<double>(diagnosed_), 100.0 * busy_ / (seconds * workers_));
   }
 
   // What workers left that were killed, or whose fleet was.
@@ -298,8 +295,8 @@ private:
     unlink(gate.c_str());
     close(lock);
     if (arguments_.quiet) return without == 0 ? 0 : 3;
-    std::printf("%zu logs: %zu reports were there, %zu are new, %zu have none\n", logs_.size(),
-                logs_.size() - new_ - without, new_, without);
+    std::printf("%zu %s: %zu reports were there, %zu are new, %zu have none\n", logs_.size(),
+                logs_.size() == 1 ? "log" : "logs", logs_.size() - new_ - without, new_, without);
     for (const FleetLog& one : all)
       if (!one.fault.empty())
         std::fprintf(stderr, "%s:%zu: %s\n", arguments_.manifest.c_str(), one.manifest->line,

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <utility>
 
@@ -38,22 +37,6 @@ std::string count_of(std::size_t count, const char* one, const char* many) {
 
 std::string family_name(const pool::Family& family) {
   return family.cause.empty() ? "nothing missing" : family.cause;
-}
-
-std::string date_of(double days) {
-  if (!std::isfinite(days)) return {};
-  if (!(days > 3650.0 && days < 100000.0)) return "day " + readable(days, 4);  // no date that a log is from
-  // Howard Hinnant's civil_from_days.
-  const int shifted = static_cast<int>(std::floor(days)) + 719468, era = shifted / 146097,
-            of_era = shifted - era * 146097,
-            year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365,
-            of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100),
-            month_from_march = (5 * of_year + 2) / 153, day = of_year - (153 * month_from_march + 2) / 5 + 1,
-            month = month_from_march < 10 ? month_from_march + 3 : month_from_march - 9,
-            year = year_of_era + era * 400 + (month <= 2 ? 1 : 0);
-  char text[40];
-  std::snprintf(text, sizeof text, "%04d-%02d-%02d", year, month, day);
-  return text;
 }
 
 class Page {
@@ -106,7 +89,10 @@ private:
     fact("Families", std::to_string(verdict_.families.size()), causes);
     fact("Odd units", std::to_string(odd_count()),
          "a fleet without any would have one named once in a hundred fleets");
-    fact("Units that drift", std::to_string(drifting), "a false one once in a hundred fleets");
+    const std::string not_judged = drift_not_judged(fleet_);
+    if (drifting > 0 || not_judged.empty())
+      fact("Units that drift", std::to_string(drifting), "a false one once in a hundred fleets");
+    else fact("Units that drift", "not judged", escaped(not_judged));
     fact("Logs that say nothing", std::to_string(verdict_.bad_logs.size()),
          "too little data, or data that cannot be believed");
     out_ += "</div>\n";
@@ -161,8 +147,18 @@ private:
     return unit.family >= 0 ? &verdict_.families[static_cast<std::size_t>(unit.family)] : nullptr;
   }
 
-  std::string value_of(const pool::Family& family, std::size_t c, double at) const {
-    return readable(shown_value(at, family.logarithmic[c]), 3);
+  std::string value_of(const pool::Family& family, std::size_t c, double at, int digits = 3) const {
+    return readable(shown_value(at, family.logarithmic[c]), digits);
+  }
+
+  /// So many digits that the ends of a range differ in the last two.
+  int digits_of(const pool::Family& family, std::size_t c, double low, double high) const {
+    const double from = shown_value(low, family.logarithmic[c]),
+                 to = shown_value(high, family.logarithmic[c]);
+    const double share = std::abs(to - from) / std::max(std::abs(from), std::abs(to));
+    return share > 0.0 && share < 1.0
+               ? std::min(8, std::max(3, 2 + static_cast<int>(std::ceil(-std::log10(share)))))
+               : 3;
   }
 
   std::string why_odd(const pool::UnitVerdict& unit) const {
@@ -229,7 +225,8 @@ private:
         const std::string size = logarithmic ? readable(100.0 * std::expm1(one.drift.size), 2) + "&nbsp;%"
                                              : readable(one.drift.size, 2);
         out_ += "<tr><td class=\"t\">" + linked(unit) + "</td><td class=\"t\">" +
-                io::breakable(parameter_name(one.coordinate)) + "</td><td>" + size + "</td><td class=\"t\">" +
+                io::breakable(parameter_name(one.coordinate)) + "</td><td class=\"nowrap\">" + size +
+                "</td><td class=\"t\">" +
                 (one.drift.kind == pool::DriftKind::slope ? "steadily, " : "at once, between ") +
                 date_of(one.drift.since) + (one.drift.kind == pool::DriftKind::slope ? " to " : " and ") +
                 date_of(one.drift.until) + "</td></tr>\n";
@@ -316,8 +313,7 @@ private:
     out_ += "<h2>Family: " + io::breakable(family_name(family)) + ", " +
             count_of(static_cast<std::size_t>(std::lround(family.prevalence.units)), "unit", "units") +
             "</h2>\n<p class=\"soft\">" + io::percent_html(family.prevalence.share90.low) + " to " +
-            io::percent_html(family.prevalence.share90.high) +
-            " of all units, with nine tenths certainty.</p>\n";
+            io::percent_html(family.prevalence.share90.high) + " of all units (90 % interval).</p>\n";
     if (family.spread.size() == 0) {
       out_ += "<p>Too few units to compare parameters.</p>\n";
       return;
@@ -338,6 +334,7 @@ private:
       const double margin = 0.04 * std::max(high - low, 1e-9);
       low -= margin;
       high += margin;
+      const int digits = digits_of(family, c, low, high);
       const auto place = [&](double value) {
         char text[24];
         std::snprintf(text, sizeof text, "%.2f%%", 100.0 * (value - low) / (high - low));
@@ -353,9 +350,9 @@ private:
               (parameter_name(family.coordinates[c]) != family.coordinates[c]
                    ? " <span class=\"soft\">(of the configured)</span>"
                    : "") +
-              "</b><span>mean " + value_of(family, c, family.spread.mean[at]) + "</span><span>" + spread +
-              "</span><span>nine in ten within " + value_of(family, c, range.low) + " to " +
-              value_of(family, c, range.high) +
+              "</b><span>mean " + value_of(family, c, family.spread.mean[at], digits) + "</span><span>" +
+              spread + "</span><span>nine in ten within " + value_of(family, c, range.low, digits) + " to " +
+              value_of(family, c, range.high, digits) +
               "</span></div>\n<div class=\"strip\"><i class=\"span\" style=\"left:" + place(range.low) +
               ";width:calc(" + place(range.high) + " - " + place(range.low) +
               ")\"></i><i class=\"mean\" style=\"left:" + place(family.spread.mean[at]) + "\"></i>";
@@ -370,12 +367,12 @@ private:
         out_ += std::string("<a") + (odd ? " class=\"odd\"" : "") +
                 (page.empty() ? std::string() : " href=\"" + escaped(page) + "\"") +
                 " style=\"left:" + place(one.shrunken->at[at]) + ";top:" + top + "\" title=\"" +
-                escaped(one.unit) + ": " + value_of(family, c, one.shrunken->at[at]) + "\" aria-label=\"" +
-                escaped(one.unit) + "\"></a>";
+                escaped(one.unit) + ": " + value_of(family, c, one.shrunken->at[at], digits) +
+                "\" aria-label=\"" + escaped(one.unit) + "\"></a>";
       }
-      out_ += "</div>\n<div class=\"scale\"><span>" + value_of(family, c, low) + "</span><span>" +
-              value_of(family, c, 0.5 * (low + high)) + "</span><span>" + value_of(family, c, high) +
-              "</span></div></div>\n";
+      out_ += "</div>\n<div class=\"scale\"><span>" + value_of(family, c, low, digits) + "</span><span>" +
+              value_of(family, c, 0.5 * (low + high), digits) + "</span><span>" +
+              value_of(family, c, high, digits) + "</span></div></div>\n";
     }
     if (step > 1)
       out_ += "<p class=\"soft\">Of the units that are not odd one in " + std::to_string(step) +

@@ -3,6 +3,8 @@
 
 #include "fleet_results.hpp"
 
+#include "html_text.hpp"
+
 #include <thermopower/gap/fit/in_parallel.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/io/text_table.hpp>
@@ -98,7 +100,7 @@ void read_report(FleetLog& log, pool::LogResult& result, std::vector<std::string
     result = {};
     causes.clear();
     probability = missing;
-    result.reason = log.fault = log.report + " is no report of this version; remove it and run again";
+    result.reason = log.fault = log.report + " is not a report of this version; remove it and run again";
   }
 }
 
@@ -197,6 +199,7 @@ std::string fleet_json(const FleetResults& fleet) {
   root["logs"] = fleet.logs.size();
   root["structure_differs"] = verdict.structure_differs;
   root["parameters_differ"] = verdict.parameters_differ;
+  root["drift_not_judged"] = drift_not_judged(fleet);
   root["causes"] = Json::array();
   for (const pool::Prevalence& one : verdict.causes) root["causes"].push_back(prevalence(one));
   root["families"] = Json::array();
@@ -286,6 +289,37 @@ std::string fleet_json(const FleetResults& fleet) {
   return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string date_of(double days) {
+  if (!std::isfinite(days)) return {};
+  if (!(days > 3650.0 && days < 100000.0))
+    return "day " + io::readable(days, 4);  // no date that a log is from
+  // Howard Hinnant's civil_from_days.
+  const int shifted = static_cast<int>(std::floor(days)) + 719468, era = shifted / 146097,
+            of_era = shifted - era * 146097,
+            year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365,
+            of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100),
+            month_from_march = (5 * of_year + 2) / 153, day = of_year - (153 * month_from_march + 2) / 5 + 1,
+            month = month_from_march < 10 ? month_from_march + 3 : month_from_march - 9,
+            year = year_of_era + era * 400 + (month <= 2 ? 1 : 0);
+  char text[40];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02d", year, month, day);
+  return text;
+}
+
+std::string drift_not_judged(const FleetResults& fleet) {
+  constexpr std::size_t fewest = 4;
+  std::string the_only;
+  std::size_t several = 0, enough = 0;
+  for (const pool::UnitVerdict& unit : fleet.verdict.units) {
+    std::size_t dated = 0;
+    for (const std::size_t log : unit.logs) dated += std::isfinite(fleet.results[log].time) ? 1 : 0;
+    enough += dated >= fewest ? 1 : 0;
+    if (dated >= 2 && several++ == 0) the_only = unit.unit;
+  }
+  if (enough == 0) return "no unit has four dated logs";
+  return several == 1 ? "only unit " + the_only + " has several dated logs" : std::string();
+}
+
 std::string fleet_summary(const FleetResults& fleet) {
   const pool::FleetVerdict& verdict = fleet.verdict;
   std::ostringstream text;
@@ -303,13 +337,19 @@ std::string fleet_summary(const FleetResults& fleet) {
     text << line;
   }
   const auto name_of = [](const std::string& cause) { return cause.empty() ? std::string("no gap") : cause; };
-  text << verdict.units.size() << " units, " << verdict.families.size()
-       << (verdict.families.size() == 1 ? " family" : " families") << ", " << odd << " odd, " << drifting
-       << " drifting, " << verdict.bad_logs.size() << " logs without a statement\n";
+  const auto count_of = [](std::size_t count, const char* one, const char* many) {
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+  };
+  const std::string not_judged = drift_not_judged(fleet);
+  text << count_of(verdict.units.size(), "unit", "units") << ", "
+       << count_of(verdict.families.size(), "family", "families") << ", " << odd << " odd, "
+       << (drifting > 0 || not_judged.empty() ? std::to_string(drifting) + " drifting"
+                                              : "drift not judged (" + not_judged + ")")
+       << ", " << count_of(verdict.bad_logs.size(), "log", "logs") << " without a statement\n";
   for (const pool::Family& family : verdict.families) {
-    std::snprintf(line, sizeof line, "  %-34s %.0f units (%.0f to %.0f %%)\n", name_of(family.cause).c_str(),
-                  family.prevalence.units, 100.0 * family.prevalence.share90.low,
-                  100.0 * family.prevalence.share90.high);
+    std::snprintf(line, sizeof line, "  %-34s %.0f %s (%.0f to %.0f %%)\n", name_of(family.cause).c_str(),
+                  family.prevalence.units, std::lround(family.prevalence.units) == 1 ? "unit" : "units",
+                  100.0 * family.prevalence.share90.low, 100.0 * family.prevalence.share90.high);
     text << line;
     for (std::size_t c = 0; c < family.coordinates.size() && family.spread.size() > 0; ++c) {
       const auto at = static_cast<Eigen::Index>(c);
@@ -365,10 +405,9 @@ std::string fleet_summary(const FleetResults& fleet) {
       text << "  drift: " << unit.unit << ", " << parameter_name(one.coordinate) << " by "
            << (logarithmic ? shortest(100.0 * std::expm1(one.drift.size), "%+.3g") + " %"
                            : shortest(one.drift.size, "%+.3g"))
-           << (one.drift.kind == pool::DriftKind::slope ? " steadily over day " : " at once between day ")
-           << shortest(one.drift.since, "%.6g")
-           << (one.drift.kind == pool::DriftKind::slope ? " to " : " and ")
-           << shortest(one.drift.until, "%.6g") << "\n";
+           << (one.drift.kind == pool::DriftKind::slope ? " steadily, " : " at once, between ")
+           << date_of(one.drift.since) << (one.drift.kind == pool::DriftKind::slope ? " to " : " and ")
+           << date_of(one.drift.until) << "\n";
     }
   return text.str();
 }

@@ -52,6 +52,13 @@ std::string fleet_summary(const FleetResults& fleet);
 /// The bytes of an SQLite database of the fleet; empty where the program was built without SQLite.
 std::string fleet_database(const FleetResults& fleet, const std::string& folder);
 
+/// A day since 1970-01-01 as a date, or as a number of days where no log is from such a date; empty for NaN.
+std::string date_of(double days);
+
+/// Why no unit's drift is judged; empty where drifts are. A drift needs four dated logs of a unit, and what logs differ by
+/// without one is told by other units.
+std::string drift_not_judged(const FleetResults& fleet);
+
 /// A coordinate's name as a parameter's: `resistance` for `calibration.resistance`, the effect's own otherwise.
 std::string parameter_name(const std::string& coordinate);
 

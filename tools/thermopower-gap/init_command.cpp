@@ -70,8 +70,8 @@ double ask(const Question& question) {
     const double value = std::strtod(line.c_str(), &end);
     if (!line.empty() && *end == '\0' && std::isfinite(value)) return value;
     if (isatty(STDIN_FILENO) == 0)
-      throw UsageError(std::string("init: ") + io::excerpt(line) + " is no answer to '" + question.question +
-                       "'; expected a number");
+      throw UsageError(std::string("init: ") + io::excerpt(line) + " is not an answer to '" +
+                       question.question + "'; expected a number");
     std::fputs("a number is expected\n", stderr);
   }
 }

@@ -37,7 +37,7 @@ void expect_subcommand(CLI::App& app, const std::string& given) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   throw UsageError(
-      io::excerpt(given) + " is no subcommand" +
+      io::excerpt(given) + " is not a subcommand" +
       (nearest.empty() ? "; expected one of " : "; did you mean " + nearest + "? Expected one of ") + list);
 }
 

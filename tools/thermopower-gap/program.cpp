@@ -81,7 +81,7 @@ io::ReadOptions reading(const Arguments& arguments, const gap::Model& model) {
     const std::string name = text.substr(0, equals);
     if (!fine) throw UsageError("--constant " + text + ": expected NAME=NUMBER, such as airspeed_mps=2.5");
     if (name == "t_s" || name == "run")
-      throw UsageError("--constant " + text + ": " + name + " is no constant");
+      throw UsageError("--constant " + text + ": " + name + " is not a constant");
     if (const std::string wrong = io::unknown_name({name, "a column"}, own); !wrong.empty())
       throw UsageError("--constant " + text + ": " + wrong);
     set("--constant", name, value);
