@@ -36,13 +36,16 @@ Json parsed(const NamedReport& report) {
   try {
     json = Json::parse(report.text);
   } catch (const Json::parse_error& error) {
-    throw InputError(report.name + ": expected a report that 'diagnose --report' wrote: " + error.what());
+    const std::string what = error.what();
+    const auto at = what.find("line ");
+    throw InputError(report.name + ": not JSON: " + (at == std::string::npos ? what : what.substr(at)) +
+                     "; expected a report that 'diagnose --report' wrote");
   }
   const std::string format = json.is_object() && json.contains("format") && json["format"].is_string()
                                  ? json["format"].get<std::string>()
                                  : std::string("missing");
   if (format != report_format)
-    throw InputError(report.name + ": /format is " + format + ", expected " + report_format);
+    throw InputError(report.name + ": /format is " + format + "; expected " + report_format);
   for (const char* key : {"verdict", "cause", "gap", "constants"})
     if (!json.contains(key)) throw InputError(report.name + ": /" + key + " is missing");
   return json;

@@ -7,6 +7,7 @@
 
 #include <thermopower/io.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -24,6 +25,11 @@ int list_columns(const std::string& path, const std::string& proposal, const std
     outputs.expect(proposal);
   }
   const io::LogContents contents = io::list_log(path, joint);
+  const bool known = std::any_of(contents.columns.begin(), contents.columns.end(), [&](const auto& one) {
+    return one.header.find(joint) != std::string::npos;
+  });
+  if (!joint.empty() && !known && !contents.columns.empty())
+    throw UsageError("--joint " + joint + ": no column of " + path + " has that in its header");
   const std::string text = io::columns_text(contents);
   if (!proposal.empty()) outputs.put(proposal, io::column_map_text(contents.columns));
   outputs.commit();

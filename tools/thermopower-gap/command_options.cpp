@@ -47,6 +47,26 @@ const CLI::Validator share(
     },
     "0..0.5");
 
+const CLI::Validator a_number(
+    [](std::string& text) {
+      double value = 0.0;
+      return CLI::detail::lexical_cast(text, value) ? std::string() : "'" + text + "' is not a number";
+    },
+    "number");
+
+CLI::Validator number_within(double low, double high, const char* what) {
+  char range[64];
+  std::snprintf(range, sizeof range, "%g..%g", low, high);
+  const std::string from_to = range, of = what;
+  return CLI::Validator(
+      [low, high, from_to, of](std::string& text) {
+        double value = 0.0;
+        const bool fine = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return fine ? std::string() : "'" + text + "' is not " + of + "; expected " + from_to;
+      },
+      from_to);
+}
+
 const char* const recording_kinds =
     "CSV, MCAP, rosbag2, klippy.log, Marlin, candump, JSON lines, npz, SimpleBGC";
 
@@ -63,12 +83,11 @@ void add_column_choices(CLI::App& app, Arguments& arguments) {
   app.add_option("--map", arguments.maps, "a file of such lines, as 'columns FILE --proposal' writes it");
   app.add_option("--rate", arguments.rows_per_s, "rows a second of CSV files without time, in Hz")
       ->check(rate);
-  const auto number = [](double low, double high) { return CLI::Range(low, high); };
   app.add_option("--ambient", arguments.ambient_C, "the air's temperature in degC, where no column has it")
-      ->check(number(-90.0, 200.0))
+      ->check(number_within(-90.0, 200.0, "a temperature in degC"))
       ->each([&arguments](const std::string&) { arguments.has_ambient = true; });
   app.add_option("--supply", arguments.supply_V, "the supply in V, where no column has it")
-      ->check(number(0.01, 1e5))
+      ->check(number_within(0.01, 1e5, "a voltage in V"))
       ->each([&arguments](const std::string&) { arguments.has_supply = true; });
   app.add_option("--constant", arguments.constants,
                  "NAME=NUMBER: another column that the files lack and that did not change; may be repeated");

@@ -15,6 +15,10 @@ extern const CLI::Validator seconds;
 /// @brief Takes a share from 0 to 0.5; nan is none.
 extern const CLI::Validator share;
 
+/// @brief Takes any number.
+extern const CLI::Validator a_number;
+/// @brief Takes a number within bounds. @param what  it is, as in "a temperature in degC"
+CLI::Validator number_within(double low, double high, const char* what);
 /// @brief Adds `--recording`, required and repeatable.
 void add_recordings(CLI::App& app, Arguments& arguments, const char* help);
 /// @brief Takes a whole number from 0 on.

@@ -7,6 +7,7 @@
 #include "robot_command.hpp"
 
 #include <memory>
+#include <string>
 
 Command add_diagnose(CLI::App& program) {
   const auto asked = std::make_shared<Arguments>();
@@ -25,7 +26,12 @@ Command add_diagnose(CLI::App& program) {
   app->add_option("--header", asked->header, "write the same as a C++11 header for firmware");
   app->add_option("--summary", asked->summary,
                   "how the answer is printed: text, or markdown to paste into an issue")
-      ->check(CLI::IsMember({"text", "markdown"}))
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return text == "text" || text == "markdown" ? std::string()
+                                                        : "'" + text + "' is not text or markdown";
+          },
+          "text|markdown"))
       ->capture_default_str();
   app->add_option("--without", asked->without, "remove an effect from the catalogue; may be repeated");
   add_horizon(*app, *asked)->capture_default_str();

@@ -229,7 +229,8 @@ Command add_init(CLI::App& program) {
   app->add_option("--name", asked->name, "of the model, as reports call it");
   const auto constant = [&](const char* option, const char* help) {
     app->add_option_function<double>(
-        option, [asked, option](const double& value) { asked->constants[option] = value; }, help);
+           option, [asked, option](const double& value) { asked->constants[option] = value; }, help)
+        ->check(a_number);
   };
   for (const Question& one : of_a_motor) constant(one.option, one.question);
   constant("--tempco",

@@ -177,7 +177,7 @@ void check_ids(const std::vector<std::string>& ids, const gap::Catalogue& catalo
     const std::string nearest = io::nearest_name(id, known);
     throw UsageError("--without: there is no effect '" + id + "'; " +
                      (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
-                     "'thermopower-gap effects --model' lists them");
+                     "'thermopower-gap effects' lists them");
   }
 }
 

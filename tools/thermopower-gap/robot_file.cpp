@@ -3,6 +3,8 @@
 
 #include "robot_file.hpp"
 
+#include "file_source.hpp"
+
 #include <thermopower/io/input_error.hpp>
 
 #ifdef THERMOPOWER_HAS_TINYXML2
@@ -60,6 +62,7 @@ struct Carried {
 class File {
 public:
   explicit File(const std::string& path) : path_(path) {
+    thermopower::io::open_input(path, "a robot (MJCF or URDF)");
     if (document_.LoadFile(path.c_str()) != tinyxml2::XML_SUCCESS)
       throw thermopower::io::InputError(
           path + ":" + std::to_string(document_.ErrorLineNum()) +
@@ -132,7 +135,8 @@ public:
         found = found == nullptr || !wanted.empty() ? one : found;
     }
     if (found == nullptr)
-      file_.fail("there is no joint '" + wanted + "' that turns; found " + named(turning));
+      file_.fail(wanted.empty() ? std::string("no joint in it turns; expected a hinge")
+                                : "there is no joint '" + wanted + "' that turns; found " + named(turning));
     if (wanted.empty() && turning.size() > 1)
       file_.fail("several joints turn; --joint says which one is meant: " + named(turning));
     RobotJoint joint;
@@ -252,7 +256,8 @@ public:
       file_.fail("no <worldbody>; an <include> is not followed: expected one file, as MuJoCo saves it");
     visit(*world, Pose::Identity(), "", wanted);
     if (found_ == nullptr)
-      file_.fail("there is no joint '" + wanted + "' that turns; found " + named(turning_));
+      file_.fail(wanted.empty() ? std::string("no joint in it turns; expected a hinge")
+                                : "there is no joint '" + wanted + "' that turns; found " + named(turning_));
     if (wanted.empty() && turning_.size() > 1)
       file_.fail("several joints turn; --joint says which one is meant: " + named(turning_));
     RobotJoint joint;
