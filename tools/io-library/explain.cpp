@@ -227,10 +227,11 @@ std::string code_pages_markdown() {
   for (const CodePage& page : every_page({})) {
     if (page.kind != kind) out += (kind.empty() ? "## " : "\n## ") + capital(page.kind) + "s\n";
     kind = page.kind;
-    out += "\n### `" + page.code + "`\n\n| | |\n|---|---|\n";
+    out += "\n### " + page.code + "\n\n";
     for (const CodeSection& one : page.sections) {
       const bool is_code = one.is_code && one.text.find('|') == std::string::npos;  // it would end the cell
       out += "| " + one.heading + " | " + (is_code ? "`" + one.text + "`" : literal(one.text)) + " |\n";
+      if (&one == &page.sections.front()) out += "|---|---|\n";
     }
   }
   return out;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "command.hpp"
+#include "command_options.hpp"
 #include "program.hpp"
 #include "robot_file.hpp"
 

@@ -65,11 +65,14 @@ struct Wires {
 ///
 /// How to: @ref diagnose_a_robot.
 struct Wiring {
-  std::vector<WiringFinding> findings;       ///< most fundamental first; empty: as it should be
-  Wires position, velocity, effort, target;  ///< as they are; identity where nothing is wrong
-  std::vector<int> gains;                    ///< for each joint the joint whose gains are its own
-  double gain_factor = 1.0;                  ///< stated gain per true gain
-  double target_delay_s = 0.0;  ///< of the targets against the measured efforts; 0: none, or not told
+  std::vector<WiringFinding> findings;  ///< most fundamental first; empty: as it should be
+  Wires position;                       ///< of the positions, as they are; identity where nothing is wrong
+  Wires velocity;                       ///< of the velocities
+  Wires effort;                         ///< of the efforts
+  Wires target;                         ///< of the targets
+  std::vector<int> gains;               ///< for each joint the joint whose gains are its own
+  double gain_factor = 1.0;             ///< stated gain per true gain
+  double target_delay_s = 0.0;          ///< of the targets against the measured efforts; 0: none, or not told
 };
 
 /// @brief When a line of the table of hypotheses is believed.
