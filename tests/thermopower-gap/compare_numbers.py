@@ -5,8 +5,8 @@
 
     compare_numbers.py A.json B.json [SHARE]     SHARE is 1e-6 where none is given; prints each difference, and fails where there is one
 
-A number may differ by that share of itself, or of the largest number beside it in its list or object: a difference of two nearly
-equal numbers has no digits to compare.
+A number may differ by that share of itself, or of the largest number beside it in its list: of a vector, the small entries are
+differences of large numbers, and have fewer digits.
 """
 
 import json
@@ -22,9 +22,8 @@ def differences(a, b, share, where="", scale=0.0):
         if list(a) != list(b):
             yield f"{where}: keys {sorted(set(a) ^ set(b))}"
             return
-        most = max(numbers(a.values()), default=0.0)
         for key in a:
-            yield from differences(a[key], b[key], share, f"{where}/{key}", most)
+            yield from differences(a[key], b[key], share, f"{where}/{key}")
     elif isinstance(a, list) and isinstance(b, list):
         if len(a) != len(b):
             yield f"{where}: {len(a)} and {len(b)} entries"
