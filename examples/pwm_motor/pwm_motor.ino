@@ -7,34 +7,32 @@
 //   A0      demand: a potentiometer between 5 V and ground
 //   A1      supply through 20 k and 10 k, so that 15 V read as 5 V
 //
-// The Serial Plotter (115200 baud) draws demand and power in counts of 255, and the winding in degC.
+// The Serial Plotter (115200 baud) draws demand and power in counts of 255, and the winding in degC. With `is_recorded` true the port
+// carries a recorded run instead, which replay.cpp replays on a PC.
 #include <thermopower.h>
 
-namespace tp = thermopower;
+#include "pwm_motor.h"
+
+#ifndef pwm_motor_is_recorded
+#define pwm_motor_is_recorded false
+#endif
 
 namespace {
 
-// Measure them on your motor: docs/how-to/custom-motor.md. At a standstill a winding takes V / R, the most that it can.
-typedef tp::CurrentModel<tp::OhmicCurrent<> > Current;
-typedef tp::ThermalModel<tp::HeatCapacityHeating<>, tp::NewtonCooling<>, tp::ExactStep> Motor;
-const Current current({6.0f, 0.00393f, 20.0f});  // 6 ohm at 20 degC, copper
-const float limit_C = 80.0f, warmest_air_C = 40.0f;
-// 9 J/K, 0.12 W/K. After a reset nobody knows how warm the winding is: as warm as it may be.
-Motor motor({{9.0f}, {0.12f}}, limit_C);
-tp::SafetyLimiter<> limiter({limit_C, 5.0f, 50.0f});
+const bool is_recorded = pwm_motor_is_recorded;
 
+PwmMotor motor;
 const uint8_t motor_pin = 9, demand_pin = A0, supply_pin = A1;
-const float lowest_V = 5.0f, highest_V = 15.0f;  // of the supply; outside of it the divider is broken
-uint8_t power = 0;                               // in force
+thermopower::RunWriter<decltype(Serial)> recorder(Serial);
 unsigned long last_ms = 0, last_line_ms = 0;
 
-void print_line(uint8_t demand) {
+void print_line(const PwmMotor::Answered& answered) {
   Serial.print(F("demand:"));
-  Serial.print(demand);
+  Serial.print(answered.demand);
   Serial.print(F(",power:"));
-  Serial.print(power);
+  Serial.print(answered.power);
   Serial.print(F(",motor_C:"));
-  Serial.println(static_cast<double>(motor.hottest_C()));
+  Serial.println(static_cast<double>(answered.motor_C));
 }
 
 }  // namespace
@@ -43,33 +41,28 @@ void setup() {
   pinMode(motor_pin, OUTPUT);
   digitalWrite(motor_pin, LOW);
   Serial.begin(115200);
-  const bool is_wrong =
-      tp::is_error(current.validate()) || tp::is_error(motor.validate()) || tp::is_error(limiter.validate());
-  while (is_wrong) {  // the motor stays off
+  while (motor.is_wrong()) {  // the motor stays off
     Serial.println(F("a constant of this sketch is out of its range"));
     delay(1000);
   }
+  if (is_recorded) recorder.begin(PwmMotor::Told(), PwmMotor::Answered());
   last_ms = millis();
 }
 
 void loop() {
   const unsigned long now_ms = millis();
-  if (now_ms - last_ms < 20) return;
-  const float dt_s = 0.001f * static_cast<float>(now_ms - last_ms);
+  const unsigned long passed_ms = now_ms - last_ms;
+  if (passed_ms < 20) return;
   last_ms = now_ms;
 
-  const float read_V = static_cast<float>(analogRead(supply_pin)) * (15.0f / 1023.0f);
-  const bool is_supply_known = read_V > lowest_V && read_V < highest_V;
-  // What was in force since the last cycle heated the winding; at an unknown supply as much as it can.
-  const auto drawn =
-      current.at_power(static_cast<float>(power), is_supply_known ? read_V : highest_V, motor.hottest_C());
-  motor.step({drawn.winding_power_W, drawn.v_rms_V, {warmest_air_C, 0.0f}}, dt_s);
+  const PwmMotor::Told told = {static_cast<uint16_t>(passed_ms < 65535 ? passed_ms : 65535),
+                               static_cast<uint16_t>(analogRead(supply_pin)),
+                               static_cast<uint16_t>(analogRead(demand_pin))};
+  const PwmMotor::Answered answered = motor.step(told);
+  analogWrite(motor_pin, answered.power);
 
-  const uint8_t demand = static_cast<uint8_t>(is_supply_known ? analogRead(demand_pin) / 4 : 0);
-  power = limiter.step({demand, tp::GuardedCelsius::hottest_of(motor), motor.hottest_rate_K_per_s()}, dt_s).power;
-  analogWrite(motor_pin, power);
-
-  if (now_ms - last_line_ms < 200) return;
+  if (is_recorded) recorder.step(told, answered);
+  if (is_recorded || now_ms - last_line_ms < 200) return;
   last_line_ms = now_ms;
-  print_line(demand);
+  print_line(answered);
 }

@@ -63,6 +63,7 @@
 #include "measured_temperature.hpp"
 #include "motors/bgm2606_90t.hpp"
 #include "motors/bgm5208_200_12.hpp"
+#include "run_record.hpp"
 #include "sbgc/codec.hpp"
 #include "sbgc/poller.hpp"
 #include "sbgc/power_and_gain.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "../catch.hpp"
 #include "failing_board.hpp"
@@ -252,4 +253,34 @@ TEST_CASE("three axes that disobey at once are never believed colder than they a
   CHECK(worst_below_K < 0.1);  // what the arithmetic is off by, and a cycle
   CHECK(worst_above_K < 10.0);
   CHECK(motor.now_C > air_C + 5.0);
+}
+
+// The figures of docs/explain/faults-and-reasons.md: `control_protection "what a declared air costs" -s`.
+TEST_CASE("what a declared air costs: each kelvin that the air is declared warmer than it is takes power") {
+  typedef tp::AxisController<tp::motors::Bgm2606_90t> Axis;
+  double before = 1e9;
+  std::string table;
+  for (const float warmest_C : {-1.0f, 30.0f, 35.0f, 40.0f, 45.0f}) {
+    tp::GimbalConfig config = tp::GimbalConfig::believing();
+    if (warmest_C > 0.0f) config.air = tp::AirTemperature::Config::declared(warmest_C);
+    tp::GimbalController<Axis> gimbal(config, Axis::Config::with_gain({24.0f, 4.0f}));
+    Motor motor;
+    Telemetry telemetry;
+    double granted = 0.0;
+    const int steps = static_cast<int>(3600.0 / cycle_s);
+    for (int i = 0; i < steps; ++i) {
+      telemetry.reported = i == 0 ? 1 : gimbal.state().command.power[0];
+      motor.spend(telemetry.reported, 13.0);
+      granted += gimbal.step(telemetry, static_cast<float>(cycle_s)).power[0];
+    }
+    CHECK(motor.now_C < limit_C + 0.5);
+    CHECK(granted < before);
+    before = granted;
+    table += (warmest_C > 0.0f ? "declared " + std::to_string(static_cast<int>(warmest_C))
+                               : std::string("believed")) +
+             ": mean POWER " + std::to_string(granted / steps) + ", motor " + std::to_string(motor.now_C) +
+             " degC\n";
+  }
+  INFO(table);
+  CHECK(before > 0.0);
 }

@@ -92,8 +92,8 @@ using V1Full = Case<255, sbgc::ProtocolV1, true, false>;
 using V2Default = Case<124, sbgc::ProtocolV2, false, true>;
 using V2Full = Case<255, sbgc::ProtocolV2, false, true>;
 using AutoSmall = Case<7, sbgc::ProtocolAuto, true, true>;
-using AutoByteIndex = Case<249, sbgc::ProtocolAuto, true, true>;
-using AutoWordIndex = Case<250, sbgc::ProtocolAuto, true, true>;
+using AutoByteIndex = Case<207, sbgc::ProtocolAuto, true, true>;
+using AutoWordIndex = Case<208, sbgc::ProtocolAuto, true, true>;
 
 }  // namespace
 

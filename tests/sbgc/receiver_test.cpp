@@ -241,3 +241,103 @@ TEST_CASE("the longest frames, one behind the other, stay within the receiver, n
     for (const std::uint8_t byte : receiver.behind) CHECK(int(byte) == 0xEE);
   }
 }
+
+namespace {
+
+// Protocol v1 that counts the bytes that are read, again or not, and the starts.
+struct CountingV1 : sbgc::ProtocolV1 {
+  static int& reads() {
+    static int count = 0;
+    return count;
+  }
+  void begin(std::uint8_t start) noexcept {
+    ++reads();
+    ProtocolV1::begin(start);
+  }
+  void add_header(std::uint8_t byte) noexcept {
+    ++reads();
+    ProtocolV1::add_header(byte);
+  }
+  void add_payload(std::uint8_t byte) noexcept {
+    ++reads();
+    ProtocolV1::add_payload(byte);
+  }
+};
+
+// A frame whose payload is headers, each announcing a frame that ends with it: when its last byte is wrong, all are.
+Data nested_headers(std::size_t payload_size) {
+  Data stream;
+  for (std::size_t size = payload_size; size >= 4; size -= 4)
+    for (const std::size_t byte : {std::size_t{0x3E}, std::size_t{23}, size, size + 23})
+      stream.push_back(static_cast<std::uint8_t>(byte));
+  while (stream.size() < payload_size + 5) stream.push_back(1);
+  return stream;
+}
+
+}  // namespace
+
+TEST_CASE("a call reads at most sixteen bytes, whatever the stream") {
+  std::mt19937 random(20260606);
+  thermopower::SbgcCodec<255, CountingV1> codec;
+  int most = 0;
+  const auto receive = [&](const Data& stream) {
+    for (const std::uint8_t byte : stream) {
+      CountingV1::reads() = 0;
+      bool got = codec.receive(byte, 0);
+      most = std::max(most, CountingV1::reads());
+      while (got) {
+        CountingV1::reads() = 0;
+        got = codec.next();
+        most = std::max(most, CountingV1::reads());
+      }
+    }
+  };
+  for (std::size_t size = 4; size <= 252; size += 4) receive(nested_headers(size));
+  Data headers(20000);  // nothing but starts, ids, sizes and sums
+  static const std::uint8_t bytes[] = {0x3E, 0x3E, 1, 0x3F, 0x7C, 0xBA, 0};
+  for (std::uint8_t& byte : headers) byte = bytes[random() % sizeof bytes];
+  receive(headers);
+  CHECK(most > 1);
+  CHECK(most <= 16);
+}
+
+TEST_CASE("a stream built of false headers costs itself, and not the frames that come later") {
+  const Data telemetry = reference::make_frame(0x3E, 25, Data(124, 7));
+  thermopower::SbgcCodec<> codec;
+  const Data attack = nested_headers(252);
+  for (int i = 0; i < 20; ++i) CHECK(receive_all(codec, attack).empty());
+  CHECK(codec.counters().overruns > 0);
+  std::size_t frames = 0;
+  for (int i = 0; i < 20; ++i) frames += receive_all(codec, telemetry).size();
+  CHECK(frames >= 17);
+  CHECK(codec.counters().frames == frames);
+  CHECK(frames * telemetry.size() + codec.counters().skipped_bytes + codec.pending() ==
+        20 * (attack.size() + telemetry.size()));
+}
+
+TEST_CASE("a false header in front of a longest frame drops nothing, wherever the frame it announces ends") {
+  const Data longest = reference::make_frame(0x3E, 25, Data(255, 7)),
+             next = reference::make_frame(0x3E, 26, {1});
+  for (std::size_t size = 0; size <= 255; ++size) {
+    const Data false_start = {0x3E, 9, static_cast<std::uint8_t>(size), static_cast<std::uint8_t>(size + 9)};
+    thermopower::SbgcCodec<> codec;
+    const Data stream = false_start + longest + next + next + next + next + next + next;
+    INFO("announced " << size);
+    CHECK(receive_all(codec, stream) == reference::leftmost_reading(stream, {255, true, false}));
+    CHECK(codec.counters().overruns == 0);
+  }
+}
+
+TEST_CASE("unread bytes are read by next() and poll() when no more come") {
+  const Data held_back = reference::make_frame(0x3E, 25, Data(100, 7));
+  const Data false_start = {0x3E, 9, static_cast<std::uint8_t>(held_back.size()),
+                            static_cast<std::uint8_t>(held_back.size() + 9)};
+  thermopower::SbgcCodec<> codec;
+  CHECK(receive_all(codec, false_start + held_back + Data{0x55}).empty());
+  CHECK(codec.has_unread());
+  int calls = 0;
+  bool got = false;
+  for (; !got && codec.has_unread(); ++calls) got = codec.poll(0);
+  CHECK(got);
+  CHECK(calls <= 8);
+}

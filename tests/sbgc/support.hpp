@@ -72,7 +72,9 @@ std::vector<reference::Frame> receive_all(Receiver& receiver, const Data& data, 
 template <class Receiver>
 std::vector<reference::Frame> after_silence(Receiver& receiver, std::uint32_t now_us = 1000000) {
   std::vector<reference::Frame> frames;
-  while (receiver.poll(now_us)) frames.push_back(copy(receiver));
+  do
+    if (receiver.poll(now_us)) frames.push_back(copy(receiver));
+  while (receiver.has_frame() || receiver.has_unread());
   return frames;
 }
 

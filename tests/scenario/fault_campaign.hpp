@@ -480,7 +480,8 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false, bool is_
       const Limiter::State state = limiter.state();
       const int bearable = std::min<int>(state.sustainable, 250);
       const int wanted = chip.gimbal.axis<0>().state().demand;
-      if (!tp::is_fault(reason) && sent >= std::min(wanted, bearable)) {
+      // At a limit the bound nears the level of the last bearable count without end: that count is not waited for.
+      if (!tp::is_fault(reason) && sent >= std::min(wanted, bearable - 1)) {
         double& slowest =
             was_uncontrolled_fault ? tally.slowest_back_uncontrolled_s : tally.slowest_back_s[last_fault];
         slowest = std::max(slowest, now_s - ended_s);

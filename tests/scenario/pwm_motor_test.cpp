@@ -10,6 +10,7 @@
 
 #include <simulated_chip.hpp>
 
+#include "../../examples/pwm_motor/pwm_motor.h"
 #include "../catch.hpp"
 
 namespace {
@@ -61,6 +62,23 @@ private:
 };
 
 }  // namespace
+
+TEST_CASE("a run that the sketch records on the chip replays here") {
+  nano::SimulatedChip chip(NANO_PROGRAMS "/pwm_motor_recorded.elf");
+  thermopower::RunReplay<PwmMotor> replay;
+  chip.on_transmit = [&](std::uint64_t, std::uint8_t byte) { replay.feed(static_cast<char>(byte)); };
+  // The potentiometer is turned, and the supply's wire comes off.
+  for (int second = 1; second <= 8; ++second) {
+    chip.set_analog(0, second % 3 == 0 ? 900u : 5000u);
+    chip.set_analog(1, second == 5 ? 0u : 4000u);
+    chip.run_until(static_cast<std::uint64_t>(second) * 16000000u);
+  }
+  CHECK(replay.result().steps > 350);
+  CHECK(replay.result().damaged == 0);
+  CHECK(replay.result().lost == 0);
+  CHECK(replay.result().decisions_other == 0);
+  CHECK(replay.result().most_units <= 16);  // expf() is the library's of each machine
+}
 
 TEST_CASE("a motor on PWM that starts as warm as it may be stays below its limit at full demand") {
   Bench bench;

@@ -41,7 +41,7 @@ namespace thermopower {
 /// independent.
 ///
 /// @tparam payload_capacity longest payload to be received, 0..255. The default holds whatever a board can send. 124 holds
-/// REALTIME_DATA_4 as it is today and saves 131 bytes; a firmware that appends a field to it is then never heard.
+/// REALTIME_DATA_4 as it is today and saves 147 bytes; a firmware that appends a field to it is then never heard.
 /// @tparam Protocol sbgc::ProtocolV1, sbgc::ProtocolV2 or sbgc::ProtocolAuto (a menu: see sbgc::ProtocolV1).
 ///
 /// @snippet sbgc_examples.cpp codec

@@ -9,10 +9,12 @@ using namespace cost;
 
 namespace sbgc = thermopower::sbgc;
 
-static tp::SbgcCodec<>& codec() {
-  static tp::SbgcCodec<> end;
+template <class Codec>
+static Codec& codec_of() {
+  static Codec end;
   return end;
 }
+static tp::SbgcCodec<>& codec() { return codec_of<tp::SbgcCodec<>>(); }
 
 struct GivenCommand {
   uint8_t power[3], p_gain[3];
@@ -46,25 +48,38 @@ extern "C" void write_command() {
       static_cast<uint8_t>(codec().encode(sbgc::PowerAndGain<GivenCommand>(command), frame, sizeof frame));
 }
 
-// A frame whose payload is headers, each announcing a frame that ends with it: when its last byte is wrong,
-// all are.
-extern "C" void nested_headers() {
-  reset_codec();
-  for (uint8_t start = 0; start < 124; start = static_cast<uint8_t>(start + 4)) {
-    const uint8_t size = static_cast<uint8_t>(124 - start);
-    codec().receive(0x3E, 0);
-    codec().receive(23, 0);
-    codec().receive(size, 0);
-    codec().receive(static_cast<uint8_t>(23 + size), 0);
-  }
-  for (uint8_t count = 0; count < 4; ++count) codec().receive(0, 0);
+// The longest frames whose payload is headers, each announcing a frame that ends with it, one behind the other: when a last byte is
+// wrong, all are. Of such a stream every byte is tried in turn.
+static uint16_t bytes_before;
+static uint8_t nested(uint16_t at) {
+  at = static_cast<uint16_t>(at % 257);
+  const uint8_t size = static_cast<uint8_t>(252 - (at & ~3));
+  if (at >= 252) return 1;
+  return at % 4 == 0 ? 0x3E : (at % 4 == 1 ? 23 : static_cast<uint8_t>(at % 4 == 2 ? size : size + 23));
 }
-extern "C" void wrong_last_byte() { small_sink = codec().receive(0, 0); }
+template <class Codec>
+static void attack() {
+  codec_of<Codec>().clear();
+  for (uint16_t at = 0; at < bytes_before; ++at) codec_of<Codec>().receive(nested(at), 0);
+}
+typedef tp::SbgcCodec<> OfV1;
+typedef tp::SbgcCodec<255, sbgc::ProtocolAuto> OfBoth;
+extern "C" void nested_headers() { attack<OfV1>(); }
+extern "C" void nested_headers_of_both() { attack<OfBoth>(); }
+extern "C" void false_headers() { small_sink = codec_of<OfV1>().receive(nested(bytes_before), 0); }
+extern "C" void false_headers_of_both() { small_sink = codec_of<OfBoth>().receive(nested(bytes_before), 0); }
+// Cortex-M is measured by many calls each, so only the bytes around the first wrong end are tried there.
+static const uint16_t first_byte = counter::resolution == 0 ? 0 : 240,
+                      bytes = counter::resolution == 0 ? 700 : 60;
+static void next_byte(uint16_t round) { bytes_before = static_cast<uint16_t>(first_byte + round); }
 
 extern "C" void measure_all() {
   thermopower_cost_after(receive_byte, in_payload);
   thermopower_cost_after(receive_last, before_last_byte);
   thermopower_cost_after(read_telemetry, answer);
   thermopower_cost(write_command);
-  thermopower_cost_after(wrong_last_byte, nested_headers);
+  bytes_before = 300;
+  thermopower_cost_searched(false_headers, nested_headers, next_byte, bytes);
+  bytes_before = 300;
+  thermopower_cost_searched(false_headers_of_both, nested_headers_of_both, next_byte, bytes);
 }

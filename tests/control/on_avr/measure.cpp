@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// measure <mean> <longest> <ram> <name> <elf> [<name> <elf> ...]: runs each program on a simulated ATmega328P and
-// prints, as a Markdown table, how many cycles its marked work takes, how much flash and RAM it needs beyond the
-// first program, which is empty, and how deep the stack goes. Fails when the last program's work exceeds one of the
-// two budgets in cycles or the one of bytes, when a stack meets the data below it, and when a program writes to GPIOR1 that what it
+// measure <mean> <longest> <ram> <name>[@<longest>] <elf> [<name>[@<longest>] <elf> ...]: runs each program on a simulated ATmega328P
+// and prints, as a Markdown table, how many cycles its marked work takes, how much flash and RAM it needs beyond the
+// first program, which is empty, and how deep the stack goes. Fails when a work exceeds its own longest, when the last program's work
+// exceeds one of the two budgets in cycles or the one of bytes, when a stack meets the data below it, and when a program writes to GPIOR1 that what it
 // measures was not done. The first two axes alone may look cheap: a stack that overwrote the third did.
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 extern "C" {
@@ -127,7 +128,15 @@ int main(int argument_count, char** arguments) {
     }
     cost.mean -= empty.mean;
     cost.longest -= empty.mean;
-    std::printf("| %s | %llu | %llu | %u | %u | %u |\n", arguments[i], cost.mean, cost.longest,
+    const char* const budget = std::strchr(arguments[i], '@');
+    const int name_size = static_cast<int>(budget != nullptr ? static_cast<std::size_t>(budget - arguments[i])
+                                                             : std::strlen(arguments[i]));
+    if (budget != nullptr && cost.longest >= std::strtoull(budget + 1, nullptr, 10)) {
+      std::fprintf(stderr, "%.*s: %llu cycles, to be under %s\n", name_size, arguments[i], cost.longest,
+                   budget + 1);
+      is_good = false;
+    }
+    std::printf("| %.*s | %llu | %llu | %u | %u | %u |\n", name_size, arguments[i], cost.mean, cost.longest,
                 cost.flash - empty.flash, cost.ram - empty.ram, cost.stack);
   }
   std::printf(

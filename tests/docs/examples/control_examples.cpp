@@ -8,6 +8,7 @@
 #include <thermopower/thermopower.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace tp = thermopower;
 
@@ -31,6 +32,49 @@ struct TunedGains {  // gains found at POWER 0, 85, 170 and 255
 };
 typedef tp::GainScheduler<tp::TableGain<TunedGains>> Tuned;
 //! [gain table]
+
+struct Port {  // stands in for Serial
+  std::string text;
+  size_t write(const uint8_t* bytes, size_t count) {
+    text.append(reinterpret_cast<const char*>(bytes), count);
+    return count;
+  }
+};
+
+//! [recorded run]
+struct Fan {  // its decisions, apart from its pins
+  struct Told {
+    uint16_t passed_ms, heat_counts;
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.passed_ms, self.heat_counts);
+    }
+  };
+  struct Answered {
+    uint8_t power;
+    template <class Self, class Archive>
+    static void each_field(Self& self, Archive& archive) {
+      archive(self.power);
+    }
+  };
+  Answered step(const Told& told) {
+    warmth += told.heat_counts / 1023.0f - 0.001f * told.passed_ms * warmth;
+    return {static_cast<uint8_t>(warmth > 25.0f ? 250 : 10.0f * warmth)};
+  }
+  float warmth = 0.0f;
+};
+
+// On the board, behind recorder.begin(Fan::Told(), Fan::Answered()):
+void run(Fan& fan, tp::RunWriter<Port>& recorder, const Fan::Told& told) {
+  recorder.step(told, fan.step(told));
+}
+// Anywhere:
+bool is_same(const std::string& recording) {
+  tp::RunReplay<Fan> replay;
+  for (const char character : recording) replay.feed(character);
+  return replay.result().is_identical();
+}
+//! [recorded run]
 
 }  // namespace
 
@@ -433,4 +477,15 @@ TEST_CASE("what one tunes, stored as a record") {
   //! [version]
   static_assert(tp::Version::major_number() == 0, "written for 0.x");
   //! [version]
+}
+
+TEST_CASE("a recorded run: what a firmware was told and answered, and the same again elsewhere") {
+  Port port;
+  Fan fan;
+  tp::RunWriter<Port> recorder(port);
+  recorder.begin(Fan::Told(), Fan::Answered());
+  for (uint16_t i = 0; i < 100; ++i) run(fan, recorder, {20, static_cast<uint16_t>(i * 9)});
+  CHECK(is_same(port.text));
+  port.text[port.text.size() - 10] ^= 1;
+  CHECK_FALSE(is_same(port.text));
 }

@@ -298,8 +298,11 @@ public:
   /// over_coldest  difference
   detail::UnitFraction at(detail::KelvinUnits over_coldest) const noexcept {
     if (over_coldest <= 0) return detail::whole_fraction();
-    const uint32_t over = static_cast<uint32_t>(over_coldest) >> 10;  // 1/256 K
-    const uint16_t coarse = over < end_ ? static_cast<uint16_t>(over) : end_;
+    // In 1/256 K: shifted by 10 in parts, because an 8-bit chip shifts bit by bit. From 256 K on it is beyond the end.
+    const uint8_t top = static_cast<uint8_t>(static_cast<uint32_t>(over_coldest) >> 24);
+    const uint16_t middle = static_cast<uint16_t>(static_cast<uint32_t>(over_coldest) >> 8);
+    const uint16_t over = static_cast<uint16_t>((middle >> 2) | static_cast<uint16_t>(top << 14));
+    const uint16_t coarse = top < 4 && over < end_ ? over : end_;
     // Below one half of 2^32, because the relief is less than the whole; so doubled instead of shifted by 15.
     const uint32_t half_relief = detail::product(coarse, per_K_);
     const uint16_t relief = static_cast<uint16_t>((half_relief + half_relief) >> 16);

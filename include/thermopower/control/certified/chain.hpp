@@ -127,12 +127,10 @@ public:
   }
 
   /// Prepares a step length.
-  Travel travel(float dt_s) const noexcept {
-    Travel travel;
+  void prepare(float dt_s, Travel& travel) const noexcept {
     for (uint8_t k = 0; k < node_count; ++k)
       travel.nodes[k] = CertifiedTravel::over(fixed_.fastest_per_s[k], fixed_.slowest_per_s[k], dt_s);
     travel.is_late = dt_s > hold_s_;
-    return travel;
   }
   /// Carries the bounds over a step during which at most `count` acted. (33) to (35)
   void advance(uint8_t count, const Travel& step, const CertifiedMeasurement&) noexcept {
@@ -146,7 +144,11 @@ public:
     for (uint8_t k = 0; k < node_count; ++k) bounds_[k].raise(before[k]);
   }
   /// Carries the bounds over an unknown time of at most one hold.
-  void advance_unknown(uint8_t count) noexcept { advance_from_start(count, travel(hold_s_)); }
+  void advance_unknown(uint8_t count) noexcept {
+    Travel hold;
+    prepare(hold_s_, hold);
+    advance_from_start(count, hold);
+  }
 
   /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
   void set_air(float air_C) noexcept {

@@ -108,15 +108,13 @@ public:
   }
 
   /// Prepares a step length; only a length that changed costs anything.
-  Travel travel(float dt_s) const noexcept {
-    Travel travel;
-    static_cast<CertifiedTwoNode::Travel&>(travel) = CertifiedTwoNode::travel(dt_s);
+  void prepare(float dt_s, Travel& travel) const noexcept {
+    CertifiedTwoNode::prepare(dt_s, travel);
     travel.lead = CertifiedTravel::over(falling_per_s_, rising_per_s_, dt_s);
     // Not farther than what was planned: CertifiedTravel::end_at().
     const detail::FineFraction whole_hold = static_cast<detail::FineFraction>(hold_mean_) << 16;
     const detail::FineFraction rise = detail::fine_up(mean_rise(dt_s));
     travel.mean_rise = rise < whole_hold ? rise : whole_hold;
-    return travel;
   }
 
   /// Carries the bounds over a step during which at most `count` acted. (17) to (20), (38), (40), (41)
@@ -148,7 +146,9 @@ public:
   /// Carries the bounds over an unknown time of at most one hold.
   void advance_unknown(uint8_t count) noexcept {
     const detail::UpperBound winding = winding_, mean = mean_;
-    carry(count, travel(hold_s()));
+    Travel hold;
+    prepare(hold_s(), hold);
+    carry(count, hold);
     winding_.raise(winding);
     mean_.raise(mean);
     lead_.set(lead_after_hold(lead_.below()));

@@ -163,11 +163,11 @@ public:
   /// @param config  constants; ask `validate()` once
   explicit CertifiedLimiter(const Config& config = Config::standard()) noexcept
       : network_(config.network, config.use),
-        travel_(network_.travel(0.0f)),
         highest_air_C_(config.use.highest_air_C),
         air_error_K_(config.air_error_K),
         per_supply_V_(config.use.heat.supply_error < 1.0f
-                          ? (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
+                          ? (65536.0f * (1.0f + detail::float_margin())) *
+                                (1.0f + config.use.heat.supply_error) / config.use.heat.highest_supply_V
                           : detail::not_a_number()),
         count_W_(config.use.heat.heat_when_hot_W * (1.0f / 255.0f)),
         least_squared_(least_squared(config.use.heat)),
@@ -175,7 +175,9 @@ public:
         every_(config.use.every),
         turn_(config.use.phase),
         is_limiting_(false),
-        is_start_new_(false) {}
+        is_start_new_(false) {
+    network_.prepare(0.0f, travel_);
+  }
 
   /// First constant out of its range, or ConfigError::none. Anything but none keeps the power at its least.
   ConfigError validate() const noexcept { return config_error_; }
@@ -349,7 +351,7 @@ private:
     if (!is_travel_known()) {
       const float passed_s = pending();
       travelled_ = detail::is_same(pending_s_, 0.0f) ? steps_ : 0;
-      travel_ = network_.travel(passed_s);
+      network_.prepare(passed_s, travel_);
     }
     if (travel_.is_late && late_steps_ < 65535u) ++late_steps_;
     if (is_start_new_) network_.advance_from_start(acted_, travel_);
@@ -392,10 +394,13 @@ private:
   }
   void observe(float air_C, float supply_V) noexcept {
     observe_air(air_C);
-    const float ratio = supply_V * per_supply_V_;
-    // The square is not below the truth; what it is below is no supply.
-    const detail::UnitFraction squared =
-        detail::is_from_zero_to(ratio, 1.0f) ? detail::fraction_up(ratio * ratio) : detail::whole_fraction();
+    const float ratio = supply_V * per_supply_V_;  // in 2^-16
+    // The square is not below the truth; what it is below is no supply. In whole numbers, because a supply moves in every step.
+    detail::UnitFraction squared = detail::whole_fraction();
+    if (detail::is_from_zero_to(ratio, 65534.0f)) {
+      const uint16_t above = static_cast<uint16_t>(static_cast<uint16_t>(ratio) + 1u);
+      squared = static_cast<detail::UnitFraction>((detail::product(above, above) >> 16) + 1u);
+    }
     network_.take_warm_winding(squared < least_squared_ ? detail::whole_fraction() : squared);
   }
 

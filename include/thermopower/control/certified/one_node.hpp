@@ -94,10 +94,10 @@ public:
     node_.set(detail::celsius_units(winding_C > body_C ? winding_C : body_C) + 1);
   }
   /// Prepares a step length.
-  Travel travel(float dt_s) const noexcept {
-    Travel travel = {CertifiedTravel::over_part(fastest_per_s_, slowest_, dt_s), dt_s > hold_s_};
+  void prepare(float dt_s, Travel& travel) const noexcept {
+    travel.body = CertifiedTravel::over_part(fastest_per_s_, slowest_, dt_s);
+    travel.is_late = dt_s > hold_s_;
     if (!travel.is_late) travel.body.end_at(hold_);
-    return travel;
   }
   /// Carries the bound over a step during which at most `count` acted.
   /// @param measured  known of one instant of the step, whichever it was; the winding's counts
@@ -123,7 +123,10 @@ public:
   void advance_unknown(uint8_t count) noexcept {
     node_.raise(base_);
     const detail::KelvinUnits distance = base_ + detail::times(to_air_now_, count) - node_.below();
-    if (distance > 0) node_.advance(distance, travel(hold_s_).body.heating);
+    if (!(distance > 0)) return;
+    Travel hold;
+    prepare(hold_s_, hold);
+    node_.advance(distance, hold.body.heating);
   }
   /// Takes note of the air from now on. See CertifiedTwoNode.
   void set_air(float air_C) noexcept {

@@ -158,9 +158,9 @@ public:
   }
 
   /// Prepares a step length; only a length that changed costs anything.
-  Travel travel(float dt_s) const noexcept {
+  /// @param travel  written in place: a copy costs an 8-bit chip a hundred cycles
+  void prepare(float dt_s, Travel& travel) const noexcept {
     const float part = dt_s * per_hold_s_;
-    Travel travel;
     // Of positive numbers the bits order as the numbers do.
     travel.is_late = detail::magnitude_bits(dt_s) > detail::magnitude_bits(hold_s_);
     if (winding_pace_.is_known() && body_pace_.is_known() && detail::is_from_zero_to(part, 65534.0f)) {
@@ -176,7 +176,6 @@ public:
       travel.winding.end_at(hold_winding_);
       travel.body.end_at(hold_body_);
     }
-    return travel;
   }
 
   /// Carries both bounds over a step during which at most `count` acted. (17) to (20)
@@ -194,7 +193,11 @@ public:
     mean_.raise(mean);
   }
   /// Carries both bounds over an unknown time of at most one hold.
-  void advance_unknown(uint8_t count) noexcept { advance_from_start(count, travel(hold_s_)); }
+  void advance_unknown(uint8_t count) noexcept {
+    Travel hold;
+    prepare(hold_s_, hold);
+    advance_from_start(count, hold);
+  }
 
   /// Takes note of the air from now on. @param air_C  never below the truth; below the coldest it counts as that
   void set_air(float air_C) noexcept {
@@ -476,7 +479,8 @@ private:
   // The lowest 16 bits of a bound in 1/16 K tell it from every other: where the heat is taken, bounds lie between the
   // coldest air and 4000 degC, and 2^16 of these are 4096 K.
   static uint16_t sixteenths(detail::KelvinUnits bound) noexcept {
-    return static_cast<uint16_t>(static_cast<uint32_t>(bound) >> 14);
+    // Shifted by 14, with whole bytes for the most: an 8-bit chip shifts bit by bit.
+    return static_cast<uint16_t>((static_cast<uint32_t>(bound) << 2) >> 16);
   }
   // Three of these apart, rounded down both, is less than the slack.
   static bool is_in_slack(detail::KelvinUnits bound, uint16_t taken) noexcept {
