@@ -114,8 +114,8 @@ TEST_CASE("extremes of a column are those of the sorted one") {
       CHECK(top.value == most->first);
       CHECK(top.count == most->second);
       const bool is_alone = counts.size() == 1;
-      CHECK(bottom.beside == (is_alone ? 0 : std::next(least)->second));
-      CHECK(top.beside == (is_alone ? 0 : std::next(most)->second));
+      CHECK(bottom.beside == (is_alone ? least : std::next(least))->second);
+      CHECK(top.beside == (is_alone ? most : std::next(most))->second);
     }
 }
 

@@ -40,7 +40,7 @@ inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
 struct Extreme {
   double value = 0.0;         ///< itself
   std::ptrdiff_t count = 0;   ///< samples that have it
-  std::ptrdiff_t beside = 0;  ///< samples that have the value next to it
+  std::ptrdiff_t beside = 0;  ///< samples that have the value next to it; where there is none, all
 };
 
 /// The largest value of a column, or the least. @param samples  at least one
@@ -53,7 +53,7 @@ inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
   for (const double sample : samples)
     if (sample != one.value && (next == one.value || is_beyond(sample, next))) next = sample;
   one.count = std::count(samples.begin(), samples.end(), one.value);
-  one.beside = next == one.value ? 0 : std::count(samples.begin(), samples.end(), next);
+  one.beside = std::count(samples.begin(), samples.end(), next);
   return one;
 }
 

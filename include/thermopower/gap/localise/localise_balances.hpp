@@ -72,11 +72,6 @@ inline std::string evidence_text(const std::string& given, const std::string& wo
                   ordered.chance);
     text += " The " + to_string(o.quantity) + " follows " + plant::the_variable(ordered.axis) + more;
   }
-  const double period = half_power_period(o.value, o.interval_s);
-  if (period > 0.0 && period < o.longest_run_s) {
-    std::snprintf(more, sizeof more, " Half of its power lies at periods above %.3g s.", period);
-    text += more;
-  }
   return text;
 }
 

@@ -36,7 +36,6 @@ struct Observed {
   Eigen::VectorXd value;           ///< one per sample
   std::vector<OrderingAxis> axes;  ///< as long each
   double interval_s = 1.0;         ///< between samples
-  double longest_run_s = 0.0;      ///< of the recording: no longer period can be seen
   double noise = 0.0;  ///< standard deviation that the sensor alone gives `value`; 0 where unknown
 
   /// The axis of that name, or nullptr.
@@ -76,10 +75,6 @@ inline Observed observe(const plant::Balance& balance, bool as_restated,
   o.quantity = balance.quantity;
   o.unit = balance.unit;
   o.interval_s = balance.rows->interval_s;
-  for (const RunSpan& run : balance.rows->runs)
-    if (run.size() > 1)
-      o.longest_run_s =
-          std::max(o.longest_run_s, balance.rows->t_s[run.end - 1] - balance.rows->t_s[run.begin]);
   if (balance.form == plant::BalanceForm::algebraic) {
     const Thinning average(balance.rows->runs, balance.measured, limit.picture_samples);
     Eigen::VectorXd value = balance.measured - balance.flow_sampled;
