@@ -2,12 +2,14 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/data/segments.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 /// @file current_masks.hpp
@@ -15,12 +17,69 @@
 
 namespace thermopower::gap::engine {
 
+/// Rows of a constant power that a spike can be told in.
+inline constexpr Eigen::Index shortest_steady = 7;
+
 /// The runs cut wherever the power steps.
 inline std::vector<RunSpan> steady_runs(const Eigen::VectorXd& power, const std::vector<RunSpan>& runs) {
   RowMask starts(static_cast<std::size_t>(power.size()), 0);
   for (Eigen::Index i = 1; i < power.size(); ++i)
     starts[static_cast<std::size_t>(i)] = std::isfinite(power[i]) && power[i] != power[i - 1] ? 1 : 0;
   return cut_at(runs, starts, true);
+}
+
+/// Runs with the pauses of a logger inside them.
+inline std::vector<RunSpan> joined_at_pauses(const std::vector<RunSpan>& runs) {
+  std::vector<RunSpan> joined;
+  for (const RunSpan& run : runs)
+    if (!joined.empty() && run.goes_on && joined.back().end == run.begin && joined.back().label == run.label)
+      joined.back().end = run.end;
+    else joined.push_back(run);
+  return joined;
+}
+
+/// The current without what the voltage at the motor does to it at once: the steps of the power are gone. What flows at
+/// a voltage is told by the rows before and after whose voltage is nearest, whatever the law between the two, and be there a
+/// pause between them; missing where no rows are near.
+/// @param supply  V by row; none: whatever it is, it stays the same
+inline Eigen::VectorXd detrended_current(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power,
+                                         const Eigen::VectorXd* supply, const std::vector<RunSpan>& runs) {
+  constexpr Eigen::Index around = 40;    // rows before and after
+  constexpr std::ptrdiff_t nearest = 7;  // rows: three bad ones do no harm
+  // Of the largest voltage: beyond the one a row tells nothing of another's (a ramp from rest may cover a fifth of it within
+  // seven rows), below the other a ratio is mostly noise.
+  constexpr double near_share = 0.2, least_share = 0.1;
+  Eigen::VectorXd volts(current_A.size());
+  for (Eigen::Index i = 0; i < volts.size(); ++i) {
+    const double on = std::isfinite(power[i]) ? std::clamp(power[i], 0.0, 255.0) : 0.0;
+    const double open_V = supply != nullptr && std::isfinite((*supply)[i]) ? (*supply)[i] : 1.0;
+    volts[i] = on > 0.0 ? v_rms_from_duty<double>(open_V, duty_from_power(on)) : 0.0;
+  }
+  const double near = near_share * volts.maxCoeff(), least = least_share * volts.maxCoeff();
+  Eigen::VectorXd result = current_A;
+  std::vector<std::pair<double, Eigen::Index>> rows;  // by distance in volts
+  std::vector<double> list;
+  for (const RunSpan& run : joined_at_pauses(runs))
+    for (Eigen::Index i = run.begin; i < run.end; ++i) {
+      rows.clear();
+      list.clear();
+      for (Eigen::Index k = std::max(run.begin, i - around); k < std::min(run.end, i + around + 1); ++k) {
+        if (k == i || !std::isfinite(current_A[k])) continue;
+        if (volts[k] > least) list.push_back(current_A[k] / volts[k]);
+        if (std::abs(volts[k] - volts[i]) <= near) rows.push_back({std::abs(volts[k] - volts[i]), k});
+      }
+      if (static_cast<std::ptrdiff_t>(rows.size()) < nearest) {
+        result[i] = missing;
+        continue;
+      }
+      const double conductance = median_of(list);
+      std::nth_element(rows.begin(), rows.begin() + nearest - 1, rows.end());
+      list.clear();
+      for (auto row = rows.begin(); row != rows.begin() + nearest; ++row)
+        list.push_back(current_A[row->second] + conductance * (volts[i] - volts[row->second]));
+      result[i] -= median_of(list);
+    }
+  return result;
 }
 
 /// Exact zeros of the current at a power at which current flows otherwise.

@@ -292,6 +292,17 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
          "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
   }
   RowMask spikes = masks.spikes();
+  // Where the power steps too often to be looked at in between: what it leaves.
+  const auto is_short = [](const RunSpan& run) { return run.size() < shortest_steady; };
+  if (power != nullptr && std::any_of(steady.begin(), steady.end(), is_short)) {
+    const RowMask others =
+        SampleMasks(detrended_current(values, *power, believed_.find("supply_V"), runs), runs, traits)
+            .spikes();
+    for (const RunSpan& run : steady)
+      for (Eigen::Index i = run.begin; is_short(run) && i < run.end; ++i)
+        spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
+    masks.take(spikes);
+  }
   const RowMask bursts = masks.bursts(),
                 hidden = masks.spikes();  // next to a burst a spike does not stand out
   for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];

@@ -39,21 +39,22 @@ inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
 /// The largest or the least value of a column.
 struct Extreme {
   double value = 0.0;         ///< itself
+  double next = 0.0;          ///< the value next to it; itself where there is no other one
   std::ptrdiff_t count = 0;   ///< samples that have it
-  std::ptrdiff_t beside = 0;  ///< samples that have the value next to it; where there is none, all
+  std::ptrdiff_t beside = 0;  ///< samples that have the value next to it
 };
 
 /// The largest value of a column, or the least. @param samples  at least one
 inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
   const auto is_beyond = [top](double one, double other) { return top ? one > other : one < other; };
-  Extreme one{samples.front()};
+  Extreme one{samples.front(), samples.front()};
   for (const double sample : samples)
     if (is_beyond(sample, one.value)) one.value = sample;
-  double next = one.value;
+  one.next = one.value;
   for (const double sample : samples)
-    if (sample != one.value && (next == one.value || is_beyond(sample, next))) next = sample;
+    if (sample != one.value && (one.next == one.value || is_beyond(sample, one.next))) one.next = sample;
   one.count = std::count(samples.begin(), samples.end(), one.value);
-  one.beside = std::count(samples.begin(), samples.end(), next);
+  one.beside = std::count(samples.begin(), samples.end(), one.next);
   return one;
 }
 
@@ -128,13 +129,14 @@ public:
   /// Stretches of one value after which the column jumps, and stays: it had stopped meanwhile. All but their first row.
   RowMask frozen() {
     RowMask mask = none();
-    if (!(equal_share_ < limit_.mostly_equal)) return mask;
+    const double rest_share = traits_.cannot_jump ? equal_at_rest() : 1.0;
+    if (!(std::min(equal_share_, rest_share) < limit_.mostly_equal)) return mask;
     for (const RunSpan& run : runs_) {
       const std::vector<Eigen::Index> rows = finite_rows(run);
       for (std::size_t begin = 0; begin < rows.size();) {
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
-        if (is_frozen(rows, begin, end))
+        if (is_frozen(rows, begin, end) || stands_longer(end - begin, rest_share))
           for (std::size_t k = begin + 1; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
         begin = end;
       }
@@ -219,10 +221,9 @@ private:
     if ((at[i - 1] - at[i]) * (at[i] - at[i + 1]) > 0.0) return true;
     if (i < 2 || i + 2 >= at.size()) return false;
     const auto lasts = [&](double level, double next, double second) {
-      const double peak = at[i] - level, least = std::max(3.0 * scale_, limit_.goes_on * std::abs(peak));
-      const double a = std::copysign(1.0, peak) * (next - level),
-                   b = std::copysign(1.0, peak) * (second - level);
-      return a > b && b > least;
+      const double peak = std::abs(at[i] - level), sign = at[i] > level ? 1.0 : -1.0;
+      const double a = sign * (next - level), b = sign * (second - level);
+      return a > b && a > limit_.decays_to * peak && b > std::max(3.0 * scale_, limit_.goes_on * peak);
     };
     return lasts(at[i - 1], at[i + 1], at[i + 2]) || lasts(at[i + 1], at[i - 1], at[i - 2]);
   }
@@ -258,6 +259,32 @@ private:
     return angle_noise_;
   }
 
+  /// How often a temperature that rests reads the same twice: never less often while it moves. 1 where its noise is less than a
+  /// quantum: then it stands between two steps for as long as it likes.
+  double equal_at_rest() const {
+    constexpr std::size_t around =
+        6;  // samples before and after, over which one that rests moves by a quantum at most
+    double still = 0.0, equal = 0.0, moves = 0.0, wide = 0.0;
+    for (const RunSpan& run : runs_) {
+      const std::vector<Eigen::Index> rows = finite_rows(run);
+      for (std::size_t k = around; k + around < rows.size(); ++k) {
+        const double step = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
+        moves += step > 0.0 ? 1.0 : 0.0;
+        wide += step > 1.5 * quantum_ ? 1.0 : 0.0;
+        if (std::abs(values_[rows[k + around]] - values_[rows[k - around]]) > 1.5 * quantum_) continue;
+        still += 1.0;
+        equal += step == 0.0 ? 1.0 : 0.0;
+      }
+    }
+    return wide < limit_.wide_steps * moves ? 1.0 : (equal + 1.0) / (still + 1.0);
+  }
+
+  /// Whether so many samples of one value are more than a rest makes.
+  static bool stands_longer(std::size_t samples, double rest_share) {
+    return static_cast<Eigen::Index>(samples) >= limit_.least_frozen &&
+           -std::log(rest_share) * static_cast<double>(samples - 1) > limit_.log_chance;
+  }
+
   bool is_frozen(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
     const auto length = static_cast<Eigen::Index>(end - begin);
     if (length < limit_.least_frozen || end == rows.size()) return false;
@@ -281,10 +308,38 @@ private:
         static_cast<double>(one.count) < limit_.clip_ratio * static_cast<double>(one.beside))
       return false;
     const Eigen::VectorXd others = (values_.array() == one.value).select(missing, values_);
+    if (is_between_steps(others, one)) return true;  // no converter reads that: a limit is set
     // What stands still by itself stands where it likes; a column whose noise shows everywhere else is cut off where it does not.
     const double usually = traits_.cannot_jump ? equal_share_ : equal_share_of(step_sizes(others, runs_));
-    if (usually < limit_.hardly_equal && scale_ > limit_.quanta * quantum_) return true;
+    const bool is_witnessed = traits_.rate != nullptr || traits_.angle != nullptr;
+    if (usually < limit_.hardly_equal && (!is_witnessed || scale_ > limit_.quanta * quantum_)) return true;
     return 2 * moves_at(one.value) >= one.count;
+  }
+
+  /// Whether an extreme is none of the values that the other samples, in steps of a quantum, take.
+  bool is_between_steps(Eigen::VectorXd others, const Extreme& one) const {
+    constexpr double on = 0.05, off = 0.02,
+                     times = 3.0;  // of a step; of a step; of how far nearly all others are off
+    others =
+        (others.array() == -one.value).select(missing, others);  // the other end of the range is off, too
+    double quantum = quantum_of(others);
+    if (!(quantum > 0.0)) return false;
+    // Many steps tell a step to more digits than were logged of it: some first, which the logged digits count safely.
+    for (const double most : {50.0 * quantum, 1e300}) {
+      double farthest = 0.0;
+      for (const double other : others)
+        if (std::abs(other - one.next) < most) farthest = std::max(farthest, std::abs(other - one.next));
+      const double steps = std::round(farthest / quantum);
+      if (steps > 0.0) quantum = farthest / steps;
+    }
+    const auto stray = [&](double value) {
+      const double steps = (value - one.next) / quantum;
+      return std::abs(steps - std::round(steps));
+    };
+    std::vector<double> list = finite_samples(others);
+    for (double& value : list) value = stray(value);
+    const double usual = quantile_of(list, 0.95);
+    return usual < on && stray(one.value) > std::max(off, times * usual);
   }
 
   /// How many samples of a value the column's companion denies: the rate of an angle turns there, or the angle of a rate goes
@@ -319,19 +374,25 @@ private:
 };
 
 /// Rows that repeat all outputs of the row before them, where two outputs at least hardly ever do so, and chance would make a
-/// tenth of them at most: a logger wrote a frame again. A rest, of which an output reads an exact 0, is none.
+/// third of them at most: a logger wrote a frame again. A rest, of which an output reads an exact 0, is none.
 inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& all, Eigen::Index rows,
                                const std::vector<RunSpan>& runs) {
   constexpr std::size_t enough = 2;
-  constexpr double least = 10.0;  // times as many as by chance
+  constexpr double least = 3.0;  // times as many as by chance
   RowMask mask(static_cast<std::size_t>(rows), 0);
   std::vector<const Eigen::VectorXd*> outputs;
   double by_chance = static_cast<double>(rows), count = 0.0;
-  for (const Eigen::VectorXd* one : all)
-    if (const double share = equal_share_of(step_sizes(*one, runs)); share < data_limits.hardly_equal) {
-      outputs.push_back(one);
-      by_chance *= share;
-    }
+  for (const Eigen::VectorXd* one : all) {
+    // At the end of its range a column stands for another reason.
+    const double least_value = one->redux([](double a, double b) { return std::fmin(a, b); }),
+                 most_value = one->redux([](double a, double b) { return std::fmax(a, b); });
+    const Eigen::VectorXd inside =
+        (one->array() == least_value || one->array() == most_value).select(missing, *one);
+    const double share = equal_share_of(step_sizes(inside, runs));
+    if (!(share < data_limits.hardly_equal)) continue;
+    outputs.push_back(one);
+    by_chance *= share;
+  }
   if (outputs.size() < enough) return mask;
   const auto repeats = [&](Eigen::Index i) {
     bool any = false;

@@ -19,7 +19,8 @@ struct DataThresholds {
   double quanta = 4.0;  ///< quanta that a spike, or a jump, is larger than: flicker is one or two
   double as_far = 0.6;  ///< of the farthest sample nearby: what lies less far was drawn along by that one
   double confirmed = 0.35;  ///< of a jump: rate and angle that agree to this share confirm each other
-  double goes_on = 0.04;    ///< of a peak, that the second sample beside it still has: it decays, or stays
+  double decays_to = 0.3;   ///< of a peak, that the sample beside it still has at least,
+  double goes_on = 0.08;    ///< and the one after that: a peak that decays, or stays
 
   // Stretches of samples.
   double jump_scales = 12.0;  ///< noise scales of a jump that begins or ends a stretch of bad samples
@@ -32,6 +33,8 @@ struct DataThresholds {
   Eigen::Index least_frozen = 6;     ///< rows of one value that may be a sensor that has stopped
   Eigen::Index longest_repeat = 12;  ///< frames in a row that a logger writes again
   double log_chance = 20.7;          ///< -ln(1e-9): how improbable a stretch of one value is
+  double wide_steps =
+      0.01;  ///< share of a temperature's moves beyond one quantum from which its noise shows at rest
   double hardly_equal = 0.2;       ///< share of equal neighbours below which a value hardly repeats by chance
   double mostly_equal = 0.5;       ///< the same above which a column is set rather than measured
   double clip_ratio = 8.0;         ///< times as many samples at the end of a range as at the value next to it
