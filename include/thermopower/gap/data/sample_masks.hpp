@@ -130,7 +130,8 @@ public:
   RowMask frozen() {
     RowMask mask = none();
     const double rest_share = traits_.cannot_jump ? equal_at_rest() : 1.0;
-    if (!(std::min(equal_share_, rest_share) < limit_.mostly_equal)) return mask;
+    // What may jump, and mostly stands, is set rather than measured.
+    if (!traits_.cannot_jump && !(equal_share_ < limit_.mostly_equal)) return mask;
     for (const RunSpan& run : runs_) {
       const std::vector<Eigen::Index> rows = finite_rows(run);
       for (std::size_t begin = 0; begin < rows.size();) {
@@ -223,7 +224,8 @@ private:
     const auto lasts = [&](double level, double next, double second) {
       const double peak = std::abs(at[i] - level), sign = at[i] > level ? 1.0 : -1.0;
       const double a = sign * (next - level), b = sign * (second - level);
-      return a > b && a > limit_.decays_to * peak && b > std::max(3.0 * scale_, limit_.goes_on * peak);
+      return b < limit_.falls_to * a && a > limit_.decays_to * peak &&
+             b > std::max(3.0 * scale_, limit_.goes_on * peak);
     };
     return lasts(at[i - 1], at[i + 1], at[i + 2]) || lasts(at[i + 1], at[i - 1], at[i - 2]);
   }
@@ -310,7 +312,10 @@ private:
     const Eigen::VectorXd others = (values_.array() == one.value).select(missing, values_);
     if (is_between_steps(others, one)) return true;  // no converter reads that: a limit is set
     // What stands still by itself stands where it likes; a column whose noise shows everywhere else is cut off where it does not.
-    const double usually = traits_.cannot_jump ? equal_share_ : equal_share_of(step_sizes(others, runs_));
+    // A temperature may have come to rest there, unless noise of many steps shows everywhere else.
+    const bool may_rest =
+        traits_.cannot_jump && !(white_scale(others, runs_) > limit_.quanta * quantum_of(others));
+    const double usually = may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_));
     const bool is_witnessed = traits_.rate != nullptr || traits_.angle != nullptr;
     if (usually < limit_.hardly_equal && (!is_witnessed || scale_ > limit_.quanta * quantum_)) return true;
     return 2 * moves_at(one.value) >= one.count;

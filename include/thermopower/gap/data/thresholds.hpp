@@ -19,6 +19,7 @@ struct DataThresholds {
   double quanta = 4.0;  ///< quanta that a spike, or a jump, is larger than: flicker is one or two
   double as_far = 0.6;  ///< of the farthest sample nearby: what lies less far was drawn along by that one
   double confirmed = 0.35;  ///< of a jump: rate and angle that agree to this share confirm each other
+  double falls_to = 0.8;    ///< of it, that the next one has at most: beside another spike nothing decays
   double decays_to = 0.3;   ///< of a peak, that the sample beside it still has at least,
   double goes_on = 0.08;    ///< and the one after that: a peak that decays, or stays
 
