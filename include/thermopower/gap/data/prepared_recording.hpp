@@ -279,6 +279,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   if (name == "rate_dps") traits.angle = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
+  traits.is_driven = power != nullptr;
   SampleMasks masks(values, steady, traits);
   const auto take = [&](FindingKind kind, Severity severity, const RowMask& mask, const char* words,
                         const char* mend) {

@@ -23,8 +23,10 @@ namespace thermopower::gap::engine {
 
 /// Properties of a column that its masks depend on.
 struct ColumnTraits {
-  bool cannot_jump = false;                ///< a temperature: what jumps away and back was never there
-  bool zero_is_rest = false;               ///< an exact 0 is what a good sensor reads at rest
+  bool cannot_jump = false;   ///< a temperature: what jumps away and back was never there
+  bool zero_is_rest = false;  ///< an exact 0 is what a good sensor reads at rest
+  bool is_driven =
+      false;  ///< a current, in runs of one power each: it may begin with a peak, but with no spike
   const Eigen::VectorXd* rate = nullptr;   ///< of an angle, where one was recorded
   const Eigen::VectorXd* angle = nullptr;  ///< of a rate, where one was recorded
   const Eigen::VectorXd* t_s = nullptr;    ///< stamps, where there is a rate or an angle
@@ -218,16 +220,19 @@ private:
   /// left the level of the other side the same way. The peak of a current that starts to flow, and a break-away, are such. What
   /// may jump may do so before its first row, too, and after its last.
   bool is_on_its_way(const std::vector<double>& at, std::size_t i) const {
-    if (i == 0 || i + 1 == at.size()) return !traits_.cannot_jump;
-    if ((at[i - 1] - at[i]) * (at[i] - at[i + 1]) > 0.0) return true;
-    if (i < 2 || i + 2 >= at.size()) return false;
-    const auto lasts = [&](double level, double next, double second) {
-      const double peak = std::abs(at[i] - level), sign = at[i] > level ? 1.0 : -1.0;
-      const double a = sign * (next - level), b = sign * (second - level);
+    if (i + 1 == at.size() || (i == 0 && !traits_.is_driven)) return !traits_.cannot_jump;
+    if (i > 0 && (at[i - 1] - at[i]) * (at[i] - at[i + 1]) > 0.0) return true;
+    if ((i > 0 && i < 2) || i + 4 >= at.size()) return false;
+    // @param level, slope  on one side of the sample, and how it goes on from row to row towards the other
+    const auto lasts = [&](double level, double slope, double next, double second) {
+      const double off = at[i] - level - slope, peak = std::abs(off), sign = off > 0.0 ? 1.0 : -1.0;
+      const double a = sign * (next - level - 2.0 * slope), b = sign * (second - level - 3.0 * slope);
       return b < limit_.falls_to * a && a > limit_.decays_to * peak &&
              b > std::max(3.0 * scale_, limit_.goes_on * peak);
     };
-    return lasts(at[i - 1], at[i + 1], at[i + 2]) || lasts(at[i + 1], at[i - 1], at[i - 2]);
+    if (i == 0) return lasts(at[i + 4], 0.0, at[i + 1], at[i + 2]);
+    return lasts(at[i - 1], at[i - 1] - at[i - 2], at[i + 1], at[i + 2]) ||
+           lasts(at[i + 1], at[i + 1] - at[i + 2], at[i - 1], at[i - 2]);
   }
 
   /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a
