@@ -223,16 +223,14 @@ private:
     if (i + 1 == at.size() || (i == 0 && !traits_.is_driven)) return !traits_.cannot_jump;
     if (i > 0 && (at[i - 1] - at[i]) * (at[i] - at[i + 1]) > 0.0) return true;
     if ((i > 0 && i < 2) || i + 4 >= at.size()) return false;
-    // @param level, slope  on one side of the sample, and how it goes on from row to row towards the other
-    const auto lasts = [&](double level, double slope, double next, double second) {
-      const double off = at[i] - level - slope, peak = std::abs(off), sign = off > 0.0 ? 1.0 : -1.0;
-      const double a = sign * (next - level - 2.0 * slope), b = sign * (second - level - 3.0 * slope);
+    const auto lasts = [&](double level, double next, double second) {
+      const double peak = std::abs(at[i] - level), sign = at[i] > level ? 1.0 : -1.0;
+      const double a = sign * (next - level), b = sign * (second - level);
       return b < limit_.falls_to * a && a > limit_.decays_to * peak &&
-             b > std::max(3.0 * scale_, limit_.goes_on * peak);
+             b > std::max(limit_.peak_scales * scale_, limit_.goes_on * peak);
     };
-    if (i == 0) return lasts(at[i + 4], 0.0, at[i + 1], at[i + 2]);
-    return lasts(at[i - 1], at[i - 1] - at[i - 2], at[i + 1], at[i + 2]) ||
-           lasts(at[i + 1], at[i + 1] - at[i + 2], at[i - 1], at[i - 2]);
+    if (i == 0) return lasts(at[i + 4], at[i + 1], at[i + 2]);
+    return lasts(at[i - 1], at[i + 1], at[i + 2]) || lasts(at[i + 1], at[i - 1], at[i - 2]);
   }
 
   /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a

@@ -18,10 +18,11 @@ struct DataThresholds {
       3.0;              ///< times the usual second difference around: where a signal bends, more is needed
   double quanta = 4.0;  ///< quanta that a spike, or a jump, is larger than: flicker is one or two
   double as_far = 0.6;  ///< of the farthest sample nearby: what lies less far was drawn along by that one
-  double confirmed = 0.35;  ///< of a jump: rate and angle that agree to this share confirm each other
-  double falls_to = 0.8;    ///< of it, that the next one has at most: beside another spike nothing decays
-  double decays_to = 0.3;   ///< of a peak, that the sample beside it still has at least,
-  double goes_on = 0.08;    ///< and the one after that: a peak that decays, or stays
+  double confirmed = 0.35;   ///< of a jump: rate and angle that agree to this share confirm each other
+  double falls_to = 0.8;     ///< of it, that the next one has at most: beside another spike nothing decays
+  double decays_to = 0.3;    ///< of a peak, that the sample beside it still has at least,
+  double goes_on = 0.12;     ///< and the one after that: a peak that decays, or stays,
+  double peak_scales = 5.0;  ///< in noise scales, too
 
   // Stretches of samples.
   double jump_scales = 12.0;  ///< noise scales of a jump that begins or ends a stretch of bad samples
