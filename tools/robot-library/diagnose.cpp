@@ -6,6 +6,8 @@
 #include <thermopower/robot/forward_fit.hpp>
 #include <thermopower/robot/groups.hpp>
 
+#include "replay.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,6 +27,9 @@ constexpr double least_moving_share = 0.02;  // of the rows in which a joint mus
 constexpr int folds = 5;                     // of each stretch, for the tracking error
 constexpr double relevant_share =
     0.03;  // of the effort that causes must account for; less is nobody's question
+// Joints that are built alike have the same answer, unless the error of one of them falls by so much with a cause of its own.
+// A logarithm.
+constexpr double own_gain = 0.25;
 constexpr double earlier_wins = 0.03;  // share of the effort that a longer delay must win
 
 Log part_of(const Log& log, bool last, double share) {
@@ -276,6 +281,7 @@ private:
     for (int fold = 0; fold < folds; ++fold) {
       const double from = static_cast<double>(fold) / folds, to = static_cast<double>(fold + 1) / folds;
       const JointDynamics d = forward.fit(start, list(families), {{0.0, from}, {to, 1.0}});
+      fold_fits_[{j, families}].push_back(d);
       at->second.push_back(std::log(forward.error(d, {{from, to}})));
     }
     return at->second;
@@ -320,13 +326,13 @@ private:
     const bool single = members.size() == 1;
     for (const std::size_t j : members) {
       const Gain one = gain(j, without, with);
-      const double least = single ? options_.fit.least_gain : 0.5 * options_.fit.least_gain;
+      const double least = single ? single_least_ : 0.5 * options_.fit.least_gain;
       const double errors_wanted = single ? options_.fit.standard_errors : 0.5 * options_.fit.standard_errors;
       if (one.mean > least && one.mean > errors_wanted * one.error) ++more;
       sum += one.mean;
     }
     *total = sum / static_cast<double>(members.size());
-    return 2 * more > members.size() && *total > options_.fit.least_gain;
+    return 2 * more > members.size() && *total > (single ? single_least_ : options_.fit.least_gain);
   }
 
   /// Adds to `begin`, one by one, the causes that these joints gain most by; then takes out again what is not missed. The four
@@ -409,6 +415,7 @@ private:
         common = chosen(members, {}, candidates);
         told = told_of(members, common);
       }
+      single_least_ = members.size() > 1 ? own_gain : options_.fit.least_gain;
       for (const std::size_t j : members) {
         chosen_[j] = chosen({j}, common, candidates_of(j));
         told_[j] = told;
@@ -459,8 +466,22 @@ private:
       if (!leads_tracking(j)) continue;
       const ForwardFitter forward(train_.series, train_.body, index(j));
       one.found = forward.fit(one.found, list(chosen_[j]));
-      one.recalibrated = forward.fit(one.recalibrated, list(four_constants()));
+      one.recalibrated = five_constants(forward, one.recalibrated);
     }
+  }
+
+  // What people fit: armature, damping, friction, a constant and a delay of the joint's own.
+  JointDynamics five_constants(const ForwardFitter& forward, const JointDynamics& start) const {
+    JointDynamics best = forward.fit(start, list(four_constants()));
+    double least = forward.error(best);
+    for (int rows = 0; rows <= static_cast<int>(options_.latest_rows); ++rows) {
+      JointDynamics late = start;
+      late.delay_s = rows * train_.series.step_s;
+      late = forward.fit(late, list(four_constants()));
+      const double error = forward.error(late);
+      if (error < least) least = error, best = late;
+    }
+    return best;
   }
 
   // Effort in N m, root mean square, that these constants do not account for, and that of the joint.
@@ -523,56 +544,29 @@ private:
           "without targets and gains the robot is not simulated: the effort alone is judged");
       return;
     }
+    std::vector<char> driven;
+    for (std::size_t j = 0; j < count(); ++j) driven.push_back(can_simulate(j) ? 1 : 0);
+    const Replay replay(body_, held_.series, driven);
     const auto track = [&](double Gap::*which, JointDynamics JointDiagnosis::*constants) {
-      const Eigen::MatrixXd error = tracking_error(constants);
+      std::vector<JointDynamics> joints;
+      for (const JointDiagnosis& one : out_.joints) joints.push_back(one.*constants);
+      Eigen::MatrixXd simulated = replay.positions(joints);
       double sum = 0.0, rows = 0.0;
       for (std::size_t j = 0; j < count(); ++j) {
         if (!can_simulate(j)) continue;
-        const double square = error.col(index(j)).squaredNorm(), n = static_cast<double>(error.rows());
+        const double square = (simulated - held_.series.measured).col(index(j)).squaredNorm(),
+                     n = static_cast<double>(simulated.rows());
         out_.joints[j].tracking.*which = std::sqrt(square / n);
         sum += square;
         rows += n;
       }
       out_.tracking.*which = std::sqrt(sum / rows);
+      return simulated;
     };
-    track(&Gap::before, &JointDiagnosis::configured);
+    out_.position_configured = track(&Gap::before, &JointDiagnosis::configured);
     track(&Gap::recalibrated, &JointDiagnosis::recalibrated);
-    track(&Gap::after, &JointDiagnosis::found);
-  }
-
-  // All joints together under the logged targets; a joint without targets follows its measured motion.
-  Eigen::MatrixXd tracking_error(JointDynamics JointDiagnosis::*constants) const {
-    std::vector<JointDynamics> dynamics;
-    Eigen::MatrixXd target = held_.series.target;
-    for (std::size_t j = 0; j < count(); ++j) {
-      dynamics.push_back(out_.joints[j].*constants);
-      if (can_simulate(j)) continue;
-      JointDynamics& d = dynamics.back();
-      d = {};
-      d.armature = 1.0;
-      d.kp = 1e5;
-      d.kd = 6e2;
-      target.col(index(j)) = held_.series.measured.col(index(j));
-    }
-    Eigen::MatrixXd error(held_.series.rows(), index(count()));
-    for (const Stretch& one : held_.series.stretches) {
-      Eigen::MatrixXd start(2, index(count()));
-      start.row(0) = held_.series.measured.row(one.begin);
-      start.row(1) = held_.series.motion.velocity.row(one.begin);
-      Motion base;
-      if (held_.series.motion.base_pose.rows() > 0) {
-        base.base_pose = held_.series.motion.base_pose.middleRows(one.begin, one.rows());
-        if (held_.series.motion.base_velocity.rows() > 0) {
-          base.base_velocity = held_.series.motion.base_velocity.middleRows(one.begin, one.rows());
-          base.base_acceleration = held_.series.motion.base_acceleration.middleRows(one.begin, one.rows());
-        }
-      }
-      error.middleRows(one.begin, one.rows()) =
-          body_.simulate(held_.series.t_s.segment(one.begin, one.rows()),
-                         target.middleRows(one.begin, one.rows()), start, dynamics, base) -
-          held_.series.measured.middleRows(one.begin, one.rows());
-    }
-    return error;
+    out_.position_found = track(&Gap::after, &JointDiagnosis::found);
+    out_.replayed = held_.series;
   }
 
   static double share_left(const Gap& gap) { return gap.after / gap.before; }
@@ -582,6 +576,7 @@ private:
       if (!judged(j)) continue;
       JointDiagnosis& one = out_.joints[j];
       list_changes(one, fits_[j], joint(j));
+      find_covariance(one, j);
       const Gap& gap = std::isfinite(one.tracking.after) ? one.tracking : one.effort;
       if (one.causes.empty()) {
         one.verdict = one.effort.before > large_share * one.effort_rms ? JointVerdict::unexplained
@@ -627,6 +622,44 @@ private:
       put("ripple_sine", torque, 0.0, b.ripple[1], "sine");
       put("ripple_cosine", torque, 0.0, b.ripple[2], "cosine");
     }
+  }
+
+  // A number that a change's name stands for.
+  static double number_of(const std::string& name, const JointDynamics& d) {
+    const std::pair<const char*, double JointDynamics::*> members[] = {
+        {"armature", &JointDynamics::armature},           {"damping", &JointDynamics::damping},
+        {"friction", &JointDynamics::friction},           {"constant", &JointDynamics::bias},
+        {"stiffness", &JointDynamics::stiffness},         {"gravity_error", &JointDynamics::gravity_error},
+        {"moment_a", &JointDynamics::moment_a},           {"moment_b", &JointDynamics::moment_b},
+        {"stribeck", &JointDynamics::stribeck},           {"friction_slope", &JointDynamics::friction_slope},
+        {"load_friction", &JointDynamics::load_friction}, {"drag", &JointDynamics::drag},
+        {"effort_scale", &JointDynamics::effort_scale}};
+    for (const auto& [known, member] : members)
+      if (name == known) return d.*member;
+    if (d.ripple.size() != 3) return 0.0;
+    return name == "ripple_sine" ? d.ripple[1] : d.ripple[2];
+  }
+
+  // The jackknife over parts of the log, where the tracking was fitted; else the standard errors of the regression alone.
+  void find_covariance(JointDiagnosis& one, std::size_t j) const {
+    const auto count = index(one.changes.size());
+    one.covariance = Eigen::MatrixXd::Zero(count, count);
+    const auto known = fold_fits_.find({j, chosen_[j]});
+    if (known == fold_fits_.end() || known->second.size() < 2) {
+      for (Eigen::Index i = 0; i < count; ++i)
+        one.covariance(i, i) = std::pow(one.changes[static_cast<std::size_t>(i)].error, 2);
+      return;
+    }
+    const std::vector<JointDynamics>& fits = known->second;
+    const double n = static_cast<double>(fits.size());
+    Eigen::MatrixXd values(index(fits.size()), count);
+    for (std::size_t fold = 0; fold < fits.size(); ++fold)
+      for (Eigen::Index i = 0; i < count; ++i)
+        values(index(fold), i) = number_of(one.changes[static_cast<std::size_t>(i)].name, fits[fold]);
+    values = (values.rowwise() - values.colwise().mean()).eval();
+    one.covariance = (n - 1.0) / n * values.transpose() * values;
+    for (Eigen::Index i = 0; i < count; ++i)
+      one.changes[static_cast<std::size_t>(i)].error = std::sqrt(one.covariance(i, i));
   }
 
   static std::string set_text(const std::set<Family>& set) {
@@ -718,11 +751,14 @@ private:
   Options options_;
   RobotDiagnosis out_;
   Prepared train_, held_;
+  double single_least_ = 0.05;   // logarithm by which a cause of a single joint must lower its error
   double target_delay_s_ = 0.0;  // of the targets, told by the measured efforts
   std::vector<JointFit> fits_;
   std::vector<double> effort_rms_;
   std::vector<Families> chosen_, told_;
   std::map<std::pair<std::size_t, Families>, double> left_;
+  std::map<std::pair<std::size_t, Families>, std::vector<JointDynamics>>
+      fold_fits_;  // each without one part of the log
   std::map<std::pair<std::size_t, Families>, std::vector<double>> known_;
 };
 

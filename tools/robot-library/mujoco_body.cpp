@@ -14,6 +14,7 @@
 #include <limits>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 namespace thermopower::robot {
 namespace {
@@ -391,11 +392,13 @@ Eigen::MatrixXd MujocoBody::simulate(const Eigen::VectorXd& t_s, const Eigen::Ma
   return out;
 }
 
-Eigen::MatrixXd MujocoBody::place_of(const std::string& name, const Eigen::MatrixXd& position,
-                                     const Motion& base) const {
+Eigen::MatrixXd MujocoBody::place_of(const std::string& wanted, const std::string& name,
+                                     const Eigen::MatrixXd& position, const Motion& base) const {
   const mjModel& m = *parts_->model;
   int kind = mjOBJ_SITE, id = -1;
-  for (const int one : {mjOBJ_SITE, mjOBJ_GEOM, mjOBJ_BODY}) {
+  for (const auto& [one, word] :
+       {std::pair<int, const char*>{mjOBJ_SITE, "site"}, {mjOBJ_GEOM, "geom"}, {mjOBJ_BODY, "body"}}) {
+    if (!wanted.empty() && wanted != word) continue;
     id = mj_name2id(&m, one, name.c_str());
     kind = one;
     if (id >= 0) break;

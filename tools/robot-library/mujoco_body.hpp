@@ -28,10 +28,8 @@ public:
                            const Eigen::MatrixXd& start, const std::vector<JointDynamics>& joints,
                            const Motion& base) const override;
 
-  /// @brief Position in m of a body, a site or a geom of that name in the world, for each row of joint positions.
-  /// @return three columns; empty where the model has none of that name
-  Eigen::MatrixXd place_of(const std::string& name, const Eigen::MatrixXd& position,
-                           const Motion& base) const;
+  Eigen::MatrixXd place_of(const std::string& kind, const std::string& name, const Eigen::MatrixXd& position,
+                           const Motion& base) const override;
 
   /// The end of a limb is the geom that is farthest from the limb's first joint.
   LimbForces upward_force(const Motion& motion) const override;

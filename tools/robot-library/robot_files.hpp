@@ -25,4 +25,22 @@ AmendedFile amended_urdf(const std::string& text, const RobotDiagnosis& robot);
 /// @brief The diagnosis for machines.
 std::string robot_json(const RobotDiagnosis& robot);
 
+/// @brief The diagnosis as a page: the robot's joints as rows that link to each joint's report. It loads nothing.
+std::string robot_html(const RobotDiagnosis& robot);
+
+/// Programs that a robot's actuators are written for.
+enum class TrainingFormat {
+  isaac_lab,  ///< a dictionary of actuator configurations, for ArticulationCfg.actuators
+  mjlab,      ///< a tuple of actuator configurations, for EntityArticulationInfoCfg
+  newton,     ///< a function that sets the joints of a ModelBuilder
+};
+
+/// @brief Gains and constants of each joint as Python for a simulator in which policies are trained. What the simulator has no place
+/// for stands in a comment.
+AmendedFile training_file(const RobotDiagnosis& robot, TrainingFormat format);
+
+/// @brief Ranges for domain randomisation (JSON): of each joint the numbers that moved, their standard errors, 95 % ranges and
+/// covariance; of joints that are built alike the spread over them.
+std::string ranges_json(const RobotDiagnosis& robot);
+
 }  // namespace thermopower::robot

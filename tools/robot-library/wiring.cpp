@@ -23,7 +23,8 @@ using Eigen::VectorXd;
 
 constexpr double degrees = 57.29577951308232, turns_per_rad = 0.15915494309189535, rpm = 9.549296585513721;
 constexpr double close_factor = 1.25;      // two factors that differ by less are the same
-constexpr double clear_factor = 1.25;      // gains that differ by more are not the same
+constexpr double clear_factor = 1.2;       // gains that differ by more are not the same
+constexpr double closer_share = 0.45;      // of a gain's logarithmic error that its exchange may leave
 constexpr double unclear_factor = 2.0;     // the same where the effort was not measured
 constexpr double controlled_share = 0.35;  // of the effort's spread that a controller may leave
 constexpr double moved_share = 0.5;       // of the effort's spread that the rigid body and friction may leave
@@ -50,6 +51,7 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 /// What a column is to a joint: the factor that fits best, and what it costs.
 struct Link {
   double cost = 0.0, factor = 1.0, left = 1.0, constant = 0.0;
+  double without = 1.0;  // what is left where the column is not asked at all
 };
 
 /// Each joint with each column of another quantity.
@@ -129,6 +131,7 @@ private:
       x = (x.rowwise() - x.colwise().mean()).eval();
       const MatrixXd gram = x.transpose() * x, with_targets = x.transpose() * targets;
       const VectorXd with_p = x.transpose() * p, tp = targets.transpose() * p;
+      const double without = std::sqrt(fit_bounded(gram, -with_p, pp, 0).square / pp);
       for (std::size_t k = 0; k < count(); ++k) {
         if (out.known[k] == 0) continue;
         const double tt = targets.col(index(k)).squaredNorm();
@@ -136,7 +139,7 @@ private:
           const double square = tt / (f * f) - 2.0 * tp[index(k)] / f + pp;
           const BoundedFit fit = fit_bounded(gram, with_targets.col(index(k)) / f - with_p, square, 0);
           return Link{0.0, f, std::sqrt(fit.square / pp),
-                      rows_.target.col(index(k)).mean() / f - p_all.mean()};
+                      rows_.target.col(index(k)).mean() / f - p_all.mean(), without};
         });
       }
     }
@@ -191,7 +194,7 @@ private:
     factor.assign(count(), 1.0);
     const auto is_clear = [&](std::size_t i, std::size_t k) {
       const Link &named = links.named[i], &best = links.of[i][k];
-      return best.left < options_.most_left * named.left && best.left < options_.most_left;
+      return best.left < options_.most_left * std::min({1.0, named.left, best.without});
     };
     keep_clear_cycles(source, [&](int i, int k) {
       return std::make_pair(links.named[at(i)].cost - links.of[at(i)][at(k)].cost, is_clear(at(i), at(k)));
@@ -330,10 +333,11 @@ private:
       std::vector<std::pair<double, double>> single;
       for (const auto& one : good)
         if (one.first > 0.0 || one.second == 0.0) single.push_back(one);
-      if (single.size() != 1) {
-        lost_.push_back(j);
-        continue;
-      }
+      // A target or velocity that was found turned against the position says that the sign is at fault.
+      const bool turned = out_.target.factor[j] < 0.0 || out_.velocity.factor[j] < 0.0;
+      if (turned && !single.empty() && single.back().first < 0.0) single = {single.back()};
+      if (turned && !single.empty() && single.front().first < 0.0) single = {single.front()};
+      if (single.size() != 1) continue;
       if (single.front().first < 0.0) {
         scale_joint(j, -1.0, has_velocity, has_target);
       } else {
@@ -408,6 +412,16 @@ private:
         controls += least < controlled_share ? 1 : 0;
       }
     is_controlled_ = known > 0 && 2 * controls > known;
+    // Without a controller the body must account for most efforts as they are named. On the ground it does not.
+    if (!is_controlled_) {
+      std::size_t accounted = 0, all = 0;
+      for (std::size_t j = 0; j < count(); ++j) {
+        if (links.known[j] == 0) continue;
+        ++all;
+        accounted += moved(j, rows_.effort.col(index(j))).left < moved_share ? 1 : 0;
+      }
+      if (2 * accounted <= all) return;
+    }
     for (std::size_t i = 0; i < count(); ++i)
       for (std::size_t k = 0; k < count(); ++k) {
         if (links.known[i] == 0 || links.known[k] == 0) continue;
@@ -552,11 +566,10 @@ private:
     for (const std::size_t i : known)
       for (const std::size_t k : known) cost(index(i), index(k)) = away(i, k) + (i == k ? 0.0 : 0.05);
     std::vector<int> source = cheapest_assignment(cost);
-    const double clear = std::log(measured ? clear_factor : unclear_factor),
-                 close = measured ? 0.5 * clear : 0.6 * clear;
+    const double clear = std::log(measured ? clear_factor : unclear_factor);
     keep_clear_cycles(source, [&](int i, int k) {
-      const bool is_clear =
-          gain[at(i)] > 0.0 && gain[at(k)] > 0.0 && away(at(i), at(i)) > clear && away(at(i), at(k)) < close;
+      const bool is_clear = gain[at(i)] > 0.0 && gain[at(k)] > 0.0 && away(at(i), at(i)) > clear &&
+                            away(at(i), at(k)) < closer_share * away(at(i), at(i));
       return std::make_pair(is_clear ? 1e3 : 0.0, is_clear);
     });
     out_.gains = source;
@@ -638,6 +651,8 @@ private:
     thin(all.effort, out.effort);
     thin(all.target, out.target);
     thin(all.base.base_pose, out.base.base_pose);
+    thin(all.base.base_velocity, out.base.base_velocity);
+    thin(all.base.base_acceleration, out.base.base_acceleration);
     return out;
   }
 
@@ -701,8 +716,19 @@ private:
 
   // ---- zeros
 
+  // Largest effort in N m with which a joint may carry the whole robot; 0 where the base is fixed.
+  double standing(std::size_t j) const {
+    if (lift_.rows() == 0) return 0.0;
+    return lift_.col(index(j)).cwiseAbs().maxCoeff() * robot_.mass_kg * 9.81;
+  }
+
   void check_offsets() {
     if (rows_.target.rows() == 0) return;
+    if (robot_.floating_base) {
+      Motion motion = rows_.base;
+      motion.position = rows_.position;
+      if (motion.position.allFinite()) lift_ = body_.upward_force(motion).effort;
+    }
     for (std::size_t j = 0; j < count(); ++j) {
       if (!has(rows_.target, j) || rows_.moves[j] == 0) continue;
       double offset = 0.0;
@@ -719,7 +745,8 @@ private:
         if (std::isfinite(kp) && kp > 0.0) {
           const VectorXd rest = error - rigid_.col(index(j)) / kp;
           offset = rest.mean();
-          const double usual = (rigid_.col(index(j)).cwiseAbs().maxCoeff() + joint(j).friction) / kp;
+          const double usual =
+              (rigid_.col(index(j)).cwiseAbs().maxCoeff() + joint(j).friction + standing(j)) / kp;
           if (std::fabs(offset) < std::max(options_.offset_rad, 2.0 * usual)) continue;
           // What the joint's friction and a load can hold, moves with the joint: the rest is steady.
           if (spread(rest) > std::fabs(offset)) continue;
@@ -798,6 +825,8 @@ private:
   // ---- words
 
   void describe() {
+    for (std::size_t j = 0; j < count(); ++j)
+      if (outside(j, rows_.position.col(index(j))) > 0.2) lost_.push_back(j);
     if (raw_.velocity.rows() == 0) out_.velocity = {};
     if (raw_.target.rows() == 0) out_.target = {};
     if (raw_.effort.rows() == 0) out_.effort = {};
@@ -811,6 +840,7 @@ private:
   Wiring out_;
   WiringRows raw_, rows_;
   MatrixXd rigid_;
+  MatrixXd lift_;  // effort per N under the end of the joint's limb
   bool is_controlled_ = false;
   double late_s_ = 0.0;  // of the targets against the efforts
   std::vector<std::size_t> lost_;

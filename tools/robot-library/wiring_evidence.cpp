@@ -118,6 +118,8 @@ WiringRows wiring_rows(const Log& log, Eigen::Index most_rows) {
   if (log.target.rows() > 0) out.target = series.smooth_target;
   out.effort = series.effort;
   out.base.base_pose = series.motion.base_pose;
+  out.base.base_velocity = series.motion.base_velocity;
+  out.base.base_acceleration = series.motion.base_acceleration;
   if (velocity.rows() > 0) {
     few.effort = velocity;
     out.velocity = make_series(few).effort;

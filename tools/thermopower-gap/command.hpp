@@ -35,3 +35,5 @@ Command add_effects(CLI::App& program);
 Command add_explain(CLI::App& program);
 /// @brief Adds `compare`: says in what two reports differ.
 Command add_compare(CLI::App& program);
+/// @brief Adds `impact`: ranks the causes of a robot's gap.
+Command add_impact(CLI::App& program);

@@ -49,6 +49,7 @@ Command add_diagnose(CLI::App& program) {
   add_column_choices(*app, *asked);
   add_simulator_exports(*app, *asked);
   add_robot_options(*app, *robot);
+  add_training_outputs(*app, *robot);
   return {app, [asked, robot] {
             if (is_robot(*asked)) return diagnose_robot(*asked, *robot);
             if (asked->model.empty())

@@ -110,7 +110,7 @@ int run(int count, char** values) {
   const std::vector<Command> commands = {add_diagnose(app), add_design(app),  add_predict(app),
                                          add_check(app),    add_export(app),  add_columns(app),
                                          add_fleet(app),    add_effects(app), add_init(app),
-                                         add_explain(app),  add_compare(app)};
+                                         add_explain(app),  add_compare(app), add_impact(app)};
   for (const Command& command : commands)
     for (CLI::Option* const option : command.app->get_options([](const CLI::Option*) { return true; }))
       if (option->get_expected_min() > 0) option->check(not_empty);

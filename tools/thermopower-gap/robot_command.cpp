@@ -14,6 +14,7 @@
 #include <thermopower/io/input_error.hpp>
 #include <thermopower/io/output_files.hpp>
 #include <thermopower/robot/diagnose.hpp>
+#include <thermopower/robot/impact.hpp>
 #include <thermopower/robot/table.hpp>
 #endif
 
@@ -23,6 +24,7 @@
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 void add_robot_options(CLI::App& app, RobotArguments& arguments) {
@@ -34,6 +36,14 @@ void add_robot_options(CLI::App& app, RobotArguments& arguments) {
                  "of a robot: LOG=MODEL, a joint's name in the log and in the model; may be repeated");
   app.add_flag("--in-air", arguments.in_air,
                "of a robot: nothing touches it, whatever the efforts look like");
+}
+
+void add_training_outputs(CLI::App& app, RobotArguments& arguments) {
+  app.add_option("--isaac", arguments.isaac, "of a robot: write its actuators for Isaac Lab (Python)");
+  app.add_option("--mjlab", arguments.mjlab, "of a robot: write its actuators for mjlab (Python)");
+  app.add_option("--newton", arguments.newton, "of a robot: write its joints for Newton (Python)");
+  app.add_option("--ranges", arguments.ranges,
+                 "of a robot: write ranges for domain randomisation, with their covariance (JSON)");
 }
 
 #ifdef THERMOPOWER_HAS_MUJOCO
@@ -115,6 +125,17 @@ Loaded load(const Arguments& arguments, const RobotArguments& asked) {
   return out;
 }
 
+robot::RobotDiagnosis diagnosed(const Loaded& loaded, const Arguments& arguments,
+                                const RobotArguments& asked) {
+  robot::Options options;
+  options.in_the_air = asked.in_air;
+  options.as_recorded = arguments.as_recorded;
+  robot::RobotDiagnosis out =
+      robot::diagnose(*loaded.body, loaded.joints, robot::together(loaded.logs), loaded.held_out, options);
+  out.notes.insert(out.notes.begin(), loaded.body->notes().begin(), loaded.body->notes().end());
+  return out;
+}
+
 }  // namespace
 
 int check_robot(const Arguments& arguments, const RobotArguments& asked) {
@@ -135,41 +156,68 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
   for (const std::string* other : {&arguments.predictions, &arguments.header})
     if (!other->empty())
       throw UsageError(
-          "--predictions and --header are of a single actuator; a robot has --report and --augmented");
+          "--predictions and --header are of a single actuator; a robot has --report, --html and --augmented");
   const std::string& path = robot_path(arguments);
-  for (const std::string* output : {&arguments.report, &arguments.html, &arguments.augmented})
-    if (!output->empty() && plain_path(*output) == plain_path(path))
-      throw UsageError("'" + *output + "' is named twice; an output must not be an input");
+  const std::vector<const std::string*> files{&arguments.report, &arguments.html, &arguments.augmented,
+                                              &asked.isaac,      &asked.mjlab,    &asked.newton,
+                                              &asked.ranges};
   io::OutputFiles outputs;
-  for (const std::string* output : {&arguments.report, &arguments.augmented})
-    if (!output->empty()) outputs.expect(*output);
+  for (const std::string* output : files) {
+    if (output->empty()) continue;
+    if (plain_path(*output) == plain_path(path))
+      throw UsageError("'" + *output + "' is named twice; an output must not be an input");
+    outputs.expect(*output);
+  }
   robot::RobotDiagnosis diagnosis;
   {
     Progress progress;
     const Loaded loaded = load(arguments, asked);
     const robot::MujocoBody& body = *loaded.body;
-    robot::Options options;
-    options.in_the_air = asked.in_air;
-    options.as_recorded = arguments.as_recorded;
     progress.stage("diagnosing");
-    diagnosis = robot::diagnose(body, loaded.joints, robot::together(loaded.logs), loaded.held_out, options);
-    diagnosis.notes.insert(diagnosis.notes.begin(), body.notes().begin(), body.notes().end());
+    diagnosis = diagnosed(loaded, arguments, asked);
     progress.stage("writing");
+    const auto put = [&](const std::string& file, const robot::AmendedFile& amended) {
+      for (const std::string& one : amended.left_out)
+        std::fprintf(stderr, "%s: left out: %s\n", file.c_str(), one.c_str());
+      outputs.put(file, amended.text);
+    };
     if (!arguments.report.empty()) outputs.put(arguments.report, robot::robot_json(diagnosis));
+    if (!arguments.html.empty()) outputs.put(arguments.html, robot::robot_html(diagnosis));
+    if (!asked.ranges.empty()) outputs.put(asked.ranges, robot::ranges_json(diagnosis));
     if (!arguments.augmented.empty()) {
       const std::string text = whole_file(path);
-      const robot::AmendedFile file =
-          body.is_urdf() ? robot::amended_urdf(text, diagnosis) : robot::amended_mjcf(text, diagnosis);
-      for (const std::string& one : file.left_out)
-        std::fprintf(stderr, "%s: left out: %s\n", arguments.augmented.c_str(), one.c_str());
-      outputs.put(arguments.augmented, file.text);
+      put(arguments.augmented,
+          body.is_urdf() ? robot::amended_urdf(text, diagnosis) : robot::amended_mjcf(text, diagnosis));
     }
+    using robot::TrainingFormat;
+    if (!asked.isaac.empty()) put(asked.isaac, robot::training_file(diagnosis, TrainingFormat::isaac_lab));
+    if (!asked.mjlab.empty()) put(asked.mjlab, robot::training_file(diagnosis, TrainingFormat::mjlab));
+    if (!asked.newton.empty()) put(asked.newton, robot::training_file(diagnosis, TrainingFormat::newton));
     outputs.commit();
   }
   std::fputs(robot::table_text(diagnosis).c_str(), stdout);
   for (const robot::JointDiagnosis& joint : diagnosis.joints)
     if (joint.verdict != robot::JointVerdict::not_judged) return made;
   return too_little_data;
+}
+
+int rank_impact(const Arguments& arguments, const RobotArguments& asked) {
+  robot::RobotDiagnosis diagnosis;
+  robot::Impact ranking;
+  {
+    Progress progress;
+    const Loaded loaded = load(arguments, asked);
+    progress.stage("diagnosing");
+    diagnosis = diagnosed(loaded, arguments, asked);
+    progress.stage("replaying");
+    try {
+      ranking = robot::impact(*loaded.body, diagnosis, asked.of);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("--of: ") + error.what());
+    }
+  }
+  std::fputs(robot::impact_text(diagnosis, ranking).c_str(), stdout);
+  return made;
 }
 
 #else

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <string>
 #include <vector>
 
 namespace thermopower::robot {
@@ -85,6 +86,15 @@ public:
   virtual Eigen::MatrixXd simulate(const Eigen::VectorXd& t_s, const Eigen::MatrixXd& target,
                                    const Eigen::MatrixXd& start, const std::vector<JointDynamics>& joints,
                                    const Motion& base) const = 0;
+
+  /// @brief Position in m of a body, a site or a geom in the world, for each row of joint positions.
+  /// @param kind  `body`, `site` or `geom`; empty: whichever has that name
+  /// @return three columns; empty where the robot has none of that name
+  virtual Eigen::MatrixXd place_of(const std::string& kind, const std::string& name,
+                                   const Eigen::MatrixXd& position, const Motion& base) const {
+    static_cast<void>(kind), static_cast<void>(name), static_cast<void>(position), static_cast<void>(base);
+    return {};
+  }
 
   /// What a force of the ground at the ends of the limbs would ask for. Empty: the robot has no limbs.
   virtual LimbForces upward_force(const Motion&) const { return {}; }

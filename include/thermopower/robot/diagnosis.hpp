@@ -6,6 +6,7 @@
 #include <thermopower/robot/family.hpp>
 #include <thermopower/robot/groups.hpp>
 #include <thermopower/robot/joint_fit.hpp>
+#include <thermopower/robot/series.hpp>
 #include <thermopower/robot/wiring.hpp>
 
 #include <limits>
@@ -102,6 +103,10 @@ struct RobotDiagnosis {
   std::vector<JointDiagnosis> joints;  ///< in the order of the model
   std::vector<GroupDiagnosis> groups;  ///< of joints that are built alike
   Gap tracking;                        ///< of all joints together, in rad
+  Series replayed;                     ///< rows that it was judged on
+  Eigen::MatrixXd
+      position_configured;         ///< simulated in those rows, in rad; empty where nothing was simulated
+  Eigen::MatrixXd position_found;  ///< the same with the causes
 };
 
 }  // namespace thermopower::robot

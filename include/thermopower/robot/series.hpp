@@ -93,6 +93,13 @@ inline double median_step(const Log& log) {
   return *middle;
 }
 
+/// Rate of turning in rad/s in the body's frame: twice the vector part of conj(q) dq/dt, q a unit quaternion w x y z.
+inline Eigen::RowVector3d turning_rate(const Eigen::RowVector4d& q, const Eigen::RowVector4d& rate) {
+  return 2.0 * Eigen::RowVector3d(q[0] * rate[1] - q[1] * rate[0] - q[2] * rate[3] + q[3] * rate[2],
+                                  q[0] * rate[2] + q[1] * rate[3] - q[2] * rate[0] - q[3] * rate[1],
+                                  q[0] * rate[3] - q[1] * rate[2] + q[2] * rate[1] - q[3] * rate[0]);
+}
+
 /// Standard deviation of white noise in a series, from what a filter of this cut-off takes away.
 inline double white_noise(const Eigen::VectorXd& raw, const Eigen::VectorXd& smooth, double cutoff) {
   const double n = static_cast<double>(raw.size());
@@ -214,6 +221,22 @@ inline Series make_series(const Log& log, const SmoothingOptions& options = {}) 
     }
   }
   if (has_effort) out.effort = filtered(effort, filter);
+  if (out.motion.base_pose.rows() > 0) {
+    Eigen::MatrixXd& pose = out.motion.base_pose;
+    // q and -q are the same turn; the filter needs one that is continuous.
+    for (const Stretch& one : out.stretches)
+      for (Eigen::Index i = one.begin + 1; i < one.end; ++i)
+        if (pose.row(i).tail(4).dot(pose.row(i - 1).tail(4)) < 0.0) pose.row(i).tail(4) *= -1.0;
+    pose = filtered(pose, filter);
+    for (Eigen::Index i = 0; i < rows; ++i) pose.row(i).tail(4).normalize();
+    const Eigen::MatrixXd pose_rate = slope(pose);
+    out.motion.base_velocity.resize(rows, 6);
+    out.motion.base_velocity.leftCols(3) = pose_rate.leftCols(3);
+    for (Eigen::Index i = 0; i < rows; ++i)
+      out.motion.base_velocity.row(i).tail(3) =
+          detail::turning_rate(pose.row(i).tail(4), pose_rate.row(i).tail(4));
+    out.motion.base_acceleration = slope(out.motion.base_velocity);
+  }
   out.smooth_target = filtered(out.target, filter);
   out.edge.assign(static_cast<std::size_t>(rows), 0);
   for (const Stretch& one : out.stretches) {

@@ -78,9 +78,9 @@ struct Wiring {
 /// @brief When a line of the table of hypotheses is believed.
 struct WiringOptions {
   Eigen::Index most_rows = 4000;  ///< that are looked at; of a longer log, means of several rows
-  double least_nats = 16.0;   ///< log likelihood by which a hypothesis must win, per joint that it changes
+  double least_nats = 12.0;   ///< log likelihood by which a hypothesis must win, per joint that it changes
   double most_left = 0.6;     ///< share of the misfit that it may leave
-  double fault_nats = 8.0;    ///< price of each column that is not as named
+  double fault_nats = 6.0;    ///< price of each column that is not as named
   double offset_rad = 0.15;   ///< a usual difference of target and position that nobody calls an offset
   double floor_share = 0.04;  ///< misfit below this share of the signal counts as none
   double range_share = 0.1;   ///< of its range by which a joint may lie outside
