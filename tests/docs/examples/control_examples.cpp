@@ -72,7 +72,8 @@ void run(Fan& fan, tp::RunWriter<Port>& recorder, const Fan::Told& told) {
 bool is_same(const std::string& recording) {
   tp::RunReplay<Fan> replay;
   for (const char character : recording) replay.feed(character);
-  return replay.result().is_identical();
+  const tp::RunReplayed result = replay.result();  // else: which step differs first, and how
+  return result.is_identical();
 }
 //! [recorded run]
 
