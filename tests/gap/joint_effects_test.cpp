@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 #include "../catch.hpp"
+#include "data/late_axis.hpp"
 #include "data/sampled_axis.hpp"
 #include "plants.hpp"
 
@@ -185,6 +186,7 @@ TEST_CASE("a measured current in the place of the command makes no gap of its no
     return test::with_noise(test::SampledAxis(effect, part == 0 ? 60.0 : 40.0, seed).logged_each(10),
                             "drive_A", 0.03, seed + 100);
   });
+  CHECK(count_of(sound, FindingKind::noisy_command) == 2);  // of either recording
   CHECK(test::parameter_of(rough, "Nm") == Approx(0.006).epsilon(0.05));
 }
 
@@ -528,6 +530,25 @@ TEST_CASE("a delay is found in a log that begins under a command that was there 
     CHECK(diagnosis.cause.front().effect == "actuation_delay");
     CHECK(test::parameter_of(diagnosis, "s") == Approx(0.03).margin(0.0005));
   }
+}
+
+TEST_CASE("a delay is found where the command changes at each row and was there before the first") {
+  for (const double row_s : {0.01, 0.02, 0.04})
+    for (const double rows_late : {0.25, 1.0, 2.5})
+      for (const bool commanded_before : {true, false}) {
+        CAPTURE(row_s, rows_late, commanded_before);
+        test::LateAxis axis;
+        axis.row_s = row_s;
+        axis.delay_s = rows_late * row_s;
+        axis.commanded_before = commanded_before;
+        const Diagnosis diagnosis =
+            diagnose(test::LateAxis::model(), {axis.recording(1)}, {axis.recording(2)});
+        INFO(diagnosis.reason);
+        CHECK(diagnosis.verdict == Verdict::explained);
+        REQUIRE(diagnosis.cause.size() == 1);
+        CHECK(diagnosis.cause.front().effect == "actuation_delay");
+        CHECK(test::parameter_of(diagnosis, "s") == Approx(axis.delay_s).epsilon(0.02));
+      }
 }
 
 TEST_CASE("a simulation that runs away is near no noise") {

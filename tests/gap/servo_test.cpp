@@ -136,6 +136,30 @@ TEST_CASE("a servo that is as its file says has no gap, at any gains") {
   }
 }
 
+TEST_CASE("a target that moves between the rows is read from the motion, and makes no gap of its own") {
+  Joint rubbing;
+  rubbing.coulomb_Nm = 0.012;
+  for (const Gains& servo : {Gains{0.02, 0.001, 0.0}, Gains{0.04, 0.002, 0.0}, Gains{0.05, 0.0025, 0.2}}) {
+    CAPTURE(servo.kp);
+    const auto diagnosed_moving = [&](const Joint& joint) {
+      Options options;
+      options.effects_at_once = 1;
+      return diagnose(model_with(servo), {record(joint, servo, 4000, 5, false, true)},
+                      {record(joint, servo, 2000, 6, false, true)}, options);
+    };
+    const Diagnosis sound = diagnosed_moving({});
+    INFO(sound.reason);
+    CHECK(test::holds(sound));
+    CHECK(sound.cause.empty());
+    CHECK(std::count_if(sound.findings.begin(), sound.findings.end(), [](const Finding& finding) {
+            return finding.kind == FindingKind::sampled_command;
+          }) == 2);  // of either recording
+    const Diagnosis rough = diagnosed_moving(rubbing);
+    REQUIRE(rough.cause.size() == 1);
+    CHECK(rough.cause.front().effect == "coulomb_friction");
+  }
+}
+
 TEST_CASE("what is identified does not depend on the gains") {
   Joint rubbing;
   rubbing.coulomb_Nm = 0.012;

@@ -40,6 +40,7 @@ enum class FindingKind {
   clock_shift,      ///< an input stamped by another clock than the outputs
   lagging_output,  ///< a rate that comes behind its own angle, or the angle behind the rate: read earlier, or not judged
   sampled_command,  ///< a command that changed between the rows; its mean until the next row is used
+  noisy_command,  ///< a command or current with noise that no motion or heat follows; the noise floor counts it
   // The experiment.
   sampled_too_slowly,     ///< hardly a row in each window of the horizon
   never_driven,           ///< an input that is 0 throughout
@@ -111,6 +112,8 @@ inline const char* to_string(FindingKind kind) {
       return "lagging_output";
     case FindingKind::sampled_command:
       return "sampled_command";
+    case FindingKind::noisy_command:
+      return "noisy_command";
     case FindingKind::sampled_too_slowly:
       return "sampled_too_slowly";
     case FindingKind::never_driven:

@@ -322,6 +322,29 @@ inline Balance torque_balance(std::shared_ptr<const AxisAtRows> a, const std::ve
     });
     b.variables.push_back({covariate.name, unit_of_column(covariate.name), covariate.values});
   }
+  const auto course = [&](Submodel submodel, const std::string& variable, const std::string& words,
+                          std::function<Eigen::MatrixXd()> columns) {
+    b.courses.push_back({submodel, variable, words, [columns](double) {
+                           return directions_of(columns(),
+                                                [](Eigen::VectorXd c) { return flow_sampled(std::move(c)); });
+                         }});
+    // The action of a catalogue's causes is among the freedoms, and these did not do.
+    b.courses.back().is_nobodys = true;
+  };
+  const auto order = [n] { return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(n, 0.0, 1.0)); };
+  course(Submodel::mechanical_friction, "t_s", "a friction that changes in the course of time",
+         [a, direction, order] {
+           const Eigen::MatrixXd hats = even_hats(order(), 12);
+           return beside(scaled(hats, *direction), scaled(hats, a->rate));
+         });
+  course(Submodel::mechanical_load, "t_s", "a torque of its own course in time",
+         [order] { return even_hats(order(), 48); });
+  if (a->has_angle) {
+    course(Submodel::mechanical_friction, "angle_deg", "a friction that depends on the angle",
+           [a, direction] { return scaled(even_hats(a->angle, 24), *direction); });
+    course(Submodel::mechanical_load, "angle_deg", "a torque of its own course over the angle",
+           [a] { return even_hats(a->angle, 48); });
+  }
   return b;
 }
 

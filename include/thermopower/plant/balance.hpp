@@ -97,7 +97,10 @@ struct Freedom {
   /// or with `correction` applied to it.
   std::optional<SubmodelName> or_instrument = {};
   std::optional<Correction> correction =
-      {};  ///< see `or_instrument`; also of a fault of the instrument itself
+      {};                          ///< see `or_instrument`; also of a fault of the instrument itself
+  std::string scatters_with = {};  ///< of a course without an order: its size goes with this variable
+  /// Of a course: that no cause has it, whatever it follows, so that one which leaves it stands in for another.
+  bool is_nobodys = false;
 };
 
 /// Something that may order a missing quantity.
@@ -161,6 +164,7 @@ struct Balance {
   std::vector<ConstantDirection> constants = {};  ///< what may be off within its slack
   std::vector<SignalName> reads = {};             ///< other signals whose readings make its flows
   std::vector<Freedom> freedoms = {};             ///< what may be otherwise
+  std::vector<Freedom> courses = {};              ///< of many directions, for what follows no variable
   std::vector<OrderingVariable> variables = {};   ///< what may order the missing quantity
   std::optional<RestatedQuantity> restated = {};  ///< for faults of the plant rather than of the instrument
   std::vector<int> half_widths = {};  ///< `weak`: of the test functions, in rows; narrow ones see fast faults

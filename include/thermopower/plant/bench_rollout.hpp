@@ -136,9 +136,9 @@ public:
     if (inputs_.power_param.size() > 0) result = circuit(row, t_s, winding_C, charge_Ah);
     else result.supply_V = result.v_rms_V = constant<Scalar>(inputs_.nominal_V);
     result.current_A = constant<Scalar>(current_A);
-    result.winding_W = instance_.ohmic
-                           ? Scalar(instance_.winding.resistance_at(winding_C) * (current_A * current_A))
-                           : Scalar(result.v_rms_V * current_A);
+    const double heating_A2 = current_A * current_A - inputs_.current_noise_A * inputs_.current_noise_A;
+    result.winding_W = instance_.ohmic ? Scalar(instance_.winding.resistance_at(winding_C) * heating_A2)
+                                       : Scalar(result.v_rms_V * current_A);
     return result;
   }
 

@@ -119,7 +119,9 @@ struct Inputs {
   Eigen::MatrixXd
       command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
                        ///< rows x parts; empty: it holds
-  UnknownCommand command_unknown;      ///< what it did between the rows, as far as nobody knows
+  double command_noise = 0.0;      ///< standard deviation of what is noise in the command, in its unit
+  UnknownCommand command_unknown;  ///< what it did between the rows, as far as nobody knows
+  double current_noise_A = 0.0;    ///< the same of a recorded current that heats: its variance heats nothing
   HeatSource heat = HeatSource::none;  ///< what drives the thermal model
   Eigen::VectorXd
       next_share;  ///< of a bench: part of the interval after each row in which the next row's inputs are in
@@ -135,7 +137,7 @@ struct Inputs {
   /// Whether inputs change at instants between the rows that nobody knows: `next_share` is their mean.
   bool switched_anytime() const { return (next_share.array() > 0.0 && next_share.array() < 1.0).any(); }
   /// Whether the command is known but for some error.
-  bool errs_in_command() const { return command_unknown.any(); }
+  bool errs_in_command() const { return command_noise > 0.0 || command_unknown.any(); }
   /// Whether the signal is recorded and has a law.
   bool judged(Signal signal) const { return measured[static_cast<std::size_t>(signal)].size() > 0; }
   /// Measured values of a judged signal.

@@ -56,6 +56,14 @@ std::size_t lacked_by(const std::set<Eigen::Index>& other, const std::set<Eigen:
       std::count_if(rows.begin(), rows.end(), [&](Eigen::Index row) { return other.count(row) == 0; }));
 }
 
+/// Lets a row repeat the frame before it, and notes it.
+void repeat_frame(Eigen::VectorXd& angle, Eigen::VectorXd& rate, Eigen::Index row,
+                  std::set<Eigen::Index>& bad) {
+  angle[row] = angle[row - 1];
+  rate[row] = rate[row - 1];
+  bad.insert(row);
+}
+
 bool found(const PreparedRecording& prepared, FindingKind kind, const std::string& column,
            FindingAction action) {
   return std::any_of(prepared.findings().begin(), prepared.findings().end(), [&](const Finding& one) {
@@ -178,6 +186,77 @@ TEST_CASE("an output that stands still while its noise should show is masked fro
   CHECK(out.size() < static_cast<std::size_t>(to - from + 5));
 }
 
+TEST_CASE(
+    "an output that stood still when a run ended, and when the next one began, is masked from there on") {
+  Recording r = bench();
+  const Eigen::Index from = 680, next = 750, to = 800;
+  const double held = r.column("current_A")[from];
+  change(r, "current_A", [&](double x, Eigen::Index i) { return i >= from && i < to ? held : x; });
+  r.runs = {{0, next, "first"}, {next, r.rows(), "second"}};
+  for (Eigen::Index i = next; i < r.rows(); ++i) r.t_s[i] -= r.t_s[next - 1];
+  const PreparedRecording prepared(test::bench_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "current_A");
+  for (Eigen::Index i = from + 1; i < to; ++i) {
+    CAPTURE(i);
+    CHECK(out.count(i) == 1);
+  }
+  CHECK(out.size() < static_cast<std::size_t>(to - from + 3));
+}
+
+TEST_CASE("a spike of a current whose power never rests is seen in the first row after a pause, too") {
+  // The power wanders, so that few rows of the sixteen between two pauses have one near that of the first.
+  Recording r = bench();
+  Eigen::VectorXd power(r.rows()), current(r.rows());
+  test::Noise noise(4);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    power[i] = std::round(127.0 + 120.0 * std::sin(0.29 * static_cast<double>(i)));
+    current[i] = 1.5 * std::sqrt(power[i] / 255.0) + 0.005 * noise();
+  }
+  constexpr Eigen::Index first = 704, second = 720;
+  for (const Eigen::Index pause : {first, second})
+    for (Eigen::Index i = pause; i < r.rows(); ++i) r.t_s[i] += 40.0;
+  for (const Eigen::Index row : {Eigen::Index{300}, first, Eigen::Index{900}}) current[row] += 3.0;
+  r.set("power_param", power);
+  r.set("current_A", current);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(taken(r, prepared, "current_A") == std::set<Eigen::Index>{300, first, 900});
+}
+
+TEST_CASE(
+    "a current that stood over a step of the power is masked, not that of a drive that answers every step late") {
+  const Eigen::Index late = GENERATE(0, 3), step_rows = 50;
+  CAPTURE(late);
+  Recording r = bench();
+  Eigen::VectorXd power(r.rows()), current(r.rows());
+  test::Noise noise(4);
+  std::uint32_t state = 20261128;
+  double level = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    if (i % step_rows == 0) {
+      const double before = level;
+      while (level == before)
+        level = 25.0 * static_cast<double>((state = state * 1664525u + 1013904223u) >> 29);
+    }
+    power[i] = level;
+    const double flows = power[std::max<Eigen::Index>(0, i - late)];
+    current[i] = std::round(1e3 * (1.5 * std::sqrt(flows / 255.0) + 0.003 * noise())) / 1e3;
+    if (late > 0 && i > 0 && i % step_rows < late) current[i] = current[i - 1];
+  }
+  std::set<Eigen::Index> bad;
+  for (const Eigen::Index row : {300, 650, 1100}) {
+    // Over the last one the logger pauses, too.
+    for (Eigen::Index i = row; row == 1100 && i < r.rows(); ++i) r.t_s[i] += 40.0;
+    for (Eigen::Index i = row; i < row + 3 && late == 0; ++i) {
+      current[i] = current[i - 1];
+      bad.insert(i);
+    }
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(taken(r, prepared, "current_A") == bad);
+}
+
 TEST_CASE("a rate cut off at the end of its range is masked there") {
   Recording r = axis();
   const double limit = 0.7 * r.column("rate_dps").cwiseAbs().maxCoeff();
@@ -193,6 +272,47 @@ TEST_CASE("a rate cut off at the end of its range is masked there") {
   CHECK(found(prepared, FindingKind::clipped_samples, "rate_dps", FindingAction::masked));
   CHECK(static_cast<double>(out) > 0.99 * static_cast<double>(cut));
   CHECK(static_cast<double>(out) < 1.1 * static_cast<double>(cut) + 3.0);
+}
+
+TEST_CASE(
+    "a coarse thermometer cut off between two of its steps is masked there, and one that stands on a step is not") {
+  Recording r = bench();
+  const double quantum = 0.0625;
+  change(r, "motor_C", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("motor_C");
+  const double steps = std::floor((whole.minCoeff() + 0.8 * (whole.maxCoeff() - whole.minCoeff())) / quantum);
+  for (const bool between : {true, false}) {
+    const double limit = quantum * (steps + (between ? 0.6 : 0.0));
+    std::size_t cut = 0;
+    change(r, "motor_C", [&](double, Eigen::Index i) {
+      cut += whole[i] > limit ? 1 : 0;
+      return std::min(whole[i], limit);
+    });
+    REQUIRE(cut > 100);
+    const PreparedRecording prepared(test::bench_model(), r);
+    CHECK(found(prepared, FindingKind::clipped_samples, "motor_C", FindingAction::masked) == between);
+    if (between) CHECK(taken(r, prepared, "motor_C").size() == cut);
+  }
+}
+
+TEST_CASE("a rate in coarse steps is cut off where the angle sees it go faster") {
+  Recording r = axis();
+  const double most = r.column("rate_dps").cwiseAbs().maxCoeff(), quantum = most / 60.0,
+               limit = quantum * std::round(0.7 * most / quantum);
+  std::size_t cut = 0;
+  change(r, "rate_dps", [&](double x, Eigen::Index) {
+    const double coarse = quantum * std::round(x / quantum);
+    cut += std::abs(coarse) > limit ? 1 : 0;
+    return std::clamp(coarse, -limit, limit);
+  });
+  REQUIRE(cut > 50);
+  // An angle so coarse that it hardly moves from row to row tells it over a stretch.
+  const double step_deg = GENERATE(0.0, 1.0);
+  if (step_deg > 0.0)
+    change(r, "angle_deg", [&](double x, Eigen::Index) { return step_deg * std::round(x / step_deg); });
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "rate_dps", FindingAction::masked));
+  CHECK(taken(r, prepared, "rate_dps").size() >= cut);
 }
 
 TEST_CASE(
@@ -262,6 +382,43 @@ TEST_CASE(
   CHECK(out.size() < beyond.size() + 10);
 }
 
+TEST_CASE("a current in coarse steps that stands at its end while the power moves is cut off there") {
+  Recording r = bench();
+  const double quantum = r.column("current_A").maxCoeff() / 150.0;
+  change(r, "current_A", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("current_A");
+  const double limit = quantum * std::round(0.6 * whole.maxCoeff() / quantum);
+  const std::size_t cut = cut_off_above(r, "current_A", limit);
+  REQUIRE(cut > 100);
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "current_A", FindingAction::masked));
+  CHECK(taken(r, prepared, "current_A").size() >= cut);
+  // The same current without an end: under one power it stands still for longer than that.
+  Recording still = bench();
+  still.set("current_A", whole);
+  const PreparedRecording sound(test::bench_model(), still);
+  CHECK_FALSE(found(sound, FindingKind::clipped_samples, "current_A", FindingAction::masked));
+}
+
+TEST_CASE("where a column stands frozen at its end for most of the time, what it reads there is its limit") {
+  // A current in coarse steps that comes to its end six times, and stands there twice for long and else for four rows.
+  Recording r = bench();
+  const double quantum = r.column("current_A").maxCoeff() / 40.0, limit = quantum * 24.0;
+  test::Noise noise(5);
+  std::set<Eigen::Index> beyond;
+  change(r, "current_A", [&](double, Eigen::Index i) {
+    const Eigen::Index stretch = i / 75, length = stretch % 10 == 3 ? 60 : stretch % 5 == 0 ? 4 : 0;
+    const double wanted = i % 75 < length ? 27.0 : 12.0 + 3.0 * std::sin(0.02 * static_cast<double>(i));
+    const double steps = std::round(wanted + 0.6 * noise());
+    if (steps > 24.0) beyond.insert(i);
+    return std::min(quantum * steps, limit);
+  });
+  r.set("power_param", Eigen::VectorXd::Constant(r.rows(), 200.0));
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::bench_model(), r), "current_A");
+  CHECK(std::includes(out.begin(), out.end(), beyond.begin(), beyond.end()));
+  CHECK(out.size() <= beyond.size() + 3);
+}
+
 TEST_CASE(
     "a range ends on both sides alike: where one end is proven, a rest out of range at the other is cut off, too") {
   // An angle in fine steps that swings past one end, and rests beyond the other.
@@ -284,6 +441,19 @@ TEST_CASE(
   CHECK(taken(r, prepared, "angle_deg").size() >= beyond);
 }
 
+TEST_CASE("a fine thermometer that stands at its end for most of a recording is cut off there, not at rest") {
+  Recording r = bench();
+  test::Noise noise(5);
+  Eigen::VectorXd whole = r.column("motor_C");
+  for (double& one : whole) one = 0.001 * std::round(1000.0 * (one + 0.1 * noise()));
+  std::vector<double> sorted(whole.begin(), whole.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double limit = sorted[sorted.size() / 3];
+  r.set("motor_C", whole.cwiseMin(limit));
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::clipped_samples, "motor_C", FindingAction::masked));
+}
+
 TEST_CASE("a limit of three samples between two steps of a rate is one on both sides") {
   Recording r = axis();
   const double quantum = 0.1, limit = 0.97 * r.column("rate_dps").cwiseAbs().maxCoeff();
@@ -298,6 +468,69 @@ TEST_CASE("a limit of three samples between two steps of a rate is one on both s
   REQUIRE(cut < 60);
   const PreparedRecording prepared(test::axis_model(), r);
   CHECK(taken(r, prepared, "rate_dps").size() >= cut);
+}
+
+TEST_CASE("a coarse rate that stands while its angle goes elsewhere is frozen") {
+  Recording r = axis();
+  const double quantum = 20.0;
+  const Eigen::Index from = 1000, length = 120;
+  change(r, "rate_dps", [&](double x, Eigen::Index) { return quantum * std::round(x / quantum); });
+  const Eigen::VectorXd whole = r.column("rate_dps");
+  Eigen::Index at = from;
+  while (std::abs(whole[at]) < 5.0 * quantum) ++at;
+  change(r, "rate_dps", [&](double x, Eigen::Index i) { return i >= at && i < at + length ? whole[at] : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  const std::set<Eigen::Index> out = taken(r, prepared, "rate_dps");
+  CHECK(found(prepared, FindingKind::frozen_samples, "rate_dps", FindingAction::masked));
+  CHECK(out.size() >= static_cast<std::size_t>(length - 1));
+  CHECK(out.size() < static_cast<std::size_t>(length + 40));  // so coarse that it stands elsewhere, too
+}
+
+TEST_CASE(
+    "an angle that stood through a motion, or there and back, and most of the rest is frozen until it catches up") {
+  Recording r = axis();
+  const double step = 0.09;
+  test::Noise noise(6);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  double angle_deg = -20.0;
+  const bool stands = GENERATE(true, false);
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double dps = i % 1000 < 150 ? (i / 1000 % 2 == 0 ? 20.0 : -20.0) : 0.0;
+    if (i > 0) angle_deg += dps * (r.t_s[i] - r.t_s[i - 1]);
+    angle[i] = step * std::round(angle_deg / step);
+    rate[i] = dps + 0.1 * noise();
+  }
+  const Eigen::Index until = GENERATE(1600, 2100);  // back where it was
+  if (stands)
+    for (Eigen::Index i = 1050; i < until; ++i) angle[i] = angle[1050];
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::frozen_samples, "angle_deg", FindingAction::masked) == stands);
+  if (stands) CHECK(taken(r, prepared, "angle_deg").size() >= 549);
+}
+
+TEST_CASE("a coarse thermometer that stands longer than where it rests, and then catches up, is frozen") {
+  // A motor that warms, rests and cools, read in steps of twice the noise; the logger may pause before it catches up.
+  Recording r = bench();
+  const double quantum = 0.1;
+  test::Noise noise(8);
+  const bool stands = GENERATE(true, false), pauses = GENERATE(true, false);
+  Eigen::VectorXd values(r.rows());
+  const auto truth = [&](Eigen::Index i) {
+    const double k = static_cast<double>(i % 500);
+    return k < 200 ? 30.0 + 0.1 * k : 30.0 + 20.0 * std::exp(-(k - 200.0) / 40.0);
+  };
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    values[i] = quantum * std::round((truth(i) + 0.05 * noise()) / quantum);
+  const Eigen::Index from = 660, length = 34;
+  if (stands)
+    for (Eigen::Index i = from; i < from + length; ++i) values[i] = values[from];
+  r.set("motor_C", values);
+  if (pauses)
+    for (Eigen::Index i = from + length - 4; i < r.rows(); ++i) r.t_s[i] += 40.0;
+  const PreparedRecording prepared(test::bench_model(), r);
+  CHECK(found(prepared, FindingKind::frozen_samples, "motor_C", FindingAction::masked) == stands);
 }
 
 TEST_CASE(
@@ -400,6 +633,57 @@ TEST_CASE("frames that repeat the one before them are masked, one or many in a r
   CHECK(taken(r, prepared, "rate_dps") == bad);
 }
 
+TEST_CASE(
+    "frames repeated while an axis comes to rest, where its coarse angle stands from then on, are masked") {
+  Recording r = test::axis_recording({}, 3000, 4);
+  test::Noise noise(11);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  double at_deg = 0.0, dps = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    // A second each: up to 200 deg/s, down by 11 a row, and from 35 on to rest.
+    const Eigen::Index row = i % 100;
+    dps = row < 20 ? 10.0 * static_cast<double>(row) : dps > 35.0 ? dps - 11.0 : 0.77 * dps;
+    const double moves_dps = i / 100 % 2 == 0 ? dps : -dps;
+    at_deg += 0.01 * moves_dps;
+    rate[i] = std::round((moves_dps + 0.2 * noise()) * 1e3) / 1e3;
+    angle[i] = std::round((at_deg + 0.03 * noise()) / 0.0879) * 0.0879;
+    if (i % 500 >= 339 && i % 500 < 342) {
+      repeat_frame(angle, rate, i, bad);
+    }
+  }
+  Eigen::VectorXd t_s(r.rows());
+  for (Eigen::Index i = 0; i < r.rows(); ++i) t_s[i] = 0.01 * static_cast<double>(i);
+  r.t_s = t_s;
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "rate_dps");
+  for (const Eigen::Index row : bad) {
+    CAPTURE(row);
+    CHECK(out.count(row) == 1);
+  }
+  CHECK(out.size() <= bad.size() + 3);
+}
+
+TEST_CASE("a spike of the current in a ramp of the power is masked from the ramp's first rows on") {
+  Recording r = bench();
+  test::Noise noise(5);
+  Eigen::VectorXd power(r.rows()), current(r.rows());
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double up = static_cast<double>(i % 150) - 75.0;  // rows since the rest ended
+    power[i] = std::round(std::clamp(4.0 * up, 0.0, 250.0));
+    current[i] = 12.0 * std::sqrt(power[i] / 255.0) / 8.0 + 0.003 * noise();
+    if (i % 150 == 75 + 2 + (i / 150)) {  // the second to the eleventh row of a ramp
+      current[i] += 2.0;
+      bad.insert(i);
+    }
+  }
+  r.set("power_param", power);
+  r.set("current_A", current);
+  CHECK(taken(r, PreparedRecording(test::bench_model(), r), "current_A") == bad);
+}
+
 TEST_CASE("spikes a few rows apart do not hide each other") {
   const Eigen::Index apart = GENERATE(2, 3, 4);
   Recording r = axis();
@@ -409,6 +693,60 @@ TEST_CASE("spikes a few rows apart do not hide each other") {
   const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
   for (const Eigen::Index row : bad) CHECK(out.count(row) == 1);
   CHECK(out.size() <= bad.size() + 2);
+}
+
+namespace {
+
+/// The row where a rate passes 0 for the n-th time, away from the ends.
+Eigen::Index turn_of(const Eigen::VectorXd& rate, int n) {
+  for (Eigen::Index i = 100; i + 150 < rate.size(); ++i)
+    if (rate[i - 1] * rate[i] <= 0.0 && std::abs(rate[i + 20]) > 20.0 && n-- == 0) return i;
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an angle in coarse steps that stood where it turned, and catches up with its rate, was a sensor's that had stopped") {
+  Recording r = axis();
+  const double step = 0.0879;
+  change(r, "angle_deg", [&](double x, Eigen::Index) { return step * std::round(x / step); });
+  const Eigen::Index turn = turn_of(r.column("rate_dps"), 3);
+  REQUIRE(turn > 0);
+  // It goes on for longer than it came: what is left is a small part of the way.
+  Eigen::VectorXd angle = r.column("angle_deg");
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = turn - 12; i < turn + 22; ++i) {
+    angle[i] = angle[turn - 13];
+    bad.insert(i);
+  }
+  r.set("angle_deg", angle);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  CHECK(std::includes(out.begin(), out.end(), bad.begin(), bad.end()));
+  CHECK(out.size() <= bad.size() + 3);
+}
+
+TEST_CASE("a rate of exactly 0 whose angle goes on is a sensor's that has stopped, and a rest is one") {
+  Recording r = axis();
+  const Eigen::Index turn = turn_of(r.column("rate_dps"), 3);
+  REQUIRE(turn > 0);
+  Eigen::VectorXd rate = r.column("rate_dps"), angle = r.column("angle_deg");
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = turn; i < turn + 40; ++i) {
+    rate[i] = 0.0;
+    if (i > turn) bad.insert(i);
+  }
+  r.set("rate_dps", rate);
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "rate_dps");
+  CHECK(std::includes(out.begin(), out.end(), bad.begin(), bad.end()));
+  CHECK(out.size() <= bad.size() + 3);
+  // The same rate above an angle that rests with it, and jumps with what pushes it on.
+  const double moved = angle[turn + 40] - angle[turn];
+  test::Noise noise(9);
+  for (Eigen::Index i = turn + 1; i < angle.size(); ++i)
+    angle[i] = i < turn + 40 ? angle[turn] + 0.02 * noise() : angle[i] - moved;
+  r.set("angle_deg", angle);
+  CHECK(taken(r, PreparedRecording(test::axis_model(), r), "rate_dps").size() <= 3);
 }
 
 TEST_CASE(
@@ -422,6 +760,20 @@ TEST_CASE(
   r.set("motor_C", motor);
   const PreparedRecording prepared(test::axis_model(), r);
   CHECK_FALSE(found(prepared, FindingKind::frozen_samples, "motor_C", FindingAction::masked));
+}
+
+TEST_CASE("three spikes of unlike height within five rows do not hide each other") {
+  // As two neighbours and one before them, the farthest last: seen from one side the second lies halfway to the third.
+  const double heights[] = {164.0, 226.0, 305.0};
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (int k = 0; k < places; ++k) bad.insert({place(r, k), place(r, k) + 3, place(r, k) + 4});
+  int next = 0;
+  change(r, "angle_deg",
+         [&](double x, Eigen::Index i) { return bad.count(i) != 0 ? x + heights[next++ % 3] : x; });
+  const std::set<Eigen::Index> out = taken(r, PreparedRecording(test::axis_model(), r), "angle_deg");
+  for (const Eigen::Index row : bad) CHECK(out.count(row) == 1);
+  CHECK(out.size() <= bad.size() + places);  // what is right in the midst of three may go with them
 }
 
 TEST_CASE("a run that begins with a push keeps its first row: it says where it starts") {
@@ -505,6 +857,25 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "a frame whose sensors say nothing is lost in every column, also where 0 looks right in one of them") {
+  Recording r = axis();
+  std::set<Eigen::Index> bad;
+  for (Eigen::Index i = 50; i + 50 < r.rows(); i += 61) bad.insert(i);
+  // Where the axis turns round and where it passes 0, one of the two zeros is nothing special.
+  const Eigen::VectorXd rate = r.column("rate_dps"), angle = r.column("angle_deg");
+  for (Eigen::Index i = 60; i + 60 < r.rows() && bad.size() < 60; ++i)
+    if ((std::abs(rate[i]) < 1.0 && std::abs(angle[i]) > 5.0) ||
+        (std::abs(angle[i]) < 0.1 && std::abs(rate[i]) > 20.0))
+      if (bad.lower_bound(i - 20) == bad.upper_bound(i + 20)) bad.insert(i);
+  for (const char* column : {"angle_deg", "rate_dps"})
+    change(r, column, [&](double x, Eigen::Index i) { return bad.count(i) != 0 ? 0.0 : x; });
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::glitched_samples, "", FindingAction::masked));
+  CHECK(taken(r, prepared, "angle_deg") == bad);
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+}
+
 TEST_CASE("an axis that rests at 0 has lost no frame") {
   Recording r = axis();
   for (const char* column : {"angle_deg", "rate_dps"})
@@ -536,6 +907,109 @@ TEST_CASE(
   const PreparedRecording prepared(test::axis_model(), r);
   CHECK(taken(r, prepared, "rate_dps") == bad);
   CHECK(taken(r, prepared, "angle_deg") == bad);
+}
+
+TEST_CASE("a frame repeated in motion is found in a log that rests nearly always") {
+  const bool flickers = GENERATE(false, true);
+  const Recording moving = axis();
+  const Eigen::Index rows = moving.rows(), all = 5 * rows;
+  Recording r;
+  r.name = "rests after some motion";
+  r.t_s.resize(all);
+  const double interval_s = moving.t_s[1] - moving.t_s[0];
+  for (Eigen::Index i = 0; i < all; ++i) r.t_s[i] = interval_s * static_cast<double>(i);
+  std::uint32_t state = 20261124;
+  const auto coin = [&] { return ((state = state * 1664525u + 1013904223u) >> 30) % 2 == 0; };
+  for (const Column& column : moving.columns) {
+    // At rest a sensor reads the same, or one of two last digits at random.
+    const bool is_rate = column.name == "rate_dps", is_angle = column.name == "angle_deg";
+    const double quantum = is_rate ? 1.0 : is_angle ? 0.1 : 0.0;
+    Eigen::VectorXd values(all);
+    for (Eigen::Index i = 0; i < all; ++i) {
+      const double whole = i < rows ? column.values[i] : is_angle ? column.values[rows - 1] : 0.0;
+      const double flicker = i < rows || !flickers || coin() ? 0.0 : quantum;
+      values[i] = quantum > 0.0 ? quantum * std::round(whole / quantum) + flicker : whole;
+    }
+    r.set(column.name, values);
+  }
+  const PreparedRecording sound(test::axis_model(), r);
+  REQUIRE(taken(r, sound, "rate_dps").empty());
+  std::set<Eigen::Index> bad;
+  const Eigen::VectorXd rate = r.column("rate_dps");
+  for (int k = 0; k < places; ++k) {
+    Eigen::Index row = place(moving, k);
+    while (std::abs(rate[row]) < 20.0 || std::abs(rate[row + 4]) < 20.0) ++row;
+    for (const char* column : {"angle_deg", "rate_dps"})
+      change(r, column, [&, before = r.column(column)[row - 1]](double x, Eigen::Index i) {
+        return i >= row && i < row + 4 ? before : x;
+      });
+    for (Eigen::Index i = 0; i < 4; ++i) bad.insert(row + i);
+  }
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(taken(r, prepared, "rate_dps") == bad);
+  CHECK(taken(r, prepared, "angle_deg") == bad);
+}
+
+TEST_CASE(
+    "frames repeated for long are masked wherever the axis moves, also where the frame reads nearly rest") {
+  const bool rate_first = GENERATE(false, true);
+  Recording r = test::axis_recording({}, 6000, 4);
+  test::Noise noise(11);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  constexpr Eigen::Index repeats = 15, apart = 97;  // more than what is looked at as single frames
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    const double t_s = 0.01 * static_cast<double>(i);
+    angle[i] = 40.0 * std::sin(2.0 * t_s) + 9.0 * std::sin(7.1 * t_s) + 0.02 * noise();
+    rate[i] = 80.0 * std::cos(2.0 * t_s) + 63.9 * std::cos(7.1 * t_s) + 0.15 * noise();
+    if (i < apart || i % apart >= repeats) continue;
+    repeat_frame(angle, rate, i, bad);
+  }
+  int nearly_at_rest = 0;
+  for (Eigen::Index i = apart; i < r.rows(); i += apart) nearly_at_rest += std::abs(rate[i]) < 8.0 ? 1 : 0;
+  REQUIRE(nearly_at_rest >= 4);
+  r.remove("angle_deg");
+  r.remove("rate_dps");
+  if (rate_first) r.set("rate_dps", rate);
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  for (const char* column : {"angle_deg", "rate_dps"}) {
+    CAPTURE(column);
+    const std::set<Eigen::Index> out = taken(r, prepared, column);
+    CHECK(lacked_by(out, bad) == 0);
+    CHECK(1000 * lacked_by(bad, out) <
+          static_cast<std::size_t>(r.rows()));  // one beside a stretch now and then
+  }
+}
+
+TEST_CASE(
+    "frames repeated where an axis starts from rest are seen by a fine angle, not where that stands at rest, too") {
+  const bool is_fine = GENERATE(true, false), repeats = GENERATE(true, false);
+  CAPTURE(is_fine, repeats);
+  Recording r = test::axis_recording({}, 6000, 4);
+  test::Noise noise(5);
+  Eigen::VectorXd angle(r.rows()), rate(r.rows());
+  std::set<Eigen::Index> bad;
+  double at_deg = 0.0, dps = 0.0;
+  for (Eigen::Index i = 0; i < r.rows(); ++i) {
+    // Every 300 rows: rests for 150, speeds up by 6 deg/s a row for 75, and slows down.
+    const Eigen::Index row = i % 300;
+    dps = row < 150 ? 0.0 : 6.0 * static_cast<double>(std::min(row - 149, 300 - row));
+    const double moves_dps = i / 300 % 2 == 0 ? dps : -dps;
+    at_deg += 0.01 * moves_dps;
+    rate[i] = 0.1 * std::round((moves_dps + 0.04 * noise()) / 0.1);
+    const double read_deg = is_fine || dps > 0.0 ? at_deg + 0.01 * noise() : at_deg;
+    angle[i] = std::round(read_deg * 1e4) / 1e4;
+    if (row == 148) rate[i] = 0.0;
+    if (row < 149 || row > 151 || !repeats) continue;
+    repeat_frame(angle, rate, i, bad);
+  }
+  r.set("angle_deg", angle);
+  r.set("rate_dps", rate);
+  const PreparedRecording prepared(test::axis_model(), r);
+  CHECK(found(prepared, FindingKind::repeated_frames, "", FindingAction::masked) == (is_fine && repeats));
+  if (is_fine) CHECK(taken(r, prepared, "rate_dps") == bad);
 }
 
 TEST_CASE("what sticks and breaks away repeats no frame") {
@@ -825,6 +1299,21 @@ TEST_CASE("swings that were held, let go and logged on end begin runs of their o
     one.set("angle_deg", angle);
     one.set("rate_dps", rate);
     CHECK(PreparedRecording(model, one).recording().spans().size() == 1);
+  }
+  // And one that goes on where the axis turns round, with a reading astray now and then while it stands.
+  for (int i = 0; i < rows; ++i) {
+    angle[i] = 60.0 * std::sin(0.04 * i) + 0.02 * noise();
+    rate[i] = 240.0 * std::cos(0.04 * i) + 0.2 * noise();
+  }
+  for (int i = 1401; i < 1610; ++i) angle[i] = i == 1450 || i == 1530 ? 150.0 : angle[1400];
+  one.set("angle_deg", angle);
+  one.set("rate_dps", rate);
+  const PreparedRecording turned(model, one);
+  CHECK(turned.recording().spans().size() == 1);
+  const std::set<Eigen::Index> out = taken(one, turned, "angle_deg");
+  for (Eigen::Index i = 1401; i < 1610; ++i) {
+    CAPTURE(i);
+    CHECK(out.count(i) == 1);
   }
 }
 

@@ -4,8 +4,8 @@
 // What is found without sorting a whole column is what sorting it finds.
 #include "../../catch.hpp"
 
+#include <thermopower/gap/data/extremes.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/sorted_from_below.hpp>
 #include <thermopower/gap/localise/rows.hpp>
 
@@ -114,8 +114,10 @@ TEST_CASE("extremes of a column are those of the sorted one") {
       CHECK(top.value == most->first);
       CHECK(top.count == most->second);
       const bool is_alone = counts.size() == 1;
-      CHECK(bottom.beside == (is_alone ? least : std::next(least))->second);
-      CHECK(top.beside == (is_alone ? most : std::next(most))->second);
+      CHECK(bottom.next == (is_alone ? least->first : std::next(least)->first));
+      CHECK(top.next == (is_alone ? most->first : std::next(most)->first));
+      CHECK(bottom.beside == counts.at(bottom.next + 0.0));
+      CHECK(top.beside == counts.at(top.next + 0.0));
     }
 }
 

@@ -7,7 +7,6 @@
 
 #include "../plants.hpp"
 
-#include <thermopower/gap/data/first_reading.hpp>
 #include <thermopower/gap/data/prepared_recording.hpp>
 
 #include <algorithm>
@@ -88,6 +87,18 @@ Recording record(const Motion& motion, double interval_s, double noise_deg, doub
   return r;
 }
 
+/// Moves a sample in a hundred by 9 to 25 noise scales. @return which
+std::set<Eigen::Index> spoil(Recording& r, const char* column, double noise, Eigen::Index first) {
+  std::set<Eigen::Index> bad;
+  Eigen::VectorXd values = r.column(column);
+  for (Eigen::Index i = first, k = 0; i + 20 < rows; i += 71 + 13 * (k % 5), ++k) {
+    values[i] += (k % 2 == 0 ? 1.0 : -1.0) * (9.0 + static_cast<double>(k * 7 % 17)) * noise;
+    bad.insert(i);
+  }
+  r.set(column, values);
+  return bad;
+}
+
 std::set<Eigen::Index> masked(const Recording& r, const char* column) {
   const PreparedRecording prepared(test::axis_model(), r);
   std::set<Eigen::Index> out;
@@ -123,10 +134,38 @@ std::set<Eigen::Index> spoil_pairs(Recording& r, const char* column,
 
 }  // namespace
 
+TEST_CASE("spikes of an angle are masked though its motion bends by more than they are high") {
+  Recording r = record(swings(), 0.05, 0.1, 0.0, false);
+  const std::set<Eigen::Index> bad = spoil(r, "angle_deg", 0.1, 31);
+  nine_in_ten(bad, masked(r, "angle_deg"));
+}
+
+TEST_CASE("spikes of a rate are masked though it bends") {
+  Recording r = record(swings(), 0.02, 0.05, 0.6, true);
+  const std::set<Eigen::Index> bad = spoil(r, "rate_dps", 0.6, 45);
+  nine_in_ten(bad, masked(r, "rate_dps"));
+}
+
+TEST_CASE("two spikes beside each other in a bent motion do not hide each other") {
+  Recording r = record(swings(), 0.02, 0.1, 0.0, false);
+  const std::set<Eigen::Index> bad = spoil_pairs(r, "angle_deg", [](Eigen::Index i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    return std::make_pair(2.0 * side, (i % 3 == 0 ? 1.6 : -1.6) * side);
+  });
+  nine_in_ten(bad, masked(r, "angle_deg"));
+}
+
 TEST_CASE("two equal spikes beside each other on a slow motion are masked") {
   Recording r = record(swings(), 0.002, 0.1, 0.0, false);
   const std::set<Eigen::Index> bad =
       spoil_pairs(r, "angle_deg", [](Eigen::Index) { return std::make_pair(1.7, 1.7); });
+  nine_in_ten(bad, masked(r, "angle_deg"));
+}
+
+TEST_CASE(
+    "where a motion has a corner every few rows, the rate shows which samples of its angle are spikes") {
+  Recording r = record(pushed_there_and_back(), 0.05, 0.03, 0.3, true);
+  const std::set<Eigen::Index> bad = spoil(r, "angle_deg", 0.03, 31);
   nine_in_ten(bad, masked(r, "angle_deg"));
 }
 
@@ -173,6 +212,17 @@ TEST_CASE("a sample that equals the one before it by chance repeats no frame") {
   REQUIRE(std::adjacent_find(angle.begin(), angle.end()) != angle.end());
   const PreparedRecording prepared(test::axis_model(), r);
   for (const Finding& one : prepared.findings()) CHECK(one.kind != FindingKind::repeated_frames);
+
+  SECTION("but a hundred of them do") {
+    std::set<Eigen::Index> bad;
+    for (Eigen::Index i = 30; i + 30 < rows; i += 38) {
+      angle[i] = angle[i - 1];
+      bad.insert(i);
+    }
+    REQUIRE(bad.size() > 100);
+    r.set("angle_deg", angle);
+    nine_in_ten(bad, masked(r, "angle_deg"));
+  }
 }
 
 TEST_CASE("a rate that returns to its largest value for a row at a time is not at the end of a range") {
@@ -209,7 +259,7 @@ TEST_CASE("a first reading is far off where those after it do not go back to it"
     for (int i = 0; i < samples_in_run; ++i)
       column[i] = 20.0 + rise * std::exp(-i / tau_rows) + sd * noise() + (i == 0 ? off_sds * sd : 0.0);
     const OrderedSamples samples(column, nullptr, {0, samples_in_run, "r0"});
-    return first_reading_off(samples, sd, 4.0) > 0.0;
+    return first_reading_off(samples, sd, MaskThresholds().first_sds) > 0.0;
   };
   int seen = 0, false_alarms = 0;
   constexpr int draws = 2000;

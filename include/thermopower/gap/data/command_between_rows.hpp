@@ -2,11 +2,9 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/gap/data/inputs.hpp>
-#include <thermopower/gap/data/jackknife.hpp>
-#include <thermopower/gap/data/normal_equations.hpp>
-#include <thermopower/gap/data/robust.hpp>
-#include <thermopower/plant/sine_cosine.hpp>
+#include <thermopower/gap/data/command_noise.hpp>
+#include <thermopower/gap/data/motion_regression.hpp>
+#include <thermopower/plant/samples.hpp>
 
 #include <Eigen/Core>
 
@@ -14,131 +12,240 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 /// @file command_between_rows.hpp
-/// What a command did between the rows. A row's command holds until the next one: so says the format, and so it is where the
-/// loop that commands also logs. Where a log keeps each twentieth command of a faster loop, holding it is half a row late, and
-/// half a row late looks like compliance or a slow drive. The motion tells which.
+/// What a command did between the rows, and how much of it is noise. A row's command holds until the next one: so says the
+/// format, and so it is where the loop that commands also logs. Where a log keeps each twentieth command of a faster loop,
+/// holding it is half a row late, and half a row late looks like compliance or a slow drive. Where a log keeps the current
+/// that a sensor measured, its noise is no torque. The motion tells which.
 
 namespace thermopower::gap::engine {
 
-/// Thresholds of the question what a command did between the rows. Held by tests/gap/data/command_test.cpp.
+/// Thresholds of the questions what a command did between the rows, and whether it is noisy.
+/// Held by tests/gap/data/command_test.cpp.
 struct CommandThresholds {
-  double least_share = 0.2;      ///< every second command logged is felt by a quarter
-  double most_share = 0.65;      ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;             ///< standard errors that a share differs from 0 by
-  double precise = 0.08;         ///< largest standard error of the share
-  double agree = 2.0;            ///< standard errors that shares of rows and of their means may differ by
-  double moving = 0.05;          ///< of the rate's 95th percentile: slower rows may be stuck
-  std::size_t least_rows = 300;  ///< that move: fewer do not tell
+  double least_share = 0.2;   ///< every second command logged is felt by a quarter
+  double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
+  double sure = 5.0;          ///< standard errors that a share differs from 0 by
+  double precise = 0.08;      ///< largest standard error of the share
+  double agree = 2.0;         ///< standard errors that two shares may differ by
+  double matters = 0.2;       ///< noise scales of what half a row changes: less is nobody's concern
+  double bend_known = 0.015;  ///< largest standard error of a bend that is believed
+  double angle_off = 0.1;     ///< noise scales of the angle that a command held at its mean may cost
+  double most_pieces = 8.0;   ///< that an interval is cut into
+  double wander = 0.3;        ///< noise scales that a simulation wanders by: less is nobody's concern
 };
 
-/// Asks the motion of axes what their command did between the rows: the acceleration, regressed on the command, on its next
-/// step, and on what else turns most axes.
+/// Asks the motion of axes what their command did.
 class CommandBetweenRows {
 public:
-  /// Part of a command's next step that is in force before it is logged, and how well it is known.
+  /// @param horizon_s  over which simulations will run: what noise matters is asked over it; not positive: whole runs
+  explicit CommandBetweenRows(double horizon_s = 0.5) : horizon_s_(horizon_s > 0.0 ? horizon_s : 1e9) {}
+
+  /// Adds a recording whose axis is driven by `command`. Keeps references to both: they must outlive this object.
+  void add(const Inputs& inputs, const Eigen::VectorXd& command) { motion_.add(inputs, command); }
+
+  /// Part of a command's next step, and how well it is known.
   struct Share {
-    double value = 0.0;  ///< 0 of a command that holds, 0.5 of one that changes steadily
+    double value = 0.0;  ///< 0..1
     double error = 0.0;  ///< standard error
   };
 
-  /// Adds the rows of a recording whose axis is driven by `command`.
-  void add(const Inputs& inputs, const Eigen::VectorXd& command) {
-    if (command.size() == 0 || !inputs.axis()) return;
-    const bool by_rate = inputs.judged(Signal::rate_dps);
-    const Eigen::VectorXd& values = inputs.of(by_rate ? Signal::rate_dps : Signal::angle_deg);
-    for (const RunSpan& run : inputs.runs) {
-      if (!rows_.empty()) rows_.back().is_last = true;
-      for (Eigen::Index k = run.begin + 1; k + 1 < run.end; ++k) {
-        const double step_s = inputs.t_s[k + 1] - inputs.t_s[k], before_s = inputs.t_s[k] - inputs.t_s[k - 1],
-                     after = (values[k + 1] - values[k]) / step_s,
-                     before = (values[k] - values[k - 1]) / before_s;
-        Row row;
-        row.command = command[k];
-        row.step = command[k + 1] - command[k];
-        if (by_rate) {
-          row.response = after;
-          row.dps = 0.5 * (values[k] + values[k + 1]);
-        } else {  // a second difference: of the intervals before and after
-          row.response = 2.0 * (after - before) / (step_s + before_s);
-          row.dps = 0.5 * (after + before);
-          row.command = 0.5 * (command[k] + command[k - 1]);
-          row.step = 0.5 * (command[k + 1] - command[k - 1]);
-        }
-        if (inputs.judged(Signal::angle_deg)) row.rad = inputs.of(Signal::angle_deg)[k] * rad_per_deg;
-        if (std::isfinite(row.response) && std::isfinite(row.rad)) rows_.push_back(row);
-        else if (!rows_.empty()) rows_.back().is_last = true;
-      }
-    }
+  /// How much of a command's next step the motion shows already before it is logged: 0 of a command that holds, 0.5 of one
+  /// that changes steadily, a little less where it is set some times between two rows; nothing where the recordings do not
+  /// tell.
+  std::optional<Share> share() const { return noise() > 0.0 ? share_of_noisy() : share_of_clean(); }
+
+  /// The share where the command went on between the rows; nothing where it held, where it was late, or where nobody knows.
+  std::optional<Share> steady() const { return steady_share(share(), CommandThresholds().least_share); }
+
+  /// A share that is that of a command which went on; nothing of others.
+  /// @param least  that it has at least
+  static std::optional<Share> steady_share(const std::optional<Share>& share, double least) {
+    constexpr CommandThresholds limit;
+    return share && share->value > least && share->value < limit.most_share ? share : std::nullopt;
   }
 
-  /// The share where the command went on between the rows; nothing where it held, or where the recordings do not tell. Rows
-  /// and means of them must agree: what a controller makes of a noisy motion moves with the noise of single rows.
-  std::optional<Share> steady() const {
+  /// A share and its standard error: none where it may be none, nothing where it is not known well enough.
+  static std::optional<Share> sure_of(const std::pair<double, double>& share) {
     constexpr CommandThresholds limit;
-    constexpr Eigen::Index together = 8;
-    const std::optional<Share> single = fit(1), means = fit(together);
-    if (!single || !means) return std::nullopt;
-    const Share& best = single->error < means->error ? *single : *means;
-    const bool agree =
-        std::abs(single->value - means->value) < limit.agree * std::hypot(single->error, means->error);
-    if (!agree || !(best.error < limit.precise) || !(best.value > limit.sure * best.error))
-      return std::nullopt;
-    return best.value > limit.least_share && best.value < limit.most_share ? std::optional<Share>(best)
-                                                                           : std::nullopt;
+    if (!(share.second < limit.precise)) return std::nullopt;
+    return Share{std::abs(share.first) < limit.sure * share.second ? 0.0 : share.first, share.second};
+  }
+
+  /// Whether the motion follows the first term of a fit by enough to tell of the next. @param noise_dps  of the rate
+  static bool is_followed(const MotionFit& fit, double noise_dps) {
+    return fit.value[0] != 0.0 && !(0.5 * fit.first_dps < CommandThresholds().matters * noise_dps);
+  }
+
+  /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
+  bool bends() const {
+    constexpr CommandThresholds limit;
+    if (noise() > 0.0) return false;
+    const auto fit =
+        motion_.fit([](const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+          if (k - 1 < run.begin || k + 2 >= run.end) return Terms();
+          return terms({c[k], c[k + 1] - c[k], c[k - 1] - c[k] - c[k + 1] + c[k + 2]});
+        });
+    if (!fit) return false;
+    const auto [bend, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[2] / of[0]; });
+    // The mean of the cubic through four rows, between the two in the middle.
+    constexpr double smooth = -1.0 / 24.0;
+    return error < limit.bend_known && std::abs(bend - smooth) < std::abs(bend);
+  }
+
+  /// Parts of an interval that a steady command must be followed in, so that holding the mean in each costs no angle
+  /// that anybody sees.
+  int pieces() const {
+    constexpr CommandThresholds limit;
+    const double noise_deg = motion_.noise(Signal::angle_deg), response = this->response();
+    double costs_deg = 0.0;
+    for (const auto& one : motion_.recordings()) {
+      const double step_s = plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0);
+      const Eigen::VectorXd& c = *one.command;
+      const double spread = std::sqrt((c.array() - c.mean()).square().mean() * 2.0);  // of end and start
+      costs_deg = std::max(costs_deg, response * spread * step_s * step_s / 12.0);
+    }
+    if (!(noise_deg > 0.0)) return 1;
+    return static_cast<int>(
+        std::clamp(std::ceil(std::sqrt(costs_deg / (limit.angle_off * noise_deg))), 1.0, limit.most_pieces));
+  }
+
+  /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
+  /// follows. 0 where there is none, where it moves no simulation over the horizon, or where nobody can tell.
+  double noise() const {
+    if (!noise_) noise_ = find_noise();
+    return *noise_;
   }
 
 private:
-  struct Row {
-    double response = 0.0, dps = 0.0, rad = 0.0, command = 0.0, step = 0.0;
-    bool is_last = false;  ///< the next one is no neighbour
-  };
+  using Terms = MotionRegression::Terms;
+  static constexpr Eigen::Index around = 4;  ///< rows before, and after, of a mean that noise hardly moves
 
-  /// The share by means of so many rows, each half of them after the one before.
-  std::optional<Share> fit(Eigen::Index together) const {
-    constexpr CommandThresholds limit;
-    constexpr Eigen::Index terms = 9;
-    std::vector<double> speeds;
-    for (const Row& row : rows_) speeds.push_back(std::abs(row.dps));
-    const double slowest = limit.moving * quantile_of(speeds, 0.95);
-    std::vector<Eigen::VectorXd> list;  // terms, then the response
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(terms + 1);
-    Eigen::Index in_a_row = 0;
-    for (const Row& row : rows_) {
-      if (std::abs(row.dps) > slowest) {
-        const plant::SineCosine once(row.rad);
-        Eigen::VectorXd one(terms + 1);
-        one << row.command, row.step, row.dps, std::abs(row.dps), std::copysign(1.0, row.dps), row.rad,
-            once.sine, once.cosine, 1.0, row.response;
-        sum += one;
-        ++in_a_row;
-      }
-      if (in_a_row == together) list.push_back(sum / static_cast<double>(together));
-      if (in_a_row == together || row.is_last || !(std::abs(row.dps) > slowest)) {
-        sum.setZero();
-        in_a_row = 0;
-      }
-    }
-    if (list.size() * static_cast<std::size_t>(together) < limit.least_rows) return std::nullopt;
-    constexpr std::size_t parts = 20;  // of the jackknife
-    std::vector<NormalEquations> blocks(parts, NormalEquations(terms));
-    NormalEquations all(terms);
-    for (std::size_t i = 0; i < list.size(); ++i)
-      blocks[i * parts / list.size()].add(list[i].head(terms), list[i][terms]);
-    for (const NormalEquations& one : blocks) all.add(one, 1.0);
-    const auto share_of = [](const Eigen::VectorXd& of) { return of[1] / of[0]; };
-    std::vector<double> without;
-    for (const NormalEquations& one : blocks) {
-      NormalEquations rest = all;
-      rest.add(one, -1.0);
-      without.push_back(share_of(rest.solve()));
-    }
-    return Share{share_of(all.solve()), jackknife_error(without)};
+  template <std::size_t count>
+  static Terms terms(const double (&values)[count]) {
+    Terms list(static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i) list[static_cast<Eigen::Index>(i)] = values[i];
+    return list;
   }
 
-  std::vector<Row> rows_;
+  /// A row's command, its next step, and what a drive bends it by.
+  const MotionRegression::TermsOf& held_and_next() const {
+    if (held_and_next_) return held_and_next_;
+    held_and_next_ = [bent = motion_.bent_command()](const Inputs& inputs, const Eigen::VectorXd& c,
+                                                     const RunSpan& run, Eigen::Index k) {
+      const bool moves = k > run.begin || inputs.judged(Signal::rate_dps);
+      if (k + 1 >= run.end || !moves) return Terms();
+      return terms({c[k], c[k + 1] - c[k], bent.small(c[k]), bent.large(c[k]),
+                    BentCommand::rubbed(c[k], MeasuredMotion(inputs, k).rate_dps)});
+    };
+    return held_and_next_;
+  }
+
+  /// Mean and slope of a row of a command around an interval.
+  static Terms around_and_slope(const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
+    if (k + 1 - around < run.begin || k + around >= run.end) return Terms();
+    const double before = c.segment(k + 1 - around, around).mean(), after = c.segment(k + 1, around).mean();
+    return terms({0.5 * (before + after), (after - before) / static_cast<double>(around)});
+  }
+
+  /// From rows and means of them, else from the means around them where single rows are too rough.
+  std::optional<Share> share_of_clean() const {
+    const std::optional<MotionFit> rows = motion_.fit(held_and_next());
+    if (const std::optional<Share> held = share_of_held(rows)) return held;
+    const std::optional<Share> from_rows = rows ? share_of(*rows) : std::nullopt;
+    return from_rows && smooth() && tells(*smooth()) ? share_around_rows() : from_rows;
+  }
+
+  /// From means around the rows: the noise of single ones would make every share a half, more so the fewer rows are taken
+  /// together. Where these do not tell, a share that is the same for rows and for their means is no noise's, but that
+  /// of a loop that went on between the rows and whose own noise is in the command.
+  std::optional<Share> share_of_noisy() const {
+    const std::optional<Share> around_rows = share_around_rows();
+    return around_rows ? around_rows : share_of_held(motion_.fit(held_and_next()));
+  }
+
+  /// From single rows and from means of them, as they can tell a command that holds from one that goes on: the more precise
+  /// where both agree, else the means. A controller that was given a noisy motion has its noise in the command, and
+  /// the acceleration from row to row the same: means of most rows are freest of that.
+  /// @param rows  the fit of single ones
+  std::optional<Share> share_of_held(const std::optional<MotionFit>& rows) const {
+    constexpr CommandThresholds limit;
+    const auto told_by = [&](const std::optional<MotionFit>& fit) {
+      return fit && tells(*fit) ? share_of(*fit) : std::nullopt;
+    };
+    std::optional<Share> means;
+    for (const Eigen::Index together : {16, 8, 4})
+      if (!means) means = told_by(motion_.fit(held_and_next(), together));
+    const std::optional<Share> single = told_by(rows);
+    if (!means || !single) return means ? means : single;
+    const bool agree =
+        std::abs(single->value - means->value) < limit.agree * std::hypot(single->error, means->error);
+    return agree && single->error < means->error ? single : means;
+  }
+
+  std::optional<Share> share_around_rows() const {
+    const std::optional<MotionFit>& fit = smooth();
+    if (!fit || fit->value[0] == 0.0) return std::nullopt;
+    return sure_of(fit->estimate([](const Eigen::VectorXd& of) { return 0.5 + of[1] / of[0]; }));
+  }
+
+  /// Whether a share of none can be told from the least that is believed.
+  static bool tells(const MotionFit& fit) {
+    constexpr CommandThresholds limit;
+    if (fit.value[0] == 0.0) return false;
+    const double error = fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }).second;
+    return limit.sure * error < limit.least_share;
+  }
+
+  /// Of the next step of what the first term is.
+  std::optional<Share> share_of(const MotionFit& fit) const {
+    if (!is_followed(fit, motion_.noise(Signal::rate_dps))) return std::nullopt;
+    return sure_of(fit.estimate([](const Eigen::VectorXd& of) { return of[1] / of[0]; }));
+  }
+
+  /// What of the command around each row the motion follows.
+  const std::optional<MotionFit>& smooth() const {
+    if (!smooth_) smooth_ = motion_.fit(around_and_slope);
+    return *smooth_;
+  }
+
+  /// What the command turns the rate by, deg/s^2 for each of its unit; 0 where nobody knows.
+  double response() const { return smooth() ? std::abs(smooth()->value[0]) : 0.0; }
+
+  double find_noise() const {
+    constexpr CommandThresholds limit;
+    const std::optional<MotionFit>& fit = smooth();
+    if (!fit) return 0.0;
+    const double response = this->response();
+    double step_s = 0.0;
+    Eigen::Index rows = 0;
+    for (const auto& one : motion_.recordings()) {
+      step_s = std::max(step_s, plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0));
+      rows += one.inputs->rows();
+    }
+    CommandNoise spectra(step_s, rows);
+    for (const auto& one : motion_.recordings()) {
+      spectra.add(*one.inputs, *one.command,
+                  [&](double dps, double rad) { return MotionRegression::beside(*fit, dps, rad); });
+    }
+    const double sd = spectra.sd(response, 0.5 + fit->value[1] / fit->value[0]);
+    // A random walk of the rate, and its sum.
+    const double wander_dps = response * sd * std::sqrt(step_s * horizon_s_),
+                 wander_deg = wander_dps * horizon_s_ / std::sqrt(3.0);
+    const double noise_dps = motion_.noise(Signal::rate_dps), noise_deg = motion_.noise(Signal::angle_deg);
+    const bool matters = (noise_dps > 0.0 && wander_dps > limit.wander * noise_dps) ||
+                         (noise_deg > 0.0 && wander_deg > limit.wander * noise_deg);
+    return matters ? sd : 0.0;
+  }
+
+  double horizon_s_;
+  MotionRegression motion_;
+  mutable std::optional<double> noise_;                     ///< once it was asked for
+  mutable std::optional<std::optional<MotionFit>> smooth_;  ///< the same
+  mutable MotionRegression::TermsOf held_and_next_;         ///< the same
 };
 
 /// Steps of a command from each row to the next; 0 from a run's last one.
@@ -168,6 +275,39 @@ inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eig
           std::max(of_a_step * std::min(std::abs(step), std::abs(step - 0.5 * (before + after))), noise);
     }
   return sd;
+}
+
+/// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.
+///
+/// Between two rows it goes straight, or along the cubic through the two before and after; a run's last row holds.
+/// @param share  of the next row's command in the mean of an interval: 0.5 where it was set all the time, less where each
+///               step of a loop holds a while
+/// @param bends  along the cubic
+/// @param parts  of an interval, 1 or more
+inline Eigen::MatrixXd command_within(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
+                                      double share, bool bends, int parts) {
+  Eigen::MatrixXd means = command.replicate(1, parts);
+  const double late = 0.5 - share;  // rows
+  for (const RunSpan& run : runs)
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
+      const double step = command[row + 1] - command[row];
+      const bool has_four = bends && row > run.begin && row + 2 < run.end;
+      // With x from row to row: the straight line, and x (x - 1) times what the neighbours bend it by.
+      const double bend =
+          has_four ? 0.25 * (command[row - 1] - command[row] - command[row + 1] + command[row + 2]) : 0.0;
+      const double skew =
+          has_four ? (command[row + 2] - command[row - 1] - 3.0 * step) / 6.0 : 0.0;  // third difference
+      const auto sum = [&](double x) {  // of the cubic from 0 to x
+        const double straight = command[row] * x + 0.5 * step * x * x, bent = x * x * (x / 3.0 - 0.5),
+                     skewed = x * x * (0.25 * x * x - 0.5 * x + 0.25);
+        return straight + bend * bent + skew * skewed;
+      };
+      for (int part = 0; part < parts; ++part) {
+        const double from = static_cast<double>(part) / parts - late, to = from + 1.0 / parts;
+        means(row, part) = (sum(to) - sum(from)) * parts;
+      }
+    }
+  return means;
 }
 
 }  // namespace thermopower::gap::engine

@@ -4,6 +4,7 @@
 
 #include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
 
 #include <algorithm>
@@ -102,6 +103,35 @@ inline RowMask lost_current(const Eigen::VectorXd& current_A, const Eigen::Vecto
   for (Eigen::Index i = 0; i < current_A.size(); ++i)
     if (power[i] > 0.0 && current_A[i] == 0.0 && typical[band(power[i])] > clearly * std::max(scale_A, 1e-12))
       mask[static_cast<std::size_t>(i)] = 1;
+  return mask;
+}
+
+/// Samples of a current that still read what they did before the power stepped, and jump later, where it follows such a step in
+/// the same row otherwise. A drive with a dead time stands at all of them.
+inline RowMask held_over_steps(const Eigen::VectorXd& current_A, const Eigen::VectorXd& power,
+                               const std::vector<RunSpan>& runs, double scale_A) {
+  constexpr double clearly = 10.0,
+                   mostly = 0.8;  // noise scales of a jump; share of the steps that show at once
+  constexpr int least_steps = 10;
+  RowMask mask(static_cast<std::size_t>(current_A.size()), 0);
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> held;
+  int at_once = 0;
+  const auto jumps = [&](Eigen::Index from, Eigen::Index to) {
+    return std::abs(current_A[to] - current_A[from]) > clearly * std::max(scale_A, 1e-12);
+  };
+  for (const RunSpan& run : joined_at_pauses(runs))
+    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
+      if (!std::isfinite(power[i] - power[i - 1]) || power[i] == power[i - 1]) continue;
+      if (jumps(i - 1, i)) ++at_once;
+      if (current_A[i] != current_A[i - 1]) continue;
+      Eigen::Index end = i;
+      while (end < run.end && power[end] == power[i] && current_A[end] == current_A[i]) ++end;
+      if (end < run.end && power[end] == power[i] && jumps(i, end)) held.push_back({i, end});
+    }
+  const double steps = at_once + static_cast<double>(held.size());
+  if (at_once < least_steps || static_cast<double>(at_once) < mostly * steps) return mask;
+  for (const auto& [from, to] : held)
+    for (Eigen::Index i = from; i < to; ++i) mask[static_cast<std::size_t>(i)] = 1;
   return mask;
 }
 

@@ -79,6 +79,60 @@ inline double off_good_neighbours(const OrderedSamples& samples, std::size_t i) 
   return std::max({farthest, off({-2, -1, 2, 3}), off({-3, -2, 1, 2})});
 }
 
+/// What neighbours say of a sample that takes no part in it.
+struct NeighbourMotion {
+  double off = 0.0;   ///< the sample less what they predict
+  double gain = 1.0;  ///< standard deviation of `off` in white noise of 1
+  double rest = 0.0;  ///< root mean square of what the polynomial leaves of them, per degree of freedom
+};
+
+/// No sample.
+constexpr std::size_t no_sample = static_cast<std::size_t>(-1);
+
+/// The polynomial of least squares of some neighbours on either side, at the sample between them. Fewer coefficients than
+/// neighbours.
+/// @param beside  neighbours on either side (1..5), which there must be
+/// @param degree  of the polynomial (0..7), less than 2 beside - 1, or 2 beside - 2 but for one
+/// @param but     one of them that takes no part, either
+inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size_t i, std::size_t beside,
+                                        std::size_t degree, std::size_t but = no_sample) {
+  constexpr std::size_t most = 10, most_coefficients = 8;
+  std::size_t count = 0;
+  std::array<double, most> left{};
+  // Each power, made orthogonal to those before, over the neighbours; the last of each is its value at the sample.
+  std::array<std::array<double, most + 1>, most_coefficients> basis{};
+  const double width =
+      std::max(samples.at[i] - samples.at[i - beside], samples.at[i + beside] - samples.at[i]);
+  std::array<double, most> at{};
+  for (std::size_t j = i - beside; j <= i + beside; ++j) {
+    if (j == i || j == but) continue;
+    at[count] = (samples.at[j] - samples.at[i]) / width;
+    left[count] = samples.values[j] - samples.values[i];  // so that large values cost no digits
+    ++count;
+  }
+  double predicted = 0.0, variance = 1.0;
+  for (std::size_t power = 0; power <= degree; ++power) {
+    std::array<double, most + 1>& one = basis[power];
+    for (std::size_t k = 0; k < count; ++k) one[k] = power == 0 ? 1.0 : at[k] * basis[power - 1][k];
+    one[most] = power == 0 ? 1.0 : 0.0;
+    for (std::size_t before = 0; before < power; ++before) {
+      double along = 0.0;
+      for (std::size_t k = 0; k < count; ++k) along += one[k] * basis[before][k];
+      for (std::size_t k = 0; k <= most; ++k) one[k] -= along * basis[before][k];
+    }
+    double squares = 0.0, part = 0.0;
+    for (std::size_t k = 0; k < count; ++k) squares += one[k] * one[k];
+    for (double& x : one) x /= std::sqrt(squares);
+    for (std::size_t k = 0; k < count; ++k) part += one[k] * left[k];
+    for (std::size_t k = 0; k < count; ++k) left[k] -= part * one[k];
+    predicted += part * one[most];
+    variance += one[most] * one[most];
+  }
+  double squares = 0.0;
+  for (std::size_t k = 0; k < count; ++k) squares += left[k] * left[k];
+  return {-predicted, std::sqrt(variance), std::sqrt(squares / static_cast<double>(count - degree - 1))};
+}
+
 /// How far samples lie from the polynomials through two, four and six neighbours: what is least of them, over many samples, is
 /// noise. white_scale() knows straight lines alone, and takes the bend of a motion for noise.
 class OffNeighbours {
@@ -104,6 +158,16 @@ public:
 private:
   std::array<std::vector<double>, 3> off_;
 };
+
+/// Scale of the noise around a sample, as a standard deviation; 0 where nothing tells.
+/// @param around  samples before and after that tell  @param but  samples beside it that do not
+inline double noise_around(const OrderedSamples& samples, std::size_t i, std::size_t around,
+                           std::size_t but) {
+  OffNeighbours off;
+  for (std::size_t k = i < around ? 0 : i - around; k < std::min(samples.size(), i + around + 1); ++k)
+    if (k + but < i || k > i + but) off.add(samples, k);
+  return off.noise();
+}
 
 /// So many samples of a long recording that their quantiles are known to a hundredth: each so many-th.
 inline std::size_t each_of_many(const std::vector<RunSpan>& runs) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <thermopower/gap/data/clock.hpp>
+#include <thermopower/gap/data/command_between_rows.hpp>
 #include <thermopower/gap/data/current_masks.hpp>
 #include <thermopower/gap/data/inputs.hpp>
+#include <thermopower/gap/data/frame_masks.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
@@ -49,14 +51,35 @@ public:
   /// Median interval between rows in s.
   double interval_s() const { return interval_s_; }
   /// Takes other values of a command than were recorded.
-  /// @param means   of the interval after each row of recording()
+  /// @param within  its means in equal parts of the intervals, rows of recording() x parts
   /// @param unknown what of each row's nobody knows
-  void take_command(const Model& model, const std::string& column, Eigen::VectorXd means,
+  void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within,
                     UnknownCommand unknown) {
-    believed_.set(column, std::move(means));
+    believed_.set(column, within.rowwise().mean());
     renew_inputs(model);
+    if (within.cols() > 1) inputs_.command_within = std::move(within);
     inputs_.command_unknown = std::move(unknown);
   }
+  /// Lets a servo's target go on between the rows. @param share  of the way to the next row's, on average
+  void take_targets_between(const Model& model, double share) {
+    const Eigen::VectorXd deg = inputs_.target_deg, dps = inputs_.target_dps;
+    for (const char* column : {"target_deg", "target_dps"})
+      if (believed_.has(column))
+        believed_.set(column,
+                      command_within(believed_.column(column), believed_.runs, share, false, 1).col(0));
+    renew_inputs(model);
+    inputs_.target_deg = deg;
+    inputs_.target_dps = dps;
+    inputs_.target_moves = true;
+    constexpr double told_apart = 0.1;  // rows
+    const double of_samples = plant::moving_target_share(plant::servo_gains(model).period_s, interval_s_);
+    if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
+    replay_servo(model, inputs_);
+  }
+  /// Says how noisy the command is. @param sd  standard deviation, in its unit
+  void set_command_noise(double sd) { inputs_.command_noise = sd; }
+  /// Says how noisy the current is that heats the bench: its variance heats nothing. @param sd_A  standard deviation
+  void set_current_noise(double sd_A) { inputs_.current_noise_A = inputs_.command_noise = sd_A; }
   /// Lets the inputs of the next row be in force before it. @param share  part of the interval after each row
   void take_next_before_it(Eigen::VectorXd share) { inputs_.next_share = std::move(share); }
   /// Reads an output earlier that comes late. Comes before what is said of the command. @param lag_s  by so much, at least 0
@@ -70,6 +93,11 @@ public:
     renew_inputs(model);
     for (plant::NotJudged& note : inputs_.not_judged)
       if (note.what == column) note.sentence = sentence;
+  }
+  /// Says whether the first command of a run was in force before that already. @param run  place among the runs
+  void set_driven_before(std::size_t run, bool was) {
+    believed_.runs = believed_.spans();
+    believed_.runs[run].was_driven = inputs_.runs[run].was_driven = was;
   }
   /// Rows that were given.
   Eigen::Index recorded_rows() const { return recorded_rows_; }
@@ -93,7 +121,7 @@ private:
   void find_starts(FindingList& list);
   void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
   double stands_between_samples(const Recording& recorded, const std::string& name) const;
-  void fill_inputs(const Model& model, const Recording& recorded, FindingList& list);
+  void fill_inputs(const Recording& recorded, FindingList& list);
   void keep_known_rows();
 
   const plant::PlantInfo* own_ = nullptr;  ///< of a plant of one's own, while the recording is prepared
@@ -110,6 +138,12 @@ private:
   std::vector<Eigen::Index> source_rows_;
   double interval_s_ = 0.0;
   Eigen::Index recorded_rows_ = 0;
+};
+
+/// Bounds of what a temperature of, or near, a motor can be, in degC.
+struct PossibleTemperature {
+  double low_C = -60.0;   ///< colder than any place a motor is run in
+  double high_C = 500.0;  ///< hotter than any insulation stands
 };
 
 inline PreparedRecording::PreparedRecording(const Model& model, const Recording& recorded, bool as_recorded)
@@ -131,7 +165,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
   RowMask starts(unknown_.size(), 0);
-  check_stamps(model, list, believed_.runs, starts);
+  check_stamps(list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts, true);
   if (moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
@@ -143,7 +177,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
                        model.has_thermal();
   mask_outputs(recorded, list);
-  fill_inputs(model, recorded, list);
+  fill_inputs(recorded, list);
   if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
@@ -209,8 +243,9 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
   }
   std::vector<const Eigen::VectorXd*> outputs;
   for (const Column& column : recorded.columns)
-    if (recorded.has(column.name) && is_output(column.name)) outputs.push_back(&column.values);
-  const RowMask repeated = repeated_frames(outputs, recorded.rows(), believed_.runs);
+    if (recorded.has(column.name) && is_output(column.name) && shows_frames(column.values, believed_.runs))
+      outputs.push_back(&column.values);
+  const RowMask repeated = repeated_frames(outputs, believed_.runs);
   list.add_rows(FindingKind::repeated_frames, Severity::warning, "", repeated, FindingAction::masked,
                 "of every output repeat the row before them", "log each frame once");
   for (Column& column : believed_.columns) {
@@ -223,6 +258,29 @@ inline void PreparedRecording::mask_outputs(const Recording& recorded, FindingLi
       mask_slow_input(column.name, column.values, list);
     }
   }
+  // A frame whose sensors said nothing may look right in one of them.
+  std::vector<const Eigen::VectorXd*> lost_in;
+  std::vector<Column*> lossy;
+  std::vector<double> defaults;
+  for (Column& column : believed_.columns) {
+    if (!is_output(column.name)) continue;
+    const Eigen::VectorXd& as_it_was = *recorded.find(column.name);
+    const double value = default_reading(as_it_was, column.values);
+    if (!std::isfinite(value)) continue;
+    lost_in.push_back(&as_it_was);
+    lossy.push_back(&column);
+    defaults.push_back(value);
+  }
+  RowMask lost = lost_frames(lost_in, defaults, believed_.runs);
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const auto is_taken = [&](const Column* one) {
+      return !std::isfinite(one->values[static_cast<Eigen::Index>(i)]);
+    };
+    if (std::all_of(lossy.begin(), lossy.end(), is_taken)) lost[i] = 0;
+  }
+  list.add_rows(FindingKind::glitched_samples, Severity::warning, "", lost, FindingAction::masked,
+                "read what the sensors read when they say nothing", "look at what reads the sensors");
+  for (Column* column : lossy) take_away(column->values, lost);
   find_starts(list);
 }
 
@@ -250,7 +308,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   if (is_temperature(name)) {
     std::vector<double> list_of = finite_samples(values);
     const double typical = median_of(list_of);
-    constexpr const DataThresholds& possible = data_limits;
+    constexpr PossibleTemperature possible;
     RowMask mask(unknown_.size(), 0);
     for (Eigen::Index i = 0; i < values.size(); ++i)
       if (typical > possible.low_C && typical < possible.high_C &&
@@ -275,55 +333,70 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   traits.cannot_jump = is_temperature(name);
   traits.zero_is_rest = name == "rate_dps" || name == "current_A" || name == "angle_deg";
   traits.t_s = &believed_.t_s;
-  if (name == "angle_deg") traits.rate = believed_.find("rate_dps");
-  if (name == "rate_dps") traits.angle = believed_.find("angle_deg");
+  if (name == "angle_deg") traits.at_rest = believed_.find("rate_dps");
+  if (name == "rate_dps") traits.integral = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
-  traits.is_driven = power != nullptr;
   SampleMasks masks(values, steady, traits);
-  const auto take = [&](FindingKind kind, Severity severity, const RowMask& mask, const char* words,
-                        const char* mend) {
-    take_away(values, mask);
-    list.add_rows(kind, severity, name, mask, FindingAction::masked, words, mend);
-  };
   if (power != nullptr) {
     const RowMask lost = lost_current(values, *power, masks.scale());
+    take_away(values, lost);
     masks.take(lost);
-    take(FindingKind::glitched_samples, Severity::warning, lost,
-         "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+    list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
+                  "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+    const RowMask held = held_over_steps(values, *power, runs, masks.scale());
+    take_away(values, held);
+    masks.take(held);
+    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, held, FindingAction::masked,
+                  "still read what they did before the power stepped, which shows at once otherwise",
+                  "look at what reads the sensor");
   }
   RowMask spikes = masks.spikes();
   // Where the power steps too often to be looked at in between: what it leaves.
   const auto is_short = [](const RunSpan& run) { return run.size() < shortest_steady; };
   if (power != nullptr && std::any_of(steady.begin(), steady.end(), is_short)) {
     const RowMask others =
-        SampleMasks(detrended_current(values, *power, believed_.find("supply_V"), runs), runs, traits)
+        SampleMasks(detrended_current(masks.values(), *power, believed_.find("supply_V"), runs), runs, traits)
             .spikes();
     for (const RunSpan& run : steady)
       for (Eigen::Index i = run.begin; is_short(run) && i < run.end; ++i)
         spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
-    masks.take(spikes);
   }
-  const RowMask bursts = masks.bursts(),
-                hidden = masks.spikes();  // next to a burst a spike does not stand out
-  for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];
-  take(FindingKind::spiked_samples, Severity::note, spikes, "lie far from all around them", "");
-  take(FindingKind::glitched_samples, Severity::warning, bursts, "jump away and back",
-       "look at what reads the sensor (a default reading, a word that wraps)");
-  SampleMasks still(values, runs, traits);
-  // First: all but the first sample of a clipped stretch look frozen.
-  const RowMask clipped = still.clipped();
-  take(FindingKind::clipped_samples, Severity::warning, clipped, "stand at the end of the sensor's range",
-       "use a sensor with a wider range");
-  const RowMask frozen = still.frozen();
-  take(FindingKind::frozen_samples, Severity::warning, frozen,
-       "repeat the value before them, and jump where that ends", "look at what reads the sensor");
-  if (name == "current_A" && drives_by_current_) {
-    untold_current_ = clipped;
-    for (std::size_t i = 0; i < frozen.size(); ++i) untold_current_[i] |= frozen[i];
+  const RowMask bursts = masks.bursts();
+  if (std::find(bursts.begin(), bursts.end(), 1) != bursts.end()) {
+    // Next to a burst a spike does not stand out.
+    const RowMask hidden = masks.spikes();
+    for (std::size_t i = 0; i < spikes.size(); ++i) spikes[i] |= hidden[i];
   }
-  if (still.equal_share() > 0.999999 && present > 20)
-    list.add(FindingKind::constant_column, Severity::note, name, "never changes");
+  take_away(values, spikes);
+  list.add_rows(FindingKind::spiked_samples, Severity::note, name, spikes, FindingAction::masked,
+                "lie far from all around them");
+  take_away(values, bursts);
+  list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
+                "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
+  traits.driver = power;
+  {
+    SampleMasks still(values, runs, traits);
+    // First: all but the first sample of a clipped stretch look frozen.
+    const RowMask clipped = still.clipped();
+    take_away(values, clipped);
+    list.add_rows(FindingKind::clipped_samples, Severity::warning, name, clipped, FindingAction::masked,
+                  "stand at the end of the sensor's range", "use a sensor with a wider range");
+    // A current that stands more often than it moves is what somebody set: as what heats, it is held.
+    constexpr double mostly = 0.5;
+    const bool is_set = name == "current_A" && !electrical_ && still.equal_share() > mostly;
+    const RowMask frozen = is_set ? RowMask(unknown_.size(), 0) : still.frozen();
+    take_away(values, frozen);
+    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, frozen, FindingAction::masked,
+                  "repeat the value before them where noise or motion would show",
+                  "look at what reads the sensor");
+    if (name == "current_A" && drives_by_current_) {
+      untold_current_ = clipped;
+      for (std::size_t i = 0; i < frozen.size(); ++i) untold_current_[i] |= frozen[i];
+    }
+    if (still.equal_share() > 0.999999 && present > 20)
+      list.add(FindingKind::constant_column, Severity::note, name, "never changes");
+  }
   const double quantum = quantum_of(values);
   std::vector<double> steps = step_sizes(values, runs);
   if (quantum > 0.0 && median_of(steps) < 1.5 * quantum && quantum > 1e-6)
@@ -365,15 +438,14 @@ inline double PreparedRecording::stands_between_samples(const Recording& recorde
   return SlowSensorThresholds().nearest * median_distance_s(believed_.t_s, believed_.runs, values);
 }
 
-inline void PreparedRecording::fill_inputs(const Model& model, const Recording& recorded, FindingList& list) {
+inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingList& list) {
   std::vector<InputColumn> inputs = input_columns();
   if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
   for (const InputColumn& input : inputs) {
     Column* found = nullptr;
     for (Column& column : believed_.columns)
       if (column.name == input.name) found = &column;
-    if (found == nullptr || found->values.array().isFinite().all() || !is_read(model, recorded, input.name))
-      continue;
+    if (found == nullptr || found->values.array().isFinite().all()) continue;
     const Eigen::Index holes = recorded.rows() - recorded.find(input.name)->array().isFinite().count();
     RowMask mask(unknown_.size(), 0);
     found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask,
@@ -390,7 +462,7 @@ inline void PreparedRecording::fill_inputs(const Model& model, const Recording& 
 }
 
 inline void PreparedRecording::keep_known_rows() {
-  constexpr const DataThresholds& limit = data_limits;
+  constexpr SegmentThresholds limit;
   std::vector<RunSpan> kept;
   const std::vector<RunSpan> runs =
       without(believed_.runs.empty() ? believed_.spans() : believed_.runs, unknown_);

@@ -3,34 +3,25 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
-#include <thermopower/gap/data/neighbour_motion.hpp>
+#include <thermopower/gap/data/extremes.hpp>
+#include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/data/thresholds.hpp>
+#include <thermopower/gap/data/spikes.hpp>
 #include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 #include <vector>
 
 /// @file sample_masks.hpp
-/// Samples of one column that are not to be believed, by the column itself and by the one that belongs to it (a rate and its
-/// angle). A mask needs a jump that no motion and no heat makes: a joint at rest, a reading that flickers by a quantum, a peak that
-/// decays and a break-away are all believed. Every threshold is a multiple of a median, so that a tenth of the rows may be bad.
+/// Samples of one column that are not to be believed: spikes, stretches that jump away and back, frozen and clipped
+/// stretches. Every threshold is a multiple of a median, so that a tenth of the rows may be bad.
 
 namespace thermopower::gap::engine {
-
-/// Properties of a column that its masks depend on.
-struct ColumnTraits {
-  bool cannot_jump = false;   ///< a temperature: what jumps away and back was never there
-  bool zero_is_rest = false;  ///< an exact 0 is what a good sensor reads at rest
-  bool is_driven =
-      false;  ///< a current, in runs of one power each: it may begin with a peak, but with no spike
-  const Eigen::VectorXd* rate = nullptr;   ///< of an angle, where one was recorded
-  const Eigen::VectorXd* angle = nullptr;  ///< of a rate, where one was recorded
-  const Eigen::VectorXd* t_s = nullptr;    ///< stamps, where there is a rate or an angle
-};
 
 /// Makes samples of a column missing. @param mask  which; empty: none
 inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
@@ -38,88 +29,70 @@ inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
     if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
 }
 
-/// The largest or the least value of a column.
-struct Extreme {
-  double value = 0.0;         ///< itself
-  double next = 0.0;          ///< the value next to it; itself where there is no other one
-  std::ptrdiff_t count = 0;   ///< samples that have it
-  std::ptrdiff_t beside = 0;  ///< samples that have the value next to it
-};
-
-/// The largest value of a column, or the least. @param samples  at least one
-inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
-  const auto is_beyond = [top](double one, double other) { return top ? one > other : one < other; };
-  Extreme one{samples.front(), samples.front()};
-  for (const double sample : samples)
-    if (is_beyond(sample, one.value)) one.value = sample;
-  one.next = one.value;
-  for (const double sample : samples)
-    if (sample != one.value && (one.next == one.value || is_beyond(sample, one.next))) one.next = sample;
-  one.count = std::count(samples.begin(), samples.end(), one.value);
-  one.beside = std::count(samples.begin(), samples.end(), one.next);
-  return one;
-}
-
-/// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier one took.
+/// Finds bad samples in one column. Masks are made one after the other; a later one does not see what an earlier
+/// one took.
 class SampleMasks {
 public:
   /// @param values  of the column, NaN where missing
-  /// @param runs    inside which rows follow on each other; they outlive this object
+  /// @param runs    inside which rows follow on each other
   SampleMasks(const Eigen::VectorXd& values, const std::vector<RunSpan>& runs,
               const ColumnTraits& traits = {})
-      : recorded_(values), values_(values), runs_(runs), traits_(traits), quantum_(quantum_of(values)) {
+      : values_(values), runs_(runs), traits_(traits), quantum_(quantum_of(values)) {
     std::vector<double> steps = step_sizes(values, runs);
     equal_share_ = equal_share_of(steps);
     scale_ = white_scale(values, runs);
-    jump_ = std::max({limit_.jump_scales * scale_, limit_.jump_steps * quantile_of(steps, 0.75),
-                      limit_.quanta * quantum_});
-    std::vector<double> list = finite_samples(values);
-    range_ = quantile_of(list, 0.95) - quantile_of(list, 0.05);
+    usual_step_ = quantile_of(steps, 0.75);
   }
 
   /// Noise scale of the column.
   double scale() const { return scale_; }
   /// Share of neighbours with the same value.
   double equal_share() const { return equal_share_; }
+  /// The column without what was masked so far.
+  const Eigen::VectorXd& values() const { return values_; }
+
   /// Takes samples away that are set in a mask.
   void take(const RowMask& mask) { take_away(values_, mask); }
 
-  /// Isolated samples far from all around them.
+  /// Isolated samples (one, or two of five) far from all around them.
   RowMask spikes() {
-    RowMask mask = none();
-    if (!holds(Rule::outlier_rejection)) return mask;
-    constexpr int passes = 4;  // next to a farther one a spike does not stand out
-    for (int pass = 0; pass < passes; ++pass) {
-      RowMask found = none();
-      for (const RunSpan& run : runs_) find_spikes(run, found);
-      if (std::find(found.begin(), found.end(), 1) == found.end()) break;
-      for (std::size_t i = 0; i < mask.size(); ++i) mask[i] |= found[i];
-      take(found);
-    }
+    if (!holds(Rule::outlier_rejection)) return empty();
+    if (!spikes_)
+      spikes_.emplace(values_, runs_, traits_, scale_, quantum_,
+                      traits_.integral != nullptr ? position_step() : 0.0);
+    RowMask mask = spikes_->find(values_);
+    take(mask);
     return mask;
   }
 
-  /// Stretches that jump away and back by the same: a default reading of a temperature, a word that wraps.
+  /// Stretches that jump away from the level before them and back to it.
   RowMask bursts() {
-    RowMask mask = none();
-    if (!holds(Rule::outlier_rejection) || !(jump_ > 0.0)) return mask;
-    const double least = traits_.cannot_jump ? jump_ : std::max(jump_, limit_.far_outside * range_);
+    RowMask mask = empty();
+    const double least =
+        std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_, limit_.quanta * quantum_});
+    std::vector<double> list = finite_samples(values_);
+    const double range = quantile_of(list, 0.95) - quantile_of(list, 0.05);
     for (const RunSpan& run : runs_) {
       const std::vector<Eigen::Index> rows = finite_rows(run);
       for (std::size_t i = 1; i < rows.size(); ++i) {
         const double level = values_[rows[i - 1]], jump = values_[rows[i]] - level;
-        if (!(std::abs(jump) > least)) continue;
-        const auto off = [&](std::size_t k) { return (values_[rows[k]] - level) / jump; };
+        if (!(std::abs(jump) > least) || !(least > 0.0)) continue;
         std::size_t end = i;
-        bool stuck = true;
-        const auto longest = [&] {
-          return static_cast<std::size_t>(stuck ? limit_.longest_stuck : limit_.longest_burst);
-        };
-        while (end < rows.size() && std::abs(off(end) - 1.0) < limit_.same_jump && end - i <= longest()) {
+        bool stuck = true, away = true;
+        const auto off = [&](std::size_t k) { return (values_[rows[k]] - level) / jump; };
+        while (end < rows.size() && off(end) > limit_.stayed_away) {
           stuck = stuck && values_[rows[end]] == values_[rows[i]];
+          away = away && std::abs(values_[rows[end]] - level) > limit_.outside * range;
           ++end;
+          const auto length = static_cast<Eigen::Index>(end - i);
+          if (length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) break;
         }
-        if (end == rows.size() || end - i > longest() || !(std::abs(off(end)) < limit_.same_jump)) continue;
+        const auto length = static_cast<Eigen::Index>(end - i);
+        if (end == rows.size() || length > (stuck ? limit_.longest_stuck : limit_.longest_burst)) continue;
+        if (!(off(end) < limit_.came_back)) continue;
+        if (!traits_.cannot_jump && !away && !(stuck && length > 1 && equal_share_ < limit_.hardly_equal))
+          continue;
+        if (!traits_.cannot_jump && traits_.zero_is_rest && values_[rows[i]] == 0.0) continue;
         for (std::size_t k = i; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
         i = end;
       }
@@ -128,33 +101,43 @@ public:
     return mask;
   }
 
-  /// Stretches of one value after which the column jumps, and stays: it had stopped meanwhile. All but their first row.
+  /// Stretches of one value where noise or motion would show: all but their first row, and that one, too, where the column stood
+  /// there already when the run before it ended; every sample of the largest or the least value, where that stands so for most
+  /// of its time, since the range ends there.
   RowMask frozen() {
-    RowMask mask = none();
-    const double rest_share = traits_.cannot_jump ? equal_at_rest() : 1.0;
-    // What may jump, and mostly stands, is set rather than measured.
-    if (!traits_.cannot_jump && !(equal_share_ < limit_.mostly_equal)) return mask;
-    for (const RunSpan& run : runs_) {
-      const std::vector<Eigen::Index> rows = finite_rows(run);
+    RowMask mask = empty();
+    double stood_at = missing;  // at the end of the run before
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      std::vector<Eigen::Index> rows = finite_rows(runs_[r]);
+      // A temperature does not jump while the logger pauses, either.
+      while (traits_.cannot_jump && r + 1 < runs_.size() && runs_[r + 1].label == runs_[r].label) {
+        const std::vector<Eigen::Index> more = finite_rows(runs_[++r]);
+        rows.insert(rows.end(), more.begin(), more.end());
+      }
       for (std::size_t begin = 0; begin < rows.size();) {
         std::size_t end = begin + 1;
         while (end < rows.size() && values_[rows[end]] == values_[rows[begin]]) ++end;
-        if (is_frozen(rows, begin, end) || stands_longer(end - begin, rest_share))
-          for (std::size_t k = begin + 1; k < end; ++k) mask[static_cast<std::size_t>(rows[k])] = 1;
+        const bool frozen = is_frozen(rows, begin, end);
+        const bool goes_on =
+            begin == 0 && values_[rows[begin]] == stood_at && equal_share_ < limit_.rarely_equal;
+        for (std::size_t k = goes_on ? begin : begin + 1; k < end && (frozen || goes_on); ++k)
+          mask[static_cast<std::size_t>(rows[k])] = 1;
+        if (end == rows.size()) stood_at = frozen || goes_on ? values_[rows[begin]] : missing;
         begin = end;
       }
     }
+    add_ends(mask);
     take(mask);
     return mask;
   }
 
-  /// Samples at the end of the sensor's range: far more stand there than next to it, though noise or motion would show. A range
-  /// ends at the same magnitude on both sides: where one end is proven, the other is, too.
+  /// Samples at the largest or the least value, where far more stand there than next to it, or that is none of the steps the
+  /// other samples come in. A range ends at the same magnitude on both sides: what one side proves, the other need not.
   RowMask clipped() {
-    RowMask mask = none();
+    RowMask mask = empty();
+    if (!holds(Rule::clipping)) return mask;
     const std::vector<double> list = finite_samples(values_);
-    constexpr std::size_t enough = 50;
-    if (!holds(Rule::clipping) || list.size() < enough) return mask;
+    if (list.size() < 50) return mask;
     const std::array<Extreme, 2> ends{extreme_of(list, true), extreme_of(list, false)};
     const bool is_mirrored = ends[0].value == -ends[1].value;
     const std::array<bool, 2> proven{is_clipped(ends[0]), is_clipped(ends[1])};
@@ -168,7 +151,22 @@ public:
   }
 
 private:
-  RowMask none() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
+  RowMask empty() const { return RowMask(static_cast<std::size_t>(values_.size()), 0); }
+
+  /// Adds the other samples of an extreme that most of all its samples in a mask have.
+  void add_ends(RowMask& mask) const {
+    if (traits_.cannot_jump) return;  // a temperature nears its end slowly, and reads it for long
+    if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return;
+    const std::vector<double> list = finite_samples(values_);
+    for (const Extreme& one : {extreme_of(list, true), extreme_of(list, false)}) {
+      if (one.value == 0.0 || one.count < limit_.least_clipped) continue;
+      std::ptrdiff_t masked = 0;
+      for (Eigen::Index i = 0; i < values_.size(); ++i)
+        masked += values_[i] == one.value && mask[static_cast<std::size_t>(i)] != 0 ? 1 : 0;
+      for (Eigen::Index i = 0; 2 * masked > one.count && i < values_.size(); ++i)
+        if (values_[i] == one.value) mask[static_cast<std::size_t>(i)] = 1;
+    }
+  }
 
   std::vector<Eigen::Index> finite_rows(const RunSpan& run) const {
     std::vector<Eigen::Index> rows;
@@ -177,249 +175,291 @@ private:
     return rows;
   }
 
-  void find_spikes(const RunSpan& run, RowMask& mask) const {
-    constexpr std::size_t around = 5, nearby = 3, least_samples = 7;
-    const OrderedSamples samples(values_, traits_.t_s, run);
-    const std::vector<double>& at = samples.values;
-    const std::size_t count = samples.size();
-    const double least = std::max(limit_.spike_scales * scale_, limit_.quanta * quantum_);
-    if (count < least_samples || !(least > 0.0)) return;
-    std::vector<double> far(count, 0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t from = i < 2 ? 0 : std::min(i - 2, count - 5);
-      std::array<double, 5> five{};
-      std::copy_n(at.begin() + static_cast<std::ptrdiff_t>(from), 5, five.begin());
-      std::nth_element(five.begin(), five.begin() + 2, five.end());
-      double off = std::abs(at[i] - five[2]);
-      if (!(off > least)) continue;
-      // The corner of a motion goes on in a straight line on either side; the top of a swing lies on a cubic; near an end, where
-      // motions begin, a parabola counts, too.
-      if (i >= 2) off = std::min(off, std::abs(at[i] - 2.0 * at[i - 1] + at[i - 2]));
-      if (i + 2 < count) off = std::min(off, std::abs(at[i] - 2.0 * at[i + 1] + at[i + 2]));
-      if (i >= 2 && i + 2 < count) off = std::min(off, off_good_neighbours(samples, i));
-      if (i <= around && i + 3 < count)
-        off = std::min(off, std::abs(at[i] - 3.0 * at[i + 1] + 3.0 * at[i + 2] - at[i + 3]));
-      if (i + around + 1 >= count && i >= 3)
-        off = std::min(off, std::abs(at[i] - 3.0 * at[i - 1] + 3.0 * at[i - 2] - at[i - 3]));
-      if (!(off > least) || is_motion(run, samples.rows[i], off) || is_on_its_way(at, i)) continue;
-      std::vector<double> bends;
-      for (std::size_t k = i < around + 1 ? 1 : i - around; k < std::min(count - 1, i + around + 1); ++k)
-        if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at[k - 1] - 2.0 * at[k] + at[k + 1]));
-      if (off > limit_.spike_bends * median_of(bends)) far[i] = off;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(far[i] > 0.0)) continue;
-      const auto first = far.begin() + static_cast<std::ptrdiff_t>(i < nearby ? 0 : i - nearby),
-                 last = far.begin() + static_cast<std::ptrdiff_t>(std::min(count, i + nearby + 1));
-      if (far[i] >= limit_.as_far * *std::max_element(first, last))
-        mask[static_cast<std::size_t>(samples.rows[i])] = 1;
-    }
-  }
-
-  /// Whether a sample lies between its neighbours, or begins, or ends, something that lasts: the two beside it on one side have
-  /// left the level of the other side the same way. The peak of a current that starts to flow, and a break-away, are such. What
-  /// may jump may do so before its first row, too, and after its last.
-  bool is_on_its_way(const std::vector<double>& at, std::size_t i) const {
-    if (i + 1 == at.size() || (i == 0 && !traits_.is_driven)) return !traits_.cannot_jump;
-    if (i > 0 && (at[i - 1] - at[i]) * (at[i] - at[i + 1]) > 0.0) return true;
-    if ((i > 0 && i < 2) || i + 4 >= at.size()) return false;
-    const auto lasts = [&](double level, double next, double second) {
-      const double peak = std::abs(at[i] - level), sign = at[i] > level ? 1.0 : -1.0;
-      const double a = sign * (next - level), b = sign * (second - level);
-      return b < limit_.falls_to * a && a > limit_.decays_to * peak &&
-             b > std::max(limit_.peak_scales * scale_, limit_.goes_on * peak);
-    };
-    if (i == 0) return lasts(at[i + 4], at[i + 1], at[i + 2]);
-    return lasts(at[i - 1], at[i + 1], at[i + 2]) || lasts(at[i + 1], at[i - 1], at[i - 2]);
-  }
-
-  /// Whether an angle that stands out by `off` is where its rate takes it, or a rate what its angle moves by; at the ends of a
-  /// run seen from one side.
-  bool is_motion(const RunSpan& run, Eigen::Index row, double off) const {
-    if (traits_.t_s == nullptr || run.size() < 3) return false;
-    const Eigen::VectorXd &t_s = *traits_.t_s, &values = recorded_;
-    const Eigen::Index from = std::max(run.begin, row - 1), to = std::min(run.end - 1, row + 1);
-    if (traits_.angle != nullptr) {
-      const Eigen::VectorXd& angle = *traits_.angle;
-      const double moved = (angle[to] - angle[from]) / (t_s[to] - t_s[from]);
-      // By Simpson's rule, in which the middle has two thirds: a trapezoid cuts off the top of a short push.
-      const bool is_inside = to - from == 2;
-      const double share = is_inside ? 2.0 / 3.0 : 0.5, within = share * limit_.confirmed * off;
-      if (std::sqrt(2.0) * angle_noise() / (t_s[to] - t_s[from]) > within / 3.0) return false;
-      const double beside =
-          is_inside ? (values[from] + values[to]) / 6.0 : 0.5 * values[from == row ? to : from];
-      return std::abs(share * values[row] + beside - moved) < within;
-    }
-    if (traits_.rate == nullptr) return false;
-    const Eigen::VectorXd& rate = *traits_.rate;
-    for (Eigen::Index k = from; k < to; ++k) {
-      const double step = 0.5 * (rate[k] + rate[k + 1]) * (t_s[k + 1] - t_s[k]);
-      if (!(std::abs(values[k + 1] - values[k] - step) < limit_.confirmed * off)) return false;
-    }
-    return true;
-  }
-
-  double angle_noise() const {
-    if (angle_noise_ < 0.0) angle_noise_ = quantum_of(*traits_.angle) + white_scale(*traits_.angle, runs_);
-    return angle_noise_;
-  }
-
-  /// How often a temperature that rests reads the same twice: never less often while it moves. 1 where its noise is less than a
-  /// quantum: then it stands between two steps for as long as it likes.
-  double equal_at_rest() const {
-    constexpr std::size_t around =
-        6;  // samples before and after, over which one that rests moves by a quantum at most
-    double still = 0.0, equal = 0.0, moves = 0.0, wide = 0.0;
-    for (const RunSpan& run : runs_) {
-      const std::vector<Eigen::Index> rows = finite_rows(run);
-      for (std::size_t k = around; k + around < rows.size(); ++k) {
-        const double step = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
-        moves += step > 0.0 ? 1.0 : 0.0;
-        wide += step > 1.5 * quantum_ ? 1.0 : 0.0;
-        if (std::abs(values_[rows[k + around]] - values_[rows[k - around]]) > 1.5 * quantum_) continue;
-        still += 1.0;
-        equal += step == 0.0 ? 1.0 : 0.0;
-      }
-    }
-    return wide < limit_.wide_steps * moves ? 1.0 : (equal + 1.0) / (still + 1.0);
-  }
-
-  /// Whether so many samples of one value are more than a rest makes.
-  static bool stands_longer(std::size_t samples, double rest_share) {
-    return static_cast<Eigen::Index>(samples) >= limit_.least_frozen &&
-           -std::log(rest_share) * static_cast<double>(samples - 1) > limit_.log_chance;
-  }
-
-  bool is_frozen(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
-    const auto length = static_cast<Eigen::Index>(end - begin);
-    if (length < limit_.least_frozen || end == rows.size()) return false;
-    const double value = values_[rows[begin]], jump = values_[rows[end]] - value;
-    constexpr double least_share = 1e-4;
-    if (-std::log(std::max(equal_share_, least_share)) * static_cast<double>(length - 1) < limit_.log_chance)
-      return false;
-    if (!(std::abs(jump) > jump_) || (traits_.zero_is_rest && value == 0.0)) return false;
-    // What breaks away goes on as it began; what has stopped goes on from elsewhere.
-    constexpr std::size_t after = 3;
-    double next = 0.0;
-    for (std::size_t k = end + 1; k < std::min(rows.size(), end + 1 + after); ++k) {
-      if (std::abs(values_[rows[k]] - value) < 0.5 * std::abs(jump)) return false;
-      next = std::max(next, std::abs(values_[rows[k]] - values_[rows[k - 1]]));
-    }
-    return std::abs(jump) > static_cast<double>(after) * next;
-  }
-
+  /// Whether the sensor's range ends at an extreme.
   bool is_clipped(const Extreme& one) const {
-    if (one.value == 0.0 || one.count < limit_.least_clipped ||
-        static_cast<double>(one.count) < limit_.clip_ratio * static_cast<double>(one.beside))
-      return false;
-    const Eigen::VectorXd others = (values_.array() == one.value).select(missing, values_);
-    if (is_between_steps(others, one)) return true;  // no converter reads that: a limit is set
-    // What stands still by itself stands where it likes; a column whose noise shows everywhere else is cut off where it does not.
-    // A temperature may have come to rest there, unless noise of many steps shows everywhere else.
-    const bool may_rest =
-        traits_.cannot_jump && !(white_scale(others, runs_) > limit_.quanta * quantum_of(others));
-    const double usually = may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_));
-    const bool is_witnessed = traits_.rate != nullptr || traits_.angle != nullptr;
-    if (usually < limit_.hardly_equal && (!is_witnessed || scale_ > limit_.quanta * quantum_)) return true;
-    return 2 * moves_at(one.value) >= one.count;
+    if (one.value == 0.0) return false;
+    if (one.count > 1 && is_between_steps(one.value, one.next))
+      return true;  // no converter reads that: a limit is set
+    // A sensor that has more to tell stays at its end; what returns there for one row at a time is the beat of a clock and a
+    // steady motion.
+    if (!piles_up(one) || !stays_at(one)) return false;
+    // A slow signal in coarse steps stands still by itself; but not where what drives it moves, nor where another column
+    // sees it move.
+    const bool is_witnessed = traits_.integral != nullptr || traits_.at_rest != nullptr;
+    const bool stands_still = stands_still_besides(one.value);
+    if (!is_witnessed && stands_still && !is_driven_at(one.value)) return false;
+    // One sample tells little: just at the end of its range a sensor is still right. Where noise of
+    // many steps shows everywhere else, it would show there, though the axis rests out of range.
+    const bool noise_would_show = scale_ > limit_.quanta * quantum_ && !stands_still;
+    return 2 * denied(one.value) >= one.count || noise_would_show;
   }
 
-  /// Whether an extreme is none of the values that the other samples, in steps of a quantum, take.
-  bool is_between_steps(Eigen::VectorXd others, const Extreme& one) const {
-    constexpr double on = 0.05, off = 0.02,
-                     times = 3.0;  // of a step; of a step; of how far nearly all others are off
-    others =
-        (others.array() == -one.value).select(missing, others);  // the other end of the range is off, too
+  /// Whether a good part of the samples at an extreme follow on each other.
+  bool stays_at(const Extreme& one) const {
+    std::ptrdiff_t pairs = 0;
+    for_each_in_order<2>(values_, runs_, [&](const Eigen::Index* rows) {
+      pairs += values_[rows[0]] == one.value && values_[rows[1]] == one.value ? 1 : 0;
+    });
+    return limit_.stays_clipped * static_cast<double>(one.count) <= static_cast<double>(pairs);
+  }
+
+  Eigen::VectorXd others_than(double value) const {
+    return (values_.array() == value).select(missing, values_);
+  }
+
+  /// Whether a value is none of those that the other samples, in steps of a quantum, take: off their grid by more than they are
+  /// themselves, whose quantum is known to a digit more or less.
+  bool is_between_steps(double value, double neighbour) const {
+    constexpr double on = 0.05, off = 0.02, times = 3.0,
+                     nearly_all = 0.95;  // of a step; of the others' own; of the samples
+    Eigen::VectorXd others = others_than(value);
+    others = (others.array() == -value)
+                 .select(missing, others);  // the other end of the range is off the grid, too
     double quantum = quantum_of(others);
     if (!(quantum > 0.0)) return false;
     // Many steps tell a step to more digits than were logged of it: some first, which the logged digits count safely.
     for (const double most : {50.0 * quantum, 1e300}) {
       double farthest = 0.0;
-      for (const double other : others)
-        if (std::abs(other - one.next) < most) farthest = std::max(farthest, std::abs(other - one.next));
+      for (const double one : others)
+        if (std::abs(one - neighbour) < most) farthest = std::max(farthest, std::abs(one - neighbour));
       const double steps = std::round(farthest / quantum);
       if (steps > 0.0) quantum = farthest / steps;
     }
-    const auto stray = [&](double value) {
-      const double steps = (value - one.next) / quantum;
+    const auto off_step = [&](double one) {
+      const double steps = (one - neighbour) / quantum;
       return std::abs(steps - std::round(steps));
     };
-    std::vector<double> list = finite_samples(others);
-    for (double& value : list) value = stray(value);
-    const double usual = quantile_of(list, 0.95);
-    return usual < on && stray(one.value) > std::max(off, times * usual);
+    std::vector<double> stray;
+    for (const double one : others)
+      if (std::isfinite(one)) stray.push_back(off_step(one));
+    const double usual = quantile_of(stray, nearly_all);
+    return usual < on && off_step(value) > std::max(off, times * usual);
   }
 
-  /// How many samples of a value the column's companion denies: the rate of an angle turns there, or the angle of a rate goes
-  /// on by something else.
-  std::ptrdiff_t moves_at(double value) const {
+  /// Whether neighbours are often the same where they do not have this value. A temperature may have come to rest there: of it
+  /// all neighbours count, unless noise of many steps shows everywhere else, which it would at rest, too.
+  bool stands_still_besides(double value) const {
+    const Eigen::VectorXd others = others_than(value);
+    const bool may_rest =
+        traits_.cannot_jump && !(white_scale(others, runs_) > limit_.quanta * quantum_of(others));
+    return !((may_rest ? equal_share_ : equal_share_of(step_sizes(others, runs_))) < limit_.hardly_equal);
+  }
+
+  /// Whether the column's driver moves, where the column has this value, by more than some steps of the column's.
+  bool is_driven_at(double value) const {
+    if (traits_.driver == nullptr) return false;
+    std::vector<double> all = finite_samples(values_), driver = finite_samples(*traits_.driver), here;
+    for (Eigen::Index i = 0; i < values_.size(); ++i)
+      if (values_[i] == value && std::isfinite((*traits_.driver)[i])) here.push_back((*traits_.driver)[i]);
+    if (here.empty()) return false;
+    const auto range = [](std::vector<double>& of) { return quantile_of(of, 0.95) - quantile_of(of, 0.05); };
+    const double whole = range(driver);
+    return whole > 0.0 && range(here) / whole * range(all) > limit_.quanta * quantum_;
+  }
+
+  bool resting(Eigen::Index row) const {
+    if (traits_.at_rest == nullptr) return false;
+    const double rate = (*traits_.at_rest)[row];
+    return !(std::abs(rate) > rest_rate());
+  }
+
+  /// Whether a column that rarely stands stood, too, or was lost, from a row on: then frames were repeated, and it tells nothing. An
+  /// exact 0 is a rest.
+  bool repeats_too(const Eigen::VectorXd& other, Eigen::Index from, Eigen::Index to) const {
+    double stood_at = missing;
+    for (Eigen::Index row = from; row <= to; ++row) {
+      if (!std::isfinite(other[row])) continue;
+      if (other[row] == 0.0 || (std::isfinite(stood_at) && other[row] != stood_at)) return false;
+      stood_at = other[row];
+    }
+    if (other_equal_share_ < 0.0) other_equal_share_ = equal_share_of(step_sizes(other, runs_));
+    return other_equal_share_ < limit_.rarely_equal;
+  }
+
+  double rest_rate() const {
+    if (rest_rate_ >= 0.0) return rest_rate_;
+    constexpr double rest_share = 0.05,  // of the rate's 90th percentile
+        rest_steps = 2.0;                // of a coarse rate, which may be off by one
+    std::vector<double> list = finite_samples(traits_.at_rest->cwiseAbs());
+    return rest_rate_ =
+               std::max(rest_share * quantile_of(list, 0.9), rest_steps * quantum_of(*traits_.at_rest));
+  }
+
+  /// A quantum and the noise of the column that this one is the rate of.
+  double position_step() const {
+    if (position_quantum_ < 0.0)
+      position_quantum_ = quantum_of(*traits_.integral) + white_scale(*traits_.integral, runs_);
+    return position_quantum_;
+  }
+
+  /// Whether the column that this one is the rate of moves on by `rate` between two rows: then the rate is right.
+  bool moves_on(Eigen::Index from, Eigen::Index to, double rate) const {
+    constexpr double off_share = 0.02, quanta = 4.0;
+    if (traits_.integral == nullptr) return false;
+    const Eigen::VectorXd& position = *traits_.integral;
+    const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
+    const double moved = position[to] - position[from];
+    if (!std::isfinite(moved)) return false;
+    // The way as a whole, and half of it: a motion there and back ends where it began.
+    const Eigen::Index middle = from + (to - from) / 2;
+    const double halfway = position[middle] - position[from];
+    const double half_s = (*traits_.t_s)[middle] - (*traits_.t_s)[from];
+    const double allowed = off_share * std::abs(rate) * lasts_s + quanta * position_step();
+    return std::abs(moved - rate * lasts_s) <= allowed &&
+           (!std::isfinite(halfway) || std::abs(halfway - rate * half_s) <= allowed);
+  }
+
+  /// Whether the column that this one is the rate of moves by something else than `rate`, though rounded, between two rows.
+  bool moves_otherwise(Eigen::Index from, Eigen::Index to, double rate) const {
+    if (traits_.integral == nullptr) return false;
+    constexpr double share = 0.1, quanta = 4.0;
+    const Eigen::VectorXd& position = *traits_.integral;
+    while (from < to && !std::isfinite(position[from])) ++from;
+    while (from < to && !std::isfinite(position[to])) --to;
+    const double lasts_s = (*traits_.t_s)[to] - (*traits_.t_s)[from];
+    const double off = std::abs(position[to] - position[from] - rate * lasts_s);
+    return off > (share * std::abs(rate) + quantum_) * lasts_s + quanta * position_step();
+  }
+
+  /// Ways by which a rate says that an angle went over some rows, of all its motions that last: a rate may have spikes.
+  struct Ways {
+    double all = 0.0;       ///< their sum
+    double farthest = 0.0;  ///< the longest, either way
+  };
+
+  Ways ways_between(Eigen::Index from, Eigen::Index to) const {
+    constexpr Eigen::Index least = 6;  // rows of a motion
+    const Eigen::VectorXd &rate = *traits_.at_rest, &t_s = *traits_.t_s;
+    Ways ways;
+    double part = 0.0;
+    Eigen::Index in_a_row = 0;
+    for (Eigen::Index row = from; row < to; ++row) {
+      const bool moves = !resting(row) && std::isfinite(rate[row]);
+      const double way = moves ? rate[row] * (t_s[row + 1] - t_s[row]) : 0.0;
+      in_a_row = moves ? in_a_row + 1 : 0;
+      part = moves ? part + way : 0.0;
+      if (in_a_row == least) ways.all += part;
+      else if (in_a_row > least) ways.all += way;
+      if (in_a_row >= least) ways.farthest = std::max(ways.farthest, std::abs(part));
+    }
+    return ways;
+  }
+
+  /// Whether an angle that stood from a row on went somewhere meanwhile, though its rate rests for most of the time.
+  bool went_somewhere(Eigen::Index from, Eigen::Index to) const {
+    constexpr double clearly = 4.0;
+    return ways_between(from, to).farthest > clearly * visible_way();
+  }
+
+  /// Whether an angle that stood from a row on reads at another one at once, about what its rate says it moved by meanwhile.
+  bool catches_up(Eigen::Index from, Eigen::Index to) const {
+    constexpr double at_least = 0.5, at_most = 2.0;
+    const double jump = values_[to] - values_[from], all = ways_between(from, to).all;
+    return std::abs(all) > visible_way() && jump * all > 0.0 && std::abs(jump) > at_least * std::abs(all) &&
+           std::abs(jump) < at_most * std::abs(all);
+  }
+
+  /// A motion of an angle that neither its noise nor its steps hide.
+  double visible_way() const { return limit_.jump_scales * std::max(scale_, quantum_); }
+
+  /// Whether a temperature stands for longer than it does where it rests, judging by how often it then reads the same twice, and
+  /// how rarely it steps as far as it does after that. A slow one in coarse steps does stand, but its noise shows.
+  bool rests_otherwise(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
+    constexpr std::size_t around =
+        6;  // samples before and after, over which one that rests moves by a quantum at most
+    double still = 0.0, equal = 0.0, as_far = 0.0, steps = 0.0, moves = 0.0, wide = 0.0;
+    const double step = end < rows.size() ? std::abs(values_[rows[end]] - values_[rows[begin]]) : 0.0;
+    constexpr std::size_t looked_at =
+        5000;  // samples before and after: of a million there are stretches in thousands
+    const std::size_t first = std::max<std::size_t>(1, begin - std::min(begin, looked_at)),
+                      last = std::min(rows.size(), end + looked_at);
+    for (std::size_t k = first; k < last; ++k) {
+      if (k >= begin && k <= end) continue;
+      const double own = std::abs(values_[rows[k]] - values_[rows[k - 1]]);
+      steps += 1.0;
+      moves += own > 0.0 ? 1.0 : 0.0;
+      wide += own > 1.5 * quantum_ ? 1.0 : 0.0;
+      as_far += own >= step ? 1.0 : 0.0;
+      if (k < around || k + around >= rows.size() || (k + around >= begin && k < end + around)) continue;
+      if (std::abs(values_[rows[k + around]] - values_[rows[k - around]]) > 1.5 * quantum_) continue;
+      still += 1.0;
+      equal += own == 0.0 ? 1.0 : 0.0;
+    }
+    // What only ever goes from one step to the next and back has less noise than a step: between two thresholds it stands.
+    const bool is_quiet = wide < limit_.wide_steps * moves;
+    const double share = is_quiet ? 1.0 : (equal + 1.0) / (still + 1.0);
+    const double far = step > limit_.quanta * quantum_ ? std::log((steps + 1.0) / (as_far + 1.0)) : 0.0;
+    return -std::log(share) * static_cast<double>(end - begin - 1) + far > limit_.log_chance;
+  }
+
+  /// How many samples of this value no other column bears out: nothing rests there, nor does what this one is the rate
+  /// of move on by it, stretch by stretch. (Between two rows a coarse position hardly moves.)
+  std::ptrdiff_t denied(double value) const {
+    constexpr Eigen::Index around = 3;
     std::ptrdiff_t count = 0;
-    std::vector<double> rates =
-        traits_.rate != nullptr ? finite_samples(traits_.rate->cwiseAbs()) : std::vector<double>();
-    constexpr double rest = 0.05;  // of what a rate reaches
-    const double coarse = traits_.rate != nullptr ? 2.0 * quantum_of(*traits_.rate) : 0.0,
-                 moving = std::max(rest * quantile_of(rates, 0.9), coarse);
     for (const RunSpan& run : runs_)
-      for (Eigen::Index i = run.begin + 1; i + 1 < run.end; ++i) {
-        if (values_[i] != value) continue;
-        if (traits_.rate != nullptr) count += std::abs((*traits_.rate)[i]) > moving ? 1 : 0;
-        if (traits_.angle == nullptr) continue;
-        const double lasts_s = (*traits_.t_s)[i + 1] - (*traits_.t_s)[i - 1],
-                     moved = ((*traits_.angle)[i + 1] - (*traits_.angle)[i - 1]) / lasts_s;
-        count +=
-            std::abs(moved) > std::abs(value) + limit_.quanta * (quantum_ + angle_noise() / lasts_s) ? 1 : 0;
+      for (Eigen::Index row = run.begin; row < run.end;) {
+        Eigen::Index end = row;
+        std::ptrdiff_t moving = 0;
+        for (; end < run.end && values_[end] == value; ++end) moving += resting(end) ? 0 : 1;
+        if (moving > 0 &&
+            !moves_on(std::max(run.begin, row - around), std::min(run.end - 1, end - 1 + around), value))
+          count += moving;
+        row = std::max(end, row + 1);
       }
     return count;
   }
 
-  static constexpr const DataThresholds& limit_ = data_limits;
-  const Eigen::VectorXd recorded_;  // without it a spike's neighbours would lose what confirms them
+  bool is_frozen(const std::vector<Eigen::Index>& rows, std::size_t begin, std::size_t end) const {
+    const auto length = static_cast<Eigen::Index>(end - begin);
+    if (length < limit_.least_frozen) return false;
+    const double value = values_[rows[begin]];
+    const double share = std::max(equal_share_, 1e-4);
+    const bool improbable = equal_share_ < limit_.rarely_equal &&
+                            -std::log(share) * static_cast<double>(length - 1) > limit_.log_chance;
+    // An exact 0 is a rest, but of a rate whose angle goes on, and which jumps where it is read again.
+    if (traits_.zero_is_rest && value == 0.0)
+      return improbable && moves_otherwise(rows[begin], rows[end - 1], value) && end < rows.size() &&
+             std::abs(values_[rows[end]]) > limit_.jump_scales * scale_;
+    if (traits_.at_rest != nullptr) {
+      if (end < rows.size() && catches_up(rows[begin], rows[end])) return true;
+      std::size_t moving = 0;
+      for (std::size_t k = begin; k < end; ++k) moving += resting(rows[k]) ? 0 : 1;
+      if (2 * moving < end - begin && !repeats_too(*traits_.at_rest, rows[begin], rows[end - 1]))
+        return went_somewhere(rows[begin], end < rows.size() ? rows[end] : rows[end - 1]);
+    }
+    if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value) &&
+        !repeats_too(*traits_.integral, rows[begin], rows[end - 1]))
+      return false;
+    if (improbable && (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value))) return true;
+    if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
+    // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
+    // a current that somebody sets.
+    return !is_set() && jumps_after(rows, end);
+  }
+
+  /// Whether a column that stood jumps where it goes on, and stays away.
+  bool jumps_after(const std::vector<Eigen::Index>& rows, std::size_t end) const {
+    if (end == rows.size()) return false;
+    const double value = values_[rows[end - 1]], jump = std::abs(values_[rows[end]] - value);
+    return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
+                            limit_.quanta * quantum_}) &&
+           (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
+  }
+
+  /// Whether a column that may jump is constant but for steps: a value that is set, not measured.
+  bool is_set() const {
+    const bool may_jump = !traits_.cannot_jump && traits_.at_rest == nullptr && traits_.integral == nullptr;
+    return may_jump && equal_share_ > limit_.nearly_always_equal;
+  }
+
+  static constexpr MaskThresholds limit_{};
   Eigen::VectorXd values_;
   const std::vector<RunSpan>& runs_;
   ColumnTraits traits_;
-  double quantum_ = 0.0, scale_ = 0.0, jump_ = 0.0, range_ = 0.0, equal_share_ = 0.0;
-  mutable double angle_noise_ = -1.0;
+  std::optional<Spikes> spikes_;  // which remember what the column was before samples were taken away
+  double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
+  mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0;
 };
-
-/// Rows that repeat all outputs of the row before them, where two outputs at least hardly ever do so, and chance would make a
-/// third of them at most: a logger wrote a frame again. A rest, of which an output reads an exact 0, is none.
-inline RowMask repeated_frames(const std::vector<const Eigen::VectorXd*>& all, Eigen::Index rows,
-                               const std::vector<RunSpan>& runs) {
-  constexpr std::size_t enough = 2;
-  constexpr double least = 3.0;  // times as many as by chance
-  RowMask mask(static_cast<std::size_t>(rows), 0);
-  std::vector<const Eigen::VectorXd*> outputs;
-  double by_chance = static_cast<double>(rows), count = 0.0;
-  for (const Eigen::VectorXd* one : all) {
-    // At the end of its range a column stands for another reason.
-    const double least_value = one->redux([](double a, double b) { return std::fmin(a, b); }),
-                 most_value = one->redux([](double a, double b) { return std::fmax(a, b); });
-    const Eigen::VectorXd inside =
-        (one->array() == least_value || one->array() == most_value).select(missing, *one);
-    const double share = equal_share_of(step_sizes(inside, runs));
-    if (!(share < data_limits.hardly_equal)) continue;
-    outputs.push_back(one);
-    by_chance *= share;
-  }
-  if (outputs.size() < enough) return mask;
-  const auto repeats = [&](Eigen::Index i) {
-    bool any = false;
-    for (const Eigen::VectorXd* one : outputs) {
-      if ((*one)[i] == 0.0 || (std::isfinite((*one)[i]) && (*one)[i] != (*one)[i - 1])) return false;
-      any = any || std::isfinite((*one)[i]);
-    }
-    return any;
-  };
-  for (const RunSpan& run : runs)
-    for (Eigen::Index i = run.begin + 1; i < run.end; ++i) {
-      Eigen::Index end = i;
-      while (end < run.end && repeats(end)) ++end;
-      count += static_cast<double>(end - i);
-      if (end - i <= data_limits.longest_repeat) std::fill(mask.begin() + i, mask.begin() + end, 1);
-      i = std::max(i, end);
-    }
-  if (count < least * by_chance) mask.assign(mask.size(), 0);
-  return mask;
-}
 
 }  // namespace thermopower::gap::engine

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <thermopower/gap/data/finding_list.hpp>
+#include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
-#include <thermopower/gap/data/thresholds.hpp>
-#include <thermopower/gap/model.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,31 @@
 /// last value through it is wrong without the model being so.
 
 namespace thermopower::gap::engine {
+
+/// Thresholds of the cutting of runs.
+/// Held by tests/gap/data/check_test.cpp.
+struct SegmentThresholds {
+  double regular_gap =
+      1.6;  ///< intervals: of stamps on a grid, a row is missing (a rounded stamp moves by less)
+  double irregular_gap = 2.5;  ///< of the longest usual interval (95th percentile): of stamps that jitter
+  double beyond_jitter =
+      5.0;              ///< robust scales of the intervals by which a rare one is longer that misses a row
+  double rare = 0.95;   ///< share of the intervals that have to be shorter for that
+  double jitter = 1.1;  ///< 95th percentile over the median above which stamps count as jittering
+  double same_command = 0.02;     ///< of the command's range: what lies between two such values is known
+  Eigen::Index bridged_rows = 5;  ///< a hole in a slow input (air, supply) of at most so many rows is bridged
+  Eigen::Index held_rows = 20;    ///< a command is believed to have stood still for at most so many rows
+  double slow_noise = 4.0;        ///< noise units within which a slow input counts as unchanged over a hole
+  double reset_speeds =
+      10.0;  ///< times the rates of the rows around at which an angle that jumps would have moved
+  double reset_noise = 30.0;      ///< noise scales of the angle, and quanta, that it jumps by at least
+  Eigen::Index reset_rows = 5;    ///< on both sides that know nothing of such a rate
+  Eigen::Index glitch_rows = 50;  ///< what comes back within so many is a sensor's fault
+  double comes_back = 0.2;        ///< of a jump by which the next one may miss where the first began
+  double nearly_all = 0.98;       ///< of the rates: what is beyond may be a spike's
+  double went_on = 0.3;  ///< of a jump by which the rate may miss it where the angle stood still before
+  Eigen::Index least_rows = 4;  ///< shorter segments tell nothing and are left out
+};
 
 /// How an input behaves between its rows.
 enum class InputPace {
@@ -42,30 +66,6 @@ inline const std::vector<InputColumn>& input_columns() {
       {"ambient_C", InputPace::slow},      {"airspeed_mps", InputPace::slow},
       {"neighbour_C", InputPace::slow}};
   return columns;
-}
-
-/// Whether a baseline reads an input column. What it ignores changes no answer: its holes cut no run.
-inline bool is_read(const Model& model, const Recording& recording, const std::string& column) {
-  const bool of_axis = column == "voltage_V" || column == "torque_Nm" || column.compare(0, 7, "target_") == 0;
-  if (of_axis) return model.has_axis();
-  if (column == "airspeed_mps" || column == "neighbour_C") return !model.effects.empty();
-  if (column == "drive_A" && model.has_axis()) return true;
-  if (column == "drive_A") return model.has_thermal() && !recording.has("power_param");
-  return model.own || model.has_thermal() || model.has_current();
-}
-
-/// The time constant of a model's body in s; nothing where it has none.
-inline std::optional<double> time_constant_s(const Model& model) {
-  if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
-    return lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
-  if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
-    return 60.0 / polynomial->cooling_per_min;
-  return std::nullopt;
-}
-
-/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers at once.
-inline double unnoticed_s(const Model& model) {
-  return model.own || model.has_axis() ? 0.0 : data_limits.slow_body * time_constant_s(model).value_or(0.0);
 }
 
 /// Runs cut at some rows: `starts[row]` set means that a new segment begins there. The cut pieces keep their
@@ -117,7 +117,7 @@ public:
   }
   /// Whether a command that was `before` and is `after` stood still meanwhile.
   bool same(double before, double after) const {
-    return std::abs(after - before) <= data_limits.same_command * range_;
+    return std::abs(after - before) <= SegmentThresholds().same_command * range_;
   }
 
 private:
@@ -134,20 +134,20 @@ inline std::vector<double> intervals_of(const Eigen::VectorXd& t_s, const std::v
 
 /// The interval from which more than a row or two are missing, of such intervals. Reorders them.
 inline double long_pause(std::vector<double>& steps) {
-  return data_limits.irregular_gap * quantile_of(steps, 0.95);
+  return SegmentThresholds().irregular_gap * quantile_of(steps, 0.95);
 }
 
 /// The interval from which time passed unrecorded, of such intervals. Where one in twenty is longer than a missing row would tell,
 /// the log has no interval of its own, and only far longer ones count.
 inline double shortest_pause(std::vector<double> steps) {
-  constexpr const DataThresholds& limit = data_limits;
+  constexpr SegmentThresholds limit;
   constexpr double normal_median = 0.6745;
   const double usual = median_of(steps), is_long = long_pause(steps);
   std::vector<double> off;
   for (const double step : steps) off.push_back(std::abs(step - usual));
   const double of_a_row =
       std::max(limit.regular_gap * usual, usual + limit.beyond_jitter / normal_median * median_of(off));
-  return quantile_of(steps, 0.95) < of_a_row ? std::min(of_a_row, is_long) : is_long;
+  return quantile_of(steps, limit.rare) < of_a_row ? std::min(of_a_row, is_long) : is_long;
 }
 
 /// Runs cut at long pauses: over such a one a clock may have started anew.
@@ -162,25 +162,23 @@ inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const
 }
 
 /// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
-/// a command did not stand still, and which the model notices.
-inline void check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs,
-                         RowMask& starts) {
-  constexpr const DataThresholds& limit = data_limits;
+/// a command did not stand still.
+inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, RowMask& starts) {
+  constexpr SegmentThresholds limit;
   const Recording& r = list.recording();
   std::vector<double> steps = intervals_of(r.t_s, runs);
   if (steps.size() < 3) return;
   const double usual = median_of(steps), longest = quantile_of(steps, 0.95),
                shortest = quantile_of(steps, 0.05);
-  constexpr double jitter = 1.1;  // of the interval
-  const bool jitters = longest > jitter * usual || shortest < usual / jitter;
+  const bool jitters = longest > limit.jitter * usual || shortest < usual / limit.jitter;
   if (jitters)
     list.add(FindingKind::irregular_stamps, Severity::note, "t_s",
              "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
                  " s around " + short_number(usual) + " s");
-  const double pause = std::max(shortest_pause(steps), unnoticed_s(model));
+  const double pause = shortest_pause(steps);
   std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
   for (const InputColumn& input : input_columns())
-    if (input.pace == InputPace::command && r.has(input.name) && is_read(model, r, input.name))
+    if (input.pace == InputPace::command && r.has(input.name))
       commands.emplace_back(r.find(input.name), CommandRange(*r.find(input.name)));
   RowMask cut(static_cast<std::size_t>(r.rows()), 0);
   double worst = 0.0;
@@ -202,42 +200,72 @@ inline void check_stamps(const Model& model, FindingList& list, const std::vecto
                 "log without losing rows");
 }
 
+/// How fast an axis gets, but for a spike's rates, deg/s. 0 where the rate often reads the same twice: then it may well stand.
+inline double fastest_that_rarely_stands(const Eigen::VectorXd& rate_dps, const std::vector<RunSpan>& runs) {
+  std::vector<double> rates = finite_samples(rate_dps.cwiseAbs());
+  const bool stands = !(equal_share_of(step_sizes(rate_dps, runs)) < MaskThresholds().rarely_equal);
+  return rates.empty() || stands ? 0.0 : quantile_of(rates, SegmentThresholds().nearly_all);
+}
+
+/// Whether an axis went on by a jump while its angle stood still up to a row, the interval after that included, as far as its
+/// rate tells. Where that stood still, too, in a motion, or was not read, it may have gone as far as it is fast.
+/// @param fastest_dps  0: a rate that stands still tells as much as any other
+inline bool went_on_while_standing(const Eigen::VectorXd& angle, const Eigen::VectorXd& rate_dps,
+                                   double fastest_dps, const Eigen::VectorXd& t_s, Eigen::Index row,
+                                   Eigen::Index begin) {
+  const double jump = angle[row + 1] - angle[row];
+  double went = 0.0, read_dps = missing;
+  Eigen::Index first = row;
+  bool is_one = true;
+  const auto stands = [&](Eigen::Index i) {  // a spike in between says nothing
+    return angle[i] == angle[row] || (i > begin && angle[i - 1] == angle[row]);
+  };
+  for (Eigen::Index i = row; i >= begin && stands(i); first = i--) {
+    if (!std::isfinite(rate_dps[i])) continue;
+    is_one = is_one && !(std::abs(rate_dps[i] - read_dps) > 0.0);
+    read_dps = rate_dps[i];
+    went += rate_dps[i] * (t_s[i + 1] - t_s[i]);
+  }
+  if (fastest_dps > 0.0 && is_one && first < row && read_dps != 0.0)
+    return std::abs(jump) <= fastest_dps * (t_s[row + 1] - t_s[first]);
+  return std::abs(went - jump) <= SegmentThresholds().went_on * std::abs(jump);
+}
+
 /// Says where an axis was put elsewhere between two rows, and sets `starts` there: swings of a pendulum that were held, let
 /// go and logged on end. The rows before and after move slowly, or stand, at places that no motion between them joins.
+/// An angle that stood still while its rate went on as far was a sensor's that had stopped.
 /// @param angle     without wraps, degrees
-/// @param rate_dps  null: none was recorded; where it says that the axis went on as far its angle had stopped
+/// @param rate_dps  null: none was recorded
 inline void check_resets(FindingList& list, const Eigen::VectorXd& angle, const Eigen::VectorXd* rate_dps,
                          const std::vector<RunSpan>& runs, RowMask& starts) {
-  constexpr Eigen::Index beside = 5,
-                         glitch = 50;  // rows that move slowly; rows after which what jumped comes back
-  constexpr double comes_back = 0.2;   // of a jump
+  constexpr SegmentThresholds limit;
   const Eigen::VectorXd& t_s = list.recording().t_s;
-  const double least = data_limits.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
+  const double least = limit.reset_noise * (white_scale(angle, runs) + quantum_of(angle));
+  std::optional<double> fastest_dps;  // of the whole recording: asked where something jumps
   RowMask cut(starts.size(), 0);
   double largest = 0.0;
   for (const RunSpan& run : runs)
-    for (Eigen::Index k = run.begin + beside; k + 1 + beside < run.end; ++k) {
+    for (Eigen::Index k = run.begin + limit.reset_rows; k + 1 + limit.reset_rows < run.end; ++k) {
       const double jump = angle[k + 1] - angle[k];
       if (!(std::abs(jump) > least)) continue;
       const double speed = std::abs(jump) / (t_s[k + 1] - t_s[k]);
       bool is_reset = true;
-      for (Eigen::Index i = k - beside; i <= k + beside && is_reset; ++i)
-        is_reset = i == k || data_limits.reset_speeds * std::abs(angle[i + 1] - angle[i]) <
-                                 speed * (t_s[i + 1] - t_s[i]);
+      for (Eigen::Index i = k - limit.reset_rows; i <= k + limit.reset_rows && is_reset; ++i)
+        is_reset =
+            i == k || limit.reset_speeds * std::abs(angle[i + 1] - angle[i]) < speed * (t_s[i + 1] - t_s[i]);
       // A jump back, soon after or before: this one is an end of a burst.
       const auto is_burst = [&](Eigen::Index from, Eigen::Index to, Eigen::Index step) {
-        return std::abs(angle[step + 1] - angle[step]) > (1.0 - comes_back) * std::abs(jump) &&
-               std::abs(angle[to] - angle[from]) < comes_back * std::abs(jump);
+        return std::abs(angle[step + 1] - angle[step]) > (1.0 - limit.comes_back) * std::abs(jump) &&
+               std::abs(angle[to] - angle[from]) < limit.comes_back * std::abs(jump);
       };
-      for (Eigen::Index i = 1; i <= glitch && is_reset; ++i)
+      for (Eigen::Index i = 1; i <= limit.glitch_rows && is_reset; ++i)
         is_reset = !(k + 1 + i < run.end && is_burst(k, k + 1 + i, k + i)) &&
                    !(k - i >= run.begin && is_burst(k - i, k + 1, k - i));
-      if (rate_dps != nullptr && (*rate_dps)[k] != 0.0 && (*rate_dps)[k] == (*rate_dps)[k - 1])
-        continue;         // both stood
-      double went = 0.0;  // while the angle did
-      for (Eigen::Index i = k; rate_dps != nullptr && i >= run.begin && angle[i] == angle[k]; --i)
-        if (std::isfinite((*rate_dps)[i])) went += (*rate_dps)[i] * (t_s[i + 1] - t_s[i]);
-      if (!is_reset || std::abs(went) > 0.5 * std::abs(jump)) continue;
+      if (is_reset && rate_dps != nullptr) {
+        if (!fastest_dps) fastest_dps = fastest_that_rarely_stands(*rate_dps, runs);
+        is_reset = !went_on_while_standing(angle, *rate_dps, *fastest_dps, t_s, k, run.begin);
+      }
+      if (!is_reset) continue;
       cut[static_cast<std::size_t>(k + 1)] = starts[static_cast<std::size_t>(k + 1)] = 1;
       largest = std::max(largest, std::abs(jump));
     }
@@ -270,7 +298,7 @@ inline double goes_on_by(const Eigen::VectorXd& values, const RunSpan& run, Eige
 inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::VectorXd& values,
                                    const Eigen::VectorXd& t_s, const std::vector<RunSpan>& runs,
                                    RowMask& unknown, double stands_s = 0.0, const RowMask& untold = {}) {
-  constexpr const DataThresholds& limit = data_limits;
+  constexpr SegmentThresholds limit;
   Eigen::VectorXd filled = values;
   const CommandRange range(values);
   const double noise = white_scale(values, runs) + quantum_of(values);
@@ -292,7 +320,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
                 (before == 0.0) == (after == 0.0) && range.same(0.0, goes_on_by(values, run, row, end));
       else
         known = (inside &&
-                 (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.quanta * noise)) ||
+                 (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
                 (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
       known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s);
       if (!untold.empty() && end - row > limit.bridged_rows)

@@ -4,10 +4,13 @@
 
 #include <thermopower/gap/check.hpp>
 #include <thermopower/gap/data/command_between_rows.hpp>
+#include <thermopower/gap/data/current_noise.hpp>
+#include <thermopower/gap/data/driven_before.hpp>
 #include <thermopower/gap/data/experiment.hpp>
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>
@@ -20,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace thermopower::gap::engine {
@@ -89,6 +93,33 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
     }
 }
 
+/// Lets the target of a servo go on between the rows where the training recordings say that it did.
+inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
+                                      const Catalogue& catalogue, std::vector<Finding>& findings) {
+  if (!model.has_axis() || !model.has_servo()) return;
+  TargetBetweenRows between(model, catalogue);
+  const auto is_closed = [](const PreparedRecording& one) {
+    return one.inputs().axis() && one.inputs().closed_loop;
+  };
+  for (const PreparedRecording& one : checked.train)
+    if (is_closed(one)) between.add(one.inputs());
+  const auto share = between.steady();
+  if (!share) return;
+  for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::sampled_command,
+                        Severity::note,
+                        one.recording().name,
+                        one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
+                        "went on between the rows, as the motion shows: the servo is given what lies " +
+                            short_number(100.0 * share->value) +
+                            " % of the way to the next row's, on average",
+                        "log the target at the rate it is set",
+                        FindingAction::none,
+                        {}});
+    one.take_targets_between(model, share->value);
+  });
+}
+
 /// Whether a recording is of an axis whose command was logged.
 inline bool is_commanded(const PreparedRecording& one) {
   return one.inputs().axis() && !one.inputs().closed_loop;
@@ -99,35 +130,96 @@ inline const Eigen::VectorXd& command_of(const Model& model, const PreparedRecor
   return plant::command(one.inputs(), model.axis->voltage_driven());
 }
 
+/// Lets the first command of a run that begins at rest be in force before it, or none, where its first rows show which, by
+/// what the motion makes of earlier commands in the training recordings. Comes before what is said of the command between the rows.
+inline void read_what_drove_before(const Model& model, CheckedRecordings& checked) {
+  if (!model.has_axis()) return;
+  DrivenBefore before;
+  for (const PreparedRecording& one : checked.train)
+    if (is_commanded(one)) before.add(one.inputs(), command_of(model, one));
+  for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
+    const std::vector<RunSpan>& runs = one.inputs().runs;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (const auto was = before.was(one.inputs(), command_of(model, one), runs[i]); was && !runs[i].goes_on)
+        one.set_driven_before(i, *was);
+  });
+}
+
 /// Takes the command of an axis between the rows for what the training recordings say it was, in all recordings.
-inline void read_between_rows(const Model& model, CheckedRecordings& checked,
+inline void read_between_rows(const Model& model, CheckedRecordings& checked, double horizon_s,
                               std::vector<Finding>& findings) {
   if (!model.has_axis()) return;
-  CommandBetweenRows between;
+  CommandBetweenRows between(horizon_s);
   for (const PreparedRecording& one : checked.train)
     if (is_commanded(one)) between.add(one.inputs(), command_of(model, one));
+  const double noise = between.noise();
   const auto share = between.steady();
-  if (!share) return;
+  if (!share && !(noise > 0.0)) return;
+  const bool bends = share && between.bends();
+  const int parts = share ? between.pieces() : 1;
   for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
     const std::string column = command_column(one.inputs());
-    findings.push_back(
-        {FindingKind::sampled_command,
-         Severity::note,
-         one.recording().name,
-         column,
-         "went on between the rows, as the motion shows: its mean until the next row is taken, " +
-             short_number(100.0 * share->value) + " % of the way to that one's",
-         "log the command at the rate it is set, or the mean of it between the rows",
-         FindingAction::none,
-         {}});
-    const Eigen::VectorXd command = command_of(model, one);
-    const std::vector<RunSpan> runs = one.recording().spans();
-    const Eigen::VectorXd steps = steps_of(command, runs);
-    constexpr double sure = 2.0;  // standard errors: 95 %
-    UnknownCommand unknown;
-    unknown.between = unknown_between(command, steps, runs);
-    unknown.shift = sure * share->error * steps;
-    one.take_command(model, column, command + share->value * steps, std::move(unknown));
+    const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
+      findings.push_back(
+          {kind, Severity::note, one.recording().name, column, message, mend, FindingAction::none, {}});
+    };
+    if (share) {
+      note(FindingKind::sampled_command,
+           "went on between the rows, as the motion shows: its mean until the next row is taken, " +
+               short_number(100.0 * share->value) + " % of the way to that one's",
+           "log the command at the rate it is set, or the mean of it between the rows");
+      const Eigen::VectorXd& command = command_of(model, one);
+      const std::vector<RunSpan> runs = one.recording().spans();
+      const Eigen::VectorXd steps = steps_of(command, runs);
+      UnknownCommand unknown;
+      if (!(noise > 0.0)) unknown.between = unknown_between(command, steps, runs);
+      constexpr double sure = 2.0;  // standard errors: 95 %
+      unknown.shift = sure * share->error * steps;
+      one.take_command(model, column, command_within(command, runs, share->value, bends, parts),
+                       std::move(unknown));
+    }
+    if (noise > 0.0) {
+      const char* unit = model.axis->voltage_driven() ? " V" : " A";
+      note(FindingKind::noisy_command,
+           "has noise of " + short_number(noise) + unit +
+               " that no motion follows: what a simulation wanders by it counts as noise",
+           "log the command that was sent, not the current that was measured");
+      one.set_command_noise(noise);
+    }
+  });
+}
+
+/// Takes off the heat of a bench what its current sensor reads where nothing flows in the training recordings, in all
+/// recordings.
+inline void read_current_noise(const Model& model, CheckedRecordings& checked,
+                               std::vector<Finding>& findings) {
+  // The other laws' heat goes with the current itself, of which noise is no part on average.
+  const bool goes_with_square = std::holds_alternative<OhmicCurrentModel>(model.current);
+  if (model.own || !model.has_thermal() || !goes_with_square || model.has_axis()) return;
+  const auto is_heated = [](const PreparedRecording& one) {
+    const Inputs& inputs = one.inputs();
+    return inputs.judged(Signal::motor_C) && inputs.heat_W.size() == 0 &&
+           (inputs.heat == HeatSource::measured || inputs.heat == HeatSource::drive);
+  };
+  CurrentNoise noise;
+  for (const PreparedRecording& one : checked.train)
+    if (is_heated(one))
+      noise.add(one.inputs().heat == HeatSource::drive ? one.inputs().drive_A : one.inputs().held_current_A,
+                one.inputs().runs);
+  const std::optional<double> sd_A = noise.sd_A();
+  if (!sd_A) return;
+  for_each_recording(checked, is_heated, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::noisy_command,
+                        Severity::note,
+                        one.recording().name,
+                        heat_column(one.inputs()),
+                        "has noise of " + short_number(*sd_A) +
+                            " A where nothing flows: its square is taken off the heat, and what a simulation "
+                            "wanders by the rest of it counts as noise",
+                        "log the mean square of the current between the rows",
+                        FindingAction::none,
+                        {}});
+    one.set_current_noise(*sd_A);
   });
 }
 
@@ -198,7 +290,10 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
   leave_out_what_is_dead(model, result, options.as_recorded, others);
   if (!options.as_recorded) {
     mend_what_lags(model, result, others);
-    read_between_rows(model, result, others);
+    read_what_drove_before(model, result);
+    read_between_rows(model, result, options.horizon_s, others);
+    read_targets_between_rows(model, result, catalogue, others);
+    read_current_noise(model, result, others);
     read_when_switched(model, result, catalogue, others);
   }
   for (Finding& finding : check_experiment(result.train, result.held_out, options.horizon_s))

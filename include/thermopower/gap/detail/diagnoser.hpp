@@ -47,8 +47,9 @@ public:
     stage("data gate");
     if (!enough_data(result_, model_, train_inputs_, held_out_inputs_, options_.horizon_s))
       return std::move(result_);
-    Localisation found = model_.own ? localise_own_plant(model_, catalogue_, train_inputs_)
-                                    : localise(model_, train_recordings_, {}, catalogue_);
+    Localisation found;
+    if (model_.own) localise_own_plant(model_, catalogue_, train_inputs_, found);
+    else found = localise(model_, train_recordings_, {}, catalogue_);
     if (!model_.own) add_occurrences(model_, train_recordings_, held_out_recordings_, {}, catalogue_, found);
     result_.where = std::move(found.where);
     result_.missing_quantities = std::move(found.quantities);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <thermopower/gap/data/noise.hpp>
-#include <thermopower/gap/data/segments.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/fit/segment_simulation.hpp>
@@ -83,6 +82,8 @@ public:
     gather(full_.drive_A, thin.drive_A, true);  // heat goes with the square
     gather(full_.held_current_A, thin.held_current_A, true);
     gather(full_.heat_W, thin.heat_W, false);
+    thin.command_noise *=
+        std::sqrt(static_cast<double>(count) / static_cast<double>(full_.rows()));  // of means
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (std::isfinite(rows_[i].rate_dps))
         thin.covariate_rate_dps[static_cast<Eigen::Index>(i)] = rows_[i].rate_dps;
@@ -367,7 +368,11 @@ private:
 inline Inputs thinned_bench(const Inputs& full, Eigen::Index rows, const Model& model,
                             const Catalogue& catalogue) {
   constexpr ThinningThresholds limit;
-  const double tau_s = time_constant_s(model).value_or(limit.usual_time_constant_s);
+  double tau_s = limit.usual_time_constant_s;
+  if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
+    tau_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
+  else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
+    tau_s = 60.0 / polynomial->cooling_per_min;
   return BenchThinning(full, rows, limit.of_time_constant * tau_s, model, catalogue).run();
 }
 

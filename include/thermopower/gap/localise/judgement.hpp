@@ -38,6 +38,7 @@ public:
       coefficient_.push_back(choice_.best.coefficients[from]);
       from += blocks[i].columns.cols();
     }
+    if (asks_for_course()) look_for_course(balance, *projection, problem);
   }
 
   /// The balance's names and words, without its rows: a recording may be long, and who needs them makes them again.
@@ -67,6 +68,10 @@ public:
   double before() const { return choice_.none.unseen_total / floor_; }
   /// The rest of the chosen freedoms there, in floors.
   double left() const { return choice_.best.unseen_total / floor_; }
+  /// Whom a course of its own accuses that no freedom of few directions describes; nullptr: none is better.
+  const plant::Freedom* course() const { return course_; }
+  /// Share of what the constants leave that it explains, 0..1.
+  double course_share() const { return course_share_; }
   /// The cost of this account of the balance among its alternatives.
   double cost() const {
     return choice_.best.unseen_total * (1.0 + limit_.per_block * static_cast<double>(chosen().size()));
@@ -81,9 +86,12 @@ private:
     names->instrument = balance.instrument;
     names->otherwise = balance.otherwise;
     names->given = balance.given;
+    names->form = balance.form;
     names->reads = balance.reads;
     names->freedoms = balance.freedoms;
-    for (plant::Freedom& one : names->freedoms) one.directions = nullptr;
+    names->courses = balance.courses;
+    for (auto* list : {&names->freedoms, &names->courses})
+      for (plant::Freedom& one : *list) one.directions = nullptr;
     return names;
   }
 
@@ -102,11 +110,38 @@ private:
     for (double& one : worth_) one *= sum > 0.0 ? std::min(1.0, all / excess_) / sum : 0.0;
   }
 
+  bool asks_for_course() const {
+    if (balance_->courses.empty() || !gap()) return false;
+    const bool weak = balance_->form == plant::BalanceForm::weak;
+    return left() > (weak ? limit_.weak_course : limit_.filtered_course) &&
+           (weak || explained() < limit_.filtered_explained) &&
+           choice_.best.seen_total > limit_.course_of_seen * choice_.none.seen_total;
+  }
+
+  void look_for_course(const plant::Balance& balance, const Projection& projection, const Problem& problem) {
+    const double rows = static_cast<double>(problem.y.size()),
+                 price = balance_->form == plant::BalanceForm::weak ? limit_.weak_per_direction
+                                                                    : limit_.filtered_per_direction;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < balance.courses.size(); ++i) {
+      const Eigen::MatrixXd columns = projection.columns(balance.courses[i].directions(0.0));
+      const double free_rows = std::max(1.0, rows - price * static_cast<double>(columns.cols()));
+      const double left = sum_of_squares_left(problem, columns) * rows * rows / (free_rows * free_rows);
+      if (!(left < least)) continue;
+      least = left;
+      course_ = &balance_->courses[i];
+    }
+    if (!(least < limit_.course_better * std::min(choice_.best.seen_total, choice_.none.seen_total)))
+      course_ = nullptr;
+    course_share_ = std::clamp(1.0 - least / choice_.none.seen_total, 0.0, 1.0);
+  }
+
   std::shared_ptr<const plant::Balance> balance_;  // shared: copies keep what points into it
   LocalisationThresholds limit_;
   Choice choice_;
   std::vector<double> worth_, coefficient_, at_;
-  double floor_ = 1.0, excess_ = 1.0;
+  const plant::Freedom* course_ = nullptr;
+  double floor_ = 1.0, excess_ = 1.0, course_share_ = 0.0;
 };
 
 }  // namespace thermopower::gap::engine

@@ -249,6 +249,20 @@ public:
     return result;
   }
 
+  /// The residuals of the fit, row by row.
+  Eigen::VectorXd residual(const BlockFit& fit) const {
+    Eigen::VectorXd out = problem_.y;
+    Eigen::Index at = problem_.nuisance.cols();
+    out -= problem_.nuisance * fit.coefficients.head(at);
+    out -= problem_.free * fit.coefficients.segment(at, problem_.free.cols());
+    at += problem_.free.cols();
+    for (const std::size_t i : fit.blocks) {
+      out -= blocks_[i].columns * fit.coefficients.segment(at, blocks_[i].columns.cols());
+      at += blocks_[i].columns.cols();
+    }
+    return out;
+  }
+
   /// How many blocks there are.
   std::size_t size() const { return blocks_.size(); }
 

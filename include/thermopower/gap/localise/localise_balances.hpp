@@ -72,6 +72,11 @@ inline std::string evidence_text(const std::string& given, const std::string& wo
                   ordered.chance);
     text += " The " + to_string(o.quantity) + " follows " + plant::the_variable(ordered.axis) + more;
   }
+  const double period = half_power_period(o.value, o.interval_s);
+  if (period > 0.0 && period < o.longest_run_s) {
+    std::snprintf(more, sizeof more, " Half of its power lies at periods above %.3g s.", period);
+    text += more;
+  }
   return text;
 }
 
@@ -227,6 +232,13 @@ private:
     const Judgement& judgement = *group.judgement;
     if (!judgement.gap()) return;
     const plant::Balance balance = sources_[group.counts].make(group.offsets);
+    if (const plant::Freedom* course = judgement.course()) {
+      const Observed observed = observe(balance, true, limit_);
+      const plant::Freedom& one = scattering(balance, *course, observed);
+      report(one, balance.signal, one.submodel, judgement.course_share(), one.words, balance, observed,
+             judgement.before(), one.variable.empty() || one.is_nobodys);
+      return;
+    }
     const bool named = !judgement.chosen().empty() && judgement.explained() > limit_.explained;
     bool excused = false;
     for (std::size_t k = 0; named && k < judgement.chosen().size(); ++k) {
@@ -241,7 +253,7 @@ private:
       plant::SignalName signal = balance.signal;
       if (instrument && freedom.correction) signal = signal_of(freedom.correction->signal, balance);
       report(freedom, signal, submodel, judgement.worth(k), judgement.words(k), balance,
-             observe(balance, !own, limit_));
+             observe(balance, !own, limit_), judgement.before());
     }
     // Of two instruments that part without an order nobody can say which it is.
     if (named || excused || judgement.before() < limit_.large || balance.otherwise == balance.instrument)
@@ -251,12 +263,28 @@ private:
     plant::Freedom none;
     none.variable = axis;
     report(none, balance.signal, submodel_of(balance, axis), std::max(0.0, judgement.explained()),
-           "no freedom in one submodel helps much; the best", balance, observed);
+           "no freedom in one submodel helps much; the best", balance, observed, judgement.before());
   }
 
   /// The name of a signal whose reading was corrected: one that the balance reads.
   static plant::SignalName signal_of(plant::Signal signal, const plant::Balance& balance) {
     return balance.reads.empty() ? plant::SignalName(signal) : balance.reads.front();
+  }
+
+  /// Of courses that follow no variable, the one whose scatter the missing quantity has.
+  static const plant::Freedom& scattering(const plant::Balance& balance, const plant::Freedom& course,
+                                          const Observed& observed) {
+    if (!course.variable.empty()) return course;
+    const plant::Freedom *with = nullptr, *without = nullptr;
+    std::string held;
+    for (const plant::OrderingVariable& one : balance.variables)
+      if (one.kind == plant::OrderingVariable::Kind::held && held.empty()) held = one.name;
+    for (const plant::Freedom& one : balance.courses) {
+      if (!one.scatters_with.empty()) with = &one;
+      else if (one.variable.empty()) without = &one;
+    }
+    if (with == nullptr || without == nullptr) return course;
+    return scatters_with(observed, with->scatters_with, held) ? *with : *without;
   }
 
   /// The submodel that most freedoms along a variable accuse.
@@ -276,8 +304,11 @@ private:
 
   void report(const plant::Freedom& freedom, const plant::SignalName& signal,
               const plant::SubmodelName& submodel, double share, const std::string& words,
-              const plant::Balance& balance, const Observed& observed) {
+              const plant::Balance& balance, const Observed& observed, double times_noise,
+              bool has_own_course = false) {
     Location location;
+    location.times_noise = times_noise;
+    location.has_own_course = has_own_course;
     location.signal = signal;
     location.submodel = submodel;
     location.share = std::clamp(share, 0.0, 1.0);
@@ -301,6 +332,8 @@ private:
       if (location.share > one.share) std::swap(one.regime, location.regime);
       one.evidence += " " + location.evidence;
       one.share = std::min(1.0, one.share + location.share);
+      one.has_own_course = one.has_own_course || location.has_own_course;
+      one.times_noise = std::max(one.times_noise, location.times_noise);
       return;
     }
     out_.where.push_back(std::move(location));

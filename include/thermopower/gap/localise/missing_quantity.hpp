@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/diagnosis.hpp>
 #include <thermopower/gap/localise/projection.hpp>
 #include <thermopower/gap/localise/rows.hpp>
@@ -36,6 +37,7 @@ struct Observed {
   Eigen::VectorXd value;           ///< one per sample
   std::vector<OrderingAxis> axes;  ///< as long each
   double interval_s = 1.0;         ///< between samples
+  double longest_run_s = 0.0;      ///< of the recording: no longer period can be seen
   double noise = 0.0;  ///< standard deviation that the sensor alone gives `value`; 0 where unknown
 
   /// The axis of that name, or nullptr.
@@ -75,6 +77,10 @@ inline Observed observe(const plant::Balance& balance, bool as_restated,
   o.quantity = balance.quantity;
   o.unit = balance.unit;
   o.interval_s = balance.rows->interval_s;
+  for (const RunSpan& run : balance.rows->runs)
+    if (run.size() > 1)
+      o.longest_run_s =
+          std::max(o.longest_run_s, balance.rows->t_s[run.end - 1] - balance.rows->t_s[run.begin]);
   if (balance.form == plant::BalanceForm::algebraic) {
     const Thinning average(balance.rows->runs, balance.measured, limit.picture_samples);
     Eigen::VectorXd value = balance.measured - balance.flow_sampled;
@@ -108,6 +114,33 @@ inline Observed observe(const plant::Balance& balance, bool as_restated,
                                                 : functions.derivative(one.values)});
   }
   return o;
+}
+
+/// Whether a missing quantity scatters in proportion to a variable rather than alike everywhere. A coefficient with a
+/// course of its own would make it do so. The likelier of two normal laws decides, after the constant part and the
+/// proportional parts have been taken off.
+inline bool scatters_with(const Observed& o, const std::string& variable, const std::string& flow) {
+  constexpr Eigen::Index least_samples = 12;
+  constexpr double least_share = 1e-6, least_size = 1e-4;  // of a variance: keep a perfect fit finite
+  const Eigen::Index n = o.value.size();
+  const OrderingAxis *along = o.find(variable), *driven = o.find(flow);
+  if (n < least_samples || along == nullptr) return false;
+  Eigen::MatrixXd x(n, driven != nullptr ? 3 : 2);
+  x.col(0).setOnes();
+  x.col(1) = along->values;
+  if (driven != nullptr) x.col(2) = driven->values;
+  const Eigen::VectorXd left = o.value - x * LeastSquares(x).solve(o.value);
+  const double noise = o.noise * o.noise, all = left.squaredNorm() / static_cast<double>(n);
+  const double scatter = std::max(all - noise, least_share * all),
+               typical = along->values.squaredNorm() / static_cast<double>(n);
+  double alike = 0.0, in_proportion = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double one = scatter + noise,
+                 other = scatter * std::max(std::pow(along->values[i], 2.0) / typical, least_size) + noise;
+    alike += std::log(one) + left[i] * left[i] / one;
+    in_proportion += std::log(other) + left[i] * left[i] / other;
+  }
+  return in_proportion < alike;
 }
 
 /// Means over bins that the edges part; empty bins are left out.

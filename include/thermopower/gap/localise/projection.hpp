@@ -76,30 +76,12 @@ public:
   }
 };
 
-/// Rows as they are, averaged where there are very many.
-class AveragedProjection : public Projection {
-public:
-  Eigen::VectorXi stretches(int folds) const override { return average_.folds(folds); }
-  double floor() const override {
-    const double sigma = state_noise(b_);
-    return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
-  }
-
-protected:
-  /// Keeps a reference to `balance`, which must outlive it.
-  AveragedProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
-      : b_(balance), average_(balance.rows->runs, balance.measured, limit.rows) {}
-
-  const plant::Balance& b_;  ///< that is compared
-  Thinning average_;         ///< of its rows
-};
-
-/// Row by row.
-class AlgebraicProjection : public AveragedProjection {
+/// Row by row, averaged where there are very many.
+class AlgebraicProjection : public Projection {
 public:
   /// Keeps a reference to `balance`, which must outlive it.
   AlgebraicProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
-      : AveragedProjection(balance, limit) {}
+      : b_(balance), average_(balance.rows->runs, balance.measured, limit.rows) {}
 
   Eigen::VectorXd residual() const override {
     Eigen::VectorXd left = b_.measured - b_.flow_sampled;
@@ -115,15 +97,25 @@ public:
     return average_(sum);
   }
   Eigen::MatrixXd starts() const override { return Eigen::MatrixXd(average_.rows(), 0); }
+  Eigen::VectorXi stretches(int folds) const override { return average_.folds(folds); }
+  double floor() const override {
+    const double sigma = state_noise(b_);
+    return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
+  }
+
+private:
+  const plant::Balance& b_;
+  Thinning average_;
 };
 
 /// Responses of the baseline's own linear filter to missing flow.
-class FilteredProjection : public AveragedProjection {
+class FilteredProjection : public Projection {
 public:
   /// Keeps a reference to `balance`, which must outlive it.
   FilteredProjection(const plant::Balance& balance, const LocalisationThresholds& limit)
-      : AveragedProjection(balance, limit),
+      : b_(balance),
         most_starts_(limit.most_starts),
+        average_(balance.rows->runs, balance.measured, limit.rows),
         capacity_(capacity_of(balance)),
         kept_(balance.rows->size()) {
     for (const RunSpan& run : b_.rows->runs)
@@ -177,6 +169,11 @@ public:
     }
     return average_(out);
   }
+  Eigen::VectorXi stretches(int folds) const override { return average_.folds(folds); }
+  double floor() const override {
+    const double sigma = state_noise(b_);
+    return sigma * sigma * static_cast<double>(average_.rows()) / static_cast<double>(average_.stride());
+  }
 
 private:
   double step_s(Eigen::Index i, const RunSpan& run) const {
@@ -211,7 +208,9 @@ private:
     return out;
   }
 
+  const plant::Balance& b_;
   Eigen::Index most_starts_;
+  Thinning average_;
   Eigen::VectorXd capacity_;
   Eigen::VectorXd kept_;  // of a state after each row's interval, if nothing flows: 0..1
   Eigen::VectorXd simulated_;

@@ -13,7 +13,7 @@
 #include <vector>
 
 /// @file
-/// Rows as a localisation looks at them: ordered into bins, averaged.
+/// Rows as a localisation looks at them: ordered into bins, as a spectrum, averaged.
 
 namespace thermopower::gap::engine {
 
@@ -63,6 +63,41 @@ private:
   Eigen::Index bands_ = 0;  ///< 0: the variable hardly varies
   std::vector<int> band_;   ///< of each row
 };
+
+/// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most
+/// 2048 block means).
+inline double half_power_period(const Eigen::VectorXd& residual, double interval_s) {
+  const Eigen::Index block = std::max<Eigen::Index>(1, residual.size() / 1024);
+  const Eigen::Index n = residual.size() / block;
+  if (n < 8) return 0.0;
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) x[i] = residual.segment(i * block, block).mean();
+  x.array() -= x.mean();
+  std::vector<double> power;
+  double total = 0.0;
+  for (Eigen::Index k = 1; k <= n / 2; ++k) {
+    const double w = rad_per_turn * static_cast<double>(k) / static_cast<double>(n);
+    double re = 0.0, im = 0.0;
+    const double cw = std::cos(w), sw = std::sin(w);
+    double c = 1.0, s = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      re += x[i] * c;
+      im += x[i] * s;
+      const double next = c * cw - s * sw;
+      s = s * cw + c * sw;
+      c = next;
+    }
+    power.push_back(re * re + im * im);
+    total += power.back();
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    sum += power[k];
+    if (sum >= 0.5 * total)
+      return interval_s * static_cast<double>(block) * static_cast<double>(n) / static_cast<double>(k + 1);
+  }
+  return 0.0;
+}
 
 /// Averages `stride` rows at a time inside each run, so that a million rows cost what ten thousand do.
 class Thinning {

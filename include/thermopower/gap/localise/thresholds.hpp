@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
-
 namespace thermopower::gap::engine {
 
 /// Thresholds of the localisation. Sums of squares are in units of what the sensor's noise alone leaves (the
@@ -42,6 +40,16 @@ struct LocalisationThresholds {
   double per_block = 0.5;  ///< price of a freedom, as a share, where alternatives of a balance compete
   double picture = 0.15;   ///< share below which no further picture is drawn
 
+  // Courses of many directions, for what follows no variable.
+  double weak_course = 15.0;         ///< asked about where the chosen freedoms leave more, of a weak form,
+  double filtered_course = 8.0;      ///< or of a filtered one
+  double course_of_seen = 0.03;      ///< and more than this share of what the constants leave
+  double filtered_explained = 0.99;  ///< and a filtered form's freedoms explain less
+  double course_better = 0.5;        ///< share of what the freedoms leave that a course must get below
+  double weak_per_direction =
+      4.0;  ///< rows that a direction of a course costs, of a weak form (its rows overlap)
+  double filtered_per_direction = 2.0;  ///< or of a filtered one
+
   // How much is looked at.
   Eigen::Index rows = 8000;  ///< of an algebraic or filtered balance, after averaging: enough for any freedom
   Eigen::Index narrow_functions = 5000;  ///< test functions of the narrowest width
@@ -55,15 +63,6 @@ struct LocalisationThresholds {
   int regime_bins = 10;                  ///< bins among which the regime is found
   double regime_half = 0.5;              ///< of the largest bin: its neighbours above it belong to the regime
   Eigen::Index most_starts = 6;          ///< runs whose starts are freed one by one
-
-  // In which runs, and from when on, a fault shows.
-  Eigen::Index run_least_rows = 150;   ///< of a run that is asked: eight stretches of some twenty rows
-  Eigen::Index run_most_rows = 20000;  ///< of a run: the first of them; more say no more about whether
-  std::size_t most_runs = 12;          ///< that are asked, evenly spread
-  double nothing_shows = 1.5;  ///< floors left at most where a balance holds: noise is known to some 20 %
-  double shows = 4.0;          ///< floors left at least where it does not
-  int run_stretches = 20;      ///< of a run, at the ends of which a fault may begin
-  int first_stretches = 3;     ///< of them that hold before it
 };
 
 }  // namespace thermopower::gap::engine

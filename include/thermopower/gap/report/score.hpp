@@ -118,8 +118,9 @@ inline std::array<double, signal_count> rms_between(const Errors& one, const Err
   return apart;
 }
 
-/// How far a simulation wanders from itself: root mean squares by signal, 0 without a reason. The reasons are a command that
-/// went on, or power of the bench that switched, at any time between two rows. One draw, the same each time.
+/// How far a simulation wanders from itself: root mean squares by signal, 0 without a reason. The reasons are noise of a
+/// measured command or heating current, and power of the bench that switched at any time between two rows. One draw, the
+/// same each time.
 inline std::array<double, signal_count> wander_of_command(const Model& model,
                                                           const std::vector<Segment>& segments,
                                                           const Catalogue& catalogue) {
@@ -130,11 +131,15 @@ inline std::array<double, signal_count> wander_of_command(const Model& model,
     const Inputs& inputs = *segment.inputs;
     if ((!inputs.errs_in_command() && !inputs.switched_anytime()) || noisy.count(&inputs) > 0) continue;
     Inputs& copy = noisy[&inputs] = inputs;
+    // More noise on a current that heats does not add heat.
+    if (inputs.current_noise_A > 0.0)
+      copy.current_noise_A = std::hypot(copy.current_noise_A, copy.command_noise);
     for (double& share : copy.next_share)  // of its mean; within the interval
       share += (2.0 * dice.share() - 1.0) * std::min(share, 1.0 - share);
     for (Eigen::Index row = 0; row < inputs.rows() && inputs.errs_in_command(); ++row) {
       const UnknownCommand& unknown = inputs.command_unknown;
-      const double by = unknown.error(row, unknown.between.size() > 0 ? dice.normal() : 0.0);
+      const double by = (inputs.command_noise > 0.0 ? inputs.command_noise * dice.normal() : 0.0) +
+                        unknown.error(row, unknown.between.size() > 0 ? dice.normal() : 0.0);
       if (copy.drive_A.size() > 0) copy.drive_A[row] += by;
       if (inputs.heat == HeatSource::measured) copy.held_current_A[row] += by;
       if (copy.voltage_V.size() > 0) copy.voltage_V[row] += by;
