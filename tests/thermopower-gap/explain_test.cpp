@@ -158,8 +158,8 @@ TEST_CASE("what is no report is refused by its name") {
     }
     return std::string();
   };
-  CHECK_THAT(fault("t_s,x\n"), ContainsSubstring("b.json: expected a report that 'diagnose --report' wrote"));
-  CHECK_THAT(fault("[]"), ContainsSubstring("b.json: /format is missing, expected thermopower-gap-report/1"));
+  CHECK_THAT(fault("t_s,x\n"), ContainsSubstring("expected a report that 'diagnose --report' wrote"));
+  CHECK_THAT(fault("[]"), ContainsSubstring("b.json: /format is missing; expected thermopower-gap-report/1"));
   CHECK_THAT(fault(R"({"format": "thermopower-model/1"})"),
              ContainsSubstring("b.json: /format is thermopower-model/1"));
   CHECK_THAT(fault(R"({"format": "thermopower-gap-report/1"})"),

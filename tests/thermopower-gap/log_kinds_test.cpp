@@ -177,7 +177,7 @@ TEST_CASE("frames of a CAN bus by a mapping: both byte orders, signs, the first 
   CHECK(recording.t_s[3] == Approx(0.011));
   CHECK_THROWS_WITH(io::read_recording(log.path), ContainsSubstring("expected a mapping"));
   CHECK_THROWS_WITH(io::read_recording(log.path, mapped({"drive_A=141:A"})),
-                    ContainsSubstring("no place in a frame"));
+                    ContainsSubstring("not a place in a frame"));
   CHECK_THAT(io::columns_text(io::list_log(log.path)),
              ContainsSubstring("141") && ContainsSubstring("--column NAME="));
 }

@@ -114,7 +114,7 @@ TEST_CASE("what is wrong with a network's file is told with its place and its li
       {with("\"column\": \"frame_C\"", "\"column\": 3"), "/network/nodes/frame/column:", "(line 6)",
        "is 3; expected text"},
       {with("\"frame_C\"", "\"winding_C\""), "/network/nodes/frame/column:", "(line 6)",
-       "'winding_C' appears twice"},
+       "'winding_C' is there twice"},
       {with("{\"column\": \"ambient_C\", \"otherwise_C\": 22.5}", "{}"),
        "/network/given/air/column:", "(line 8)", "is missing; expected text"},
       {with("\"links\": [", "\"links\": [3, "), "/network/links/0:", "(line 9)", "is 3; expected an object"},

@@ -184,7 +184,7 @@ TEST_CASE("what is no capture is answered with its line") {
   CHECK(has(error_of("< 1 3e 1\n"), "line.txt:1: '1' is not a byte; expected two hexadecimal digits"));
   CHECK(has(error_of("< 1 3e zz\n"), "'zz' is not a byte"));
   CHECK(has(error_of("< 1 3eaa\n"), "expected a blank between bytes"));
-  CHECK(has(error_of("< x 3e\n"), "'x' is no time"));
+  CHECK(has(error_of("< x 3e\n"), "'x' is not a time"));
   CHECK(has(error_of("< 2 3e\n< 1 3e\n"), "line.txt:2: the time lies before that of the block above"));
   CHECK(has(error_of("< 1 3e\nhello\n"), "line.txt:2: 'hello'; expected '>' or '<'"));
   CHECK(has(error_of("< 2026/13/01 00:00:00 length=1\n 3e\n"), "line.txt:1: not a date"));
