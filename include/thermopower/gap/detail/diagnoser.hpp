@@ -66,14 +66,10 @@ public:
     Attempt attempt = CauseSearch(posing_, train_inputs_, held_out_inputs_, result_.where, proposed).run();
     const bool is_denied = effort_is_measured() && leave_out_what_effort_denies(attempt.candidates);
     const Answer answer = choose(attempt.candidates, model_);
-    // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap, and where it has no cause for what the
-    // effort names.
+    // In a loop that somebody closes the effort is asked, too, where the motion leaves a gap.
     const bool leaves_a_gap =
         largest_noise_multiple(attempt.candidates[answer.chosen].held_out) > verdict_limits.near_floor;
-    const bool has_no_cause = attempt.candidates[answer.chosen].explanation.effects.empty();
-    if (effort_is_measured() &&
-        (is_denied || (leaves_a_gap && effort_->loop().kind != LoopKind::open) ||
-         (has_no_cause && effort_->loop().is_closed() && !effort_->told_by_name().effects.empty()))) {
+    if (effort_is_measured() && (is_denied || (leaves_a_gap && effort_->loop().kind != LoopKind::open))) {
       if (auto told = from_effort()) return report_on(told->first, told->second);
     }
     return report_on(attempt, answer);
