@@ -6,10 +6,12 @@ import ast
 import copy
 import datetime
 import doctest
+import importlib.util
 import inspect
 import json
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -193,6 +195,105 @@ class Diagnosing(unittest.TestCase):
         self.assertIn("motor_C", found)
         self.assertTrue(any(one.startswith("motor_C=motor_temp") for one in found.choices), found.choices)
         self.assertIn("motor_temp", repr(found))
+
+
+class Remedies(unittest.TestCase):
+    """What a finding says to pass works beside the arguments in force; the logs are those of the program's test."""
+
+    @staticmethod
+    def arguments_of(options):
+        given = {"columns": [], "constants": {}}
+        for name, value in zip(options[::2], options[1::2]):
+            if name == "--column":
+                given["columns"].append(value)
+            elif name == "--rate":
+                given["rows_per_s"] = float(value)
+            else:
+                given["constants"][{"--ambient": "ambient_C", "--supply": "supply_V"}[name]] = float(value)
+        return given
+
+    def test_of_every_finding_can_be_pasted(self):
+        spec = importlib.util.spec_from_file_location("faulty_logs", os.path.join(Package.ROOT, "tests", "thermopower-gap", "faulty_logs.py"))
+        faulty_logs = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(faulty_logs)
+        argument = r"(?:columns=\[[^]]*\]|constants=\{[^}]*\}|(?:rows_per_s|horizon_s)=[-+.e\d]+)"
+        pasted = 0
+        for kind, files, model, train, held_out, options in faulty_logs.cases():
+            with self.subTest(kind), tempfile.TemporaryDirectory() as folder:
+                for name, content in files.items():
+                    with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                        file.write(content)
+
+                def check(given):
+                    path = lambda names: [os.path.join(folder, one) for one in names]
+                    return thermopower.check(os.path.join(folder, model), path(train), path(held_out) or None, **given)
+
+                given = self.arguments_of(options)
+                found = check(given)
+                self.assertIn(kind, [one.kind for one in found.findings])
+                self.assertNotRegex(str(found), r"--[a-z]")
+                for one in found.findings:
+                    for words in re.findall(f"{argument}(?:, {argument})*", one.mend):
+                        pasted += 1
+                        left = check({**given, **eval(f"dict({words})")})
+                        self.assertNotIn((one.kind, one.column), [(other.kind, other.column) for other in left.findings], words)
+        self.assertGreater(pasted, 10)
+
+    def test_of_a_diagnosis_are_those_of_its_texts(self):
+        knowing = dict(MODEL, current=dict(MODEL["current"], tempco_per_K=TEMPCO))
+        run = motor(600, 1)
+        frame = {"stamp": 1000.0 * run["t_s"], "warm": 1.8 * run["motor_C"] + 32.0, "level": run["power_param"]}
+        given = dict(columns=["t_s=stamp:ms", "motor_C=warm", "power_param=level"], constants={"ambient_C": 75.2})
+        found = thermopower.diagnose(knowing, frame, **given)
+        self.assertEqual(found.verdict, "insufficient")
+        words = found.findings[0].mend
+        self.assertEqual(words, "columns=['motor_C=warm:degF', 't_s=stamp:ms', 'power_param=level'], constants={'ambient_C': 24}")
+        self.assertIn(words, found.next_experiment)
+        for text in (found.html(), str(found), found.markdown()):
+            self.assertIn("warm:degF", text)
+            self.assertNotIn("--column", text)
+        self.assertNotEqual(thermopower.diagnose(knowing, frame, **eval(f"dict({words})")).verdict, "insufficient")
+
+    def test_a_frame_may_lack_its_time_and_hold_torques(self):
+        t = np.arange(400) * 0.01
+        drive = np.sign(np.sin(3.0 * t))
+        inputs = {"torque": 0.1 * drive, "angle_deg": np.zeros(400), "rate_dps": np.zeros(400)}
+        found = thermopower.check(AXIS, inputs, columns=["drive_A=torque:Nm"], rows_per_s=100.0)
+        self.assertIn("constant_column", [one.kind for one in found.findings])
+        expected = thermopower.predict(AXIS, {"t_s": t, "drive_A": drive})
+        # The torque over the model's constant is the current.
+        got = thermopower.predict(AXIS, {"t_s": t, "torque": 0.1 * drive}, columns=["drive_A=torque:Nm"])
+        np.testing.assert_allclose(got["angle_deg"], expected["angle_deg"])
+
+
+class Designing(unittest.TestCase):
+    def test_writes_the_experiment_that_tells_two_causes_apart(self):
+        # A drum that turns one way only: dry friction and a constant torque look the same.
+        random = np.random.default_rng(3)
+        t = np.arange(0.0, 6.0, 0.01)
+        drive = 0.4 + 0.2 * np.sign(np.sin(2.0 * t))
+        angle, rate, table = 0.0, 20.0, []
+        for level in drive:
+            table.append((angle, rate))
+            for _ in range(10):
+                rate += 0.001 * (0.1 * level - 2e-3 * rate - 0.004 * np.sign(rate)) / 2e-3
+                angle += 0.001 * rate
+        angle, rate = np.array(table).T
+        run = {"t_s": t, "drive_A": drive, "angle_deg": np.degrees(angle) + random.normal(0.0, 0.02, len(t)),
+               "rate_dps": np.degrees(rate) + random.normal(0.0, 0.2, len(t))}
+        found = thermopower.diagnose(AXIS, run)
+        self.assertIn(found.verdict, ("ambiguous", "partial"), str(found))
+        limits = {"format": "thermopower-limits/1", "duration_s": 6, "row_s": 0.02, "vary": {"drive_A": {"from": -1, "to": 1}},
+                  "angle_deg": [-36000, 36000], "rate_dps": 4000}
+        design = found.design(limits)
+        self.assertEqual(design.ending, "schedule", str(design))
+        self.assertLess(design.schedule["drive_A"].min(), 0.0)  # it turns back
+        self.assertGreater(len(design.schedule["t_s"]), 10)
+        self.assertIn("#pragma once", design.header)
+        self.assertIn("</html>", design.html())
+        self.assertEqual(pickle.loads(pickle.dumps(found)).design(limits).csv, design.csv)
+        with self.assertRaisesRegex(thermopower.InputError, "limits"):
+            found.design({"format": "thermopower-limits/1"})
 
 
 class Fleets(unittest.TestCase):

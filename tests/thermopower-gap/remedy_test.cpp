@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string in_force(const std::string& mend, const std::vector<std::string>& columns) {
-  std::vector<io::ColumnChoice> choices;
-  for (const std::string& one : columns) choices.push_back(io::parse_column_choice(one));
-  return io::remedy_in_force(mend, choices);
+  io::ReadOptions how;
+  for (const std::string& one : columns) how.choices.push_back(io::parse_column_choice(one));
+  return io::remedy_in_force(mend, how);
 }
 
 struct Ran {
@@ -94,9 +94,13 @@ std::string joint_in_radians() {
 TEST_CASE("a remedy is said in the columns of the file, and the other choices stay in force") {
   CHECK(in_force("--column angle_deg=angle_deg:rad", {"t_s=stamp:ms", "angle_deg=pos"}) ==
         "--column angle_deg=pos:rad --column t_s=stamp:ms");
-  CHECK(in_force("--column drive_A=drive_A:-A", {"drive_A=current:mA"}) ==
-        "--column 'drive_A=current:-A*0.001'");
+  CHECK(in_force("--column drive_A=drive_A:-A", {"drive_A=current:mA"}) == "--column drive_A=current:-mA");
+  CHECK(in_force("--column drive_A=drive_A:-A", {"drive_A=current:A*0.02"}) ==
+        "--column 'drive_A=current:-A*0.02'");
   CHECK(in_force("--column drive_A=drive_A:mA", {"drive_A=raw:A*0.5"}) == "--column 'drive_A=raw:A*5e-04'");
+  CHECK(in_force("--column angle_deg=rate_dps --column rate_dps=angle_deg",
+                 {"angle_deg=a:rad", "rate_dps=b:rad/s"}) ==
+        "--column angle_deg=b:rad --column rate_dps=a:rad/s");
   CHECK(in_force("--column rate_dps=rate_dps:-deg/s", {"rate_dps=speed:4096/s,sign15"}).find(",sign15") !=
         std::string::npos);
   CHECK(in_force("--column drive_A=rate_dps --column rate_dps=drive_A", {"drive_A=a", "rate_dps=b"}) ==
@@ -108,6 +112,38 @@ TEST_CASE("a remedy is said in the columns of the file, and the other choices st
   // Words around it stay.
   CHECK(in_force("sample faster (--column t_s=t_s:ms)", {"t_s=stamp"}) ==
         "sample faster (--column t_s=stamp:ms)");
+}
+
+TEST_CASE("a column that was given as a constant, or a time by a rate, has its option") {
+  io::ReadOptions how;
+  how.choices = {io::parse_column_choice("motor_C=temp")};
+  how.constants = {{"ambient_C", 71.6}, {"supply_V", 12000.0}, {"airspeed_mps", 2.0}};
+  how.rows_per_s = 0.2;
+  CHECK(io::remedy_in_force("--column motor_C=motor_C:degF --column ambient_C=ambient_C:degF", how) ==
+        "--column motor_C=temp:degF --ambient 22 --supply 12000 --constant airspeed_mps=2 --rate 0.2");
+  CHECK(io::remedy_in_force("--column supply_V=supply_V:mV", how) ==
+        "--supply 12 --column motor_C=temp --ambient 71.6 --constant airspeed_mps=2 --rate 0.2");
+  CHECK(io::remedy_in_force("sample faster (--column t_s=t_s:ms), or judge longer: --horizon 40", how) ==
+        "sample faster (--rate 200), or judge longer: --horizon 40");
+}
+
+TEST_CASE("Python is told its own arguments") {
+  io::ReadOptions how;
+  how.choices = {io::parse_column_choice("motor_C=it's warm"), io::parse_column_choice("t_s=stamp:ms")};
+  how.constants = {{"ambient_C", 71.6}};
+  const auto told = [&](const std::string& mend) {
+    return io::remedy_in_force(mend, how, io::Caller::python);
+  };
+  CHECK(told("--column motor_C=motor_C:degF --column ambient_C=ambient_C:degF") ==
+        "columns=['motor_C=it\\'s warm:degF', 't_s=stamp:ms'], constants={'ambient_C': 22}");
+  CHECK(told("sample faster, or judge over longer windows: --horizon 40") ==
+        "sample faster, or judge over longer windows: horizon_s=40");
+  CHECK(told("hold out another recording, or leave --heldout away") ==
+        "hold out another recording, or leave held_out away");
+  CHECK(told("look at its unit, and at what --column makes of it") ==
+        "look at its unit, and at what columns makes of it");
+  CHECK(told("'thermopower-gap columns FILE' proposes options --column NAME=HEADER:UNIT") ==
+        "thermopower.columns(path) proposes columns=['NAME=HEADER:UNIT']");
 }
 
 TEST_CASE("the remedy of a wrong unit is pasted, and the data can be believed") {

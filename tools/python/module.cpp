@@ -12,7 +12,9 @@
 
 #include <thermopower/gap.hpp>
 #include <thermopower/gap/data/splitting.hpp>
+#include <thermopower/gap/design/design.hpp>
 #include <thermopower/io.hpp>
+#include <thermopower/io/design_files.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/calibration_id.hpp>
 
@@ -23,6 +25,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <future>
 #include <map>
@@ -30,6 +33,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -43,8 +47,8 @@ namespace {
 using Columns = std::vector<std::pair<std::string, Eigen::VectorXd>>;
 using Run = std::pair<Eigen::Index, std::string>;  // first row, label
 
-gap::Recording recording_of(const std::string& name, const Eigen::VectorXd& t_s, const std::vector<Run>& runs,
-                            const Columns& columns) {
+io::RecordingFile recording_of(const std::string& name, const Eigen::VectorXd& t_s,
+                               const std::vector<Run>& runs, const Columns& columns) {
   gap::Recording recording;
   recording.name = name;
   recording.t_s = t_s;
@@ -55,13 +59,29 @@ gap::Recording recording_of(const std::string& name, const Eigen::VectorXd& t_s,
   for (const auto& [column, values] : columns) recording.set(column, values);
   if (const auto problem = recording.validate())
     throw io::InputError("recording '" + name + "': " + *problem);
-  return recording;
+  return {recording, {}};
 }
 
-gap::Recording recording_in(const std::string& path, const std::vector<std::string>& choices) {
-  std::vector<io::ColumnChoice> parsed;
-  for (const std::string& text : choices) parsed.push_back(io::parse_column_choice(text));
-  return io::read_recording(path, parsed).recording;
+/// What files do not say of themselves, and what of it a model says.
+io::ReadOptions how_to_read(const std::vector<std::string>& choices,
+                            const std::vector<std::pair<std::string, double>>& constants, double rows_per_s,
+                            const gap::Model* model) {
+  io::ReadOptions options = model != nullptr ? io::read_options(*model) : io::ReadOptions();
+  for (const std::string& text : choices) options.choices.push_back(io::parse_column_choice(text));
+  options.constants = constants;
+  options.rows_per_s = rows_per_s;
+  return options;
+}
+
+/// The recordings of files. Adds to `findings` what was noticed while reading them.
+std::vector<gap::Recording> recordings_of(std::vector<io::RecordingFile> files,
+                                          std::vector<gap::Finding>& findings) {
+  std::vector<gap::Recording> list;
+  for (io::RecordingFile& one : files) {
+    list.push_back(std::move(one.recording));
+    findings.insert(findings.end(), one.findings.begin(), one.findings.end());
+  }
+  return list;
 }
 
 gap::Model model_of(const std::string& json, const gap::Catalogue& catalogue = gap::standard_catalogue()) {
@@ -98,22 +118,46 @@ auto until_interrupted(std::atomic<bool>& stop, Work&& work) {
   return running.get();
 }
 
+using DesignTexts = std::tuple<std::string, std::string, std::string, std::string, std::string>;
+
+/// The next experiment that a report asks for: its ending, what a person reads, the schedule, the schedule for firmware, a page.
+DesignTexts designed(const std::string& report, const std::string& limits, unsigned seed,
+                     const gap::Catalogue& catalogue) {
+  const py::gil_scoped_release released;
+  const gap::design::DiagnosedGap diagnosed = io::parse_report("report", report, catalogue);
+  const gap::design::Limits within = io::parse_limits("limits", limits);
+  gap::design::DesignOptions options;
+  options.seed = seed;
+  const gap::design::Design design = gap::design::design_experiment(diagnosed, within, options, catalogue);
+  const bool has_schedule = design.ending == gap::design::Ending::schedule;
+  return {to_string(design.ending), io::design_summary(design, within),
+          has_schedule ? io::schedule_csv(design) : std::string(),
+          has_schedule ? io::schedule_header(design, within) : std::string(),
+          io::design_html(design, within, diagnosed.model.name)};
+}
+
 /// A diagnosis with what its files are written from.
 struct Result {
   gap::Diagnosis diagnosis;
   gap::Catalogue catalogue;
-  std::string model_name;
+  gap::Model model;  ///< as it was given
   std::vector<gap::Recording> held_out;
 
   std::vector<plant::EffectInfo> effects() const {
     return gap::catalogue_of(diagnosis.augmented, catalogue).list();
   }
-  std::string report() const { return io::report_json(diagnosis, effects()); }
-  std::string html() const { return io::report_html(diagnosis, model_name, effects(), held_out); }
+  std::string report() const {
+    // A plant that is a function has no file.
+    return model.own ? io::report_json(diagnosis, effects()) : io::report_json(diagnosis, model, effects());
+  }
+  std::string html() const { return io::report_html(diagnosis, model.name, effects(), held_out); }
   std::string augmented() const { return io::to_json(diagnosis.augmented); }
   std::string recalibrated() const { return io::to_json(diagnosis.recalibrated); }
   std::string summary() const { return io::summary(diagnosis, effects()); }
-  std::string markdown() const { return io::summary_markdown(diagnosis, model_name, effects()); }
+  DesignTexts design(const std::string& limits, unsigned seed) const {
+    return designed(report(), limits, seed, catalogue);
+  }
+  std::string markdown() const { return io::summary_markdown(diagnosis, model.name, effects()); }
   std::pair<std::string, std::vector<std::string>> mjcf() const {
     io::SimulatorFile made = io::mjcf(diagnosis.augmented, io::one_sentence(diagnosis), catalogue);
     return {made.text, made.left_out};
@@ -170,9 +214,13 @@ void expect_starts(const std::map<std::string, double>& starts, const gap::Model
 }
 
 Result diagnose_recordings(const gap::Model& model, const std::vector<py::dict>& effects,
-                           std::vector<gap::Recording> train, std::vector<gap::Recording> held_out,
-                           gap::Options options) {
+                           std::vector<io::RecordingFile> train_files,
+                           std::vector<io::RecordingFile> held_out_files, gap::Options options,
+                           const io::ReadOptions& how) {
   options.validate();
+  std::vector<gap::Finding> findings;
+  std::vector<gap::Recording> train = recordings_of(std::move(train_files), findings),
+                              held_out = recordings_of(std::move(held_out_files), findings);
   Result result;
   result.catalogue = catalogue_with(effects);
   expect_effects(options.without, gap::catalogue_of(model, result.catalogue));
@@ -187,24 +235,27 @@ Result diagnose_recordings(const gap::Model& model, const std::vector<py::dict>&
   options.stop = &stop;
   result.diagnosis = until_interrupted(
       stop, [&] { return gap::diagnose(model, train, held_out, options, result.catalogue); });
-  result.model_name = model.name;
+  result.diagnosis.findings.insert(result.diagnosis.findings.end(), findings.begin(), findings.end());
+  io::put_remedies_in_force(result.diagnosis, how, io::Caller::python);
+  result.model = model;
   result.held_out = std::move(held_out);
   return result;
 }
 
 // For machines and for people.
 std::pair<std::string, std::string> check(const gap::Model& model, const std::vector<py::dict>& effects,
-                                          const std::vector<gap::Recording>& train,
-                                          const std::vector<gap::Recording>& held_out,
-                                          const gap::Options& options,
-                                          const std::vector<std::string>& choices) {
+                                          std::vector<io::RecordingFile> train_files,
+                                          std::vector<io::RecordingFile> held_out_files,
+                                          const gap::Options& options, const io::ReadOptions& how) {
   options.validate();
   const gap::Catalogue catalogue = catalogue_with(effects);
   const py::gil_scoped_release released;
+  std::vector<gap::Finding> findings;
+  const std::vector<gap::Recording> train = recordings_of(std::move(train_files), findings),
+                                    held_out = recordings_of(std::move(held_out_files), findings);
   gap::DataReport report = gap::check_data(model, train, held_out, options, catalogue);
-  std::vector<io::ColumnChoice> in_force;
-  for (const std::string& text : choices) in_force.push_back(io::parse_column_choice(text));
-  io::put_remedies_in_force(report.findings, in_force);
+  report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+  io::put_remedies_in_force(report, how, io::Caller::python);
   return {io::check_json(report), io::check_text(report)};
 }
 
@@ -212,7 +263,7 @@ using Signals = std::vector<std::pair<std::string, Eigen::VectorXd>>;
 
 // Each model on each recording's own thread of a few; an exception in one is the batch's.
 std::vector<Signals> simulate(const std::vector<gap::Model>& models, const std::vector<py::dict>& effects,
-                              const std::vector<gap::Recording>& recordings,
+                              const std::vector<io::RecordingFile>& recordings,
                               const std::map<std::string, double>& starts, double horizon_s, bool from_inputs,
                               unsigned threads) {
   const gap::Catalogue catalogue = catalogue_with(effects);
@@ -227,7 +278,7 @@ std::vector<Signals> simulate(const std::vector<gap::Model>& models, const std::
     for (std::size_t i = next++; i < count; i = next++) {
       try {
         const gap::Model& model = models[i / recordings.size()];
-        gap::Recording recording = recordings[i % recordings.size()];
+        gap::Recording recording = recordings[i % recordings.size()].recording;
         if (from_inputs) expect_starts(starts, model);
         if (from_inputs) recording = io::with_starts(std::move(recording), model, starts);
         for (auto& one : gap::simulate(model, recording, options, catalogue))
@@ -286,28 +337,36 @@ PYBIND11_MODULE(_thermopower, module) {
   py::register_exception<gap::InvalidInput>(module, "InvalidInput", PyExc_ValueError);
   py::register_exception<io::InputError>(module, "InputError", PyExc_ValueError);
   py::register_exception<io::OutputError>(module, "OutputError", PyExc_OSError);
-  py::class_<gap::Recording>(module, "Recording")
+  py::class_<io::RecordingFile>(module, "Recording")
       .def(py::init(&recording_of))
-      .def_readonly("name", &gap::Recording::name)
-      .def_property_readonly("rows", &gap::Recording::rows);
-  module.def("read_recording", &recording_in, released());
+      .def_property_readonly("name", [](const io::RecordingFile& one) { return one.recording.name; })
+      .def_property_readonly("rows", [](const io::RecordingFile& one) { return one.recording.rows(); });
+  py::class_<io::ReadOptions>(module, "Reading").def(py::init(&how_to_read));
+  module.def(
+      "read_recording",
+      [](const std::string& path, const io::ReadOptions& how) { return io::read_recording(path, how); },
+      released());
   module.def("choice_of", [](const std::string& text) {
     const io::ColumnChoice choice = io::parse_column_choice(text);
     return std::make_pair(choice.name, choice.header);
   });
-  module.def("chosen_values", [](const std::string& text, Eigen::VectorXd values) {
+  module.def("chosen_values", [](const std::string& text, Eigen::VectorXd values, const io::ReadOptions& how,
+                                 const Eigen::VectorXd& supply_V) {
+    using Needs = io::ColumnChoice::Needs;
     const io::ColumnChoice choice = io::parse_column_choice(text);
-    if (choice.needs != io::ColumnChoice::Needs::nothing)
-      throw io::InputError(
-          "columns: " + text +
-          ": a torque or a duty becomes a current or a voltage where a file is read; multiply the column of a frame");
-    for (double& value : values) value = io::value_of(choice, value);
+    double scale = 1.0;
+    const bool has_supply = supply_V.size() == values.size();
+    if (choice.needs == Needs::torque_constant) scale = 1.0 / how.torque_constant_Nm_per_A;
+    if (choice.needs == Needs::supply && !has_supply) scale = how.nominal_V;
+    if (!std::isfinite(scale) || scale == 0.0)
+      throw io::InputError("columns: " + text + ": " +
+                           (choice.needs == Needs::supply
+                                ? "a share of the supply needs supply_V, or /supply/nominal_V in the model"
+                                : "a torque needs /axis/torque_constant_Nm_per_A in the model"));
+    for (Eigen::Index row = 0; row < values.size(); ++row)
+      values[row] = io::value_of(choice, values[row]) *
+                    (choice.needs == Needs::supply && has_supply ? supply_V[row] : scale);
     return values;
-  });
-  module.def("remedy", [](const std::string& mend, const std::vector<std::string>& choices) {
-    std::vector<io::ColumnChoice> in_force;
-    for (const std::string& text : choices) in_force.push_back(io::parse_column_choice(text));
-    return io::remedy_in_force(mend, in_force);
   });
   py::class_<gap::Options>(module, "Options")
       .def(py::init())
@@ -329,6 +388,7 @@ PYBIND11_MODULE(_thermopower, module) {
       .def("summary", &Result::summary)
       .def("header", &Result::header)
       .def("markdown", &Result::markdown)
+      .def("design", &Result::design)
       .def("mjcf", &Result::mjcf)
       .def("urdf", &Result::urdf)
       .def("series", &Result::series);
@@ -365,6 +425,10 @@ PYBIND11_MODULE(_thermopower, module) {
     const std::string nearest = io::nearest_name(code, io::known_codes());
     throw io::InputError("explain: there is no code '" + code + "'" +
                          (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+  });
+  // A pickled diagnosis has its report, and the catalogue of the library.
+  module.def("design", [](const std::string& report, const std::string& limits, unsigned seed) {
+    return designed(report, limits, seed, gap::standard_catalogue());
   });
   module.def("compare", [](const std::string& a, const std::string& b) {
     return io::comparison({"the first", a}, {"the second", b});

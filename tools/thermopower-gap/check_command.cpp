@@ -40,7 +40,7 @@ int check(const Arguments& arguments) {
     progress.stage("checking");
     report = gap::check_data(model, recordings, held_out, options, catalogue);
     report.findings.insert(report.findings.end(), findings.begin(), findings.end());
-    io::put_remedies_in_force(report.findings, how.choices);
+    io::put_remedies_in_force(report, how);
     if (!arguments.report.empty()) outputs.put(arguments.report, io::check_json(report));
     outputs.commit();
   }

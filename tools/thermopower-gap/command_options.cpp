@@ -76,17 +76,23 @@ void add_recordings(CLI::App& app, Arguments& arguments, const char* help) {
       ->required();
 }
 
+// What a finding says to type is put behind the options in force: the last one counts.
+const auto last_counts = CLI::MultiOptionPolicy::TakeLast;
+
 void add_column_choices(CLI::App& app, Arguments& arguments) {
   app.add_option("--column", arguments.columns,
                  "NAME=HEADER[:UNIT]: which column of the files it is, and in which unit "
                  "(motor_C=temp:degF, t_s=stamp:ms, drive_A=current:-mA); may be repeated");
   app.add_option("--map", arguments.maps, "a file of such lines, as 'columns FILE --proposal' writes it");
   app.add_option("--rate", arguments.rows_per_s, "rows a second of CSV files without time, in Hz")
+      ->multi_option_policy(last_counts)
       ->check(rate);
   app.add_option("--ambient", arguments.ambient_C, "the air's temperature in degC, where no column has it")
+      ->multi_option_policy(last_counts)
       ->check(number_within(-90.0, 200.0, "a temperature in degC"))
       ->each([&arguments](const std::string&) { arguments.has_ambient = true; });
   app.add_option("--supply", arguments.supply_V, "the supply in V, where no column has it")
+      ->multi_option_policy(last_counts)
       ->check(number_within(0.01, 1e5, "a voltage in V"))
       ->each([&arguments](const std::string&) { arguments.has_supply = true; });
   app.add_option("--constant", arguments.constants,
@@ -94,7 +100,9 @@ void add_column_choices(CLI::App& app, Arguments& arguments) {
 }
 
 CLI::Option* add_horizon(CLI::App& app, Arguments& arguments) {
-  return app.add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")->check(seconds);
+  return app.add_option("--horizon", arguments.horizon_s, "length of the axis' windows in s")
+      ->multi_option_policy(last_counts)
+      ->check(seconds);
 }
 
 void add_as_recorded(CLI::App& app, Arguments& arguments) {

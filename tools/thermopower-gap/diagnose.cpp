@@ -56,7 +56,7 @@ int diagnose(const Arguments& arguments) {
     progress.stage("diagnosing");
     diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
     diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
-    io::put_remedies_in_force(diagnosis.findings, how.choices);
+    io::put_remedies_in_force(diagnosis, how);
     progress.stage("writing");
     effects = gap::catalogue_of(model, catalogue).list();
     // A fleet compares its reports byte by byte, wherever its logs lie.

@@ -64,13 +64,8 @@ io::ReadOptions reading(const Arguments& arguments, const gap::Model& model) {
   }
   io::ReadOptions options = io::read_options(model, std::move(choices));
   options.rows_per_s = arguments.rows_per_s;
-  const auto set = [&](const std::string& option, const std::string& name, double value) {
-    for (const auto& [other, before] : options.constants)
-      if (other == name) throw UsageError(option + ": " + name + " is given twice");
-    options.constants.emplace_back(name, value);
-  };
-  if (arguments.has_ambient) set("--ambient", "ambient_C", arguments.ambient_C);
-  if (arguments.has_supply) set("--supply", "supply_V", arguments.supply_V);
+  if (arguments.has_ambient) options.constants.emplace_back("ambient_C", arguments.ambient_C);
+  if (arguments.has_supply) options.constants.emplace_back("supply_V", arguments.supply_V);
   for (const std::string& text : arguments.constants) {
     const std::size_t equals = text.find('=');
     double value = 0.0;
@@ -84,7 +79,15 @@ io::ReadOptions reading(const Arguments& arguments, const gap::Model& model) {
       throw UsageError("--constant " + text + ": " + name + " is not a constant");
     if (const std::string wrong = io::unknown_name({name, "a column"}, own); !wrong.empty())
       throw UsageError("--constant " + text + ": " + wrong);
-    set("--constant", name, value);
+    if (name == "ambient_C" && arguments.has_ambient)
+      throw UsageError("--constant " + text + ": ambient_C is given by --ambient, too");
+    if (name == "supply_V" && arguments.has_supply)
+      throw UsageError("--constant " + text + ": supply_V is given by --supply, too");
+    // The last one counts, as of a column.
+    const auto before = std::find_if(options.constants.begin(), options.constants.end(),
+                                     [&](const auto& one) { return one.first == name; });
+    if (before != options.constants.end()) before->second = value;
+    else options.constants.emplace_back(name, value);
   }
   return options;
 }

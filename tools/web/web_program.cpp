@@ -7,6 +7,7 @@
 
 #include <thermopower/gap/diagnose.hpp>
 #include <thermopower/io/column_list.hpp>
+#include <thermopower/io/input_error.hpp>
 #include <thermopower/io/model_file.hpp>
 #include <thermopower/io/recording_file.hpp>
 #include <thermopower/io/remedy.hpp>
@@ -23,7 +24,9 @@
 #include <cstdio>
 #include <exception>
 #include <random>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -82,20 +85,78 @@ nlohmann::ordered_json curves(const gap::Diagnosis& diagnosis) {
   return list;
 }
 
-// What the page's mapping says: lines of a mapping file, and of constants such as `--ambient 24`.
-io::ReadOptions reading(const gap::Model& model, const std::string& mapping) {
-  io::ReadOptions options = io::read_options(model);
-  std::string columns;
-  for (const std::string& line : lines(mapping)) {
-    double number = 0.0;
-    if (std::sscanf(line.c_str(), " --ambient %lf", &number) == 1)
-      options.constants.emplace_back("ambient_C", number);
-    else if (std::sscanf(line.c_str(), " --supply %lf", &number) == 1)
-      options.constants.emplace_back("supply_V", number);
-    else if (std::sscanf(line.c_str(), " --rate %lf", &number) == 1) options.rows_per_s = number;
-    else columns += (line.compare(0, 9, "--column ") == 0 ? line.substr(9) : line) + "\n";
+// The words of a line as a shell reads it.
+std::vector<std::string> words(const std::string& line) {
+  std::vector<std::string> list;
+  bool quoted = false, within = false;
+  for (const char c : line) {
+    const bool blank = !quoted && (c == ' ' || c == '\t' || c == '\r');
+    if (c == '\'') quoted = !quoted;
+    if (!blank && !within) list.emplace_back();
+    if (!blank && c != '\'') list.back() += c;
+    within = !blank;
   }
-  if (columns.find('=') != std::string::npos) options.choices = io::parse_column_map("the mapping", columns);
+  return list;
+}
+
+// How a page's recordings are read and judged.
+struct PageOptions {
+  io::ReadOptions reading;
+  double horizon_s = gap::Options().horizon_s;
+};
+
+// What the page's mapping says: lines of a mapping file, and of options as a finding says to type. The last one counts.
+PageOptions page_options(const gap::Model& model, const std::string& mapping) {
+  PageOptions options{io::read_options(model)};
+  std::vector<io::ColumnChoice>& choices = options.reading.choices;
+  const auto choose = [&](const io::ColumnChoice& choice) {
+    const auto before = std::find_if(choices.begin(), choices.end(),
+                                     [&](const auto& one) { return one.name == choice.name; });
+    if (before != choices.end()) *before = choice;
+    else choices.push_back(choice);
+  };
+  const auto set = [&](const std::string& name, const std::string& number) {
+    auto& constants = options.reading.constants;
+    constants.erase(std::remove_if(constants.begin(), constants.end(),
+                                   [&](const auto& one) { return one.first == name; }),
+                    constants.end());
+    constants.emplace_back(name, std::stod(number));
+  };
+  std::string map;
+  for (const std::string& line : lines(mapping)) {
+    const std::vector<std::string> given = words(line);
+    if (given.empty() || given.front().compare(0, 2, "--") != 0) {
+      map += line + "\n";
+      continue;
+    }
+    for (std::size_t i = 0; i < given.size(); i += 2) {
+      const std::string& name = given[i];
+      if (i + 1 == given.size()) throw io::InputError("the mapping: " + name + " has no value");
+      const std::string& value = given[i + 1];
+      try {
+        const std::size_t equals = value.find('=');
+        if (name == "--column") choose(io::parse_column_choice(value));
+        else if (name == "--ambient") set("ambient_C", value);
+        else if (name == "--supply") set("supply_V", value);
+        else if (name == "--constant" && equals != std::string::npos)
+          set(value.substr(0, equals), value.substr(equals + 1));
+        else if (name == "--rate") options.reading.rows_per_s = std::stod(value);
+        else if (name == "--horizon") options.horizon_s = std::stod(value);
+        else
+          throw io::InputError(
+              "the mapping: there is no " + name +
+              " on this page; expected --column, --ambient, --supply, --constant, --rate or --horizon");
+      } catch (const std::logic_error&) {  // of std::stod
+        throw io::InputError("the mapping: " + name + " " + value + ": expected a number");
+      }
+    }
+  }
+  if (map.find('=') != std::string::npos) {
+    std::vector<io::ColumnChoice> of_options;
+    of_options.swap(choices);
+    choices = io::parse_column_map("the mapping", map);
+    for (const io::ColumnChoice& one : of_options) choose(one);
+  }
   return options;
 }
 
@@ -103,7 +164,8 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
                                  const std::vector<std::string>& held_out_paths, const std::string& mapping) {
   const gap::Catalogue& catalogue = gap::standard_catalogue();
   const gap::Model model = io::read_model(model_path, catalogue);
-  const io::ReadOptions how = reading(model, mapping);
+  const PageOptions page = page_options(model, mapping);
+  const io::ReadOptions& how = page.reading;
   std::vector<gap::Finding> findings;
   std::size_t rows = 0;
   const auto read_all = [&](const std::vector<std::string>& paths) {
@@ -118,6 +180,7 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
   };
   std::vector<gap::Recording> recordings = read_all(training), held_out = read_all(held_out_paths);
   gap::Options options;  // one thread: what runs in a page has no other
+  options.horizon_s = page.horizon_s;
   if (held_out.empty())
     for (gap::Recording& one : recordings) {
       auto [first, last] = gap::split(one, options.held_out_fraction);
@@ -128,7 +191,7 @@ nlohmann::ordered_json diagnosed(const std::string& model_path, const std::vecto
   gap::Diagnosis diagnosis = gap::diagnose(model, recordings, held_out, options, catalogue);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
   diagnosis.findings.insert(diagnosis.findings.end(), findings.begin(), findings.end());
-  io::put_remedies_in_force(diagnosis.findings, how.choices);
+  io::put_remedies_in_force(diagnosis, how);
   return {
       {"verdict", to_string(diagnosis.verdict)},
       {"curves", curves(diagnosis)},
@@ -165,7 +228,7 @@ const char* thermopower_columns(const char* path) {
 }
 
 /// @param training, held_out  paths, one a line; without held-out ones the last 30 % of each recording are
-/// @param mapping  lines of a mapping file, `--ambient`, `--supply` and `--rate`; may be empty
+/// @param mapping  lines of a mapping file, and of options of the program; may be empty
 /// @return JSON: `verdict`, `rows`, `seconds`, `summary`, `report`, `curves` and `html`, or `error`
 const char* thermopower_diagnose(const char* model, const char* training, const char* held_out,
                                  const char* mapping) {

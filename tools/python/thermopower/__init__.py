@@ -30,7 +30,7 @@ from ._thermopower import InputError, InvalidInput, OutputError
 
 __version__ = _thermopower.version
 
-__all__ = ["Check", "Columns", "Diagnosis", "Effect", "Fleet", "InputError", "InvalidInput", "OutputError", "Part", "Plant", "Text", "check", "columns",
+__all__ = ["Check", "Columns", "Design", "Diagnosis", "Effect", "Fleet", "InputError", "InvalidInput", "OutputError", "Part", "Plant", "Text", "check", "columns",
            "compare", "curve", "diagnose", "effects", "explain", "fleet", "parameter", "predict", "read_model", "simulate"]
 
 
@@ -335,7 +335,7 @@ class Diagnosis(Part):
         return self._result.summary()
 
     def __dir__(self):
-        return super().__dir__() + ["augmented", "recalibrated", "series", "html", "header", "markdown", "mjcf", "urdf", "table", "plot"]
+        return super().__dir__() + ["augmented", "recalibrated", "series", "html", "header", "markdown", "mjcf", "urdf", "design", "table", "plot"]
 
     def __getstate__(self):
         if self._plant is not None:
@@ -396,6 +396,17 @@ class Diagnosis(Part):
         """The same as a joint of URDF."""
         return self._result.urdf()
 
+    def design(self, limits, seed=1):
+        """The experiment that best tells apart what is left open, within limits: a dict as in a limits file, or its path."""
+        if isinstance(limits, (str, os.PathLike)):
+            with open(limits, encoding="utf-8") as file:
+                limits = json.load(file)
+        if self._plant is not None:
+            raise InvalidInput("design: a Plant's experiment is designed by hand; expected a diagnosis of a model of the library")
+        if isinstance(self._result, _Stored):
+            return Design(*_thermopower.design(self._result.report(), json.dumps(limits), seed))
+        return Design(*self._result.design(json.dumps(limits), seed))
+
     def table(self):
         """The table of the gap as a pandas DataFrame, one row per signal."""
         import pandas
@@ -421,6 +432,31 @@ class Diagnosis(Part):
             axes[0, 0].legend(loc="best", fontsize="small")
         figure.tight_layout()
         return figure
+
+
+class Design:
+    """The next experiment: what tells apart what a diagnosis leaves open; it prints as the program's.
+
+    ending: "schedule", "enough", "none_of_these", "cannot_decide" or "nothing_possible". schedule: a dict of arrays, t_s and
+    each input, which holds until the next row; csv and header are the same as files. They are empty without a schedule.
+    """
+
+    def __init__(self, ending, text, schedule, header, page):
+        self.ending, self.csv, self.header = ending, schedule, header
+        self._text, self._page = text, page
+
+    @property
+    def schedule(self):
+        """The schedule as arrays by name."""
+        rows = list(csv.reader(self.csv.splitlines()))
+        return {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0])} if rows else {}
+
+    def html(self):
+        """A page with the curves that each explanation predicts."""
+        return self._page
+
+    def __repr__(self):
+        return self._text
 
 
 class Fleet(Part):
@@ -501,9 +537,35 @@ def _choices(columns):
     return [one[len("--column "):] if one.startswith("--column ") else one for one in words if one != "--column"]
 
 
-def _chosen(taken, name, choices):
+def _supply_of(taken, reading, rows):
+    """The supply's voltage in each row of a frame, or nothing where only the model knows it."""
+    if "supply_V" in reading.constants:
+        return np.full(rows, reading.constants["supply_V"])
+    for text in reading.choices:
+        column, header = _thermopower.choice_of(text)
+        if column == "supply_V" and header in taken:
+            return _thermopower.chosen_values(text, np.asarray(taken[header], float), reading.how, np.zeros(0))
+    return np.asarray(taken["supply_V"], float) if "supply_V" in taken else np.zeros(0)
+
+
+class _Reading:
+    """How recordings are read: what they do not say of themselves, and what of it a model says."""
+
+    def __init__(self, columns=(), constants=None, rows_per_s=0.0, model=None):
+        self.choices = _choices(columns)
+        self.constants = {str(name): float(value) for name, value in dict(constants or {}).items()}
+        self.rows_per_s = float(rows_per_s)
+        for name in self.constants:
+            if name in ("t_s", "run"):
+                raise InvalidInput(f"constants: {name} is not a constant")
+        self.how = _thermopower.Reading(self.choices, list(self.constants.items()), self.rows_per_s, model)
+
+
+def _chosen(taken, name, reading):
     """The columns of a frame by the names of the format, in its units."""
+    choices = reading.choices
     chosen = {}
+    supply = np.zeros(0)
     for text in choices:
         column, header = _thermopower.choice_of(text)
         if header not in taken:
@@ -512,7 +574,9 @@ def _chosen(taken, name, choices):
             values = np.asarray(taken[header], dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"{name}: column '{header}' (asked for as {column}) holds {taken[header].dtype}; expected numbers") from None
-        chosen[column] = _thermopower.chosen_values(text, values)
+        if column == "voltage_V":
+            supply = _supply_of(taken, reading, len(values))
+        chosen[column] = _thermopower.chosen_values(text, values, reading.how, supply)
     used = {_thermopower.choice_of(text)[1] for text in choices}
     return {**{key: values for key, values in taken.items() if key not in used and key not in chosen}, **chosen}
 
@@ -539,29 +603,28 @@ def _stamps_of_index(data):
     return np.asarray(index) if is_time else None
 
 
-def _in_force(content, columns):
-    """What findings say to type, in the columns that were asked for."""
-    for one in content.get("findings", ()):
-        one["mend"] = _thermopower.remedy(one["mend"], _choices(columns))
-    return content
-
-
-def _recording(data, name, columns=()):
+def _recording(data, name, reading):
     if isinstance(data, _thermopower.Recording):
         return data
     if isinstance(data, (str, os.PathLike)):
-        return _thermopower.read_recording(os.fspath(data), _choices(columns))
+        return _thermopower.read_recording(os.fspath(data), reading.how)
     if not hasattr(data, "keys"):
         raise InputError(f"{name}: is a {type(data).__name__}; expected a dict of arrays, a DataFrame or a path")
     taken = {str(key): np.asarray(data[key]) for key in data.keys()}
-    taken = _chosen(taken, name, _choices(columns))
+    taken = _chosen(taken, name, reading)
     if "t_s" not in taken and _stamps_of_index(data) is not None:
         taken["t_s"] = _stamps_of_index(data)
+    if "t_s" not in taken and reading.rows_per_s > 0.0 and taken:
+        taken["t_s"] = np.arange(len(next(iter(taken.values())))) / reading.rows_per_s
     if "t_s" in taken:
         taken["t_s"] = _seconds(taken["t_s"])
     if "t_s" not in taken:
-        raise InputError(f"{name}: there is no column 't_s'; expected the time of each row in seconds")
+        raise InputError(f"{name}: there is no column 't_s'; expected the time of each row in seconds, or rows_per_s=")
     rows = len(taken["t_s"])
+    for key, value in reading.constants.items():
+        if key in taken:
+            raise InputError(f"{name}: column '{key}' is there, and is given as a constant, too; expected one of the two")
+        taken[key] = np.full(rows, value)
     arrays = {}
     for key, values in taken.items():
         if values.ndim != 1 or len(values) != rows:
@@ -588,12 +651,12 @@ def _recording(data, name, columns=()):
     return _thermopower.Recording(name, t_s, runs, list(arrays.items()))
 
 
-def _recordings(data, name, columns=()):
+def _recordings(data, name, reading):
     if data is None:
         return []
     if isinstance(data, (list, tuple)):
-        return [_recording(one, f"{name}[{i}]", columns) for i, one in enumerate(data)]
-    return [_recording(data, name, columns)]
+        return [_recording(one, f"{name}[{i}]", reading) for i, one in enumerate(data)]
+    return [_recording(data, name, reading)]
 
 
 def _own(effects):
@@ -635,37 +698,28 @@ def read_model(path):
         raise InputError(f"{os.fspath(path)}{str(error)[len('model'):]}") from None
 
 
-def diagnose(model, recordings, held_out=None, columns=(), effects=(), **options):
+def diagnose(model, recordings, held_out=None, columns=(), effects=(), constants=None, rows_per_s=0.0, **options):
     """Finds where the model and the recordings part, and which effect is missing.
 
     held_out: recordings to judge on; without them the last 30 % of each recording. columns: as the program's --column, a
-    list of NAME=HEADER[:UNIT] or the text that a finding says to type. effects: of one's own (Effect), beside those of the catalogue. Ctrl-C ends it. Options are those of the program: horizon_s, tolerance, held_out_fraction, effects_at_once,
-    without, as_recorded, threads, seed.
+    list of NAME=HEADER[:UNIT]. constants: columns that the recordings lack and that did not change, such as
+    {"ambient_C": 24.0}. rows_per_s: of recordings without time. A finding's mend says in these words what to pass. effects: of
+    one's own (Effect), beside those of the catalogue. Ctrl-C ends it. Options are those of the program: horizon_s, tolerance,
+    held_out_fraction, effects_at_once, without, as_recorded, threads, seed.
     """
-    found = Diagnosis(
-        _thermopower.diagnose(
-            _model(model, effects),
-            _own(effects),
-            _recordings(recordings, "recordings", columns),
-            _recordings(held_out, "held_out", columns),
-            _options(options),
-        ),
-        model if isinstance(model, Plant) else None,
-    )
-    _in_force(found._content, columns)
-    return found
+    known = _model(model, effects)
+    reading = _Reading(columns, constants, rows_per_s, known)
+    found = _thermopower.diagnose(known, _own(effects), _recordings(recordings, "recordings", reading),
+                                  _recordings(held_out, "held_out", reading), _options(options), reading.how)
+    return Diagnosis(found, model if isinstance(model, Plant) else None)
 
 
-def check(model, recordings, held_out=None, columns=(), effects=(), **options):
-    """What is wrong with recordings, and what they can show; nothing is fitted."""
-    content, text = _thermopower.check(
-        _model(model, effects),
-        _own(effects),
-        _recordings(recordings, "recordings", columns),
-        _recordings(held_out, "held_out", columns),
-        _options(options),
-        _choices(columns),
-    )
+def check(model, recordings, held_out=None, columns=(), effects=(), constants=None, rows_per_s=0.0, **options):
+    """What is wrong with recordings, and what they can show; nothing is fitted. Arguments as in diagnose()."""
+    known = _model(model, effects)
+    reading = _Reading(columns, constants, rows_per_s, known)
+    content, text = _thermopower.check(known, _own(effects), _recordings(recordings, "recordings", reading),
+                                       _recordings(held_out, "held_out", reading), _options(options), reading.how)
     return Check(json.loads(content), text)
 
 
@@ -673,12 +727,13 @@ def _stamps(source):
     return np.asarray(_seconds(source["t_s"] if "t_s" in source.keys() else _stamps_of_index(source)), float)
 
 
-def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, columns, effects):
+def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, columns, effects, constants):
     many_models, many = isinstance(models, (list, tuple)), isinstance(recordings, (list, tuple))
     sources = list(recordings) if many else [recordings]
-    taken = _recordings(sources, "recording", columns)
+    known = [_model(one, effects) for one in (models if many_models else [models])]
+    taken = _recordings(sources, "recording", _Reading(columns, constants, 0.0, known[0] if known else None))
     found = _thermopower.simulate(
-        [_model(one, effects) for one in (models if many_models else [models])], _own(effects), taken, starts, horizon_s, from_inputs, threads or os.cpu_count() or 1
+        known, _own(effects), taken, starts, horizon_s, from_inputs, threads or os.cpu_count() or 1
     )
     results = [
         [{**({"t_s": _stamps(source)} if hasattr(source, "keys") else {}), **dict(signals)}
@@ -690,19 +745,19 @@ def _simulate(models, recordings, starts, horizon_s, from_inputs, threads, colum
     return results if many_models else results[0]
 
 
-def simulate(models, recordings, horizon_s=0.5, threads=0, columns=(), effects=()):
+def simulate(models, recordings, horizon_s=0.5, threads=0, columns=(), effects=(), constants=None):
     """Simulates recordings as a gap is judged: each run from its measured start, an axis in windows of horizon_s.
 
     One model or a list, one recording or a list; lists give lists, the outer one over models. Each result is a dict
     of arrays, nan where a signal could not be simulated.
     """
-    return _simulate(models, recordings, {}, horizon_s, False, threads, columns, effects)
+    return _simulate(models, recordings, {}, horizon_s, False, threads, columns, effects, constants)
 
 
-def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, columns=(), effects=()):
+def predict(models, recordings, start=None, horizon_s=float("inf"), threads=0, columns=(), effects=(), constants=None):
     """Predicts from inputs alone: what was not measured starts at the air's temperature and at rest, or as start says
     (such as {"motor_C": 40.0}). Lists as in simulate()."""
-    return _simulate(models, recordings, dict(start or {}), horizon_s, True, threads, columns, effects)
+    return _simulate(models, recordings, dict(start or {}), horizon_s, True, threads, columns, effects, constants)
 
 
 def fleet(logs, out, workers=0, pages=True, columns=(), without=(), horizon_s=None):

@@ -89,6 +89,14 @@ class Columns(Dict[str, str]):
     @property
     def choices(self) -> List[str]: ...
 
+class Design:
+    ending: str
+    csv: str
+    header: str
+    @property
+    def schedule(self) -> Dict[str, np.ndarray]: ...
+    def html(self) -> str: ...
+
 class Diagnosis(Part):
     verdict: str
     reason: str
@@ -110,6 +118,7 @@ class Diagnosis(Part):
     def markdown(self) -> Text: ...
     def mjcf(self) -> Tuple[str, List[str]]: ...
     def urdf(self) -> Tuple[str, List[str]]: ...
+    def design(self, limits: Union[Mapping[str, Any], str, PathLike[str]], seed: int = ...) -> Design: ...
     def table(self) -> Any: ...
     def plot(self) -> Any: ...
 
@@ -131,6 +140,8 @@ def diagnose(
     held_out: Optional[Recordings] = ...,
     columns: Sequence[str] = ...,
     effects: Sequence[Effect] = ...,
+    constants: Optional[Mapping[str, float]] = ...,
+    rows_per_s: float = ...,
     *,
     horizon_s: float = ...,
     tolerance: float = ...,
@@ -147,6 +158,8 @@ def check(
     held_out: Optional[Recordings] = ...,
     columns: Sequence[str] = ...,
     effects: Sequence[Effect] = ...,
+    constants: Optional[Mapping[str, float]] = ...,
+    rows_per_s: float = ...,
     *,
     horizon_s: float = ...,
     as_recorded: bool = ...,
@@ -158,6 +171,7 @@ def simulate(
     threads: int = ...,
     columns: Sequence[str] = ...,
     effects: Sequence[Effect] = ...,
+    constants: Optional[Mapping[str, float]] = ...,
 ) -> Any: ...
 def predict(
     models: Union[Model, Sequence[Model]],
@@ -167,6 +181,7 @@ def predict(
     threads: int = ...,
     columns: Sequence[str] = ...,
     effects: Sequence[Effect] = ...,
+    constants: Optional[Mapping[str, float]] = ...,
 ) -> Any: ...
 def fleet(
     logs: Any,
