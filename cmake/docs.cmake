@@ -6,6 +6,8 @@ find_package(Doxygen 1.9.4 REQUIRED OPTIONAL_COMPONENTS dot)
 find_path(THERMOPOWER_DOXYGEN_AWESOME doxygen-awesome.css PATHS /usr/share/doxygen-awesome-css)
 # Formulas are typeset once, here, with KaTeX (Debian: katex and nodejs). Without it pages show their LaTeX.
 find_program(THERMOPOWER_NODE NAMES node nodejs)
+# Pages are Markdown that a code host shows; docs/for_doxygen.py makes of them what Doxygen knows.
+find_program(THERMOPOWER_PYTHON_PROGRAM NAMES python3 REQUIRED)
 find_path(THERMOPOWER_KATEX katex.min.css PATHS /usr/share/javascript/katex)
 mark_as_advanced(THERMOPOWER_DOXYGEN_AWESOME THERMOPOWER_NODE THERMOPOWER_KATEX)
 
@@ -60,12 +62,8 @@ endif()
 configure_file(${PROJECT_SOURCE_DIR}/docs/Doxyfile.in ${PROJECT_BINARY_DIR}/docs/Doxyfile @ONLY)
 
 # Plain English is held here, too: tests/docs/prose.py says which sentence is too long or a riddle.
-find_program(THERMOPOWER_PYTHON_PROGRAM NAMES python3)
+set(prose COMMAND ${THERMOPOWER_PYTHON_PROGRAM} -B ${PROJECT_SOURCE_DIR}/tests/docs/prose.py check ${PROJECT_SOURCE_DIR})
 mark_as_advanced(THERMOPOWER_PYTHON_PROGRAM)
-set(prose)
-if(THERMOPOWER_PYTHON_PROGRAM)
-  set(prose COMMAND ${THERMOPOWER_PYTHON_PROGRAM} -B ${PROJECT_SOURCE_DIR}/tests/docs/prose.py check ${PROJECT_SOURCE_DIR})
-endif()
 
 add_custom_target(docs ${prose} COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/docs/html
                        COMMAND Doxygen::doxygen ${PROJECT_BINARY_DIR}/docs/Doxyfile ${typeset}

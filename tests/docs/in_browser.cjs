@@ -3,7 +3,7 @@
 
 // The documentation in a browser. Every page that the front page leads to, and some of the classes, at 390 and 1400 px: nothing is wider than the page,
 // no formula is left as LaTeX, no script fails, nothing is asked of another host. A word is looked for in all of them. Then "Try it here" is tried, where it was
-// built with its program: the example, a motor that lacks nothing, 10 000 rows in less than 10 s, a recording that is
+// built with its program: the example, a motor that lacks nothing, a remedy that is pasted, 10 000 rows in less than 10 s, a recording that is
 // dropped on the page, and one that is broken.
 //   node in_browser.cjs <chromium> <folder of the pages>
 'use strict';
@@ -131,8 +131,14 @@ const attempt = async () => {
   const summary = await run('document.getElementById("try-summary").textContent');
   check(/winding_tempco \(\d+ %\): tempco_per_K 0\.0039/.test(summary), 'the cause is not named: ' + summary);
   check(await run('document.getElementById("try-report").srcdoc.includes("<!DOCTYPE html>")'), 'there is no report');
+  // A motor that lacks nothing: the model's constants are 2 % off, and then they are right.
   await example(800, 0);
+  check(await diagnose(60) === 'explained', 'constants that are off are ' + await run(`${verdict}`) + ': ' + await status());
+  const constants = await run('document.getElementById("try-summary").textContent');
+  check(/calibration\.resistance/.test(constants) && !/winding_tempco \(/.test(constants), 'of constants that are off: ' + constants);
+  await run('(m => { m.value = m.value.replace("12.24", "12").replace("58.8", "60"); })(document.getElementById("try-model")); 0');
   check(await diagnose(60) === 'no_gap', 'a motor that lacks nothing is ' + await run(`${verdict}`) + ': ' + await status());
+  await run('(m => { m.value = m.value.replace(" 12,", " 12.24,").replace(" 60,", " 58.8,"); })(document.getElementById("try-model")); 0');
   await example(10000, 0.393);
   const since = Date.now();
   check(await diagnose(60) === 'explained', '10 000 rows are ' + await run(`${verdict}`) + ': ' + await status());
@@ -159,6 +165,20 @@ const attempt = async () => {
   check(await until('!document.getElementById("try-run").disabled', 10), 'a dropped recording is not taken');
   await diagnose(60);
   check(/winding_tempco/.test(await run('document.getElementById("try-summary").textContent')), 'of a dropped recording: ' + await status() + await run('document.getElementById("try-summary").textContent'));
+  // The same in degrees Fahrenheit: what the finding says to type goes into the field of the columns as it is.
+  await run('document.getElementById("try-mapping").value = "--ambient 75.2"; 0');
+  await press('training-clear');
+  await drop(csv.split('\n').map((line, row) => row === 0 || !line ? line.replace('ambient_C', 'was_C') : line.replace(/[^,]*$/, c => (1.8 * Number(c) + 32).toFixed(3)))
+    .join('\n'));
+  await until('!document.getElementById("try-run").disabled', 10);
+  await diagnose(60);
+  const said = await run('document.getElementById("try-summary").textContent.replace(/\\s+/g, " ")');
+  const mend = (/To mend it: ((?:--[a-z]+ \S+ ?)+)/.exec(said) || ['', ''])[1];
+  check(/motor_C:degF/.test(mend) && /--ambient 24/.test(mend), 'degrees Fahrenheit: ' + said);
+  await run(`document.getElementById("try-mapping").value += ${JSON.stringify('\n' + mend)}; 0`);
+  await diagnose(60);
+  check(/winding_tempco/.test(await run('document.getElementById("try-summary").textContent')), 'the remedy that was pasted (' + mend + '): ' + await status());
+  await run('document.getElementById("try-mapping").value = ""; 0');
   await press('training-clear');
   await drop('t_s,power_param\n0,1\n1,abc\n');
   await until('!document.getElementById("try-run").disabled', 10);

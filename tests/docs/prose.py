@@ -50,6 +50,7 @@ def blank(match):
 
 def sentences(text):
     """(line number, sentence) of the prose of a page."""
+    text = re.sub(r"^- <!-- subpage .*$", blank, text, flags=re.M)  # a menu
     text = re.sub(r"```.*?```|<!--.*?-->|\\f\[.*?\\f\]", blank, text, flags=re.S)
     text = re.sub(r"\$`[^`]*`\$|`[^`]*`", lambda match: "code" + "\n" * match.group(0).count("\n"), text)
     text = re.sub(r"<[^>\n]+>", blank, text)
@@ -62,11 +63,11 @@ def sentences(text):
             now.clear()
 
     for number, line in enumerate(text.split("\n"), 1):
-        item = None if line.startswith("- @subpage") else re.match(r"^\s*(?:[-*]|\d+\.)\s+", line)
+        item = re.match(r"^\s*(?:[-*]|\d+\.)\s+", line)
         if item:
             end()
             now.append((number, line[item.end():]))
-        elif not line.strip() or re.match(r"^(?:    |\t|\s*\||#|@|\\|- @subpage)", line):
+        elif not line.strip() or re.match(r"^(?:    |\t|\s*\||#|@|\\)", line):
             end()
         else:
             now.append((number, line.strip()))

@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   try {
     const Answers all = of_benchmark(directory, rules.front());
     std::ofstream out(out_path);
-    out << "# What each rule of the diagnosis is worth {#gap_ablation}\n\n"
+    out << "# What each rule of the diagnosis is worth\n<!-- page gap_ablation -->\n\n"
            "One rule is taken away at a time, and the same recordings are diagnosed again. The table says how many answers change. A rule\n"
            "without which nothing becomes worse is removed. The rules are listed in `thermopower/gap/rule.hpp`.\n\n"
         << (note.empty() ? "" : note + "\n\n") << "With all rules " << all.right() << " of " << all.cases()

@@ -138,7 +138,7 @@ std::string snippet(const std::string& file, const std::string& label) {
 /// Ids of the pages that people read, menus aside.
 std::set<std::string> pages() {
   std::set<std::string> ids;
-  static const std::regex id(R"(^# .*\{#(\w+)\}$)");
+  static const std::regex id(R"(^<!-- page (\w+) -->$)");
   for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
     std::smatch match;
     if (entry.path().extension() != ".md") continue;

@@ -107,16 +107,12 @@ TEST_CASE("stable numbers: no enumerator is given twice") {
 
 TEST_CASE("the front page links every page") {
   const std::string front = read_text(fs::path(THERMOPOWER_DOCS_DIR) / "index.md");
-  static const std::regex title(R"(^#[^#\n].*\{#(\w+)\})");
   int pages = 0;
   for (const auto& entry : fs::recursive_directory_iterator(THERMOPOWER_DOCS_DIR)) {
     if (entry.path().extension() != ".md" || entry.path().filename() == "index.md") continue;
-    std::smatch match;
-    const std::string first = lines_of(entry.path()).front();
-    CAPTURE(entry.path().string(), first);
-    REQUIRE(std::regex_search(first, match, title));
-    const std::regex link("@(ref|subpage) " + match[1].str() + R"(\b)");
-    CHECK(std::regex_search(front, link));
+    const std::string page = fs::relative(entry.path(), THERMOPOWER_DOCS_DIR).generic_string();
+    CAPTURE(page);
+    CHECK(front.find("](" + page + ")") != std::string::npos);
     ++pages;
   }
   CHECK(pages > 40);

@@ -152,7 +152,9 @@ std::string compared(const NamedReport& name_a, const NamedReport& name_b, const
   std::snprintf(row, sizeof row, "\n  %-26s%22s%22s%22s\n", "RMSE, held out", "as configured", "with effect",
                 "noise floor");
   std::string table;
-  for (const auto& [signal, gap] : a.at("gap").items()) {
+  for (const auto& entry : a.at("gap").items()) {
+    const std::string& signal = entry.key();
+    const Json& gap = entry.value();
     if (!b.at("gap").contains(signal)) continue;
     const Json& other = b.at("gap")[signal];
     char cells[300];

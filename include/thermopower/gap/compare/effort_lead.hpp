@@ -64,8 +64,8 @@ inline Candidate candidate_of(const InverseScore& score, const FitProblem& probl
 /// The explanations that the effort proposes, weighed by held-out effort, "nothing missing" first.
 class EffortLead {
 public:
-  /// Keeps references: both must outlive this object.
-  EffortLead(EffortProblem& effort, const FitProblem& problem) : effort_(effort), problem_(problem) {
+  /// @param effort  must outlive this object
+  EffortLead(EffortProblem& effort, const FitProblem& problem) : effort_(effort) {
     std::set<std::vector<const CatalogueEntry*>> seen{{}};
     std::vector<InverseScore> scores{effort.nothing()};
     for (const InverseProposal& proposal : effort.proposals()) {
@@ -151,7 +151,6 @@ private:
   }
 
   EffortProblem& effort_;
-  const FitProblem& problem_;
   bool is_told_ = false;
   std::vector<Candidate> candidates_;
   std::vector<Eigen::VectorXd> signatures_;
