@@ -10,7 +10,9 @@
 /// A hose that stiffens as it bends: a torque back to its rest, with the cube of the angle.
 struct StiffeningHose {
   /// Its parameters, in this order.
-  enum Parameters { stiffness };
+  enum Parameters {
+    stiffness  ///< torque by the cube of the angle, N m/rad^3
+  };
 
   /// What it is, for people and for the engine.
   static thermopower::plant::EffectInfo info() {

@@ -95,7 +95,7 @@ struct VerdictNotes {
 
 constexpr VerdictNotes verdicts[] = {
     {Verdict::no_gap,
-     "The simulation, with constants within what is known of them, predicts held-out data as well as their noise allows.",
+     "The simulation, as it is configured, predicts held-out data as well as their noise allows.",
      "Every judged signal is within one and a half times its noise floor.",
      "A recording that does not excite what is wrong: nothing shows in a motor that stays cold.",
      "Record what the simulation will be used for: the largest power, the fastest motion, the longest run.",
