@@ -27,7 +27,7 @@ diagnose() {
     --predictions "$1/predictions.csv" --augmented "$1/augmented.json" --header "$1/motor_model.hpp"
 }
 
-echo "== Building the diagnosis (the longest part; a minute or two on two cores, once)"
+echo "== Building the diagnosis (the longest part: six minutes on two cores, once)"
 cmake --preset release --log-level=WARNING --no-warn-unused-cli >/dev/null
 cmake --build --preset release --target known_gap thermopower-gap
 
@@ -50,12 +50,14 @@ cmake --build --preset release --target nano_demo
 echo
 echo "== 4. The thesis's measurements, replayed through the models"
 cmake --build --preset release --target thesis_replay
-"$bin/thesis_replay" --csv "$out/thesis_replay.csv" --svg "$out/thesis_replay.svg"
+"$bin/thesis_replay" --csv "$out/thesis_replay.csv" --svg "$out/thesis_replay.svg" >"$out/thesis_replay.txt"
+echo "RMS and largest error over all tables of each motor, as programmed and with the corrected constants; row by row in $out/thesis_replay.txt"
+grep -E '^BG|corrected$|RMSE| all ' "$out/thesis_replay.txt"
 
 echo
 echo "Traces:   $out/thesis_replay.csv  $out/nano_demo.csv"
 echo "Pictures: $out/thesis_replay.svg  $out/nano_demo.svg"
 echo "Reports:  $out/known_gap/report.html  $out/thesis_gap/report.html"
 echo
-echo "The diagnosis found from recordings alone what each simulation lacks, and by how much its error shrinks with it."
-echo "next: $bin/thermopower-gap columns YOUR_LOG, and $bin/thermopower-gap init for a model of yours"
+echo "From recordings alone the diagnosis explained the first gap. Of the second it said where it is, and that no cause it knows closes it."
+echo "next: $bin/thermopower-gap columns YOUR_LOG  (which column is which), and $bin/thermopower-gap init  (a model file of yours)"

@@ -57,13 +57,20 @@ std::string number(double value) {
   return text;
 }
 
+// A line of an answer. Where there is none, what follows begins a line of its own.
+bool answered(std::string& line) {
+  if (std::getline(std::cin, line)) return true;
+  std::fputs("\n", stderr);
+  return false;
+}
+
 // Asks at a terminal, or reads the answers from a pipe, one a line.
 double ask(const Question& question) {
   for (;;) {
     std::fprintf(stderr, "%s%s%s%s: ", question.question, question.usual[0] != '\0' ? " [" : "",
                  question.usual, question.usual[0] != '\0' ? "]" : "");
     std::string line;
-    if (!std::getline(std::cin, line))
+    if (!answered(line))
       throw UsageError(std::string("init: no answer to '") + question.question + "'; " + question.option +
                        " gives it");
     if (line.empty()) line = question.usual;
@@ -190,7 +197,7 @@ int init(Asked& asked) {
   if (!joint && !motor) {
     std::fputs("What was recorded: 1 a motor that warms, 2 a joint that moves, 3 both? ", stderr);
     std::string line;
-    if (!std::getline(std::cin, line) || (line != "1" && line != "2" && line != "3"))
+    if (!answered(line) || (line != "1" && line != "2" && line != "3"))
       throw UsageError(
           "init: expected 1, 2 or 3, an MJCF or URDF file, or options such as --resistance and --inertia");
     motor = line != "2";
