@@ -37,6 +37,13 @@ public:
 
   enum class Kind { arm, quadruped };
 
+  /// Which effort a log holds in a row. The drives hold a target to the next row, so the effort jumps in each row.
+  enum class Logged {
+    after_jump,   ///< that of the row's own target, as a simulator writes it
+    before_jump,  ///< that of the last target, as a drive's message has it that came before the new command
+    averaged      ///< its mean since the last row, as from a filtered current
+  };
+
   /// @param kind    which robot
   /// @param seed    of effects, sizes, targets and noise
   HiddenTruth(Kind kind, unsigned seed) : kind_(kind), random_(seed) {
@@ -51,7 +58,10 @@ public:
   const std::vector<Effect>& effects() const { return effects_; }
 
   /// A log of the truth: targets and positions, and efforts where `with_effort`.
-  thermopower::robot::Log log(bool with_effort, double duration_s = 20.0) {
+  ///
+  /// The effort is what a drive believes: current times the torque constant of the model.
+  thermopower::robot::Log log(bool with_effort, double duration_s = 20.0,
+                              Logged logged = Logged::after_jump) {
     constexpr double row_s = 0.005;
     constexpr int parts = 25;
     const auto joints = static_cast<Eigen::Index>(truth_.size());
@@ -87,6 +97,7 @@ public:
       d.qpos[j] = out.target(0, j);
     }
     mj_forward(&m, &d);
+    std::vector<double> mean(truth_.size(), 0.0), last(truth_.size(), 0.0);
     for (Eigen::Index row = 0; row < rows; ++row) {
       for (Eigen::Index j = 0; j < joints; ++j) {
         d.ctrl[j] = out.target(row, j);
@@ -101,9 +112,20 @@ public:
                               c.ripple * std::sin(24.0 * q);
         }
         mj_step(&m, &d);
-        if (with_effort && part == 0)
-          for (Eigen::Index j = 0; j < joints; ++j)
-            out.effort(row, j) = d.actuator_force[j] + 0.01 * normal(random_);
+        for (Eigen::Index j = 0; with_effort && j < joints; ++j) {
+          const auto k = static_cast<std::size_t>(j);
+          const double believed = d.actuator_force[j] * model_[k].kp / truth_[k].kp;
+          if (part == 0) {
+            const bool is_first = row == 0 || logged == Logged::after_jump;
+            out.effort(row, j) = (is_first                        ? believed
+                                  : logged == Logged::before_jump ? last[k]
+                                                                  : mean[k] / parts) +
+                                 0.01 * normal(random_);
+            mean[k] = 0.0;
+          }
+          mean[k] += believed;
+          last[k] = believed;
+        }
       }
     }
     return out;

@@ -120,3 +120,21 @@ TEST_CASE("a base that moves is an input where it is logged") {
     CHECK(joint.verdict == robot::JointVerdict::no_gap);
   }
 }
+
+TEST_CASE(
+    "a logged effort accuses no sound joint, whether it is that before or that after the drives take over a target") {
+  using Logged = test::HiddenTruth::Logged;
+  for (const Logged logged : {Logged::after_jump, Logged::before_jump}) {
+    test::HiddenTruth truth(test::HiddenTruth::Kind::arm, 2);
+    const robot::Log log = truth.log(true, 20.0, logged);
+    const robot::MujocoBody body("arm", truth.model());
+    const robot::RobotDiagnosis found = robot::diagnose(body, body.robot(), log, {});
+    CHECK(found.delay_s == 0.0);
+    for (std::size_t j = 0; j < found.joints.size(); ++j) {
+      CAPTURE(found.joints[j].name);
+      bool is_sound = true;
+      for (const auto& effect : truth.effects()) is_sound = is_sound && effect.joint != static_cast<int>(j);
+      CHECK(found.joints[j].causes.empty() == is_sound);
+    }
+  }
+}

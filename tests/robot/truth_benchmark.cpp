@@ -17,17 +17,33 @@
 
 namespace robot = thermopower::robot;
 
+namespace {
+
+struct Recorded {
+  const char* name;
+  bool with_effort;
+  test::HiddenTruth::Logged logged;
+};
+
+constexpr Recorded recordings[] = {
+    {"effort logged after its jump", true, test::HiddenTruth::Logged::after_jump},
+    {"effort logged before its jump", true, test::HiddenTruth::Logged::before_jump},
+    {"effort averaged", true, test::HiddenTruth::Logged::averaged},
+    {"targets only", false, test::HiddenTruth::Logged::after_jump}};
+
+}  // namespace
+
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 50;
   const auto first = static_cast<unsigned>(argc > 2 ? std::atoi(argv[2]) : 1);
   const bool verbose = argc > 3;
   for (const auto kind : {test::HiddenTruth::Kind::arm, test::HiddenTruth::Kind::quadruped})
-    for (const bool with_effort : {true, false}) {
+    for (const Recorded& recorded : recordings) {
       int affected = 0, joint_right = 0, effect_right = 0, alike = 0, sound = 0, accused = 0;
       double seconds = 0.0;
       for (int i = 0; i < count; ++i) {
         test::HiddenTruth truth(kind, first + static_cast<unsigned>(i));
-        const robot::Log log = truth.log(with_effort);
+        const robot::Log log = truth.log(recorded.with_effort, 20.0, recorded.logged);
         const robot::MujocoBody body("model", truth.model());
         const auto begin = std::chrono::steady_clock::now();
         const robot::RobotDiagnosis found = robot::diagnose(body, body.robot(), log, {});
@@ -68,10 +84,9 @@ int main(int argc, char** argv) {
       const auto percent = [](int part, int all) { return 100.0 * part / std::max(1, all); };
       std::printf(
           "%s, %s: joint right %.1f %% of %d, effect right %.1f %% (or one that predicts alike %.1f %%), sound joints accused %.1f %% of %d, %.1f s each\n",
-          kind == test::HiddenTruth::Kind::arm ? "arm" : "quadruped",
-          with_effort ? "effort logged" : "targets only", percent(joint_right, affected), affected,
-          percent(effect_right, affected), percent(alike, affected), percent(accused, sound), sound,
-          seconds / count);
+          kind == test::HiddenTruth::Kind::arm ? "arm" : "quadruped", recorded.name,
+          percent(joint_right, affected), affected, percent(effect_right, affected), percent(alike, affected),
+          percent(accused, sound), sound, seconds / count);
       std::fflush(stdout);
     }
   return 0;

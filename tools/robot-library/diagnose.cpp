@@ -8,6 +8,8 @@
 
 #include "replay.hpp"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,7 +32,8 @@ constexpr double relevant_share =
 // Joints that are built alike have the same answer, unless the error of one of them falls by so much with a cause of its own.
 // A logarithm.
 constexpr double own_gain = 0.25;
-constexpr double earlier_wins = 0.03;  // share of the effort that a longer delay must win
+constexpr double earlier_wins = 0.03;      // share of the effort that a longer delay must win
+constexpr double controlled_share = 0.35;  // of a measured effort that a position controller may leave
 
 Log part_of(const Log& log, bool last, double share) {
   Log out;
@@ -97,7 +100,7 @@ public:
     out_.cutoff_Hz = train_.series.cutoff_Hz;
     refuse_still_joints();
     find_ground();
-    find_delay();
+    find_timing();
     fit_joints();
     choose_causes();
     fit_chosen();
@@ -188,7 +191,7 @@ private:
       double product = 0.0, square = 0.0;
       for (std::size_t j = 0; j < count(); ++j) {
         if (forces.limb_of_joint[j] != limb || !judged(j)) continue;
-        const Eigen::VectorXd effort = JointProblem::effort_of(train_.series, index(j), joint(j), 0.0);
+        const Eigen::VectorXd effort = effort_of(train_.series, index(j), joint(j), {});
         const Eigen::VectorXd lacks = effort - train_.body.torque.col(index(j));
         product += lacks.dot(forces.effort.col(index(j)));
         square += forces.effort.col(index(j)).squaredNorm();
@@ -213,15 +216,108 @@ private:
     out_.notes.push_back(text);
   }
 
-  // One delay for all joints: the shortest that leaves nearly the least effort.
-  void find_delay() {
+  // When the effort acts, one answer for all joints.
+  void find_timing() {
+    if (out_.effort_is_measured) {
+      find_gains();
+      find_jump();
+    } else {
+      timing_.late_s = delay_with(timing_, 0.0);
+    }
+    out_.delay_s = timing_.late_s;
+  }
+
+  // How the measured effort follows the logged target: what a position controller commands, so many rows later.
+  void find_gains() {
+    const Eigen::Index rows = train_.series.rows();
+    double least = std::numeric_limits<double>::infinity();
+    for (int late = 0; late <= static_cast<int>(options_.latest_rows); ++late) {
+      std::vector<double> gain(count(), 0.0);
+      double sum = 0.0;
+      for (std::size_t j = 0; j < count(); ++j) {
+        const Eigen::VectorXd target = train_.series.smooth_target.col(index(j));
+        if (!judged(j) || !is_effort_measured(train_.series, index(j)) || !target.allFinite()) continue;
+        Eigen::MatrixXd columns(rows, 4);
+        columns.col(0) = earlier(train_.series, target, late);
+        columns.col(1) = train_.series.motion.position.col(index(j));
+        columns.col(2) = train_.series.motion.velocity.col(index(j));
+        columns.col(3).setOnes();
+        const Eigen::VectorXd effort = train_.series.effort.col(index(j));
+        const Eigen::VectorXd value = columns.householderQr().solve(effort);
+        const double left =
+            (effort - columns * value).norm() / (effort.array() - effort.mean()).matrix().norm();
+        sum += std::log(std::min(1.0, left) + 1e-6);
+        if (left < controlled_share && value[0] > 0.0) gain[j] = value[0];
+      }
+      if (sum < least) {
+        least = sum;
+        timing_.target_rows = late;
+        timing_.gain = gain;
+      }
+    }
+  }
+
+  /// What is left of a joint's effort in units of what noise leaves, as a logarithm.
+  ///
+  /// The acceleration is noisy, too: a delay that looks like less inertia would win without need.
+  double beyond_noise(std::size_t j, const JointProblem& problem, const JointFitter::Left& left) const {
+    const Series& series = train_.series;
+    const double noise = series.effort_noise.size() > 0 ? series.effort_noise[index(j)] : 0.0;
+    const double wobble = (problem.inertia() + left.armature) * series.acceleration_noise[index(j)];
+    return 0.5 * std::log((left.effort * left.effort + 1e-24) / (noise * noise + wobble * wobble + 1e-24)) +
+           options_.fit.price * left.numbers;
+  }
+
+  /// Mean over the joints. Without `families` each joint has the causes that it asks for: what the timing accounts for is not taken
+  /// for a cause.
+  double beyond_noise(const EffortTiming& timing, const std::vector<Family>* families) const {
+    double sum = 0.0, used = 0.0;
+    for (std::size_t j = 0; j < count(); ++j) {
+      if (!judged(j)) continue;
+      JointProblem problem(train_.series, train_.body, index(j), joint(j), timing, options_.fit.blocks, true);
+      if (problem.moving_rows() < 20 * options_.fit.blocks) continue;
+      JointFitter fitter(problem, options_.fit);
+      if (families == nullptr) fitter.fit();
+      sum += beyond_noise(j, problem, families == nullptr ? fitter.left_now() : fitter.left_with(*families));
+      used += 1.0;
+    }
+    return used > 0.0 ? sum / used : 0.0;
+  }
+
+  // Whether the log holds the effort just after the controllers took over a target, just before, or neither; and how late.
+  void find_jump() {
+    std::vector<double> kinds{0.0};
+    if (std::any_of(timing_.gain.begin(), timing_.gain.end(), [](double one) { return one > 0.0; }))
+      kinds = {0.0, 1.0, -1.0};
+    double least = std::numeric_limits<double>::infinity();
+    EffortTiming best = timing_;
+    for (const double after : kinds) {
+      EffortTiming trial = timing_;
+      trial.after_jump = after;
+      // An effort that was averaged before it was logged acts before its row.
+      trial.late_s = delay_with(trial, -1.0);
+      const double left = beyond_noise(trial, nullptr) + price_of(trial.late_s);
+      if (left < least) least = left, best = trial;
+    }
+    timing_ = best;
+  }
+
+  // What a delay must win, as a logarithm: there is often none, and a long one is rare.
+  double price_of(double late_s) const {
+    return late_s == 0.0 ? 0.0 : earlier_wins * std::max(2.0, std::fabs(late_s) / train_.series.step_s);
+  }
+
+  // One delay for all joints, in s: the shortest that leaves nearly the least effort.
+  double delay_with(EffortTiming timing, double earliest_rows) const {
     const std::vector<Family> usual{Family::armature, Family::damping,           Family::friction,
                                     Family::constant, Family::position_friction, Family::spring};
     const auto left_with = [&](double late_s) {
+      timing.late_s = late_s;
+      if (out_.effort_is_measured) return beyond_noise(timing, &usual);
       double sum = 0.0, used = 0.0;
       for (std::size_t j = 0; j < count(); ++j) {
         if (!judged(j)) continue;
-        JointProblem problem(train_.series, train_.body, index(j), joint(j), late_s, options_.fit.blocks);
+        JointProblem problem(train_.series, train_.body, index(j), joint(j), timing, options_.fit.blocks);
         if (problem.moving_rows() < 20 * options_.fit.blocks) continue;
         JointFitter fitter(problem, options_.fit);
         sum += std::log(fitter.held_out(usual) + 1e-12);
@@ -229,16 +325,14 @@ private:
       }
       return used > 0.0 ? sum / used : 0.0;
     };
-    const double none = left_with(0.0);
-    double best = none, best_late = 0.0;
-    for (double rows = 0.5; rows <= options_.latest_rows + 1e-9; rows += 0.5) {
-      const double left = left_with(rows * train_.series.step_s);
-      if (left < best - earlier_wins * (rows - best_late / train_.series.step_s)) {
-        best = left;
-        best_late = rows * train_.series.step_s;
-      }
+    double least = left_with(0.0), best = 0.0;
+    for (double rows = earliest_rows; rows <= options_.latest_rows + 1e-9; rows += 0.5) {
+      if (rows == 0.0) continue;
+      const double late_s = rows * train_.series.step_s;
+      const double left = left_with(late_s) + price_of(late_s);
+      if (left < least) least = left, best = late_s;
     }
-    if (none - best > 2.0 * earlier_wins) out_.delay_s = best_late;
+    return best;
   }
 
   void fit_joints() {
@@ -246,7 +340,7 @@ private:
     effort_rms_.assign(count(), 0.0);
     for (std::size_t j = 0; j < count(); ++j) {
       if (!judged(j)) continue;
-      JointProblem problem(train_.series, train_.body, index(j), joint(j), out_.delay_s, options_.fit.blocks);
+      JointProblem problem(train_.series, train_.body, index(j), joint(j), timing_, options_.fit.blocks);
       if (problem.moving_rows() < 20 * options_.fit.blocks) {
         refuse(j, "it moves in too few rows");
         continue;
@@ -288,7 +382,7 @@ private:
   }
 
   JointProblem problem_of(std::size_t j) const {
-    return {train_.series, train_.body, index(j), joint(j), out_.delay_s, options_.fit.blocks};
+    return {train_.series, train_.body, index(j), joint(j), timing_, options_.fit.blocks};
   }
 
   JointDynamics start_of(std::size_t j, JointProblem& problem, const Families& families) const {
@@ -526,7 +620,7 @@ private:
       JointDiagnosis& one = out_.joints[j];
       const auto left = [&](const JointDynamics& d) {
         const JointProblem problem(held_.series, held_.body, index(j), joint(j),
-                                   d.delay_s != 0.0 || out_.effort_is_measured ? out_.delay_s : 0.0,
+                                   d.delay_s != 0.0 || out_.effort_is_measured ? timing_ : EffortTiming(),
                                    options_.fit.blocks);
         double square = 0.0, rows = 0.0;
         for (Eigen::Index row = 0; row < problem.effort().size(); ++row)
@@ -751,7 +845,8 @@ private:
   Options options_;
   RobotDiagnosis out_;
   Prepared train_, held_;
-  double single_least_ = 0.05;   // logarithm by which a cause of a single joint must lower its error
+  double single_least_ = 0.05;  // logarithm by which a cause of a single joint must lower its error
+  EffortTiming timing_;
   double target_delay_s_ = 0.0;  // of the targets, told by the measured efforts
   std::vector<JointFit> fits_;
   std::vector<double> effort_rms_;

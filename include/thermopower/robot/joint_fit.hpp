@@ -80,6 +80,31 @@ public:
     return score(chosen_).rms;
   }
 
+  /// What is left, and the armature with which.
+  struct Left {
+    double effort = 0.0;    ///< held out, in N m
+    double armature = 0.0;  ///< added to the model's, in kg m2
+    int numbers = 0;        ///< that were fitted
+  };
+  /// @brief What exactly these families leave.
+  Left left_with(const std::vector<Family>& families) {
+    begin();
+    for (const Family family : families) add_wanted(family);
+    return left_now();
+  }
+  /// @brief What the families of the last fit() leave.
+  Left left_now() const {
+    Left out;
+    out.effort = score(chosen_).rms;
+    const std::vector<int> columns = columns_of(chosen_);
+    const Eigen::VectorXd value = solve(total_, columns);
+    out.numbers = static_cast<int>(columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (columns[i] == static_cast<int>(Regressor::acceleration))
+        out.armature = value[static_cast<Eigen::Index>(i)];
+    return out;
+  }
+
 private:
   static constexpr int last = static_cast<int>(Regressor::effort);
 

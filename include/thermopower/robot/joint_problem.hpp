@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/robot/effort_timing.hpp>
 #include <thermopower/robot/family.hpp>
 #include <thermopower/robot/joint.hpp>
 #include <thermopower/robot/series.hpp>
@@ -63,10 +64,11 @@ public:
   /// @param body    what the rigid body asks for, in the same rows
   /// @param index   of the joint
   /// @param joint   its constants; kp and kd count where the log has no effort
-  /// @param late_s  delay of the target, or of the measured effort, in s
+  /// @param timing  when the effort acts
   /// @param blocks  number of blocks
+  /// @param far_from_rest  leaves out the rows, too, that the filter's reach joins to rows near rest
   JointProblem(const Series& series, const BodyRows& body, Eigen::Index index, const Joint& joint,
-               double late_s, int blocks)
+               const EffortTiming& timing, int blocks, bool far_from_rest = false)
       : joint_(joint), stretches_(series.stretches), cutoff_(series.cutoff_Hz * series.step_s) {
     const Eigen::Index rows = series.rows();
     const Eigen::VectorXd w = series.motion.velocity.col(index), q = series.motion.position.col(index),
@@ -103,14 +105,25 @@ public:
                                   joint.stiffness * (q.array() - joint.spring_rest).matrix();
     put(Regressor::model, model);
     set_ripple(0);
-    const Eigen::VectorXd effort = effort_of(series, index, joint, late_s);
+    inertia_ = std::sqrt((body.inertia.col(index).array() + joint.armature).square().mean());
+    const Eigen::VectorXd effort = effort_of(series, index, joint, timing);
     put(Regressor::effort, effort - model);
     effort_ = effort;
+    // The filter smears what friction does near rest over so many rows.
+    const auto reach = far_from_rest ? static_cast<Eigen::Index>(std::ceil(0.5 / cutoff_)) : 0;
+    std::vector<char> slow_near(static_cast<std::size_t>(rows), 0);
+    for (const Stretch& one : stretches_)
+      for (Eigen::Index i = one.begin; i < one.end; ++i) {
+        if (speed[i] > slow) continue;
+        for (Eigen::Index k = std::max(one.begin, i - reach); k <= std::min(one.end - 1, i + reach); ++k)
+          slow_near[static_cast<std::size_t>(k)] = 1;
+      }
     std::vector<Eigen::Index> good;
     for (Eigen::Index i = 0; i < rows; ++i) {
       const bool limited = std::fabs(effort[i]) > 0.98 * joint.effort_limit;
-      if (series.edge[static_cast<std::size_t>(i)] == 0 && speed[i] > slow && !limited &&
-          std::isfinite(effort[i]) && std::isfinite(model[i]))
+      const auto k = static_cast<std::size_t>(i);
+      if (series.edge[k] == 0 && slow_near[k] == 0 && !limited && std::isfinite(effort[i]) &&
+          std::isfinite(model[i]))
         good.push_back(i);
     }
     const auto count = static_cast<Eigen::Index>(good.size());
@@ -121,32 +134,6 @@ public:
           static_cast<int>(i * blocks / std::max<Eigen::Index>(1, count));
     moving_rows_ = count;
     add_up();
-  }
-
-  /// The effort of each row in N m, through the filter of the series: measured, else what the position controller commands.
-  static Eigen::VectorXd effort_of(const Series& series, Eigen::Index index, const Joint& joint,
-                                   double late_s) {
-    const Eigen::Index rows = series.rows();
-    const bool measured = series.effort.rows() > 0 && series.effort.col(index).allFinite();
-    Eigen::VectorXd from = measured ? series.effort.col(index) : series.smooth_target.col(index);
-    // A target is held to the next row: on average it is half a row late.
-    if (!measured) late_s += 0.5 * series.step_s;
-    if (late_s != 0.0) {
-      Eigen::VectorXd shifted(rows);
-      const double late = late_s / series.step_s;
-      for (const Stretch& one : series.stretches)
-        for (Eigen::Index i = one.begin; i < one.end; ++i) {
-          const double at = std::clamp(static_cast<double>(i) - late, static_cast<double>(one.begin),
-                                       static_cast<double>(one.end - 1));
-          const auto below = std::min(static_cast<Eigen::Index>(std::floor(at)), one.end - 2);
-          const double share = at - static_cast<double>(below);
-          shifted[i] = from[below] + share * (from[below + 1] - from[below]);
-        }
-      from = shifted;
-    }
-    if (measured) return from;
-    return joint.kp * (from - series.motion.position.col(index)) -
-           (std::isfinite(joint.kd) ? joint.kd : 0.0) * series.motion.velocity.col(index);
   }
 
   /// @brief Chooses how many cycles a turn the ripple has; 0 takes it out. add_up() makes the sums anew.
@@ -211,6 +198,8 @@ public:
   double middle() const { return middle_; }
   /// Travel in rad.
   double span() const { return span_; }
+  /// Apparent inertia in kg m2 with the model's armature, root mean square.
+  double inertia() const { return inertia_; }
   /// Rows in which the joint moves.
   Eigen::Index moving_rows() const { return moving_rows_; }
 
@@ -232,7 +221,7 @@ private:
   std::vector<Sums> sums_;
   std::vector<Eigen::Index> rows_of_;
   int block_count_ = 0, cycles_ = 0;
-  double usual_rate_ = 0.0, still_ = 0.0, middle_ = 0.0, span_ = 0.0;
+  double usual_rate_ = 0.0, still_ = 0.0, middle_ = 0.0, span_ = 0.0, inertia_ = 0.0;
   Eigen::Index moving_rows_ = 0;
 };
 

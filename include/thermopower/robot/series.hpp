@@ -49,7 +49,9 @@ struct Series {
   Eigen::MatrixXd smooth_target;   ///< in rad, through the same filter
   Eigen::MatrixXd effort;      ///< measured effort in N m, through the same filter; empty where there is none
   Eigen::VectorXd rate_noise;  ///< standard deviation of each joint's smoothed velocity in rad/s
-  std::vector<char> edge;      ///< rows that the filter continues past an end of their stretch
+  Eigen::VectorXd acceleration_noise;  ///< of each joint's smoothed acceleration in rad/s2
+  Eigen::VectorXd effort_noise;        ///< of each joint's smoothed effort in N m; empty where there is none
+  std::vector<char> edge;              ///< rows that the filter continues past an end of their stretch
 
   /// Number of rows.
   Eigen::Index rows() const { return t_s.size(); }
@@ -192,7 +194,7 @@ inline Series make_series(const Log& log, const SmoothingOptions& options = {}) 
     out.motion.position = filtered(out.measured, filter);
     out.motion.velocity = slope(out.motion.position);
     out.motion.acceleration = slope(out.motion.velocity);
-    out.rate_noise = Eigen::VectorXd::Zero(joints);
+    out.rate_noise = out.acceleration_noise = Eigen::VectorXd::Zero(joints);
     bool is_clean = true;
     for (Eigen::Index j = 0; j < joints; ++j) {
       if (!out.measured.col(j).allFinite()) continue;
@@ -200,6 +202,7 @@ inline Series make_series(const Log& log, const SmoothingOptions& options = {}) 
       const double band = 2.0 * pi * cutoff;
       out.rate_noise[j] = noise / out.step_s * std::sqrt(std::pow(band, 3) / (3.0 * pi));
       const double wobble = std::pow(noise / (out.step_s * out.step_s), 2) * std::pow(band, 5) / (5.0 * pi);
+      out.acceleration_noise[j] = std::sqrt(wobble);
       const double power = out.motion.acceleration.col(j).squaredNorm() / static_cast<double>(rows);
       const double motion = out.motion.velocity.col(j).squaredNorm() / static_cast<double>(rows);
       // A joint that hardly moves says nothing of the filter.
@@ -220,7 +223,14 @@ inline Series make_series(const Log& log, const SmoothingOptions& options = {}) 
       out.motion.acceleration.col(j) = slope(one);
     }
   }
-  if (has_effort) out.effort = filtered(effort, filter);
+  if (has_effort) {
+    out.effort = filtered(effort, filter);
+    out.effort_noise = Eigen::VectorXd::Zero(joints);
+    for (Eigen::Index j = 0; j < joints; ++j)
+      if (effort.col(j).allFinite())
+        out.effort_noise[j] =
+            detail::white_noise(effort.col(j), out.effort.col(j), cutoff) * std::sqrt(2.0 * cutoff);
+  }
   if (out.motion.base_pose.rows() > 0) {
     Eigen::MatrixXd& pose = out.motion.base_pose;
     // q and -q are the same turn; the filter needs one that is continuous.
