@@ -72,7 +72,7 @@ cat >"$scratch/program.cpp" <<'PROGRAM'
 #include <thermopower/thermopower.hpp>
 int main() {
   thermopower::SafetyLimiter<> limiter;
-  return limiter.step({255, 90.0f, 0.0f}, 0.03f).power == 1 ? 0 : 1;
+  return limiter.step({255, thermopower::GuardedCelsius::unchecked(90.0f), 0.0f}, 0.03f).power == 1 ? 0 : 1;
 }
 PROGRAM
 "${CXX:-c++}" -std=c++11 -I "$scratch/installed/include" "$scratch/program.cpp" -o "$scratch/program"
