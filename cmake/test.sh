@@ -40,6 +40,11 @@ for preset in $workflows; do
   echo "== $preset"
   cmake --workflow --preset "$preset" || failed="$failed $preset"
 done
+# An archive is of a commit: changes that are not committed have none.
+if [ -n "$workflows" ] && git diff --quiet HEAD 2>/dev/null; then
+  echo "== release"
+  sh cmake/release.sh --try build/release-archive || failed="$failed release"
+fi
 if [ -n "$failed" ]; then
   echo "thermopower: failed in:$failed" >&2
   exit 1
