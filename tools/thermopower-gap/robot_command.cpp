@@ -231,4 +231,8 @@ int check_robot(const Arguments& arguments, const RobotArguments& robot) {
   return diagnose_robot(arguments, robot);
 }
 
+int rank_impact(const Arguments& arguments, const RobotArguments& robot) {
+  return diagnose_robot(arguments, robot);
+}
+
 #endif
