@@ -179,7 +179,7 @@ TEST_CASE("authority falls continuously with temperature: no threshold, no jump,
   CHECK(last == 1);
 }
 
-TEST_CASE("in slow loops, too, a node limiter settles on one power: it does not hunt") {
+TEST_CASE("in slow loops, too, a node limiter settles on one power and passes no limit: it does not hunt") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(0.0, 1.0);
   for (const double dt_s : {0.02, 0.1, 0.3, 1.0})
@@ -189,13 +189,18 @@ TEST_CASE("in slow loops, too, a node limiter settles on one power: it does not 
                    full_W = 10.0 + 40.0 * any(random);
       double winding_C = 25.0, body_C = 25.0;
       int power = 1, least = 255, most = 0;
+      double over_K = -1e9;
       NodeLimiter limiter;
+      const double body_limit_C = static_cast<double>(limiter.config().node[NodeLimiter::bracket].maximum_C),
+                   winding_limit_C =
+                       static_cast<double>(limiter.config().node[NodeLimiter::winding].maximum_C);
       for (double now_s = 0.0; now_s < 6000.0; now_s += dt_s) {
         const int parts = 1 + static_cast<int>(dt_s / 0.02);
         for (int i = 0; i < parts; ++i) {
           const double across_W = coupling_W_per_K * (winding_C - body_C), part_s = dt_s / parts;
           winding_C += part_s * (full_W * power / 255.0 - across_W) / winding_J_per_K;
           body_C += part_s * (across_W - air_W_per_K * (body_C - 25.0)) / body_J_per_K;
+          over_K = std::max({over_K, body_C - body_limit_C, winding_C - winding_limit_C});
         }
         power = limiter
                     .step(told::parts(255, static_cast<float>(winding_C), static_cast<float>(body_C), 25.0f),
@@ -207,6 +212,7 @@ TEST_CASE("in slow loops, too, a node limiter settles on one power: it does not 
       }
       INFO("loop of " << dt_s << " s, draw " << draw);
       CHECK(most - least <= 1);
+      CHECK(over_K <= 0.0);
     }
 }
 

@@ -45,9 +45,10 @@ int main(int argument_count, char** arguments) {
   for (int i = 0; i < campaign::fault_count; ++i) {
     std::printf("| %s | %ld | ", campaign::name(i), all.faults[i]);
     if (all.nameable[i] == 0) std::printf("- | ");
-    else std::printf("%ld of %ld | ", all.named[i], all.nameable[i]);
+    else if (all.as_factor[i] == 0) std::printf("%ld of %ld | ", all.named[i], all.nameable[i]);
+    else std::printf("%ld of %ld, and %ld as a factor | ", all.named[i], all.nameable[i], all.as_factor[i]);
     std::printf("%.2f | %.0f |\n", all.slowest_clear_s[i], all.slowest_back_s[i]);
-    is_kept = is_kept && all.named[i] == all.nameable[i];
+    is_kept = is_kept && all.named[i] + all.as_factor[i] == all.nameable[i];
   }
   return is_kept ? 0 : 1;
 }

@@ -235,6 +235,8 @@ struct Firmware {
 /// What came of many runs.
 struct Tally {
   long runs = 0, faults[fault_count] = {}, named[fault_count] = {}, nameable[fault_count] = {};
+  long as_factor[fault_count] =
+      {};                        ///< Not named, and explained by the factor that PowerInForce has learned.
   long colder = 0;               ///< Runs in which a bound was below the truth.
   long over = 0;                 ///< Runs over a limit in which no board held another power for the horizon.
   long uncontrolled = 0;         ///< Runs in which one did.
@@ -250,6 +252,7 @@ struct Tally {
     back += other.back, not_back += other.not_back, undecided += other.undecided;
     for (int i = 0; i < fault_count; ++i) {
       faults[i] += other.faults[i], named[i] += other.named[i], nameable[i] += other.nameable[i];
+      as_factor[i] += other.as_factor[i];
       slowest_back_s[i] = std::max(slowest_back_s[i], other.slowest_back_s[i]);
       slowest_clear_s[i] = std::max(slowest_clear_s[i], other.slowest_clear_s[i]);
     }
@@ -471,7 +474,12 @@ inline void run(std::uint32_t seed, Tally& tally, bool forgets = false, bool is_
       if (is_nameable && !is_named) {
         ++tally.nameable[fault];
         is_named = true;  // asked once
+        // A factor that was learned and explains the report is what the estimate is heated by.
+        const double low = static_cast<double>(chip.gimbal.force().scale_low(0)) * sent - 2.0,
+                     high = static_cast<double>(chip.gimbal.force().scale_high(0)) * sent + 2.0;
+        const bool is_factor = is_ignored && reports && low > sent && force >= low && force <= high;
         if (is_it) ++tally.named[fault];
+        else if (is_factor) ++tally.as_factor[fault];
       }
     }
     if (fault < 0 && tp::is_fault(reason) && now_s > last_ended_s)

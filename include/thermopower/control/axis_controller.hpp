@@ -106,10 +106,12 @@ public:
 
   /// What the axis decides on.
   struct Inputs {
-    float error_deg;       ///< Position error, any number of turns up to a million degrees.
-    float supply_V;        ///< Amplitude of the switched supply, inside its declared range.
-    AxisAirCelsius air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault.
-    LimitReason fault;     ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
+    float error_deg;  ///< Position error, any number of turns up to a million degrees.
+    float
+        supply_V;  ///< Amplitude of the switched supply, inside its declared range. A constant must be the highest there can be.
+    AxisAirCelsius
+        air_C;  ///< Air temperature, -100 .. 200 degC; left out: NaN, a fault. Of a motor without `air()` a reading is believed.
+    LimitReason fault;  ///< A fault found by the caller (silent link, low supply), or `LimitReason::none`.
   };
 
   /// What one logs: every intermediate of the last step.
@@ -156,8 +158,9 @@ public:
   /// least.
   ConfigError validate() const noexcept { return config_error_; }
 
-  /// Sets the temperature, when something better than "as warm as the air" is known. @param motor_C  finite;
-  /// NaN: as warm as the air
+  /// Sets the temperature, when something better than "as warm as the air" is known. A program that may be reset while the motor is hot
+  /// must call it with what a memory kept (RetainedHottest, a journal); only a CertifiedLimiter takes an unknown start for hot.
+  /// @param motor_C  finite; NaN: as warm as the air
   void start(float motor_C) noexcept {
     thermal_.start(motor_C);
     state_.motor_C = motor_C;
@@ -177,7 +180,8 @@ public:
     if (is_started_ && state_.motor_C < air_C) start(air_C);
   }
 
-  /// One control cycle. @param dt_s  time since the last one, >= 0
+  /// One control cycle. @param dt_s  time since the last one, >= 0, from two readings of one clock: a time that is told too short is
+  /// believed, as nothing here has a clock of its own. An invalid one is a fault, and the motor warms as long as in the step before
   const State& step(const Inputs& inputs, float dt_s) noexcept {
     return decide(inputs, detail::not_a_number(), dt_s);
   }
@@ -217,7 +221,7 @@ private:
     else if (!is_fault(fault)) fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, dt_s);
     if (acted_power_ > state_.power) detail::tell_acted(limiter_, acted_power_, 0);
     else acted_power_ = state_.power;
-    estimate_temperature(is_time_positive ? dt_s : 0.0f);
+    estimate_temperature(is_time_positive ? dt_s : lost_s(fault, dt_s));
     acted_power_ = 0;
 
     // The model's own, taken a moment ago.
@@ -251,6 +255,15 @@ private:
       return supply_V < supply_.lowest_V ? LimitReason::supply_low : LimitReason::supply_implausible;
     }
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
+  }
+
+  // The power acts, though its time is not told. A step of no valid time is taken to last as long as the last one that had one; a time
+  // that has stood too long is made up for once.
+  [[gnu::noinline]] float lost_s(LimitReason fault, float dt_s) const noexcept {
+    if (!(dt_s == 0.0f)) return clock_.step_s();
+    const bool is_first =
+        fault == LimitReason::time_stands_still && state_.reason != LimitReason::time_stands_still;
+    return is_first ? clock_.stood_s() : 0.0f;
   }
 
   // A reading inside the declared range says no more than that its thermometer lives.

@@ -28,6 +28,10 @@ public:
     if (!is_standing) stood_s_ += step_s_ > 0.0f ? step_s_ : hold_s;
     return is_standing;
   }
+  /// Length of the last step that was told one, s; 0 before.
+  float step_s() const noexcept { return step_s_; }
+  /// For how long no time has been told, s.
+  float stood_s() const noexcept { return stood_s_; }
 
 private:
   float step_s_ = 0.0f, stood_s_ = 0.0f;
@@ -51,6 +55,8 @@ public:
     const float hold_s = hold_of(limiter, 0);
     return time_.is_standing(dt_s, hold_s < 0.1f ? hold_s : 0.1f);
   }
+  float step_s() const noexcept { return time_.step_s(); }    // of the last step that was told its time
+  float stood_s() const noexcept { return time_.stood_s(); }  // since then
 
 private:
   StandingTime time_;
@@ -59,6 +65,9 @@ template <class Limiter>
 class AxisClock<Limiter, true> {
 public:
   static bool is_standing(const Limiter&, float) noexcept { return false; }
+  // Such a limiter carries its own bounds through times that it is not told.
+  static float step_s() noexcept { return 0.0f; }
+  static float stood_s() noexcept { return 0.0f; }
 };
 
 }  // namespace detail
