@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +60,10 @@ public:
       scaled.col(k) /= scale[k];
     }
     const Eigen::Map<const Eigen::VectorXd> responses(responses_.data(), rows);
-    const auto squares = [&](const Eigen::VectorXd& by) { return (responses - scaled * by).squaredNorm(); };
+    const double rounding = is_rounding * responses.squaredNorm();
+    const auto squares = [&](const Eigen::VectorXd& by) {
+      return std::max(rounding, (responses - scaled * by).squaredNorm());
+    };
     const NormalEquations equations(scaled, responses);
     const Eigen::VectorXd all = equations.solve();
     const double left = squares(all);
@@ -102,12 +106,29 @@ public:
       bool fits = true;
       for (Eigen::Index i = 0; i < size; ++i)
         fits = fits && (in[static_cast<std::size_t>(i)] >= directed || found[i] * sign >= 0.0);
-      if (fits) least = std::min(least, std::max(products(count, count) - with.dot(found), 1e-12));
+      if (fits) least = std::min(least, std::max(products(count, count) - with.dot(found), is_rounding));
     }
     return least;
   }
 
+  /// How many rows move the response: of as many equal ones its square beside the terms after the first would consist. One step
+  /// of a command is one, however long the recording.
+  /// @param first  terms that are left out
+  double events(Eigen::Index first) const {
+    const Eigen::Index rows = static_cast<Eigen::Index>(terms_.size()), count = terms_.front().size() - first;
+    Eigen::MatrixXd others(rows, count);
+    for (Eigen::Index i = 0; i < rows; ++i) others.row(i) = terms_[static_cast<std::size_t>(i)].tail(count);
+    const Eigen::Map<const Eigen::VectorXd> responses(responses_.data(), rows);
+    const Eigen::ArrayXd squares =
+        (responses - others * others.colPivHouseholderQr().solve(responses)).array().square();
+    const double fourth = squares.square().sum();
+    return fourth > 0.0 ? squares.sum() * squares.sum() / fourth : 0.0;
+  }
+
 private:
+  /// Of the responses' sum of squares: an effort that stays the same but for its last digits tells nothing.
+  static constexpr double is_rounding = 1e-9;
+
   std::vector<Eigen::VectorXd> terms_;
   std::vector<double> responses_;
 };

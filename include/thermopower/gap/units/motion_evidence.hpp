@@ -37,7 +37,7 @@ struct MotionEvidenceThresholds {
   double partial = 0.7;            ///< correlation of effort and acceleration beside everything else
   double tells_sign =
       0.3;  ///< of the effort's variance that inertia, drag and friction may leave where they tell a sign
-  double independent = 10.0;  ///< half the windows that count as independent: a misfit remembers
+  double independent = 10.0;  ///< half the windows that count as independent, at most: a misfit remembers
   double most_nats = 12.0;    ///< that one recording says of a sign
 };
 
@@ -160,8 +160,9 @@ public:
         const double left = std::min(forwards, backwards) / free;
         if (!(left < least_left) || left > limit.tells_sign) continue;
         least_left = left;
+        const double independent = std::min(limit.independent, 0.5 * one->events(directed));
         best.forwards_nats =
-            std::clamp(limit.independent * std::log(backwards / forwards), -limit.most_nats, limit.most_nats);
+            std::clamp(independent * std::log(backwards / forwards), -limit.most_nats, limit.most_nats);
       }
     }
     return best;
