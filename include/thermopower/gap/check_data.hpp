@@ -21,7 +21,7 @@ struct SignalReport {
   std::string unit;          ///< of the numbers below
   Eigen::Index samples = 0;  ///< that are believed
   double range = 0.0;        ///< 5th to 95th percentile
-  double noise = 0.0;        ///< standard deviation, see noise_sd()
+  double noise = 0.0;        ///< standard deviation of the sensor from row to row; no model takes part
   double misfit = 0.0;       ///< root mean square of simulated minus measured, as configured
 };
 

@@ -54,8 +54,9 @@ struct AxisDrive {
 /// Integrates the axis under a constant drive, with dry friction.
 ///
 /// Where the equations are smooth the classical Runge-Kutta rule integrates them, halving its step where the
-/// acceleration bends by more than 0.0005 rad/s, beyond 10 rad/s in proportion to the rate. Friction that turns over within a transition is smooth but stiff near standstill:
-/// there the exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length.
+/// acceleration bends by more than 0.0005 rad/s, beyond 10 rad/s in proportion to the rate. Drag that settles the rate of a
+/// rigid axis within a step, and friction that turns over within a transition near standstill, are smooth but stiff: there the
+/// exponential Rosenbrock-Euler rule takes over, which follows a creeping axis at any step length.
 /// Friction without a transition goes by events: at a zero crossing of the rate the step is cut; the axis
 /// sticks while friction holds the other torques, else it leaves with friction reversed. With an
 /// automatic-differentiation scalar the cut's position is differentiated too, so derivatives are exact
@@ -122,14 +123,16 @@ public:
   void advance(AxisState<Scalar>& state, double t_s, Scalar h_s, const AxisDrive<Scalar>& drive) const {
     const double length = value_of(h_s);
     if (!(length > 0.0)) return;
-    const int pieces = static_cast<int>(std::fmin(2000.0, std::ceil(length / longest_s_)));
+    constexpr double most_pieces = 2000.0;
+    constexpr int halved = 6;
+    const double pieces = std::fmin(most_pieces, std::ceil(length / longest_s_));
     touch(state);
-    for (int i = 0; i < pieces; ++i) {
-      const double from_s = t_s + length * i / pieces;
-      const Scalar piece_s = h_s * (1.0 / pieces);
-      if (instance_.axis_structure.compliant) smooth<true>(state, from_s, piece_s, drive, 6);
-      else smooth<false>(state, from_s, piece_s, drive, 6);
+    if (!instance_.axis_structure.compliant) {
+      smooth<false>(state, t_s, h_s, drive, halved + static_cast<int>(std::ceil(std::log2(pieces))));
+      return;
     }
+    for (int i = 0; i < static_cast<int>(pieces); ++i)
+      smooth<true>(state, t_s + length * i / pieces, h_s * (1.0 / pieces), drive, halved);
   }
 
   /// The torques on the driven inertia at an instant.
@@ -348,15 +351,16 @@ private:
   template <bool compliant>
   void smooth(AxisState<Scalar>& state, double t_s, Scalar left_s, const AxisDrive<Scalar>& drive, int depth,
               const Beginning* known = nullptr) const {
-    const double bend_limit_rad_per_s =
-        (soft_ || state.own.count > 0 ? 1e-4 : 5e-4) *
-        std::fmax(1.0, std::abs(value_of(state.rate_rad_per_s)) / fast_rad_per_s);
+    const double bend_limit_rad_per_s = bend_limit(state);
     for (int event = 0; event < 12; ++event) {
       Beginning found;
       if (known == nullptr) look_at<compliant>(state, t_s, drive, found);
       const Beginning& begins = known != nullptr ? *known : found;
       known = nullptr;  // it moves on
-      if (soft_ && creep<compliant>(state, t_s, left_s, drive, depth, begins)) return;
+      if (creep<compliant>(state, t_s, left_s, drive, depth, begins)) {
+        if (!(value_of(left_s) > 0.0)) return;
+        continue;
+      }
       const int direction = begins.direction;
       const Slope& start = begins.slope;
       constexpr int last_event = 11;
@@ -478,20 +482,42 @@ private:
     return true;
   }
 
-  /// A step inside friction's transition. The equation of the rate is linearised about the start and solved
-  /// exactly; what the linearisation missed is the error.
+  /// A step inside friction's transition, or one in which drag settles the rate. The equation of the rate is linearised about
+  /// the start and solved exactly; what the linearisation missed is the error. Where sticking friction stops the axis, the step
+  /// ends.
+  /// @param t_s     in: when it begins; out: when it ended
+  /// @param left_s  in: its length; out: what is left of it
   /// @param begins  how the state moves at the start
   /// @return false: not stiff here, nothing was done
   template <bool compliant>
-  bool creep(AxisState<Scalar>& state, double t_s, const Scalar& h_s, const AxisDrive<Scalar>& drive,
-             int depth, const Beginning& begins) const {
-    constexpr double error_limit_rad_per_s = 1e-4;
+  bool creep(AxisState<Scalar>& state, double& t_s, Scalar& left_s, const AxisDrive<Scalar>& drive, int depth,
+             const Beginning& begins) const {
+    constexpr double stiff_transition = 0.3, stiff = 0.6;
     using std::exp;
+    using std::log;
+    if (begins.direction == 0) return false;
     const Slope& now = begins.slope;
-    const Scalar decay = begins.stiffness * (h_s * per_near_inertia_);
-    if (!(value_of(decay) > 0.3)) return false;
+    Scalar per_s = begins.stiffness * per_near_inertia_;
+    bool is_stiff = soft_ && value_of(per_s) * value_of(left_s) > stiff_transition;
+    if constexpr (!compliant)
+      if (!is_stiff) {
+        per_s += instance_.viscous_Nms_per_rad * per_near_inertia_;
+        if (instance_.voltage_driven) per_s += drive.back_Nms_per_rad * per_near_inertia_;
+        is_stiff = value_of(per_s) * value_of(left_s) > stiff;
+      }
+    if (!is_stiff) return false;
+    Scalar h_s = left_s, decay = per_s * h_s, phi_1 = (1.0 - exp(Scalar(-decay))) / decay;
+    const double end_rate =
+        value_of(state.rate_rad_per_s) + value_of(now.rate) * value_of(h_s) * value_of(phi_1);
+    const bool stops = dry_ && end_rate * begins.direction < 0.0;
+    if (stops) {
+      h_s = -log(Scalar(1.0 + per_s * state.rate_rad_per_s / now.rate)) / per_s;
+      if (!(value_of(h_s) > 0.0 && value_of(h_s) < value_of(left_s))) return false;
+      decay = per_s * h_s;
+      phi_1 = (1.0 - exp(Scalar(-decay))) / decay;
+    }
     const double h = value_of(h_s);
-    const Scalar phi_1 = (1.0 - exp(Scalar(-decay))) / decay, phi_2 = (1.0 - phi_1) / decay;
+    const Scalar phi_2 = (1.0 - phi_1) / decay;
     AxisState<Scalar> reached = state;
     reached.angle_rad += h_s * (state.rate_rad_per_s + now.rate * h_s * phi_2);
     const Scalar gain_rad_per_s = now.rate * h_s * phi_1;
@@ -503,18 +529,32 @@ private:
     }
     if (state.own.count > 0) move_own(state, now, h_s, reached);
     Slope there;
-    slope<compliant>(reached, t_s + h, drive, 1, there);
+    slope<compliant>(reached, t_s + h, drive, begins.direction, there);
     const double missed =
-        value_of(there.rate) - value_of(now.rate) + value_of(decay) / h * value_of(gain_rad_per_s);
-    if (std::abs(missed) * h * value_of(phi_2) > error_limit_rad_per_s && depth > 0) {
-      const Scalar half_s = h_s * 0.5;
+        value_of(there.rate) - value_of(now.rate) + value_of(per_s) * value_of(gain_rad_per_s);
+    if (std::abs(missed) * h * value_of(phi_2) > bend_limit(state) && depth > 0) {
+      const Scalar half_s = left_s * 0.5;
       smooth<compliant>(state, t_s, half_s, drive, depth - 1, &begins);
-      smooth<compliant>(state, t_s + 0.5 * h, half_s, drive, depth - 1);
-    } else {
-      state = reached;
-      touch(state);
+      smooth<compliant>(state, t_s + value_of(half_s), half_s, drive, depth - 1);
+      left_s = constant<Scalar>(0.0);
+      return true;
     }
+    state = reached;
+    if (stops) {
+      state.rate_rad_per_s = constant<Scalar>(0.0);
+      t_s += h;
+      left_s -= h_s;
+    } else {
+      left_s = constant<Scalar>(0.0);
+    }
+    touch(state);
     return true;
+  }
+
+  /// By how much the rate may be off after one step.
+  double bend_limit(const AxisState<Scalar>& state) const {
+    return (soft_ || state.own.count > 0 ? 1e-4 : 5e-4) *
+           std::fmax(1.0, std::abs(value_of(state.rate_rad_per_s)) / fast_rad_per_s);
   }
 
   const Instance<Scalar>& instance_;

@@ -61,6 +61,8 @@ struct MaskThresholds {
 struct ColumnTraits {
   bool cannot_jump = false;   ///< a temperature: what jumps away and back was never there
   bool zero_is_rest = false;  ///< an exact 0 is what a good sensor reads at rest
+  bool begins_with_a_step =
+      false;  ///< each run begins where what drives the column stepped (the power of a current)
   const Eigen::VectorXd* at_rest =
       nullptr;  ///< a column that is 0 while this one may stand still (the rate of an angle)
   const Eigen::VectorXd* integral = nullptr;  ///< a column that moves on by this one (the angle of a rate)

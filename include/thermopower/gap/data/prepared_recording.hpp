@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -121,7 +122,7 @@ private:
   void find_starts(FindingList& list);
   void mask_slow_input(const std::string& name, Eigen::VectorXd& values, FindingList& list);
   double stands_between_samples(const Recording& recorded, const std::string& name) const;
-  void fill_inputs(const Recording& recorded, FindingList& list);
+  void fill_inputs(const Model& model, const Recording& recorded, FindingList& list);
   void keep_known_rows();
 
   const plant::PlantInfo* own_ = nullptr;  ///< of a plant of one's own, while the recording is prepared
@@ -165,7 +166,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   // A row that is lost stops no clock: it is read before the runs are cut there.
   read_the_clock(list);
   RowMask starts(unknown_.size(), 0);
-  check_stamps(list, believed_.runs, starts);
+  check_stamps(model, list, believed_.runs, starts);
   believed_.runs = cut_at(believed_.runs, starts, true);
   if (moves_ && believed_.has("angle_deg")) {
     RowMask elsewhere(unknown_.size(), 0);
@@ -177,7 +178,7 @@ inline PreparedRecording::PreparedRecording(const Model& model, const Recording&
   drives_by_current_ = !recorded.has("power_param") && !recorded.has("drive_A") && !recorded.has("heat_W") &&
                        model.has_thermal();
   mask_outputs(recorded, list);
-  fill_inputs(recorded, list);
+  fill_inputs(model, recorded, list);
   if (moves_) mark_under_way(believed_);
   interval_s_ = plant::median_interval_s(believed_.t_s, believed_.spans(), 0.0);
   if (as_recorded) {
@@ -337,6 +338,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   if (name == "rate_dps") traits.integral = believed_.find("angle_deg");
   const Eigen::VectorXd* power = name == "current_A" ? believed_.find("power_param") : nullptr;
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
+  traits.begins_with_a_step = power != nullptr;
   SampleMasks masks(values, steady, traits);
   if (power != nullptr) {
     const RowMask lost = lost_current(values, *power, masks.scale());
@@ -374,6 +376,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   take_away(values, bursts);
   list.add_rows(FindingKind::glitched_samples, Severity::warning, name, bursts, FindingAction::masked,
                 "jump away and back", "look at what reads the sensor (a default reading, a word that wraps)");
+  traits.begins_with_a_step = false;
   traits.driver = power;
   {
     SampleMasks still(values, runs, traits);
@@ -438,7 +441,7 @@ inline double PreparedRecording::stands_between_samples(const Recording& recorde
   return SlowSensorThresholds().nearest * median_distance_s(believed_.t_s, believed_.runs, values);
 }
 
-inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingList& list) {
+inline void PreparedRecording::fill_inputs(const Model& model, const Recording& recorded, FindingList& list) {
   std::vector<InputColumn> inputs = input_columns();
   if (drives_by_current_) inputs.push_back({"current_A", InputPace::slow});
   for (const InputColumn& input : inputs) {
@@ -448,9 +451,14 @@ inline void PreparedRecording::fill_inputs(const Recording& recorded, FindingLis
     if (found == nullptr || found->values.array().isFinite().all()) continue;
     const Eigen::Index holes = recorded.rows() - recorded.find(input.name)->array().isFinite().count();
     RowMask mask(unknown_.size(), 0);
-    found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask,
-                                stands_between_samples(recorded, input.name),
+    const double stands_s = is_ignored(model, input.name) ? std::numeric_limits<double>::infinity()
+                                                          : stands_between_samples(recorded, input.name);
+    found->values = known_input(input, found->values, believed_.t_s, believed_.runs, mask, stands_s,
                                 std::string(input.name) == "current_A" ? untold_current_ : RowMask());
+    if (std::isinf(stands_s) && !found->values.array().isFinite().all()) {
+      believed_.remove(input.name);  // a run without a sample
+      continue;
+    }
     for (std::size_t i = 0; i < mask.size(); ++i) unknown_[i] = unknown_[i] != 0 || mask[i] != 0 ? 1 : 0;
     list.add_rows(FindingKind::unknown_input, Severity::note, input.name, mask, FindingAction::segmented,
                   "are missing between values that differ; their rows are not judged",

@@ -257,6 +257,23 @@ private:
     return whole > 0.0 && range(here) / whole * range(all) > limit_.quanta * quantum_;
   }
 
+  /// Noise that shows everywhere, where the column moves least, too. A joint that comes to rest without noise stands as well as a
+  /// sensor that stopped.
+  double quiet_scale() const {
+    if (quiet_scale_ >= 0.0) return quiet_scale_;
+    constexpr Eigen::Index window = 8;
+    constexpr double quietest = 0.1;  // of the windows in which it is not all the same
+    std::vector<double> scales;
+    for (const RunSpan& run : runs_)
+      for (Eigen::Index i = run.begin; i + window <= run.end; i += window / 2) {
+        const auto part = values_.segment(i, window).array();
+        if (!part.isFinite().all() || part.maxCoeff() == part.minCoeff()) continue;
+        const auto bends = part.head(window - 2) - 2.0 * part.segment(1, window - 2) + part.tail(window - 2);
+        scales.push_back(std::sqrt(bends.square().mean() / 6.0));  // of white noise: 1 + 4 + 1
+      }
+    return quiet_scale_ = scales.empty() ? scale_ : std::min(scale_, quantile_of(scales, quietest));
+  }
+
   bool resting(Eigen::Index row) const {
     if (traits_.at_rest == nullptr) return false;
     const double rate = (*traits_.at_rest)[row];
@@ -431,7 +448,8 @@ private:
     if (traits_.integral != nullptr && moves_on(rows[begin], rows[end - 1], value) &&
         !repeats_too(*traits_.integral, rows[begin], rows[end - 1]))
       return false;
-    if (improbable && (quantum_ < scale_ || moves_otherwise(rows[begin], rows[end - 1], value))) return true;
+    if (improbable && (quantum_ < quiet_scale() || moves_otherwise(rows[begin], rows[end - 1], value)))
+      return true;
     if (traits_.cannot_jump && rests_otherwise(rows, begin, end)) return true;
     // Of a coarse thermometer only a reading that has to catch up tells that it stood. What steps, and may step, is held:
     // a current that somebody sets.
@@ -442,6 +460,12 @@ private:
   bool jumps_after(const std::vector<Eigen::Index>& rows, std::size_t end) const {
     if (end == rows.size()) return false;
     const double value = values_[rows[end - 1]], jump = std::abs(values_[rows[end]] - value);
+    // What breaks away goes on as it began; what has stopped goes on from elsewhere.
+    constexpr std::size_t after = 3;
+    double next = 0.0;
+    for (std::size_t k = end + 1; k < std::min(rows.size(), end + 1 + after); ++k)
+      next = std::max(next, std::abs(values_[rows[k]] - values_[rows[k - 1]]));
+    if (!traits_.cannot_jump && !(jump > static_cast<double>(after) * next)) return false;
     return jump > std::max({limit_.jump_scales * scale_, limit_.jump_steps * usual_step_,
                             limit_.quanta * quantum_}) &&
            (end + 1 == rows.size() || std::abs(values_[rows[end + 1]] - value) > limit_.stayed_away * jump);
@@ -459,7 +483,7 @@ private:
   ColumnTraits traits_;
   std::optional<Spikes> spikes_;  // which remember what the column was before samples were taken away
   double quantum_ = 0.0, scale_ = 0.0, usual_step_ = 0.0, equal_share_ = 0.0;
-  mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0;
+  mutable double rest_rate_ = -1.0, other_equal_share_ = -1.0, position_quantum_ = -1.0, quiet_scale_ = -1.0;
 };
 
 }  // namespace thermopower::gap::engine

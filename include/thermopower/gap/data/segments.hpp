@@ -5,12 +5,14 @@
 #include <thermopower/gap/data/finding_list.hpp>
 #include <thermopower/gap/data/mask_thresholds.hpp>
 #include <thermopower/gap/data/robust.hpp>
+#include <thermopower/gap/model.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 /// @file segments.hpp
@@ -40,7 +42,8 @@ struct SegmentThresholds {
   Eigen::Index glitch_rows = 50;  ///< what comes back within so many is a sensor's fault
   double comes_back = 0.2;        ///< of a jump by which the next one may miss where the first began
   double nearly_all = 0.98;       ///< of the rates: what is beyond may be a spike's
-  double went_on = 0.3;  ///< of a jump by which the rate may miss it where the angle stood still before
+  double went_on = 0.3;      ///< of a jump by which the rate may miss it where the angle stood still before
+  double slow_body = 0.002;  ///< of a body's time constant: a pause as short hides a thousandth of its rise
   Eigen::Index least_rows = 4;  ///< shorter segments tell nothing and are left out
 };
 
@@ -66,6 +69,23 @@ inline const std::vector<InputColumn>& input_columns() {
       {"ambient_C", InputPace::slow},      {"airspeed_mps", InputPace::slow},
       {"neighbour_C", InputPace::slow}};
   return columns;
+}
+
+/// Whether a baseline ignores an input: then its holes cut no run.
+inline bool is_ignored(const Model& model, const std::string& column) {
+  return column == "neighbour_C" && !model.own &&
+         model.effects.find("neighbour_heating") == model.effects.end();
+}
+
+/// How long an unknown input does not matter: a small part of the time constant of a body; 0 s of all that answers at once.
+inline double unnoticed_s(const Model& model) {
+  if (model.own || model.has_axis()) return 0.0;
+  double time_constant_s = 0.0;
+  if (const auto* lumped = std::get_if<LumpedThermalModel>(&model.thermal))
+    time_constant_s = lumped->heat_capacity_J_per_K / lumped->conductance_W_per_K;
+  else if (const auto* polynomial = std::get_if<ThesisThermalModel>(&model.thermal))
+    time_constant_s = 60.0 / polynomial->cooling_per_min;
+  return SegmentThresholds().slow_body * time_constant_s;
 }
 
 /// Runs cut at some rows: `starts[row]` set means that a new segment begins there. The cut pieces keep their
@@ -162,8 +182,9 @@ inline std::vector<RunSpan> cut_at_long_pauses(const Eigen::VectorXd& t_s, const
 }
 
 /// Looks at the stamps: says where they vary or pause, and sets `starts` where a row follows on a pause over which
-/// a command did not stand still.
-inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, RowMask& starts) {
+/// a command did not stand still, and which the model notices.
+inline void check_stamps(const Model& model, FindingList& list, const std::vector<RunSpan>& runs,
+                         RowMask& starts) {
   constexpr SegmentThresholds limit;
   const Recording& r = list.recording();
   std::vector<double> steps = intervals_of(r.t_s, runs);
@@ -175,7 +196,7 @@ inline void check_stamps(FindingList& list, const std::vector<RunSpan>& runs, Ro
     list.add(FindingKind::irregular_stamps, Severity::note, "t_s",
              "the interval varies from " + short_number(shortest) + " to " + short_number(longest) +
                  " s around " + short_number(usual) + " s");
-  const double pause = shortest_pause(steps);
+  const double pause = std::max(shortest_pause(steps), unnoticed_s(model));
   std::vector<std::pair<const Eigen::VectorXd*, CommandRange>> commands;
   for (const InputColumn& input : input_columns())
     if (input.pace == InputPace::command && r.has(input.name))
@@ -291,7 +312,8 @@ inline double goes_on_by(const Eigen::VectorXd& values, const RunSpan& run, Eige
 }
 
 /// Fills the holes of an input where its neighbours tell what it was, and sets `unknown` where they do not.
-/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ
+/// @param stands_s  longest time between two samples in which it stood, or went straight, though they differ; infinite: no hole
+///                  matters
 /// @param untold    samples that were taken away because they stood still or at the end of a range: the ends of a hole of them
 ///                  are the same whatever was between
 /// @return the column with known holes filled
@@ -322,7 +344,7 @@ inline Eigen::VectorXd known_input(const InputColumn& input, const Eigen::Vector
         known = (inside &&
                  (end - row <= limit.bridged_rows || std::abs(after - before) <= limit.slow_noise * noise)) ||
                 (!inside && (row > run.begin || end < run.end) && end - row <= limit.bridged_rows);
-      known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s);
+      known = known || (inside && t_s[end] - t_s[row - 1] <= stands_s) || std::isinf(stands_s);
       if (!untold.empty() && end - row > limit.bridged_rows)
         known = known && std::find(untold.begin() + row, untold.begin() + end, 1) == untold.begin() + end;
       for (Eigen::Index i = row; i < end; ++i) {

@@ -82,12 +82,41 @@ private:
     // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
     for (std::size_t i = 0; i < count; ++i) {
       if (!(far[i] > 0.0)) continue;
+      if (dies_away(samples, i)) {
+        far[i] = 0.0;
+        continue;
+      }
       double farthest = 0.0;
       for (std::size_t k = i < limit_.drawn_along ? 0 : i - limit_.drawn_along;
            k < std::min(count, i + limit_.drawn_along + 1); ++k)
         farthest = std::max(farthest, far[k]);
       if (far[i] >= limit_.as_far * farthest) mask[static_cast<std::size_t>(samples.rows[i])] = 1;
     }
+  }
+
+  /// Whether a sample is one of those in which a push dies away: each strays to the same side, by less than the one before it. A
+  /// joint that breaks away leaps and slows down within a few rows, and so does the current that sets a motor going.
+  bool dies_away(const OrderedSamples& samples, std::size_t i) const {
+    constexpr std::size_t lasts = 3, level_after = 6;
+    constexpr double least_share = 0.15, clearly = 4.0;  // of the one before; noise scales and quanta
+    const std::vector<double>& at = samples.values;
+    const double least = clearly * std::max(scale_, quantum_);
+    for (std::size_t first = i < lasts - 1 ? 0 : i - (lasts - 1); first <= i; ++first) {
+      if (first + level_after >= at.size()) return false;
+      const double level = at[first + level_after], leap = std::abs(at[first] - level);
+      // Before the leap it was where it comes to again.
+      if (first == 0 ? !traits_.begins_with_a_step : std::abs(at[first - 1] - level) > least_share * leap)
+        continue;
+      bool dies = true;
+      for (std::size_t k = first; k < first + lasts && dies; ++k) {
+        const double off = at[k] - level, next = at[k + 1] - level;
+        dies = off * next > 0.0 && std::abs(next) > least_share * std::abs(off) &&
+               std::abs(next) < (1.0 - least_share) * std::abs(off) &&
+               (k + 1 == first + lasts || std::abs(next) > least);
+      }
+      if (dies) return true;
+    }
+    return false;
   }
 
   /// Raises how far samples lie to how far they lie from their neighbours' motion, where their rate, or their angle, does not bear

@@ -5,7 +5,7 @@
 #include <thermopower/gap/check_data.hpp>
 #include <thermopower/gap/detail/check.hpp>
 #include <thermopower/gap/detail/enough_data.hpp>
-#include <thermopower/gap/data/noise.hpp>
+#include <thermopower/gap/data/neighbour_motion.hpp>
 #include <thermopower/gap/fit/judgeable.hpp>
 #include <thermopower/gap/simulate.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
@@ -95,31 +95,20 @@ public:
       else if (const plant::PlantInfo* own = plant_of(model).info())
         for (const plant::PlantSignal& one : own->signals)
           if (one.name == report.signal) report.unit = one.unit;
-      std::vector<double> errors;
-      std::vector<bool> gaps;
-      const Eigen::VectorXd* power = sample.find("power_param");
       double squares = 0.0;
       Eigen::VectorXd used = Eigen::VectorXd::Zero(sample.rows());
-      for (const RunSpan& run : sample.spans()) {
-        bool gap = true;
-        for (Eigen::Index i = run.begin; i < run.end; ++i) {
-          const double error = signal.values[i] - measured[i];
-          const bool restarts = std::abs(error) <= 1e-9 * std::max(1.0, std::abs(measured[i]));
-          if (!std::isfinite(error) || restarts) {
-            gap = true;
-            continue;
-          }
-          used[i] = 1.0;
-          const bool steps = power != nullptr && i > run.begin && (*power)[i] != (*power)[i - 1];
-          errors.push_back(error);
-          gaps.push_back(gap || steps);
-          gap = false;
-          squares += error * error;
-        }
+      for (Eigen::Index i = 0; i < sample.rows(); ++i) {
+        const double error = signal.values[i] - measured[i];
+        const bool restarts = std::abs(error) <= 1e-9 * std::max(1.0, std::abs(measured[i]));
+        if (!std::isfinite(error) || restarts) continue;
+        used[i] = 1.0;
+        squares += error * error;
       }
-      report.samples = static_cast<Eigen::Index>(errors.size());
-      report.noise = noise_sd(errors, gaps, quantum_of(measured));
-      report.misfit = errors.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(errors.size()));
+      report.samples = static_cast<Eigen::Index>(used.sum());
+      // A sensor's noise is what neighbours do not tell of each other, whatever the model.
+      report.noise = std::max(noise_on_motion(measured, &sample.t_s, sample.spans()),
+                              quantum_of(measured) / std::sqrt(12.0));
+      report.misfit = report.samples == 0 ? 0.0 : std::sqrt(squares / used.sum());
       std::vector<double> values = finite_samples(measured);
       report.range = quantile_of(values, 0.95) - quantile_of(values, 0.05);
       signals_.push_back(std::move(report));
