@@ -61,7 +61,14 @@ TEST_CASE("the cause that was put in matters most, for its joint and for the lin
     CHECK(robot::impact_text(rubbing_elbow(), impact).find("left_elbow  coulomb_friction") !=
           std::string::npos);
   }
-  CHECK(robot::impact(body(), rubbing_elbow(), "joint:left_elbow").unit == "rad");
+  const robot::Impact of_elbow = robot::impact(body(), rubbing_elbow(), "joint:left_elbow");
+  const auto json = nlohmann::json::parse(robot::impact_json(rubbing_elbow(), of_elbow));
+  CHECK(json.at("of") == "joint:left_elbow");
+  CHECK(json.at("causes").size() == of_elbow.rows.size());
+  CHECK(json.at("causes").at(0).at("joint") == "left_elbow");
+  CHECK(json.at("causes").at(0).at("cause") == "coulomb_friction");
+  CHECK(json.at("causes").at(0).at("share") == of_elbow.rows[0].share);
+  CHECK(of_elbow.unit == "rad");
   CHECK(robot::impact(body(), rubbing_elbow(), "body:lower").unit == "m");
 }
 

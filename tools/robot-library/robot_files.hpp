@@ -3,6 +3,7 @@
 #pragma once
 
 #include <thermopower/robot/diagnosis.hpp>
+#include <thermopower/robot/impact.hpp>
 
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ AmendedFile amended_urdf(const std::string& text, const RobotDiagnosis& robot);
 
 /// @brief The diagnosis for machines.
 std::string robot_json(const RobotDiagnosis& robot);
+
+/// @brief The ranking of causes for programs, as JSON. Errors have the unit that it names; shares are of 1.
+std::string impact_json(const RobotDiagnosis& robot, const Impact& impact);
 
 /// @brief The diagnosis as a page: the robot's joints as rows that link to each joint's report. It loads nothing.
 std::string robot_html(const RobotDiagnosis& robot);

@@ -137,4 +137,26 @@ std::string robot_json(const RobotDiagnosis& robot) {
   return out.dump(2) + "\n";
 }
 
+std::string impact_json(const RobotDiagnosis& robot, const Impact& impact) {
+  Json causes = Json::array();
+  for (const ImpactRow& row : impact.rows)
+    causes.push_back({{"joint", row.joint < 0 ? Json(nullptr)
+                                              : Json(robot.joints[static_cast<std::size_t>(row.joint)].name)},
+                      {"cause", row.cause},
+                      {"told", row.told},
+                      {"share", number(row.share)},
+                      {"with_it_alone", number(row.put_in)},
+                      {"without_it_alone", number(row.taken_out)}});
+  const Json out{{"format", "thermopower-robot-impact/1"},
+                 {"robot", robot.robot.name},
+                 {"log", robot.log},
+                 {"of", impact.of.empty() ? Json(nullptr) : Json(impact.of)},
+                 {"unit", impact.unit},
+                 {"configured", number(impact.configured)},
+                 {"with_all_causes", number(impact.found)},
+                 {"replayed_s", number(impact.replayed_s)},
+                 {"causes", causes}};
+  return out.dump(1) + "\n";
+}
+
 }  // namespace thermopower::robot

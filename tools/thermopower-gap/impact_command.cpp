@@ -19,6 +19,7 @@ Command add_impact(CLI::App& program) {
   app->add_option("--heldout", asked->held_out, "a log to judge on; may be repeated");
   app->add_option("--of", robot->of,
                   "joint:NAME, body:NAME, site:NAME or geom:NAME; without it all joints together");
+  app->add_option("--report", asked->report, "write the ranking for machines (JSON)");
   add_robot_options(*app, *robot);
   add_as_recorded(*app, *asked);
   return {app, [asked, robot] {

@@ -202,6 +202,12 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
 }
 
 int rank_impact(const Arguments& arguments, const RobotArguments& asked) {
+  io::OutputFiles outputs;
+  if (!arguments.report.empty()) {
+    if (plain_path(arguments.report) == plain_path(robot_path(arguments)))
+      throw UsageError("'" + arguments.report + "' is named twice; an output must not be an input");
+    outputs.expect(arguments.report);
+  }
   robot::RobotDiagnosis diagnosis;
   robot::Impact ranking;
   {
@@ -215,6 +221,8 @@ int rank_impact(const Arguments& arguments, const RobotArguments& asked) {
     } catch (const std::invalid_argument& error) {
       throw UsageError(std::string("--of: ") + error.what());
     }
+    if (!arguments.report.empty()) outputs.put(arguments.report, robot::impact_json(diagnosis, ranking));
+    outputs.commit();
   }
   std::fputs(robot::impact_text(diagnosis, ranking).c_str(), stdout);
   return made;
