@@ -12,15 +12,9 @@ import os
 import re
 import sys
 
+from prose import pages
+
 SOURCES = ("examples", "tests/docs/examples", "tools/web", "tools/docs-search")
-
-
-def pages(root):
-    yield from ("README.md", "CONTRIBUTING.md")
-    for folder, _, names in sorted(os.walk(os.path.join(root, "docs"))):
-        for name in sorted(names):
-            if name.endswith(".md"):
-                yield os.path.relpath(os.path.join(folder, name), root)
 
 
 def read(root, path):

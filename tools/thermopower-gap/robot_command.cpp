@@ -125,6 +125,14 @@ Loaded load(const Arguments& arguments, const RobotArguments& asked) {
   return out;
 }
 
+// Checks before anything is read that an output, where one is named, can be written and is not the robot's own file.
+void expect(io::OutputFiles& outputs, const std::string& output, const std::string& input) {
+  if (output.empty()) return;
+  if (plain_path(output) == plain_path(input))
+    throw UsageError("'" + output + "' is named twice; an output must not be an input");
+  outputs.expect(output);
+}
+
 robot::RobotDiagnosis diagnosed(const Loaded& loaded, const Arguments& arguments,
                                 const RobotArguments& asked) {
   robot::Options options;
@@ -162,12 +170,7 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
                                               &asked.isaac,      &asked.mjlab,    &asked.newton,
                                               &asked.ranges};
   io::OutputFiles outputs;
-  for (const std::string* output : files) {
-    if (output->empty()) continue;
-    if (plain_path(*output) == plain_path(path))
-      throw UsageError("'" + *output + "' is named twice; an output must not be an input");
-    outputs.expect(*output);
-  }
+  for (const std::string* output : files) expect(outputs, *output, path);
   robot::RobotDiagnosis diagnosis;
   {
     Progress progress;
@@ -203,11 +206,7 @@ int diagnose_robot(const Arguments& arguments, const RobotArguments& asked) {
 
 int rank_impact(const Arguments& arguments, const RobotArguments& asked) {
   io::OutputFiles outputs;
-  if (!arguments.report.empty()) {
-    if (plain_path(arguments.report) == plain_path(robot_path(arguments)))
-      throw UsageError("'" + arguments.report + "' is named twice; an output must not be an input");
-    outputs.expect(arguments.report);
-  }
+  expect(outputs, arguments.report, robot_path(arguments));
   robot::RobotDiagnosis diagnosis;
   robot::Impact ranking;
   {

@@ -25,6 +25,15 @@ void is_believed(const Model& model, const Recording& r, const char* column) {
   CHECK(prepared.recording().runs.size() == 1);
 }
 
+/// The same of a bench in air of 24 degC.
+void is_believed_of_bench(Recording& r, const Eigen::VectorXd& power, const Eigen::VectorXd& motor_C,
+                          const char* column) {
+  r.set("motor_C", motor_C);
+  r.set("power_param", power);
+  r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), 24.0));
+  is_believed(test::bench_model(), r, column);
+}
+
 Recording of_rows(Eigen::Index rows, double interval_s) {
   Recording r;
   r.name = "sound";
@@ -87,10 +96,7 @@ TEST_CASE("a reading that flickers by a quantum has no spikes") {
                                 : 30.0 + 4.5 * std::exp(-static_cast<double>(i - 400) / 400.0);
     motor[i] = stepped(warm + 0.12 * noise(), 0.5);
   }
-  r.set("motor_C", motor);
-  r.set("power_param", power);
-  r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), 24.0));
-  is_believed(test::bench_model(), r, "motor_C");
+  is_believed_of_bench(r, power, motor, "motor_C");
 }
 
 TEST_CASE("a temperature in steps of 0.1 K, read ten times a second, has not stopped") {
@@ -102,10 +108,7 @@ TEST_CASE("a temperature in steps of 0.1 K, read ten times a second, has not sto
     warm += 0.1 * (power[i] / 255.0 * 18.0 - 0.15 * (warm - 24.0)) / 60.0;
     motor[i] = stepped(warm, 0.1);
   }
-  r.set("motor_C", motor);
-  r.set("power_param", power);
-  r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), 24.0));
-  is_believed(test::bench_model(), r, "motor_C");
+  is_believed_of_bench(r, power, motor, "motor_C");
 }
 
 TEST_CASE("the peak of a current that starts to flow is no spike") {
@@ -118,10 +121,7 @@ TEST_CASE("the peak of a current that starts to flow is no spike") {
     current[i] = (on ? 1.3 + 4.0 * std::exp(-static_cast<double>(i % 100) / 1.2) : 0.0) + 0.004 * noise();
   }
   r.set("current_A", current);
-  r.set("power_param", power);
-  r.set("motor_C", Eigen::VectorXd::Constant(r.rows(), 30.0));
-  r.set("ambient_C", Eigen::VectorXd::Constant(r.rows(), 24.0));
-  is_believed(test::bench_model(), r, "current_A");
+  is_believed_of_bench(r, power, Eigen::VectorXd::Constant(r.rows(), 30.0), "current_A");
 }
 
 TEST_CASE("a joint that rests at the end of its way, where its target is, is not cut off there") {
