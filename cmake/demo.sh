@@ -3,8 +3,8 @@
 # Copyright (c) 2026 the thermopower authors
 
 # Installs what is missing, builds, and runs the main job: a known sim-to-real gap is diagnosed first, then the thesis's motor, the original
-# program on a simulated chip, and the thesis's measurements through the models. Each step builds only what it runs. Safe to
-# repeat. Results go to build/demo; build/release is left as `cmake --preset release` makes it, so that any other target can be built there.
+# program on a simulated chip, and the thesis's measurements through the models. Each step builds only what it runs, by the preset
+# demo, which compiles quickly. Safe to repeat. Results go to build/demo, the programs are in build/demo/bin.
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/packages.sh
@@ -14,11 +14,11 @@ need_packages $program_packages $library_packages $nano_packages
 jobs=${THERMOPOWER_JOBS:-$(nproc)}
 export CMAKE_BUILD_PARALLEL_LEVEL="$jobs"
 out=build/demo
-bin=build/release/bin
+bin=build/demo/bin
 motor=examples/thesis_gap/bgm5208
 export NINJA_STATUS="[%f of %t, %e s] "
 
-rm -rf "$out"
+rm -rf "$out/known_gap" "$out/thesis_gap"
 mkdir -p "$out/known_gap" "$out/thesis_gap"
 
 # diagnose <directory> <model> <training> <held out>
@@ -27,9 +27,9 @@ diagnose() {
     --predictions "$1/predictions.csv" --augmented "$1/augmented.json" --header "$1/motor_model.hpp"
 }
 
-echo "== Building the diagnosis (the longest part: six minutes on two cores, once)"
-cmake --preset release --log-level=WARNING --no-warn-unused-cli >/dev/null
-cmake --build --preset release --target known_gap thermopower-gap
+echo "== Building the diagnosis (the longest part, once)"
+cmake --preset demo --log-level=WARNING --no-warn-unused-cli >/dev/null
+cmake --build --preset demo --target known_gap thermopower-gap
 
 echo
 echo "== 1. Why simulation and motor disagree, where we know it: a copper winding that the simulation takes for constant"
@@ -41,15 +41,15 @@ echo "== 2. And where we do not: the thesis's BGM5208-200-12 as programmed, fitt
 diagnose "$out/thesis_gap" "${motor}_programmed.json" "${motor}_chapter4.csv" "${motor}_chapter5.csv"
 
 echo
-echo "== 3. The original program on an ATmega328P, cycle by cycle, against an emulated SimpleBGC board (builds two programs for the chip)"
+echo "== 3. The original program on an ATmega328P, cycle by cycle, against an emulated SimpleBGC board"
 cmake --preset avr-nano --log-level=WARNING --no-warn-unused-cli >/dev/null
-cmake --build --preset avr-nano --target nano_gimbal gimbal_controller
-cmake --build --preset release --target nano_demo
+cmake --build --preset avr-nano --target nano_gimbal
+cmake --build --preset demo --target nano_demo
 "$bin/nano_demo" --elf build/avr-nano/bin/nano_gimbal.elf --csv "$out/nano_demo.csv" --svg "$out/nano_demo.svg"
 
 echo
 echo "== 4. The thesis's measurements, replayed through the models"
-cmake --build --preset release --target thesis_replay
+cmake --build --preset demo --target thesis_replay
 "$bin/thesis_replay" --csv "$out/thesis_replay.csv" --svg "$out/thesis_replay.svg" >"$out/thesis_replay.txt"
 echo "RMS and largest error over all tables of each motor, as programmed and with the corrected constants; row by row in $out/thesis_replay.txt"
 grep -E '^BG|corrected$|RMSE| all ' "$out/thesis_replay.txt"

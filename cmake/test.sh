@@ -40,6 +40,11 @@ for preset in $workflows; do
   echo "== $preset"
   cmake --workflow --preset "$preset" || failed="$failed $preset"
 done
+# The demonstration compiles whole folders as one file: names of two of its files must not meet.
+if [ -n "$workflows" ]; then
+  echo "== demo"
+  sh cmake/demo.sh || failed="$failed demo"
+fi
 # An archive is of a commit: changes that are not committed have none.
 if [ -n "$workflows" ] && git diff --quiet HEAD 2>/dev/null; then
   echo "== release"

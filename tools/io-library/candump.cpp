@@ -93,7 +93,7 @@ std::vector<Frame> frames_of(const std::string& name, const std::string& text) {
 }
 
 /// Where a number stands in the frames of one identifier.
-struct Signal {
+struct BusSignal {
   std::uint32_t id = 0;
   std::optional<unsigned char> first_byte;
   char kind = 'u';  // u, i, f
@@ -103,8 +103,8 @@ struct Signal {
 };
 
 // `141#A1.i16be@4`
-std::optional<Signal> parse_signal(const std::string& header) {
-  Signal signal;
+std::optional<BusSignal> parse_signal(const std::string& header) {
+  BusSignal signal;
   const std::size_t point = header.find('.'), at = header.find('@');
   if (point == std::string::npos || at == std::string::npos || at < point) return std::nullopt;
   std::string frame = header.substr(0, point), type = header.substr(point + 1, at - point - 1);
@@ -129,13 +129,13 @@ std::optional<Signal> parse_signal(const std::string& header) {
   return signal;
 }
 
-bool is_of(const Signal& signal, const Frame& frame) {
+bool is_of(const BusSignal& signal, const Frame& frame) {
   return frame.id == signal.id &&
          frame.bytes.size() >= signal.at + static_cast<std::size_t>(signal.bits / 8) &&
          (!signal.first_byte || (!frame.bytes.empty() && frame.bytes[0] == *signal.first_byte));
 }
 
-double value_in(const Signal& signal, const Frame& frame) {
+double value_in(const BusSignal& signal, const Frame& frame) {
   std::uint32_t raw = 0;
   const int count = signal.bits / 8;
   for (int i = 0; i < count; ++i) {
@@ -159,7 +159,7 @@ std::string hex(std::uint32_t value, const char* format = "%X") {
 }
 
 ListedColumn changes(const std::string& header, const std::vector<const Frame*>& of) {
-  const Signal signal = *parse_signal(header);
+  const BusSignal signal = *parse_signal(header);
   ListedColumn column;
   column.header = header;
   column.why = "--column NAME=" + header + ":UNIT*SIZE takes it";
@@ -175,7 +175,7 @@ ListedColumn changes(const std::string& header, const std::vector<const Frame*>&
 
 // How far a number goes from frame to frame.
 double roughness(const std::string& header, const std::vector<const Frame*>& of) {
-  const Signal signal = *parse_signal(header);
+  const BusSignal signal = *parse_signal(header);
   double sum = 0.0, before = std::nan("");
   for (const Frame* frame : of) {
     if (!is_of(signal, *frame)) continue;

@@ -41,7 +41,7 @@ std::string together(const std::vector<std::string>& constants, double sd) {
          (opposed ? " (those with a minus the other way)" : "");
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 }  // namespace
 
@@ -114,22 +114,22 @@ std::string check_json(const DataReport& report) {
   for (const auto& one : report.signals)
     root["signals"][one.signal] = {{"unit", one.unit},
                                    {"samples", one.samples},
-                                   {"range", number(one.range)},
-                                   {"noise", number(one.noise)},
-                                   {"as_configured", number(one.misfit)}};
+                                   {"range", finite_or_null(one.range)},
+                                   {"noise", finite_or_null(one.noise)},
+                                   {"as_configured", finite_or_null(one.misfit)}};
   root["constants"] = Json::object();
   for (const auto& one : report.constants)
-    root["constants"][one.constant] = {{"sd_alone", number(one.alone)},
-                                       {"sd_together", number(one.together)}};
+    root["constants"][one.constant] = {{"sd_alone", finite_or_null(one.alone)},
+                                       {"sd_together", finite_or_null(one.together)}};
   for (const auto& one : report.constants)
     if (one.is_place) root["constants"][one.constant]["unit"] = "rad";
   root["only_together"] = Json::array();
   for (const auto& one : report.only_together)
-    root["only_together"].push_back({{"constants", one.constants}, {"sd", number(one.sd)}});
+    root["only_together"].push_back({{"constants", one.constants}, {"sd", finite_or_null(one.sd)}});
   root["effects"] = Json::array();
   for (const auto& one : report.effects)
     root["effects"].push_back({{"effect", one.effect},
-                               {"visible", number(one.visible)},
+                               {"visible", finite_or_null(one.visible)},
                                {"absorbed", one.absorbed},
                                {"alike", one.alike}});
   root["need_columns"] = report.need_columns;

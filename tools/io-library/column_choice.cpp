@@ -8,6 +8,7 @@
 #include <thermopower/plant/radians.hpp>
 
 #include "nearest_name.hpp"
+#include "plain_letters.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -221,11 +222,6 @@ ColumnChoice parse_choice(const std::string& where, const std::string& text) {
   fail(excerpt(unit) + " is not a unit of " + choice.name +
        (known.empty() ? "; a name without a unit takes none" : "; expected one of " + known));
   return choice;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
-  return begin == std::string::npos ? std::string() : text.substr(begin, end + 1 - begin);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Cells = std::vector<std::pair<std::string, std::string>>;
 
-constexpr std::size_t most_columns = 4096;
+constexpr std::size_t most_names = 4096;
 
 void flatten(const Json& value, const std::string& path, Cells& cells) {
   if (value.is_object()) {
@@ -64,7 +64,7 @@ LogText json_lines_as_csv(const std::string& name, const std::string& text) {
     for (auto& [key, cell] : cells) {
       const auto [found, is_new] = place.emplace(key, header.size());
       if (is_new) {
-        if (header.size() == most_columns) fail("more than 4096 different names");
+        if (header.size() == most_names) fail("more than 4096 different names");
         header.push_back(key);
         row.emplace_back();
       }

@@ -12,9 +12,9 @@ namespace thermopower::io {
 namespace {
 
 /// Walks through a text that is known to be JSON.
-class Walk {
+class PathWalk {
 public:
-  explicit Walk(const std::string& text) : text_(text) {}
+  explicit PathWalk(const std::string& text) : text_(text) {}
 
   /// Position at which the value of a path begins, or the last value on the way to it.
   std::size_t find(const std::vector<std::string>& path) {
@@ -89,7 +89,7 @@ std::size_t line_of_pointer(const std::string& text, const std::string& pointer)
     for (const auto& [escaped, plain] : {std::pair("~1", '/'), std::pair("~0", '~')})
       for (std::size_t at = 0; (at = name.find(escaped, at)) != std::string::npos; ++at)
         name.replace(at, 2, 1, plain);
-  const std::size_t position = Walk(text).find(path);
+  const std::size_t position = PathWalk(text).find(path);
   return 1 + static_cast<std::size_t>(
                  std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(position), '\n'));
 }

@@ -39,8 +39,8 @@ struct Leaf {
   bool text = false;
 };
 
-struct Topic {
-  explicit Topic(const McapDecoder::Channel& of) : channel(of), tree(true) {}
+struct ListedTopic {
+  explicit ListedTopic(const McapDecoder::Channel& of) : channel(of), tree(true) {}
   const McapDecoder::Channel& channel;
   FieldTree tree;
   std::unordered_map<const FieldNode*, Leaf> leaves;
@@ -92,13 +92,13 @@ private:
   void add(const McapChannel& record) {
     const McapDecoder::Channel* const channel = decoder_.add(record);
     if (channel != nullptr && topics_.count(channel->topic) == 0)
-      topics_.emplace(channel->topic, std::make_unique<Topic>(*channel));
+      topics_.emplace(channel->topic, std::make_unique<ListedTopic>(*channel));
   }
 
   void add(const McapMessage& message) {
     try {
       const McapDecoder::Channel& channel = decoder_.channel_of(message);
-      Topic& topic = *topics_.at(channel.topic);
+      ListedTopic& topic = *topics_.at(channel.topic);
       topic.first_ns = topic.messages == 0 ? message.log_ns : std::min(topic.first_ns, message.log_ns);
       topic.last_ns = std::max(topic.last_ns, message.log_ns);
       ++topic.messages;
@@ -116,7 +116,7 @@ private:
     }
   }
 
-  static void count(Topic& topic, const FieldNode& node) {
+  static void count(ListedTopic& topic, const FieldNode& node) {
     const auto [place, is_new] = topic.leaves.try_emplace(&node);
     Leaf& leaf = place->second;
     if (is_new) {
@@ -148,7 +148,7 @@ private:
     }
   }
 
-  void finish(const Topic& topic) {
+  void finish(const ListedTopic& topic) {
     McapTopic told;
     told.name = topic.channel.topic;
     told.schema = topic.channel.schema;
@@ -180,7 +180,7 @@ private:
   }
 
   // What the definitions of ROS say, before names and ranges are asked.
-  static ColumnHint hint_for(const Topic& topic, const Leaf& leaf) {
+  static ColumnHint hint_for(const ListedTopic& topic, const Leaf& leaf) {
     std::string type = topic.channel.schema;
     if (const std::size_t middle = type.find("/msg/"); middle != std::string::npos) type.erase(middle, 4);
     const auto nothing = [](const char* why) { return ColumnHint{{}, why, true, {}}; };
@@ -212,7 +212,7 @@ private:
   std::vector<ColumnHint> hints_;
   McapContents contents_;
   McapDecoder decoder_;
-  std::map<std::string, std::unique_ptr<Topic>> topics_;
+  std::map<std::string, std::unique_ptr<ListedTopic>> topics_;
 };
 
 }  // namespace

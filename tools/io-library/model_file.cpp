@@ -50,16 +50,16 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
 enum class Allowed { any, positive, not_negative, not_zero };
 
 /// What a constant that may have either sign can be at all: far beyond any material and any machine.
-struct Range {
+struct AllowedRange {
   double low, high;
   const char* unit;
 };
-constexpr Range temperature_C{-273.15, 5000.0, "degC"};
-constexpr Range tempco_per_K{-1.0, 1.0, "1/K"};
+constexpr AllowedRange temperature_C{-273.15, 5000.0, "degC"};
+constexpr AllowedRange tempco_per_K{-1.0, 1.0, "1/K"};
 
-class Reader {
+class ModelReader {
 public:
-  Reader(const std::string& file, const Catalogue& catalogue) : file_(file), catalogue_(catalogue) {}
+  ModelReader(const std::string& file, const Catalogue& catalogue) : file_(file), catalogue_(catalogue) {}
 
   Model read(const std::string& given) {
     const std::string text = without_comments(given);
@@ -251,7 +251,7 @@ private:
     return block.contains(key) ? number(block, pointer, key, allowed) : otherwise;
   }
 
-  double within(const Json& block, const std::string& pointer, const char* key, const Range& range,
+  double within(const Json& block, const std::string& pointer, const char* key, const AllowedRange& range,
                 double otherwise) const {
     const double x = number_or(block, pointer, key, Allowed::any, otherwise);
     if (!(x >= range.low && x <= range.high))
@@ -586,7 +586,7 @@ Json network_block(const plant::ThermalNetwork& network, const std::map<std::str
 }  // namespace
 
 Model parse_model(const std::string& name, const std::string& text, const Catalogue& catalogue) {
-  return Reader(name, catalogue).read(text);
+  return ModelReader(name, catalogue).read(text);
 }
 
 Model read_model(const std::string& path, const Catalogue& catalogue) {

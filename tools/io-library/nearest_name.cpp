@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "nearest_name.hpp"
+#include "plain_letters.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -9,8 +10,6 @@
 
 namespace thermopower::io {
 namespace {
-
-char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 // How many letters are missing, too many or others (Levenshtein).
 std::size_t distance(const std::string& a, const std::string& b) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 
 #include "log_text.hpp"
+#include "plain_letters.hpp"
 #include "time_stamp.hpp"
 
 #include <thermopower/io/input_error.hpp>
@@ -75,11 +76,6 @@ std::vector<std::string> words_in(const std::string& line) {
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
   return words;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
-  return begin == std::string::npos ? std::string() : text.substr(begin, end + 1 - begin);
 }
 
 // The settings of a heater in a configuration that says what controls it.

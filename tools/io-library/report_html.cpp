@@ -27,7 +27,7 @@ std::vector<double> numbers(const Eigen::VectorXd& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-std::string regime_text(const Regime& regime) {
+std::string regime_html(const Regime& regime) {
   const VariableText variable = variable_text(regime.variable);
   const std::string text =
       variable.in_words ? escaped(variable.text) : "<code>" + breakable(variable.text) + "</code>";
@@ -202,7 +202,7 @@ private:
     if (!d_.where.empty()) {
       const Location& first = d_.where.front();
       std::string more = escaped(signal_text(first.signal)) + ", " + share_of_gap(first);
-      if (first.regime) more += "; most for " + regime_text(*first.regime);
+      if (first.regime) more += "; most for " + regime_html(*first.regime);
       if (!first.only_in.empty()) more += "<br>Only in " + occurrences(first.only_in);
       if (const std::string elsewhere = acts_elsewhere(); !elsewhere.empty())
         more +=
@@ -249,7 +249,7 @@ private:
       std::string more = escaped(signal_text(rest.signal)) + " at " + readable(rest.times_floor, 3) +
                          " times its noise floor";
       if (rest.submodel) more += "; " + breakable(to_string(*rest.submodel));
-      if (rest.regime) more += ", most for " + regime_text(*rest.regime);
+      if (rest.regime) more += ", most for " + regime_html(*rest.regime);
       if (!rest.looks.empty()) more += "<br>" + escaped(capital(rest.looks)) + ".";
       fact("What remains", percent_html(rest.share) + " of the gap", more);
     }
@@ -603,7 +603,7 @@ private:
     for (const auto& one : d_.where) {
       out_ += "<div class=\"where\"><b>" + breakable(to_string(one.submodel)) + "</b> in " +
               escaped(signal_text(one.signal)) + ", " + share_of_gap(one);
-      if (one.regime) out_ += "; most for " + regime_text(*one.regime);
+      if (one.regime) out_ += "; most for " + regime_html(*one.regime);
       out_ += ".";
       if (!one.only_in.empty()) out_ += "<br>Only in " + occurrences(one.only_in) + ".";
       out_ += "<br><span class=\"soft\">" + escaped(with_signs(capital(one.evidence))) + "</span></div>\n";

@@ -22,11 +22,11 @@
 namespace thermopower::io {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double deg_per_unit = 360.0 / 16384.0;
 constexpr double gyro_dps = 0.06103701895;  // per unit, from the protocol's specification
 constexpr double speed_dps = 0.1220740379;  // likewise, of CONTROL
-constexpr std::int64_t ns_per_s = 1000000000;
+constexpr std::int64_t whole_ns_per_s = 1000000000;
 
 const char* const axis_names[] = {"roll", "pitch", "yaw"};
 
@@ -42,8 +42,8 @@ double of_control_mode(const sbgc::AxisControl& axis, bool angle) {
   if (angle)
     return mode == sbgc::control_mode::angle || mode == speed_angle || mode == angle_rel_frame
                ? axis.angle * deg_per_unit
-               : missing;
-  return mode == speed || mode == speed_angle ? axis.speed * speed_dps : missing;
+               : no_value;
+  return mode == speed || mode == speed_angle ? axis.speed * speed_dps : no_value;
 }
 
 const std::vector<Field>& fields() {
@@ -62,9 +62,9 @@ const std::vector<Field>& fields() {
       add("frame_deg", [axis](const Data& d) { return d.frame_imu_angle(axis) * deg_per_unit; });
       add("power_param", [axis](const Data& d) { return static_cast<double>(d.motor_power(axis)); });
       add("rotor_deg",
-          [axis](const Data& d) { return d.has_extended() ? d.rotor_angle(axis) * deg_per_unit : missing; });
+          [axis](const Data& d) { return d.has_extended() ? d.rotor_angle(axis) * deg_per_unit : no_value; });
       add("balance", [axis](const Data& d) {
-        return d.has_extended() ? static_cast<double>(d.balance_error(axis)) : missing;
+        return d.has_extended() ? static_cast<double>(d.balance_error(axis)) : no_value;
       });
       made.push_back({prefix + "control_deg", {}, [axis](const sbgc::Control& c) {
                         return of_control_mode(c.axis[axis], true);
@@ -77,10 +77,10 @@ const std::vector<Field>& fields() {
       made.push_back({name, std::move(get), {}});
     };
     add("supply_V", [](const Data& d) { return d.battery_cV() / 100.0; });
-    add("supply_A", [](const Data& d) { return d.has_extended() ? d.current_mA() / 1000.0 : missing; });
-    add("imu_C", [](const Data& d) { return d.has_extended() ? static_cast<double>(d.imu_C()) : missing; });
+    add("supply_A", [](const Data& d) { return d.has_extended() ? d.current_mA() / 1000.0 : no_value; });
+    add("imu_C", [](const Data& d) { return d.has_extended() ? static_cast<double>(d.imu_C()) : no_value; });
     add("frame_imu_C",
-        [](const Data& d) { return d.has_extended() ? static_cast<double>(d.frame_imu_C()) : missing; });
+        [](const Data& d) { return d.has_extended() ? static_cast<double>(d.frame_imu_C()) : no_value; });
     add("serial_errors", [](const Data& d) { return static_cast<double>(d.serial_errors()); });
     return made;
   }();
@@ -149,9 +149,9 @@ std::int64_t days_of(std::int64_t year, std::int64_t month, std::int64_t day) {
   return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
 }
 
-class Parser {
+class CaptureParser {
 public:
-  Parser(const std::string& name, const std::string& text) : text_(text) { capture_.file = name; }
+  CaptureParser(const std::string& name, const std::string& text) : text_(text) { capture_.file = name; }
 
   Capture run() {
     for (std::size_t at = 0; at < text_.size();) {
@@ -218,7 +218,7 @@ private:
     if (error != std::errc() || last != line_.data() + end || !(std::fabs(seconds) < 9e9))
       fail(excerpt(line_.substr(at, end - at)) +
            " is not a time; expected seconds, or a date as 'socat -x' writes it");
-    return std::llround(seconds * static_cast<double>(ns_per_s));
+    return std::llround(seconds * static_cast<double>(whole_ns_per_s));
   }
 
   std::int64_t time_of_date(std::size_t at, std::size_t& behind) const {
@@ -229,12 +229,12 @@ private:
         month < 1 || month > 12 || day < 1 || day > 31 || hour > 23 || minute > 59 || second > 60 ||
         year < 1970)
       fail("not a date; expected YYYY/MM/DD hh:mm:ss.ffffff as 'socat -x' writes it");
-    std::int64_t part = 0, digit = ns_per_s;
+    std::int64_t part = 0, digit = whole_ns_per_s;
     behind = at + static_cast<std::size_t>(used);
     if (behind < line_.size() && line_[behind] == '.')
       for (++behind; behind < line_.size() && line_[behind] >= '0' && line_[behind] <= '9'; ++behind)
         part += (digit /= 10) * (line_[behind] - '0');
-    return (days_of(year, month, day) * 86400 + hour * 3600 + minute * 60 + second) * ns_per_s + part;
+    return (days_of(year, month, day) * 86400 + hour * 3600 + minute * 60 + second) * whole_ns_per_s + part;
   }
 
   // Bytes in hexadecimal, each after one blank; two blanks begin what `socat -v` shows as text.
@@ -400,7 +400,7 @@ bool is_sbgc_capture(const std::string& path) {
 
 RecordingFile parse_sbgc_capture(const std::string& name, const std::string& text,
                                  const std::vector<ColumnChoice>& choices) {
-  return to_recording(Parser(name, text).run(), choices);
+  return to_recording(CaptureParser(name, text).run(), choices);
 }
 
 RecordingFile read_sbgc_capture(const std::string& path, const std::vector<ColumnChoice>& choices) {
@@ -409,7 +409,7 @@ RecordingFile read_sbgc_capture(const std::string& path, const std::vector<Colum
 }
 
 SbgcCaptureContents list_sbgc_capture(const std::string& name, const std::string& text) {
-  return to_contents(Parser(name, text).run());
+  return to_contents(CaptureParser(name, text).run());
 }
 
 SbgcCaptureContents list_sbgc_capture(const std::string& path) {

@@ -25,45 +25,45 @@ constexpr std::size_t most_parameters = 4, most_alternatives = 3, most_signals =
 // A share of an error that nobody would miss.
 constexpr double hardly_anything = 0.005;
 
-using Words = std::pair<const char*, const char*>;
+using IdAndWords = std::pair<const char*, const char*>;
 
 template <std::size_t N>
-const char* word_for(const std::array<Words, N>& list, const std::string& key) {
-  for (const Words& one : list)
+const char* word_for(const std::array<IdAndWords, N>& list, const std::string& key) {
+  for (const IdAndWords& one : list)
     if (key == one.first) return one.second;
   return nullptr;
 }
 
 // Constants that a fit may move, by the id that follows `calibration.`.
-constexpr std::array<Words, 16> constants = {{{"resistance", "winding's resistance"},
-                                              {"tempco", "winding's temperature coefficient"},
-                                              {"base", "current law's base"},
-                                              {"slope", "current law's slope"},
-                                              {"heat_capacity", "heat capacity"},
-                                              {"conductance", "thermal conductance to the air"},
-                                              {"rinv", "heating law's factor"},
-                                              {"cooling", "cooling rate"},
-                                              {"inertia", "inertia"},
-                                              {"viscous", "viscous friction"},
-                                              {"torque_constant", "torque constant"},
-                                              {"motor_resistance", "motor's resistance"},
-                                              {"kp", "servo's proportional gain"},
-                                              {"kd", "servo's damping gain"},
-                                              {"ki", "servo's integral gain"},
-                                              {"body_heat_capacity", "body's heat capacity"}}};
+constexpr std::array<IdAndWords, 16> constants = {{{"resistance", "winding's resistance"},
+                                                   {"tempco", "winding's temperature coefficient"},
+                                                   {"base", "current law's base"},
+                                                   {"slope", "current law's slope"},
+                                                   {"heat_capacity", "heat capacity"},
+                                                   {"conductance", "thermal conductance to the air"},
+                                                   {"rinv", "heating law's factor"},
+                                                   {"cooling", "cooling rate"},
+                                                   {"inertia", "inertia"},
+                                                   {"viscous", "viscous friction"},
+                                                   {"torque_constant", "torque constant"},
+                                                   {"motor_resistance", "motor's resistance"},
+                                                   {"kp", "servo's proportional gain"},
+                                                   {"kd", "servo's damping gain"},
+                                                   {"ki", "servo's integral gain"},
+                                                   {"body_heat_capacity", "body's heat capacity"}}};
 
-constexpr std::array<Words, 12> parts = {{{"electrical", "electrical circuit"},
-                                          {"thermal.heating", "heating"},
-                                          {"thermal.storage", "heat storage"},
-                                          {"thermal.loss", "heat loss"},
-                                          {"mechanical.drive", "drive"},
-                                          {"mechanical.friction", "friction"},
-                                          {"mechanical.load", "load"},
-                                          {"mechanical.structure", "inertia and structure"},
-                                          {"sensing.current", "current sensor"},
-                                          {"sensing.temperature", "thermometer"},
-                                          {"sensing.angle", "angle sensor"},
-                                          {"sensing.rate", "rate sensor"}}};
+constexpr std::array<IdAndWords, 12> parts = {{{"electrical", "electrical circuit"},
+                                               {"thermal.heating", "heating"},
+                                               {"thermal.storage", "heat storage"},
+                                               {"thermal.loss", "heat loss"},
+                                               {"mechanical.drive", "drive"},
+                                               {"mechanical.friction", "friction"},
+                                               {"mechanical.load", "load"},
+                                               {"mechanical.structure", "inertia and structure"},
+                                               {"sensing.current", "current sensor"},
+                                               {"sensing.temperature", "thermometer"},
+                                               {"sensing.angle", "angle sensor"},
+                                               {"sensing.rate", "rate sensor"}}};
 
 std::string spaced(std::string id) {
   std::replace(id.begin(), id.end(), '_', ' ');

@@ -17,7 +17,7 @@ constexpr double gravity_m_per_s2 = 9.81, quarter_turn_rad = 1.5707963267948966,
 // A mass off the axis adds to the inertia: it is put so near that this is a hundredth of it, and taken off again.
 constexpr double share_of_inertia = 0.01;
 
-std::string number(double value) {
+std::string joint_number(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value == 0.0 ? 0.0 : value).ptr);
 }
@@ -61,9 +61,9 @@ struct Described {
 };
 
 /// Makes a joint of a model: what its effects say of themselves, and what none of them can.
-class Reader {
+class JointReader {
 public:
-  Reader(const Model& model, const Catalogue& catalogue) : model_(model), catalogue_(catalogue) {
+  JointReader(const Model& model, const Catalogue& catalogue) : model_(model), catalogue_(catalogue) {
     if (!model.axis)
       throw InvalidInput("model '" + model.name +
                          "' has no axis: simulators of bodies have nothing to take from it");
@@ -99,12 +99,12 @@ private:
       if (joint.largest_drive)
         servo.largest_Nm = std::fmin(servo.largest_Nm, *joint.largest_drive * std::fabs(joint.Nm_per_drive));
       if (integral != 0.0)
-        servo.left_out.push_back("servo: " + std::string(integral_name) + " " + number(integral) +
+        servo.left_out.push_back("servo: " + std::string(integral_name) + " " + joint_number(integral) +
                                  "; MuJoCo's servo has no integral");
-      servo.left_out.push_back("servo: period_s " + number(one.period_s) + ", delay_s " +
-                               number(one.delay_s) + "; MuJoCo's servo acts at every step and at once");
+      servo.left_out.push_back("servo: period_s " + joint_number(one.period_s) + ", delay_s " +
+                               joint_number(one.delay_s) + "; MuJoCo's servo acts at every step and at once");
       if (joint.lag_s)
-        servo.left_out.push_back("drive_lag: lag_s " + number(*joint.lag_s) +
+        servo.left_out.push_back("drive_lag: lag_s " + joint_number(*joint.lag_s) +
                                  "; the torque of MuJoCo's servo follows at once");
     };
     if (const auto* position = std::get_if<plant::PositionPidServo>(&model_.servo)) {
@@ -126,7 +126,7 @@ private:
     if (entry == nullptr || entry->info.in_a_joint == nullptr) {
       std::string text = id + ":";
       for (const auto& [name, value] : given)
-        text += (text.back() == ':' ? " " : ", ") + name + " " + number(value);
+        text += (text.back() == ':' ? " " : ", ") + name + " " + joint_number(value);
       described_.left_out.push_back(std::move(text));
       return;
     }
@@ -141,7 +141,7 @@ private:
       std::string text = id + ":";
       for (const int place : remark.parameters) {
         const auto i = static_cast<std::size_t>(place);
-        text += (text.back() == ':' ? " " : ", ") + parameters[i].name + " " + number(values[i]);
+        text += (text.back() == ':' ? " " : ", ") + parameters[i].name + " " + joint_number(values[i]);
       }
       described_.left_out.push_back(text + "; " + remark.text);
     }
@@ -162,8 +162,8 @@ std::string comment(const std::string& origin, const std::string& control,
 }
 
 std::string inertial(double inertia, double mass, double x, double y) {
-  const std::string one = number(inertia);
-  return "<inertial pos=\"" + number(x) + " " + number(y) + " 0\" mass=\"" + number(mass) +
+  const std::string one = joint_number(inertia);
+  return "<inertial pos=\"" + joint_number(x) + " " + joint_number(y) + " 0\" mass=\"" + joint_number(mass) +
          "\" diaginertia=\"" + one + " " + one + " " + one + "\"/>";
 }
 
@@ -174,42 +174,42 @@ std::string drive_actuator(const Model& model, const plant::JointDescription& jo
                            const std::string& name) {
   std::string out;
   if (model.axis->voltage_driven()) {
-    const std::string constant = number(model.axis->torque_constant_Nm_per_A);
+    const std::string constant = joint_number(model.axis->torque_constant_Nm_per_A);
     out += "    <!-- Where MuJoCo has it, the same motor is <dcmotor name=\"drive\" joint=\"" +
            comment_text(name) + "\" motorconst=\"" + constant + " " + constant + "\" resistance=\"" +
-           number(model.axis->resistance_ohm) + "\"/> -->\n";
+           joint_number(model.axis->resistance_ohm) + "\"/> -->\n";
   }
   out += "    <general name=\"drive\" joint=\"" + name + "\" gear=\"1\" gaintype=\"fixed\" gainprm=\"" +
-         number(joint.Nm_per_drive) + "\"";
+         joint_number(joint.Nm_per_drive) + "\"";
   if (joint.offset_Nm != 0.0 || joint.back_emf_Nms_per_rad > 0.0)
-    out += " biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) + " 0 " +
-           number(-joint.back_emf_Nms_per_rad) + "\"";
-  if (joint.lag_s) out += " dyntype=\"filter\" dynprm=\"" + number(*joint.lag_s) + "\"";
+    out += " biastype=\"affine\" biasprm=\"" + joint_number(joint.offset_Nm) + " 0 " +
+           joint_number(-joint.back_emf_Nms_per_rad) + "\"";
+  if (joint.lag_s) out += " dyntype=\"filter\" dynprm=\"" + joint_number(*joint.lag_s) + "\"";
   if (joint.largest_drive)
-    out += " ctrllimited=\"true\" ctrlrange=\"" + number(-*joint.largest_drive) + " " +
-           number(*joint.largest_drive) + "\"";
+    out += " ctrllimited=\"true\" ctrlrange=\"" + joint_number(-*joint.largest_drive) + " " +
+           joint_number(*joint.largest_drive) + "\"";
   return out + "/>\n";
 }
 
 std::string servo_actuator(const DescribedServo& servo, const plant::JointDescription& joint,
                            const std::string& name) {
-  const std::string limit = number(servo.largest_Nm);
+  const std::string limit = joint_number(servo.largest_Nm);
   std::string out = std::string("    <") + (servo.position ? "position" : "velocity") +
                     " name=\"servo\" joint=\"" + name + "\"";
-  if (servo.position) out += " kp=\"" + number(servo.Nm_per_rad) + "\"";
-  out += " kv=\"" + number(servo.Nms_per_rad) + "\" forcelimited=\"true\" forcerange=\"-" + limit + " " +
-         limit + "\"/>\n";
+  if (servo.position) out += " kp=\"" + joint_number(servo.Nm_per_rad) + "\"";
+  out += " kv=\"" + joint_number(servo.Nms_per_rad) + "\" forcelimited=\"true\" forcerange=\"-" + limit +
+         " " + limit + "\"/>\n";
   if (joint.offset_Nm != 0.0)
     out += "    <general name=\"constant_torque\" joint=\"" + name +
-           "\" gaintype=\"fixed\" gainprm=\"0\" biastype=\"affine\" biasprm=\"" + number(joint.offset_Nm) +
-           " 0 0\"/>\n";
+           "\" gaintype=\"fixed\" gainprm=\"0\" biastype=\"affine\" biasprm=\"" +
+           joint_number(joint.offset_Nm) + " 0 0\"/>\n";
   return out;
 }
 
 }  // namespace
 
 SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogue& catalogue) {
-  const Described described = Reader(model, catalogue).read();
+  const Described described = JointReader(model, catalogue).read();
   const plant::JointDescription& joint = described.joint;
   const double far = joint.far_side ? joint.inertia_kgm2 * joint.far_side->share : 0.0,
                near = joint.inertia_kgm2 - far;
@@ -235,32 +235,33 @@ SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogu
   std::string& out = file.text;
   out = comment(origin, control, file.left_out) + "<mujoco model=\"" + name + "\">\n";
   out += "  <compiler angle=\"radian\" inertiafromgeom=\"false\" boundmass=\"0\" boundinertia=\"0\"/>\n";
-  out += "  <option timestep=\"0.0001\" gravity=\"0 " + number(joint.imbalance ? -gravity_m_per_s2 : 0.0) +
-         " 0\"/>\n";
+  out += "  <option timestep=\"0.0001\" gravity=\"0 " +
+         joint_number(joint.imbalance ? -gravity_m_per_s2 : 0.0) + " 0\"/>\n";
   // Against the limit of a servo, what a motor at a voltage loses by its rate is outside: it is a damping of the joint.
   const double damping = joint.damping_Nms_per_rad + (described.servo ? joint.back_emf_Nms_per_rad : 0.0);
   out +=
       "  <worldbody>\n    <light pos=\"0 0 2\"/>\n    <geom type=\"cylinder\" size=\"0.03 0.02\" pos=\"0 0 -0.03\" " +
       seen + "/>\n    <body name=\"driven\">\n      <joint name=\"" + name +
-      "\" type=\"hinge\" axis=\"0 0 1\" damping=\"" + number(damping) + "\" frictionloss=\"" +
-      number(joint.friction_Nm) + "\"";
+      "\" type=\"hinge\" axis=\"0 0 1\" damping=\"" + joint_number(damping) + "\" frictionloss=\"" +
+      joint_number(joint.friction_Nm) + "\"";
   // MuJoCo's own softness would turn dry friction into a viscous one up to several degrees a second. Two steps of
   // the simulation are the hardest that it takes, and it makes them of anything harder.
   if (joint.friction_Nm > 0.0)
     out += " solreffriction=\"0.0002 1\" solimpfriction=\"0.99 0.999 0.0001 0.5 2\"";
   if (joint.spring)
-    out += " stiffness=\"" + number(joint.spring->Nm_per_rad) + "\" springref=\"" +
-           number(joint.spring->centre_rad) + "\"";
+    out += " stiffness=\"" + joint_number(joint.spring->Nm_per_rad) + "\" springref=\"" +
+           joint_number(joint.spring->centre_rad) + "\"";
   out +=
       "/>\n      <!-- In a model whose bodies already have an inertia about this axis, give the joint what is missing of it to " +
-      number(near) + " kg m^2 as armature. -->\n      " + inertial(about_centre, mass, x, y) +
+      joint_number(near) + " kg m^2 as armature. -->\n      " + inertial(about_centre, mass, x, y) +
       "\n      <geom type=\"capsule\" fromto=\"0 0 0 0.15 0 0\" size=\"0.012\" " + seen + "/>\n";
   if (joint.far_side) {
     const double reduced = near * far / (near + far), w = joint.far_side->rad_per_s;
     out +=
         "      <body name=\"far\">\n        <joint name=\"compliance\" type=\"hinge\" axis=\"0 0 1\" stiffness=\"" +
-        number(reduced * w * w) + "\" damping=\"" + number(2.0 * joint.far_side->damping * w * reduced) +
-        "\"/>\n        " + inertial(far, far, 0.0, 0.0) +
+        joint_number(reduced * w * w) + "\" damping=\"" +
+        joint_number(2.0 * joint.far_side->damping * w * reduced) + "\"/>\n        " +
+        inertial(far, far, 0.0, 0.0) +
         "\n        <geom type=\"box\" size=\"0.02 0.02 0.02\" pos=\"0.17 0 0\" " + seen +
         "/>\n      </body>\n";
   }
@@ -272,36 +273,37 @@ SimulatorFile mjcf(const Model& model, const std::string& origin, const Catalogu
 }
 
 SimulatorFile urdf(const Model& model, const std::string& origin, const Catalogue& catalogue) {
-  const Described described = Reader(model, catalogue).read();
+  const Described described = JointReader(model, catalogue).read();
   const plant::JointDescription& joint = described.joint;
   SimulatorFile file{{}, described.left_out};
   if (model.has_servo()) {
     std::string text = "servo:";
     for (const NamedConstant& one : model.constants())
       if (one.block == "servo")
-        text += (text.back() == ':' ? " " : ", ") + one.name + " " + number(one.value);
+        text += (text.back() == ':' ? " " : ", ") + one.name + " " + joint_number(one.value);
     file.left_out.push_back(text + "; URDF has no servo");
   }
   const std::string name = attribute_text(model.name);
   file.left_out.insert(file.left_out.begin(), std::string(described.control) +
-                                                  " to N m: " + number(joint.Nm_per_drive) +
+                                                  " to N m: " + joint_number(joint.Nm_per_drive) +
                                                   "; a joint is driven by its torque");
   if (joint.back_emf_Nms_per_rad > 0.0)
     file.left_out.push_back(
         "a motor at a voltage: what its counter-voltage takes is part of the damping here");
   if (joint.spring)
-    file.left_out.push_back("a spring: Nm_per_rad " + number(joint.spring->Nm_per_rad) + ", centre_rad " +
-                            number(joint.spring->centre_rad));
-  if (joint.offset_Nm != 0.0) file.left_out.push_back("a constant torque: Nm " + number(joint.offset_Nm));
-  if (joint.lag_s) file.left_out.push_back("a drive that lags: lag_s " + number(*joint.lag_s));
+    file.left_out.push_back("a spring: Nm_per_rad " + joint_number(joint.spring->Nm_per_rad) +
+                            ", centre_rad " + joint_number(joint.spring->centre_rad));
+  if (joint.offset_Nm != 0.0)
+    file.left_out.push_back("a constant torque: Nm " + joint_number(joint.offset_Nm));
+  if (joint.lag_s) file.left_out.push_back("a drive that lags: lag_s " + joint_number(*joint.lag_s));
   if (joint.imbalance)
-    file.left_out.push_back("an imbalance: Nm " + number(joint.imbalance->Nm) + ", phase_rad " +
-                            number(joint.imbalance->phase_rad) + "; move the link's centre of mass");
+    file.left_out.push_back("an imbalance: Nm " + joint_number(joint.imbalance->Nm) + ", phase_rad " +
+                            joint_number(joint.imbalance->phase_rad) + "; move the link's centre of mass");
   if (joint.far_side)
-    file.left_out.push_back("a compliance: far_share " + number(joint.far_side->share) + ", " +
-                            number(joint.far_side->rad_per_s) + " rad/s, damping " +
-                            number(joint.far_side->damping));
-  const std::string one = number(joint.inertia_kgm2);
+    file.left_out.push_back("a compliance: far_share " + joint_number(joint.far_side->share) + ", " +
+                            joint_number(joint.far_side->rad_per_s) + " rad/s, damping " +
+                            joint_number(joint.far_side->damping));
+  const std::string one = joint_number(joint.inertia_kgm2);
   std::string& out = file.text;
   out =
       "<?xml version=\"1.0\"?>\n" +
@@ -313,10 +315,10 @@ SimulatorFile urdf(const Model& model, const std::string& origin, const Catalogu
       "\" iyz=\"0\" izz=\"" + one + "\"/>\n    </inertial>\n  </link>\n  <joint name=\"" + name +
       "\" type=\"continuous\">\n    <parent link=\"base\"/>\n"
       "    <child link=\"driven\"/>\n    <axis xyz=\"0 0 1\"/>\n    <dynamics damping=\"" +
-      number(joint.damping_Nms_per_rad + joint.back_emf_Nms_per_rad) + "\" friction=\"" +
-      number(joint.friction_Nm) + "\"/>\n";
+      joint_number(joint.damping_Nms_per_rad + joint.back_emf_Nms_per_rad) + "\" friction=\"" +
+      joint_number(joint.friction_Nm) + "\"/>\n";
   if (joint.largest_drive)
-    out += "    <limit effort=\"" + number(std::fabs(*joint.largest_drive * joint.Nm_per_drive)) +
+    out += "    <limit effort=\"" + joint_number(std::fabs(*joint.largest_drive * joint.Nm_per_drive)) +
            "\" velocity=\"1e9\"/>\n";
   out += "  </joint>\n</robot>\n";
   return file;

@@ -11,7 +11,7 @@
 namespace thermopower::io {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_sample = std::numeric_limits<double>::quiet_NaN();
 constexpr double ns_per_s = 1e9;
 constexpr std::size_t enough_samples = 20;  // to know how regularly a stream comes
 constexpr double long_silence = 20.0;       // in intervals that 95 % stay below
@@ -122,7 +122,7 @@ CsvTable join_streams(const std::string& file, std::vector<Stream> streams, std:
       if (here) ++next[i];
       for (const StreamColumn& column : stream.columns) {
         const bool has = next[i] > 0 && (here || !is_measured(column.name));
-        if (kept) table.columns[at].values.push_back(has ? column.values[next[i] - 1] : missing);
+        if (kept) table.columns[at].values.push_back(has ? column.values[next[i] - 1] : no_sample);
         ++at;
       }
     }

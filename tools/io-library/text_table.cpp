@@ -17,14 +17,14 @@
 namespace thermopower::io {
 namespace {
 
-class Parser {
+class TableParser {
 public:
-  explicit Parser(const std::string& path) : path_(path) {
+  explicit TableParser(const std::string& path) : path_(path) {
     if (csv_init(&csv_, CSV_STRICT | CSV_STRICT_FINI) != 0) throw std::bad_alloc();
   }
-  ~Parser() { csv_free(&csv_); }
-  Parser(const Parser&) = delete;
-  Parser& operator=(const Parser&) = delete;
+  ~TableParser() { csv_free(&csv_); }
+  TableParser(const TableParser&) = delete;
+  TableParser& operator=(const TableParser&) = delete;
 
   /// One line with its end; a cell in quotes may go on in the next one.
   void line(const std::string& text) {
@@ -33,14 +33,14 @@ public:
     if (!in_row_) first_ = line_;
     in_row_ = true;
     const std::size_t done =
-        csv_parse(&csv_, text.data(), text.size(), &Parser::on_field, &Parser::on_row, this);
+        csv_parse(&csv_, text.data(), text.size(), &TableParser::on_field, &TableParser::on_row, this);
     if (error_) std::rethrow_exception(error_);
     if (done != text.size())
       fail(line_, "a quote within a cell; expected quotes around the whole cell, and doubled ones inside");
   }
 
   TextTable finish() {
-    const int fault = csv_fini(&csv_, &Parser::on_field, &Parser::on_row, this);
+    const int fault = csv_fini(&csv_, &TableParser::on_field, &TableParser::on_row, this);
     if (error_) std::rethrow_exception(error_);
     if (fault != 0) fail(first_, "a quote that is never closed; expected a closing '\"'");
     return std::move(table_);
@@ -66,7 +66,7 @@ private:
 
   // No exception may pass through the C library.
   static void on_field(void* text, std::size_t size, void* self) {
-    Parser& parser = *static_cast<Parser*>(self);
+    TableParser& parser = *static_cast<TableParser*>(self);
     if (parser.error_) return;
     try {
       parser.cells_.emplace_back(static_cast<const char*>(text), size);
@@ -75,7 +75,7 @@ private:
     }
   }
   static void on_row(int, void* self) {
-    Parser& parser = *static_cast<Parser*>(self);
+    TableParser& parser = *static_cast<TableParser*>(self);
     if (parser.error_ || !parser.in_row_) return;
     try {
       parser.take_row();
@@ -100,7 +100,7 @@ TextTable read_text_table(const std::string& path) {
   std::error_code status;
   if (!file || std::filesystem::is_directory(path, status))
     throw InputError(path + ": cannot be read; expected a table (CSV)");
-  Parser parser(path);
+  TableParser parser(path);
   bool first = true;
   for (std::string line; std::getline(file, line); first = false) {
     if (first && line.compare(0, 3, "\xef\xbb\xbf") == 0) line.erase(0, 3);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
+#include "plain_letters.hpp"
 #include "unit_words.hpp"
 
 #include <algorithm>
@@ -147,15 +148,8 @@ constexpr Spelling spellings[] = {
     {"-", Dimension::other, ""},
 };
 
-char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 bool is_letter_or_digit(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
-  return begin == std::string::npos ? std::string() : text.substr(begin, end + 1 - begin);
 }
 
 UnitWord find_unit(const std::string& text) {

@@ -42,7 +42,7 @@ constexpr Question of_a_joint[] = {
     {"--viscous", "viscous friction, N m s/rad", "0.001"},
     {"--torque-constant", "torque constant at the joint, N m/A (gear ratio times the motor's)", ""}};
 
-struct Asked {
+struct Description {
   std::string file, joint, out, name;
   std::map<std::string, std::optional<double>> constants;
   std::optional<double> value(const char* option) const {
@@ -85,20 +85,20 @@ double ask(const Question& question) {
 }
 
 template <std::size_t count>
-void ask_all(const Question (&questions)[count], Asked& asked) {
+void ask_all(const Question (&questions)[count], Description& asked) {
   for (const Question& one : questions)
     if (!asked.value(one.option)) asked.constants[one.option] = ask(one);
 }
 
 template <std::size_t count>
-bool knows_any(const Question (&questions)[count], const Asked& asked) {
+bool knows_any(const Question (&questions)[count], const Description& asked) {
   for (const Question& one : questions)
     if (asked.value(one.option) && std::string(one.option) != "--supply") return true;
   return false;
 }
 
 template <std::size_t count>
-void expect_all(const Question (&questions)[count], Asked& asked) {
+void expect_all(const Question (&questions)[count], Description& asked) {
   std::string missing;
   for (const Question& one : questions) {
     if (asked.value(one.option)) continue;
@@ -120,7 +120,7 @@ std::string json_text(const std::string& text) {
 }
 
 // The blocks of a model, each with the comments above it.
-std::string motor_blocks(const Asked& asked) {
+std::string motor_blocks(const Description& asked) {
   return " // The supply's voltage, where a recording has no column supply_V.\n \"supply\": {\"nominal_V\": " +
          number(*asked.value("--supply")) +
          "},\n // I = V / R, at reference_C. tempco_per_K: 0.00393 is copper's; 0 is a simulation that ignores it.\n"
@@ -135,7 +135,7 @@ std::string motor_blocks(const Asked& asked) {
          ",\n  \"uncertainty\": {\"heat_capacity_J_per_K\": 0.2, \"conductance_W_per_K\": 0.3}}";
 }
 
-std::string joint_blocks(const Asked& asked, const RobotJoint* robot) {
+std::string joint_blocks(const Description& asked, const RobotJoint* robot) {
   std::string out;
   if (robot != nullptr) {
     out += " // Joint " + robot->name + ", with all joints behind it held at 0.\n";
@@ -178,7 +178,7 @@ std::string joint_blocks(const Asked& asked, const RobotJoint* robot) {
   return out;
 }
 
-int init(Asked& asked) {
+int init(Description& asked) {
   io::OutputFiles outputs;
   if (!asked.out.empty()) outputs.expect(asked.out);
   std::optional<RobotJoint> robot;
@@ -228,7 +228,7 @@ int init(Asked& asked) {
 }  // namespace
 
 Command add_init(CLI::App& program) {
-  const auto asked = std::make_shared<Asked>();
+  const auto asked = std::make_shared<Description>();
   CLI::App* const app = program.add_subcommand(
       "init", "write a model file with comments: from MJCF or URDF, from options, or from a few questions");
   app->add_option("file", asked->file, "a robot (MJCF or URDF)");
