@@ -15,7 +15,7 @@ namespace {
 
 /// What each check said of a run, and when.
 struct Outcome {
-  double monitor_s = -1.0, runaway_s = -1.0, kelvin_sum_s = -1.0, rate_s = -1.0;
+  double watch_s = -1.0, runaway_s = -1.0, kelvin_sum_s = -1.0, rate_s = -1.0;
   uint8_t suspects = 0;
   bool is_early = false;  // before the fault
 };
@@ -35,7 +35,7 @@ Outcome run(const printer::Plant& plant, const heater::Pid::Config& gains, heate
   const double air_C = 22.0, dt_s = 0.1, fault_s = 900.0, off_s = 2100.0, on_s = 3300.0, end_s = 4200.0;
   printer::Heater real(plant, air_C, 7);
   heater::Pid pid(gains);
-  tp::ModelMonitor<Constants> monitor;
+  heater::Watch<Constants> watch;
   Outcome outcome;
   float duty = 0.0f;
   bool has_failed = false;
@@ -55,18 +55,19 @@ Outcome run(const printer::Plant& plant, const heater::Pid::Config& gains, heate
       time_s = after_s > 0.0 ? after_s : 0.0;
       outcome.is_early = outcome.is_early || after_s < 0.0;
     };
-    const tp::Disagreement found = monitor.step(
-        tp::MonitorInputs::heater(heater::heat_W<Constants>(duty, static_cast<float>(supply_V), measured_C),
-                                  measured_C, static_cast<float>(air_C), is_fan_on ? 255 : 0),
-        step_s);
-    note(outcome.monitor_s, found != tp::Disagreement::none);
+    const float heat_W =
+        duty > 0.0f ? heater::heat_W<Constants>(duty, static_cast<float>(supply_V), watch.reading()) : 0.0f;
+    const bool is_found = watch.step(heat_W, measured_C, static_cast<float>(air_C), is_fan_on ? 255 : 0,
+                                     step_s) != tp::LimitReason::none;
+    if (is_found && outcome.watch_s < 0.0) outcome.suspects = watch.suspects();
+    note(outcome.watch_s, is_found);
     note(outcome.runaway_s, !runaway.step(goal_C, measured_C, step_s));
     note(outcome.kelvin_sum_s, !kelvin_sum.step(goal_C, measured_C, step_s));
     note(outcome.rate_s, !rate.step(goal_C, measured_C, step_s));
-    const bool is_cut = is_cutting && found != tp::Disagreement::none;
+    const bool is_cut = is_cutting && is_found;
     duty = goal_C > 0.0f && !is_cut ? pid.step(goal_C, measured_C, step_s) : 0.0f;
   }
-  outcome.suspects = monitor.suspects();
+  if (watch.suspects() != 0) outcome.suspects = watch.suspects();
   return outcome;
 }
 
@@ -94,7 +95,7 @@ bool compare(const char* title, bool is_bed) {
   using heater::RateCheck;
   using heater::RunawayCheck;
   bool is_right = true;
-  printf("%s\n%-20s %7s %7s %7s %7s  suspects\n", title, "fault", "monitor", "runaway", "K sum", "rate");
+  printf("%s\n%-20s %7s %7s %7s %7s  suspects\n", title, "fault", "watch", "runaway", "K sum", "rate");
   for (int i = 0; i <= static_cast<int>(printer::Fault::heater_stays_on); ++i) {
     const printer::Fault fault = static_cast<printer::Fault>(i);
     const auto run_it = [&](bool is_cutting) {
@@ -110,7 +111,7 @@ bool compare(const char* title, bool is_bed) {
     Outcome outcome = run_it(false);
     outcome.suspects = run_it(true).suspects;
     printf("%-20s", printer::name(fault));
-    print_time(outcome.monitor_s);
+    print_time(outcome.watch_s);
     print_time(outcome.runaway_s);
     print_time(outcome.kelvin_sum_s);
     print_time(outcome.rate_s);
@@ -119,11 +120,11 @@ bool compare(const char* title, bool is_bed) {
            tp::is_suspect(outcome.suspects, tp::Suspect::fan) ? "fan " : "",
            tp::is_suspect(outcome.suspects, tp::Suspect::air) ? "air " : "",
            tp::is_suspect(outcome.suspects, tp::Suspect::thermometer) ? "thermometer" : "");
-    const auto is_first = [&](double other_s) { return other_s < 0.0 || outcome.monitor_s < other_s; };
-    const bool is_found = outcome.monitor_s >= 0.0 && (outcome.suspects & truth(fault)) != 0 &&
+    const auto is_first = [&](double other_s) { return other_s < 0.0 || outcome.watch_s < other_s; };
+    const bool is_found = outcome.watch_s >= 0.0 && (outcome.suspects & truth(fault)) != 0 &&
                           is_first(outcome.runaway_s) && is_first(outcome.kelvin_sum_s) &&
                           is_first(outcome.rate_s);
-    if (outcome.is_early || (fault == printer::Fault::none ? outcome.monitor_s >= 0.0 : !is_found)) {
+    if (outcome.is_early || (fault == printer::Fault::none ? outcome.watch_s >= 0.0 : !is_found)) {
       printf("  ^ not as promised\n");
       is_right = false;
     }
@@ -161,9 +162,9 @@ int main() {
              is_bed_right = compare("bed at 60 degC", true);
   const double loose_C = hottest_after<heater::RunawayCheck>(printer::Fault::thermistor_loose,
                                                              heater::RunawayCheck::Config::hotend(),
-                                                             "cut by the monitor"),
+                                                             "cut by the watch"),
                stuck_C = hottest_after<heater::KelvinSumCheck>(printer::Fault::thermistor_stuck,
                                                                heater::KelvinSumCheck::Config::hotend(),
-                                                               "cut by the monitor");
+                                                               "cut by the watch");
   return is_hotend_right && is_bed_right && loose_C < 240.0 && stuck_C < 240.0 ? 0 : 1;
 }

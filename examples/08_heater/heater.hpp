@@ -2,9 +2,10 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-// A printer's heater in firmware: PID, the usual checks as policies, and the monitor beside them. C++11, no heap: take it as
-// it is.
+// A printer's heater in firmware: PID, the usual checks as policies, and beside them a guard of the thermistor and the monitor.
+// C++11, no heap: take it as it is.
 
+#include <thermopower/control/sensor_guard.hpp>
 #include <thermopower/monitor/model_monitor.hpp>
 
 namespace heater {
@@ -199,6 +200,103 @@ float heat_W(float duty, float supply_V, float measured_C) {
          (Plant::ohm_at_20C() * (1.0f + Plant::tempco_per_K() * (measured_C - 20.0f)));
 }
 
+/// What the thermistor should read by the declared constants alone: no reading corrects it, so none can talk it out of a fault.
+template <class Plant>
+class Expected {
+public:
+  /// As warm as the first good reading. @return false before it
+  bool start(float measured_C) {
+    late_W_ = 0.0f;
+    body_C_ = second_C_ = measured_C;
+    return is_started_ = true;
+  }
+  bool is_started() const { return is_started_; }
+
+  /// @param heat_W  mean heat since the last step  @return degC, NaN before the start
+  float step(float heat_W, float air_C, uint8_t fan, float dt_s) {
+    constexpr tp::HeatBalanceConfig body = Plant::heat_balance();
+    constexpr float lag_s = float(body.lag_s), second_s = float(body.second_s),
+                    second_J_per_K = float(body.second_J_per_K), loss_W_per_K = float(body.loss_W_per_K),
+                    fan_W_per_K = float(body.fan_W_per_K / 255.0), per_J = float(1.0 / body.capacity_J_per_K);
+    const float share = dt_s / (lag_s + dt_s), second_share = dt_s / (second_s + dt_s);
+    if (dt_s > 0.0f) late_W_ += share * (heat_W - late_W_);
+    const float warmer_K = second_J_per_K > 0.0f ? second_share * (body_C_ - second_C_) : 0.0f;
+    second_C_ += warmer_K;
+    const float lost_W = (loss_W_per_K + fan_W_per_K * fan) * (body_C_ - air_C);
+    body_C_ += per_J * (dt_s * (late_W_ - lost_W) - second_J_per_K * warmer_K);
+    return body_C_;
+  }
+
+private:
+  float late_W_ = 0.0f, body_C_ = tp::detail::not_a_number(), second_C_ = tp::detail::not_a_number();
+  bool is_started_ = false;
+};
+
+/// The guard's bounds follow from the constants': a true reading is colder than expected by no more than heat and loss are off.
+template <class Plant>
+tp::SensorGuard::Config guard_of() {
+  const tp::HeatBalanceConfig body = Plant::heat_balance();
+  const double loss_error = body.loss_error > body.fan_error ? body.loss_error : body.fan_error;
+  const double colder_K =
+      1.2 * (body.heat_error + loss_error) * static_cast<double>(Plant::highest_C()) + body.air_error_K + 5.0;
+  const tp::SensorGuard::Config config = {
+      2.0f,  // a printer works in a heated room; what is off often reads 0
+      Plant::highest_C(),
+      static_cast<float>(4.0 * body.full_W / body.capacity_J_per_K + 60.0 * body.noise_K),
+      static_cast<float>(0.6 * body.resolution_K),  // one count is a movement
+      static_cast<float>(0.25 * colder_K),
+      static_cast<float>(colder_K),
+      static_cast<float>(Plant::monitor().block_s)};
+  return config;
+}
+
+//! [heater watch]
+/// The thermistor behind a guard, and the heat behind the monitor.
+/// @tparam Plant  constants, such as Hotend
+template <class Plant>
+class Watch {
+public:
+  /// @param heat_W  mean heat since the last step  @return why to cut; `none` when all is well
+  tp::LimitReason step(float heat_W, float measured_C, float air_C, uint8_t fan, float dt_s) {
+    const tp::SensorGuard::Config& range = guard_.config();
+    if (!expected_.is_started() && measured_C >= range.lowest_C && measured_C <= range.highest_C)
+      expected_.start(measured_C);
+    still_s_ = measured_C == last_C_ ? still_s_ + dt_s : 0.0f;
+    last_C_ = measured_C;
+    reading_ = guard_.step({measured_C, expected_.step(heat_W, air_C, fan, dt_s)}, dt_s);
+    // The monitor judges good readings only: a bridged one is not measured.
+    monitor_.step(tp::MonitorInputs::heater(heat_W, guard_.upper(0.0f), air_C, fan), dt_s);
+    const tp::LimitReason found = monitor_.limit(255).reason;
+    return found != tp::LimitReason::none ? found : reading_.fault();
+  }
+  /// What may be believed of the temperature; a bad reading is bridged for a while.
+  tp::GuardedCelsius reading() const { return reading_; }
+  /// A sum of `Suspect`: the monitor's, the thermometer where it stood still meanwhile, or what the guard's reason means.
+  uint8_t suspects() const {
+    const uint8_t sensor = static_cast<uint8_t>(tp::Suspect::thermometer);
+    // A reading that stands still while the heat changes is the plainest of all.
+    if (guard_.state().reason == tp::LimitReason::sensor_stuck) return sensor;
+    if (monitor_.disagreement() != tp::Disagreement::none)
+      return static_cast<uint8_t>(monitor_.suspects() | (still_s_ > monitor_.record().since_s ? sensor : 0));
+    if (reading_.fault() == tp::LimitReason::none) return 0;
+    return reading_.fault() != tp::LimitReason::sensor_disagrees
+               ? sensor
+               : static_cast<uint8_t>(sensor | static_cast<uint8_t>(tp::Suspect::heater) |
+                                      static_cast<uint8_t>(tp::Suspect::loss) |
+                                      static_cast<uint8_t>(tp::Suspect::fan));
+  }
+  const tp::SensorGuard& guard() const { return guard_; }
+  const tp::ModelMonitor<Plant>& monitor() const { return monitor_; }
+
+private:
+  Expected<Plant> expected_;
+  tp::SensorGuard guard_ = tp::SensorGuard(guard_of<Plant>());
+  tp::GuardedCelsius reading_;
+  tp::ModelMonitor<Plant> monitor_;
+  float last_C_ = 0.0f, still_s_ = 0.0f;  // the raw reading, and for how long it has not moved by a count
+};
+//! [heater watch]
+
 //! [printer heater]
 /// A heater with everything that may cut it.
 /// @tparam Plant  constants, such as Hotend  @tparam Check  the usual check, such as RunawayCheck
@@ -209,30 +307,21 @@ public:
 
   /// @param fan  the fan's share, 0 .. 255  @return duty for the next cycle, 0 .. 1
   float step(float target_C, float measured_C, float air_C, float supply_V, uint8_t fan, float dt_s) {
-    if (!(measured_C > 0.0f && measured_C < Plant::highest_C()))
-      return cut(tp::LimitReason::temperature_not_finite);
-    // The duty of the last cycle made the heat since then.
-    monitor_.step(
-        tp::MonitorInputs::heater(heat_W<Plant>(duty_, supply_V, measured_C), measured_C, air_C, fan), dt_s);
-    const tp::LimitedPower granted = monitor_.limit(255);
-    if (granted.reason != tp::LimitReason::none) return cut(granted.reason);
-    if (!check_.step(target_C, measured_C, dt_s)) return cut(tp::LimitReason::sensor_missing);
-    reason_ = tp::LimitReason::none;
-    return duty_ = target_C > 0.0f ? pid_.step(target_C, measured_C, dt_s) : 0.0f;
+    // The duty of the last cycle made the heat since then; the element is as warm as the thermistor was.
+    const float heat = duty_ > 0.0f ? heat_W<Plant>(duty_, supply_V, watch_.reading()) : 0.0f;
+    reason_ = watch_.step(heat, measured_C, air_C, fan, dt_s);
+    if (reason_ == tp::LimitReason::none && !check_.step(target_C, watch_.reading(), dt_s))
+      reason_ = tp::LimitReason::heat_disagrees;
+    const bool is_on = reason_ == tp::LimitReason::none && target_C > 0.0f;
+    return duty_ = is_on ? pid_.step(target_C, watch_.reading(), dt_s) : 0.0f;
   }
-  tp::LimitReason reason() const { return reason_; }  ///< Why it is cut.
-  const tp::ModelMonitor<Plant>& monitor() const {
-    return monitor_;
-  }  ///< What it disagrees on, and the suspects.
+  tp::LimitReason reason() const { return reason_; }    ///< Why it is cut.
+  const Watch<Plant>& watch() const { return watch_; }  ///< What it disagrees on, and the suspects.
 
 private:
-  float cut(tp::LimitReason reason) {
-    reason_ = reason;
-    return duty_ = 0.0f;
-  }
   Pid pid_;
   Check check_;
-  tp::ModelMonitor<Plant> monitor_;
+  Watch<Plant> watch_;
   float duty_ = 0.0f;
   tp::LimitReason reason_ = tp::LimitReason::none;
 };

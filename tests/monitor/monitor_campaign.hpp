@@ -89,7 +89,7 @@ Found run_heater(const printer::Plant& nominal, const heater::Pid::Config& gains
   heater::RunawayCheck runaway = runaway_check;
   heater::KelvinSumCheck sum = sum_check;
   heater::RateCheck rate = rate_check;
-  tp::ModelMonitor<Constants> monitor;
+  heater::Watch<Constants> watch;
   Found found;
   double target_C = 0.0, target_until_s = 20.0, fan = 0.0, fan_until_s = 0.0, supply = 1.0;
   float duty = 0.0f;
@@ -112,13 +112,14 @@ Found run_heater(const printer::Plant& nominal, const heater::Pid::Config& gains
     const double air_C = told_air_C + drift_K * std::sin(now_s / drift_s), volt = plant.supply_V * supply;
     real.pass(static_cast<double>(duty), fan, air_C, volt, dt_s);
     const float measured_C = static_cast<float>(real.reading_C());
-    const float heat_W = heater::heat_W<Constants>(duty, static_cast<float>(volt), measured_C);
-    const tp::Disagreement disagreement =
-        monitor.step(tp::MonitorInputs::heater(heat_W, measured_C, static_cast<float>(told_air_C),
-                                               static_cast<std::uint8_t>(fan * 255.0 + 0.5)),
-                     static_cast<float>(dt_s));
+    const float heat_W =
+        duty > 0.0f ? heater::heat_W<Constants>(duty, static_cast<float>(volt), watch.reading()) : 0.0f;
+    const bool is_found = watch.step(heat_W, measured_C, static_cast<float>(told_air_C),
+                                     static_cast<std::uint8_t>(fan * 255.0 + 0.5),
+                                     static_cast<float>(dt_s)) != tp::LimitReason::none;
+    if (is_found && found.monitor_s < 0.0) found.suspects = watch.suspects();
     const double after_s = now_s - fault_s;
-    note(found.monitor_s, found.is_early, disagreement != tp::Disagreement::none, after_s);
+    note(found.monitor_s, found.is_early, is_found, after_s);
     const float goal_C = static_cast<float>(target_C), step_s = static_cast<float>(dt_s);
     note(found.usual_s[0], found.is_usual_early[0], !runaway.step(goal_C, measured_C, step_s), after_s);
     note(found.usual_s[1], found.is_usual_early[1], !sum.step(goal_C, measured_C, step_s), after_s);
@@ -126,7 +127,8 @@ Found run_heater(const printer::Plant& nominal, const heater::Pid::Config& gains
     const bool is_cut = is_cutting && found.monitor_s >= 0.0;
     duty = target_C > 0.0 && !is_cut ? pid.step(goal_C, measured_C, step_s) : 0.0f;
   }
-  found.suspects = monitor.suspects();
+  // A guard may believe again what the monitor does not.
+  if (watch.suspects() != 0) found.suspects = watch.suspects();
   return found;
 }
 inline Found run_hotend(std::uint32_t seed, double run_s, printer::Fault fault = printer::Fault::none,

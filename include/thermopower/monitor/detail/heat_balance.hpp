@@ -149,8 +149,9 @@ public:
     residual_ = saturated(static_cast<int32_t>(last_) - start_);  // what balance() begins with
     lost_ = saturated(times(rise_, loss));
     if (has_fan) Fan::blow(saturated(times(Fan::fan_sum(), fan)));
+    // A reading that was refused or missing stands still for nobody.
     if ((flags_ & is_flat) == 0) flat_ = 0;
-    else if (flat_ < 255) ++flat_;
+    else if ((flags_ & is_void) == 0 && flat_ < 255) ++flat_;
     if (settling_ > 0) {
       --settling_;
       flags_ |= is_void;
