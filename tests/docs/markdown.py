@@ -3,7 +3,7 @@
 # Copyright (c) 2026 the thermopower authors
 """The pages as a code host shows them: code, and links that lead somewhere.
 
-    markdown.py check ROOT    each block of code is the part of the compiled source that it names, each link leads to a file and to a
+    markdown.py check ROOT    each block of code is the part of the compiled source that it names, each other one stands in one, each link leads to a file and to a
                               heading or a name in it, and no command of Doxygen is left for readers to see
     markdown.py write ROOT    takes the blocks of code from the sources anew
 """
@@ -51,6 +51,27 @@ def with_code(root, text, wrong):
     return re.sub(r"^( *)<!-- snippet (\S+) (.+?) -->\n *```cpp\n(?:.*?\n)??\1```$", block, text, flags=re.M | re.S)
 
 
+def compiled_sources(root):
+    """Each compiled source as lines without margins."""
+    for top in (*SOURCES, "tests/readme"):
+        for folder, _, names in os.walk(os.path.join(root, top)):
+            for name in names:
+                if name.endswith((".cpp", ".hpp", ".h", ".ino")):
+                    yield "\n".join(line.strip() for line in read("", os.path.join(folder, name)).split("\n") if line.strip())
+
+
+def code_of_nowhere(root, page, text):
+    """Blocks of C++ that name no source: they have to stand in one all the same, line by line."""
+    blocks = [block for before, block in re.findall(r"^(.*)\n *```(?:cpp|c\+\+|c|h|ino|arduino)\n((?:.*\n)*?) *```$", text, re.M)
+              if "<!-- snippet" not in before]
+    if blocks:
+        sources = list(compiled_sources(root))
+        for block in blocks:
+            lines = "\n".join(line.strip() for line in block.split("\n") if line.strip())
+            if not any(lines in source for source in sources):
+                yield f"{page}: no compiled source has the code that begins with '{lines.splitlines()[0]}'"
+
+
 def without_code(text):
     text = re.sub(r"^( *)```.*?^\1```$", "", text, flags=re.M | re.S)
     text = re.sub(r"\$`[^`]*`\$", "", text)
@@ -93,7 +114,7 @@ def examine(root, page, write=False):
               re.findall(r"(?<![\w.])@(?:ref|snippet|subpage|image|htmlinclude|note|warning)\b|\{#\w+\}|\\f[$\[]", prose)]
     if page.startswith("docs/") and page != "docs/index.md" and not re.match(r"# .*\n<!-- page \w+ -->\n", text):
         wrong.append(f"{page}: expected a title and then <!-- page NAME -->, the name that doc comments link to")
-    return wrong + list(wrong_links(root, page, text))
+    return wrong + list(code_of_nowhere(root, page, text)) + list(wrong_links(root, page, text))
 
 
 def main():
