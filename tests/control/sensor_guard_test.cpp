@@ -154,6 +154,9 @@ TEST_CASE("a guard without a clock, or with a configuration that cannot be, beli
   LimitReason reason = LimitReason::none;
   for (int i = 0; i < 25; ++i) reason = standing.step({40.0f, 40.0f}, 0.0f).reason();
   CHECK(reason == LimitReason::time_stands_still);
+  // Believed again once half as much time was told as not.
+  for (int i = 0; i < 9; ++i) CHECK_FALSE(standing.step({40.0f, 40.0f}, 0.1f) == 40.0f);
+  standing.step({40.0f, 40.0f}, 0.1f);
   CHECK(standing.step({40.0f, 40.0f}, 0.1f) == 40.0f);
 
   const auto with = [](auto change) {

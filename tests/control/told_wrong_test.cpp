@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <deque>
 #include <limits>
+#include <random>
+#include <string>
 #include <thermopower/thermopower.hpp>
 
 using namespace thermopower;
@@ -139,6 +141,56 @@ TEST_CASE("steps without a valid time heat the estimate as long as the step befo
                [](double now_s, Told& told, auto&) {
                  if (tick(now_s) % 13 != 0) told.dt_s = 0.0f;
                });
+}
+
+TEST_CASE("time that stands still in some of the steps hides no heat, and in most of them it is a fault") {
+  for (const int zeros : {1, 2, 4, 9, 10, 11, 30}) {
+    const auto stands = [zeros](double now_s, Told& told, auto&) {
+      if (tick(now_s) % (zeros + 1) != 0) told.dt_s = 0.0f;
+    };
+    const std::string name = std::to_string(zeros) + " of " + std::to_string(zeros + 1);
+    check_inside(name.c_str(), stands);
+    // At the end of the hour it is in a step of time as well as in one of none.
+    if (zeros > 1) CHECK(hour<Plain>(stands).last == LimitReason::time_stands_still);
+  }
+  for (const double share : {0.3, 0.5, 0.7, 0.9}) {
+    std::mt19937 random(1);
+    std::bernoulli_distribution stands(share);
+    check_inside(("at random, " + std::to_string(share)).c_str(), [&](double, Told& told, auto&) {
+      if (stands(random)) told.dt_s = 0.0f;
+    });
+  }
+  // The worst clock there is.
+  check_inside("as long as the power is on", [&](double, Told& told, auto& axis) {
+    if (axis.state().power > 20) told.dt_s = 0.0f;
+  });
+}
+
+TEST_CASE(
+    "a clock of whole milliseconds is no fault in a loop of twice its rate, and leaves it most of its power") {
+  const auto power = [](long every_us, bool is_exact) {
+    Plain axis = new_axis<Plain>();
+    Truth motor;
+    double sum = 0.0;
+    long last_ms = 0, steps = 0, faults = 0;
+    for (long now_us = 0; now_us < 600000000; now_us += every_us, ++steps) {
+      motor.pass(12.6, axis.state().power, true_air_C, 1e-6 * static_cast<double>(every_us));
+      const long now_ms = now_us / 1000;
+      const float dt_s =
+          is_exact ? 1e-6f * static_cast<float>(every_us) : static_cast<float>(now_ms - last_ms) * 1e-3f;
+      last_ms = now_ms;
+      const auto& now = axis.step({5.0f, 12.6f, static_cast<float>(true_air_C), LimitReason::none}, dt_s);
+      sum += now.power;
+      if (now_us > 1000000) faults += is_fault(now.reason) ? 1 : 0;  // at first no time was told yet
+    }
+    CHECK(motor.over_K < 0.5);
+    CHECK(faults == 0);
+    return sum / static_cast<double>(steps);
+  };
+  for (const long every_us : {500, 700, 1000, 1300}) {
+    CAPTURE(every_us);
+    CHECK(power(every_us, false) > 0.75 * power(every_us, true));
+  }
 }
 
 TEST_CASE("clocks that wrap, round or run fast keep the limits") {

@@ -221,7 +221,7 @@ private:
     else if (!is_fault(fault)) fault = find_fault(inputs.supply_V, is_supply_bad, is_air_bad, dt_s);
     if (acted_power_ > state_.power) detail::tell_acted(limiter_, acted_power_, 0);
     else acted_power_ = state_.power;
-    estimate_temperature(is_time_positive ? dt_s : lost_s(fault, dt_s));
+    estimate_temperature(is_time_positive ? dt_s : lost_s(dt_s));
     acted_power_ = 0;
 
     // The model's own, taken a moment ago.
@@ -257,13 +257,10 @@ private:
     return is_air_bad ? LimitReason::air_implausible : LimitReason::none;
   }
 
-  // The power acts, though its time is not told. A step of no valid time is taken to last as long as the last one that had one; a time
-  // that has stood too long is made up for once.
-  [[gnu::noinline]] float lost_s(LimitReason fault, float dt_s) const noexcept {
-    if (!(dt_s == 0.0f)) return clock_.step_s();
-    const bool is_first =
-        fault == LimitReason::time_stands_still && state_.reason != LimitReason::time_stands_still;
-    return is_first ? clock_.stood_s() : 0.0f;
+  // The power acts, though its time is not told. A step of no valid time is taken to last as long as the last one that had one; where
+  // time stands still only while that warms, as the next step may be told the time of both.
+  float lost_s(float dt_s) const noexcept {
+    return dt_s == 0.0f && !(state_.rate_K_per_s > 0.0f) ? 0.0f : clock_.step_s();
   }
 
   // A reading inside the declared range says no more than that its thermometer lives.

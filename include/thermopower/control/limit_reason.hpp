@@ -45,7 +45,7 @@ enum class LimitReason : uint8_t {
   supply_above_nominal = 80,  ///< The supply reads above what was configured by more than the margin: another battery.
   board_overheated = 81,      ///< The board has stopped its motors because something is too hot, or was loaded too long.
   sensors_exchanged = 82,     ///< Two thermometers read each other's temperature.
-  time_stands_still = 83,     ///< The time step is 0 in step after step.
+  time_stands_still = 83,     ///< The time step is 0 in step after step, or in most of them.
 
   heat_disagrees = 90,        ///< A `ModelMonitor`: less or more heat shows than was put in, by more than the bounds explain.
   thermometer_disagrees = 91, ///< The same, and no constant change of heat, loss or air explains it: the thermometer.

@@ -7,34 +7,45 @@
 #include "policy_call.hpp"
 
 /// @file control/detail/standing_time.hpp
-/// Notices a clock that stands still: `dt_s` that is 0 in step after step.
+/// Notices a clock that stands still: `dt_s` that is 0 in step after step, or in most of them.
 
 namespace thermopower {
 namespace detail {
 
 /// Counts steps that are told no time. Nothing here has a clock of its own, so each of them is taken to last as long as the last step
-/// that was told one, and as long as is tolerated where none ever was: the second such step in a row is then a fault.
+/// that was told one, and as long as is tolerated where none ever was: the second such step in a row is then a fault. Time that is told
+/// makes up for as much that was not: a clock that stands still in most of the steps is a fault, and one that does so in less than half
+/// of them, as a slow clock in a fast loop may, is none. A fault lasts until half of it is made up for.
 class StandingTime {
 public:
   /// @param dt_s  time of this step, >= 0  @param hold_s  how long time may stand still, above 0
   /// @return true when it has stood still for longer
   bool is_standing(float dt_s, float hold_s) noexcept {
+    const bool is_fault = stood_s_ < 0.0f;
     if (dt_s > 0.0f) {
       step_s_ = dt_s;
-      stood_s_ = 0.0f;
-      return false;
+      // Twice while it is a fault, so that a clock which stands still in half of the steps is not one for ever.
+      stood_s_ += is_fault ? 2.0f * dt_s : -dt_s;
+      if (!(is_fault ? stood_s_ < 0.0f : stood_s_ > 0.0f)) stood_s_ = 0.0f;
+      return stood_s_ < 0.0f;
     }
-    const bool is_standing = !(stood_s_ < hold_s);
-    if (!is_standing) stood_s_ += step_s_ > 0.0f ? step_s_ : hold_s;
-    return is_standing;
+    const float lost_s = step_s_ > 0.0f ? step_s_ : hold_s;
+    if (is_fault) {
+      stood_s_ = stood_s_ - lost_s > -hold_s ? stood_s_ - lost_s : -hold_s;
+    } else if (stood_s_ < hold_s) {
+      stood_s_ += lost_s;
+      return false;
+    } else {
+      stood_s_ = -stood_s_;
+    }
+    return true;
   }
   /// Length of the last step that was told one, s; 0 before.
   float step_s() const noexcept { return step_s_; }
-  /// For how long no time has been told, s.
-  float stood_s() const noexcept { return stood_s_; }
 
 private:
-  float step_s_ = 0.0f, stood_s_ = 0.0f;
+  float step_s_ = 0.0f;
+  float stood_s_ = 0.0f;  // below 0 while that is a fault
 };
 
 /// Whether a limiter notices by itself that time stands still.
@@ -55,8 +66,7 @@ public:
     const float hold_s = hold_of(limiter, 0);
     return time_.is_standing(dt_s, hold_s < 0.1f ? hold_s : 0.1f);
   }
-  float step_s() const noexcept { return time_.step_s(); }    // of the last step that was told its time
-  float stood_s() const noexcept { return time_.stood_s(); }  // since then
+  float step_s() const noexcept { return time_.step_s(); }  // of the last step that was told its time
 
 private:
   StandingTime time_;
@@ -67,7 +77,6 @@ public:
   static bool is_standing(const Limiter&, float) noexcept { return false; }
   // Such a limiter carries its own bounds through times that it is not told.
   static float step_s() noexcept { return 0.0f; }
-  static float stood_s() noexcept { return 0.0f; }
 };
 
 }  // namespace detail
