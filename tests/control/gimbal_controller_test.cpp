@@ -60,6 +60,39 @@ TEST_CASE("a gimbal is its axes, each with its own motor, error and gain") {
   CHECK(three.state().air_source == tp::AirSource::both);
 }
 
+namespace {
+/// The roll motor in a room of which its own type says how warm it gets.
+struct Indoors : tp::motors::Bgm2606_90t {
+  static tp::AirRange air() { return {0.0f, 40.0f}; }
+};
+typedef tp::AxisController<Indoors> IndoorsAxis;
+}  // namespace
+
+TEST_CASE(
+    "of two declarations of the air the colder one counts, and thermometers outside of a motor's are a fault") {
+  typedef tp::GimbalController<IndoorsAxis> Indoors;
+  const auto told = [](float declared_C, float camera_C, float frame_C) {
+    tp::GimbalConfig config = tp::GimbalConfig::standard();
+    config.air = tp::AirTemperature::Config::declared(declared_C);
+    Indoors gimbal(config, IndoorsAxis::Config::with_gain({24.0f, 4.0f}));
+    REQUIRE(gimbal.validate().field == tp::ConfigError::none);
+    for (int i = 0; i < 60000; ++i) gimbal.step(Indoors::Inputs{{2.0f}, camera_C, frame_C, 12.6f}, 0.03f);
+    return gimbal;
+  };
+  // The gimbal's default is 45 degC.
+  const Indoors both = told(45.0f, 26.0f, 24.0f), same = told(40.0f, 26.0f, 24.0f),
+                colder = told(30.0f, 26.0f, 24.0f);
+  CHECK_FALSE(tp::is_fault(both.state().command.reason[0]));
+  CHECK(both.axis<0>().state().motor_C == same.axis<0>().state().motor_C);
+  CHECK(both.state().command.power[0] > tp::least_power());
+  CHECK(colder.state().command.power[0] > both.state().command.power[0]);
+  // A room that is warmer than the motor's range, declared by the gimbal or not; one that is colder.
+  for (const float room_C : {42.0f, 50.0f})
+    CHECK(told(45.0f, room_C, room_C).state().command.reason[0] == LimitReason::air_implausible);
+  CHECK(told(-static_cast<float>(INFINITY), -10.0f, -10.0f).state().command.reason[0] ==
+        LimitReason::air_implausible);
+}
+
 TEST_CASE("before the first telemetry the power is the least, however long that takes") {
   Gimbal three = gimbal();
   check_all(three.state().command, tp::least_power(), LimitReason::no_telemetry_yet);

@@ -42,12 +42,27 @@ TEST_CASE("the sum of kelvins: 120 below the hysteresis fail, unless the tempera
     CHECK(heating.step(200.0f, 20.0f + 0.5f * static_cast<float>(second), 1.0f));
 }
 
-TEST_CASE("a reading that is no number, or beyond the highest, switches the heater off") {
-  heater::Heater<heater::Hotend, RunawayCheck> heater(heater::Pid::Config::hotend(),
-                                                      RunawayCheck::Config::hotend());
-  CHECK(heater.step(200.0f, 20.0f, 20.0f, 24.0f, 0, 0.1f) == 1.0f);
-  for (const float wrong_C : {thermopower::detail::not_a_number(), -88.6f, 276.0f, 1e30f}) {
+TEST_CASE(
+    "a reading that is no number, or none that a thermistor gives, is bridged for a block and then switches the heater off") {
+  for (const float wrong_C : {thermopower::detail::not_a_number(), -88.6f, 0.0f, 276.0f, 1e30f}) {
+    CAPTURE(wrong_C);
+    heater::Heater<heater::Hotend, RunawayCheck> heater(heater::Pid::Config::hotend(),
+                                                        RunawayCheck::Config::hotend());
+    CHECK(heater.step(200.0f, 20.0f, 20.0f, 24.0f, 0, 0.1f) == 1.0f);
+    CHECK(heater.step(200.0f, wrong_C, 20.0f, 24.0f, 0, 0.1f) == 1.0f);
+    CHECK(heater.step(200.0f, 20.0f, 20.0f, 24.0f, 0, 0.1f) == 1.0f);
+    for (int i = 0; i < 32; ++i) heater.step(200.0f, wrong_C, 20.0f, 24.0f, 0, 0.1f);
     CHECK(heater.step(200.0f, wrong_C, 20.0f, 24.0f, 0, 0.1f) == 0.0f);
-    CHECK(thermopower::is_fault(heater.reason()));
+    CHECK(heater.reason() == thermopower::LimitReason::sensor_out_of_range);
+    CHECK(heater.watch().suspects() == static_cast<uint8_t>(thermopower::Suspect::thermometer));
   }
+}
+
+TEST_CASE("before the first good reading the heater is off, and no later for it") {
+  heater::Heater<heater::Bed, RunawayCheck> heater(heater::Pid::Config::bed(), RunawayCheck::Config::bed());
+  for (int i = 0; i < 600; ++i) CHECK(heater.step(60.0f, 0.0f, 20.0f, 24.0f, 0, 0.1f) == 0.0f);
+  CHECK(thermopower::is_fault(heater.reason()));
+  float duty = 0.0f;
+  for (int i = 0; i < 400; ++i) duty = heater.step(60.0f, 20.0f, 20.0f, 24.0f, 0, 0.1f);
+  CHECK(duty == 1.0f);
 }

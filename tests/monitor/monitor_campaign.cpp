@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Copyright (c) 2026 the thermopower authors
 
-// monitor_campaign [<plants>]: an hour of so many hotends, beds and motors, 10 000 of each if nothing is said, on all cores, none
-// of which has a fault; then a hundredth of them with each fault. Prints both as tables, and fails when more than one false
-// alarm comes in a thousand hours.
+// monitor_campaign [<plants> [<hours>]]: an hour, or so many, of so many hotends, beds and motors, 10 000 of each if nothing is
+// said, on all cores, none of which has a fault; then an hour of a hundredth of them with each fault. Prints both as tables, and
+// fails when more than one false alarm comes in a thousand hours.
 
 #include "monitor_campaign.hpp"
 
@@ -96,7 +96,7 @@ int main(int argument_count, char** arguments) {
   const long plants = argument_count > 1 ? std::strtol(arguments[1], nullptr, 10) : 10000;
   const double hours = argument_count > 2 ? std::strtod(arguments[2], nullptr) : 1.0;
   if (plants < 1 || !(hours > 0.0)) {
-    std::fprintf(stderr, "usage: monitor_campaign [<plants> [<hours of each healthy one>]]\n");
+    std::fprintf(stderr, "usage: monitor_campaign [<plants> [<hours of each>]]\n");
     return 2;
   }
   const double hour_s = 3600.0, fault_s = 1200.0;
@@ -112,7 +112,7 @@ int main(int argument_count, char** arguments) {
 
   const long few = std::max(20l, plants / 100);
   std::printf(
-      "\n| fault, %ld plants | monitor | in the set | alone | runaway | kelvin sum | rate |\n|---|---|---:|---:|---|---|---|\n",
+      "\n| fault, %ld plants | watch | in the set | alone | runaway | kelvin sum | rate |\n|---|---|---:|---:|---|---|---|\n",
       few);
   for (int i = 1; i <= static_cast<int>(printer::Fault::heater_stays_on); ++i) {
     const printer::Fault fault = static_cast<printer::Fault>(i);

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include "../air_celsius.hpp"
 #include "../detail/check.hpp"
 #include "air_witness.hpp"
 
@@ -82,6 +83,14 @@ public:
         read_C;  ///< What the thermometers say; NaN when `source` is `neither`. A witness's model stands in this air.
     AirSource source;   ///< Which thermometers `read_C` rests on.
     bool is_witnessed;  ///< Whether `air_C` rests on a witness, and not on what is declared.
+
+    /// What to tell an axis whose motor declares its air: the air is no warmer than both declarations say. Thermometers that read more
+    /// than the motor's range holds are told as they are, which is a fault.
+    /// @param range  what the motor declares
+    AxisAirCelsius bound_within(const AirRange& range) const noexcept {
+      const bool is_declared_only = air_C > range.highest_C && read_C <= range.highest_C;
+      return AxisAirCelsius::bound(is_declared_only ? range.highest_C : air_C);
+    }
   };
 
   /// @param config  constants; ask `validate()` once

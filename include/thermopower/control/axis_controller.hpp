@@ -192,6 +192,8 @@ public:
   }
   /// Whether the power law asks where the axis stands.
   static constexpr bool takes_pose() { return detail::TakesFacts<PowerLaw>::value; }
+  /// The air that the motor declares; -100 .. 200 degC where it declares none.
+  static AirRange air_range() noexcept { return detail::declared_air<Motor>(0); }
 
   const State& state() const noexcept { return state_; }  ///< After the last step.
   Limiter& limiter() noexcept { return limiter_; }  ///< To tell a limiter what was measured; its own state.

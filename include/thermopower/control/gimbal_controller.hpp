@@ -62,11 +62,12 @@ struct MeasuredSupply {
 /// How to: @ref wire_up_sbgc.
 /// @ingroup control
 struct GimbalConfig {
-  float supply_V;              ///< Nominal supply, above 0. The thesis: 13.
-  float minimum_supply_V;      ///< Below this the battery counts as empty or missing. The program: 3.
-  float timeout_s;             ///< Silence of the link that is tolerated, above 0.
-  AirTemperature::Config air;  ///< When a thermometer is believed.
-  float maximum_supply_V;      ///< Above this a reading is no supply. Above `supply_V`.
+  float supply_V;          ///< Nominal supply, above 0. The thesis: 13.
+  float minimum_supply_V;  ///< Below this the battery counts as empty or missing. The program: 3.
+  float timeout_s;         ///< Silence of the link that is tolerated, above 0.
+  AirTemperature::Config
+      air;  ///< When a thermometer is believed. Where a motor declares a colder air, that one counts for its axis.
+  float maximum_supply_V;  ///< Above this a reading is no supply. Above `supply_V`.
 
   /// 13 V, 3 V, half a second, 60 V; the air as warm as 45 degC.
   static GimbalConfig standard() noexcept {
@@ -263,10 +264,10 @@ private:
     }
   };
   struct NotBelowVisitor {
-    float air_C;
+    const AirTemperature::State& air;
     template <class Axis>
     void operator()(uint8_t, Axis& controller) noexcept {
-      controller.not_below(air_C);
+      controller.not_below(air.bound_within(Axis::air_range()));
     }
   };
   struct StepVisitor {
@@ -279,7 +280,7 @@ private:
       const LimitReason found = is_overdue && !is_fault(fault) ? LimitReason::link_silent : fault;
       const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
                                             Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
-                                            AxisAirCelsius::bound(gimbal.state_.air_C), found};
+                                            gimbal.air_.state().bound_within(Axis::air_range()), found};
       gimbal.store(index, gimbal.step_axis(controller, inputs, index, dt_s));
     }
   };
@@ -347,7 +348,7 @@ private:
     air_.step(inputs.camera_C, inputs.frame_C, dt_s);
     const float rise_K = air_.state().air_C - before_C;
     if (is_air_unknown_ && detail::is_finite(air_.state().air_C)) {
-      NotBelowVisitor visitor = {air_.state().air_C};
+      NotBelowVisitor visitor = {air_.state()};
       axes_.visit(visitor);
       is_air_unknown_ = false;
     }
