@@ -192,6 +192,8 @@ public:
   }
   /// Whether the power law asks where the axis stands.
   static constexpr bool takes_pose() { return detail::TakesFacts<PowerLaw>::value; }
+  /// Whether the motor declares its air.
+  static constexpr bool declares_air() noexcept { return detail::DeclaresAir<Motor>::value; }
   /// The air that the motor declares; -100 .. 200 degC where it declares none.
   static AirRange air_range() noexcept { return detail::declared_air<Motor>(0); }
 
@@ -213,7 +215,7 @@ private:
     const bool is_supply_bad =
         is_supply_new && !detail::is_within(inputs.supply_V, supply_.lowest_V, supply_.highest_V);
     if (is_air_new && !is_air_bad) last_air_C_ = air_C;
-    else if (is_air_bad && has_air()) last_air_C_ = detail::declared_air<Motor>(0).highest_C;
+    else if (is_air_bad && declares_air()) last_air_C_ = detail::declared_air<Motor>(0).highest_C;
     // What cannot be may hide the most there is.
     if (is_supply_new) last_supply_V_ = is_supply_bad ? supply_.highest_V : inputs.supply_V;
     const bool is_time_positive = detail::is_finite_positive(dt_s);
@@ -267,13 +269,13 @@ private:
 
   // A reading inside the declared range says no more than that its thermometer lives.
   static float counted_air_C(const AxisAirCelsius& told_C) noexcept {
-    const bool is_declared = has_air() && !told_C.is_bound() && detail::declared_air<Motor>(0).holds(told_C);
+    const bool is_declared =
+        declares_air() && !told_C.is_bound() && detail::declared_air<Motor>(0).holds(told_C);
     return is_declared ? detail::declared_air<Motor>(0).highest_C : static_cast<float>(told_C);
   }
-  static bool has_air() noexcept { return detail::DeclaresAir<Motor>::value; }
   // As declared, or wider than any sensor's range, which is AirTemperature's business: only what no air can be.
   static bool is_plausible_air(float air_C) noexcept {
-    if (has_air()) return detail::declared_air<Motor>(0).holds(air_C);
+    if (declares_air()) return detail::declared_air<Motor>(0).holds(air_C);
     const uint32_t bits = detail::magnitude_bits(air_C);
     return bits <= detail::magnitude_bits(100.0f) || (bits <= detail::magnitude_bits(200.0f) && air_C > 0.0f);
   }

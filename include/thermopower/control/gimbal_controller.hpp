@@ -264,10 +264,10 @@ private:
     }
   };
   struct NotBelowVisitor {
-    const AirTemperature::State& air;
+    const BasicGimbalController& gimbal;
     template <class Axis>
     void operator()(uint8_t, Axis& controller) noexcept {
-      controller.not_below(air.bound_within(Axis::air_range()));
+      controller.not_below(gimbal.template air_of<Axis>());
     }
   };
   struct StepVisitor {
@@ -280,7 +280,7 @@ private:
       const LimitReason found = is_overdue && !is_fault(fault) ? LimitReason::link_silent : fault;
       const typename Axis::Inputs inputs = {gimbal.last_.error_deg[index],
                                             Supply::supply_V(gimbal.config_.supply_V, gimbal.last_.supply_V),
-                                            gimbal.air_.state().bound_within(Axis::air_range()), found};
+                                            gimbal.template air_of<Axis>(), found};
       gimbal.store(index, gimbal.step_axis(controller, inputs, index, dt_s));
     }
   };
@@ -341,6 +341,13 @@ private:
     disobeyed_s_ = is_obeyed ? 0.0f : (dt_s > 0.0f ? disobeyed_s_ + dt_s : disobeyed_s_);
   }
 
+  // Of two declarations of the air the colder one counts.
+  template <class Axis>
+  AxisAirCelsius air_of() const noexcept {
+    return Axis::declares_air() ? air_.state().bound_within(Axis::air_range())
+                                : AxisAirCelsius::bound(air_.state().air_C);
+  }
+
   // An air that jumps up soon after the start was read wrongly at the start, when the motors were taken to be
   // as warm as it.
   void follow_air(const Inputs& inputs, float dt_s) noexcept {
@@ -348,7 +355,7 @@ private:
     air_.step(inputs.camera_C, inputs.frame_C, dt_s);
     const float rise_K = air_.state().air_C - before_C;
     if (is_air_unknown_ && detail::is_finite(air_.state().air_C)) {
-      NotBelowVisitor visitor = {air_.state()};
+      NotBelowVisitor visitor = {*this};
       axes_.visit(visitor);
       is_air_unknown_ = false;
     }

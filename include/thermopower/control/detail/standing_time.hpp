@@ -20,32 +20,29 @@ class StandingTime {
 public:
   /// @param dt_s  time of this step, >= 0  @param hold_s  how long time may stand still, above 0
   /// @return true when it has stood still for longer
-  bool is_standing(float dt_s, float hold_s) noexcept {
-    const bool is_fault = stood_s_ < 0.0f;
+  [[gnu::noinline]] bool is_standing(float dt_s, float hold_s) noexcept {
     if (dt_s > 0.0f) {
       step_s_ = dt_s;
+      stood_s_ -= dt_s;
       // Twice while it is a fault, so that a clock which stands still in half of the steps is not one for ever.
-      stood_s_ += is_fault ? 2.0f * dt_s : -dt_s;
-      if (!(is_fault ? stood_s_ < 0.0f : stood_s_ > 0.0f)) stood_s_ = 0.0f;
-      return stood_s_ < 0.0f;
-    }
-    const float lost_s = step_s_ > 0.0f ? step_s_ : hold_s;
-    if (is_fault) {
-      stood_s_ = stood_s_ - lost_s > -hold_s ? stood_s_ - lost_s : -hold_s;
-    } else if (stood_s_ < hold_s) {
-      stood_s_ += lost_s;
-      return false;
+      if (is_fault_) stood_s_ -= dt_s;
+      if (!(stood_s_ > 0.0f)) {
+        stood_s_ = 0.0f;
+        is_fault_ = false;
+      }
+    } else if (!(stood_s_ < hold_s)) {
+      is_fault_ = true;
     } else {
-      stood_s_ = -stood_s_;
+      stood_s_ += step_s_ > 0.0f ? step_s_ : hold_s;
     }
-    return true;
+    return is_fault_;
   }
   /// Length of the last step that was told one, s; 0 before.
   float step_s() const noexcept { return step_s_; }
 
 private:
-  float step_s_ = 0.0f;
-  float stood_s_ = 0.0f;  // below 0 while that is a fault
+  float step_s_ = 0.0f, stood_s_ = 0.0f;
+  bool is_fault_ = false;
 };
 
 /// Whether a limiter notices by itself that time stands still.
