@@ -157,3 +157,27 @@ TEST_CASE(
   CHECK(fresh.hottest_C() == 27);  // 26 and its fraction, rounded up
   CHECK(restored.hottest_C() > 28);
 }
+
+TEST_CASE(
+    "a clock that stands still in most of the messages is a fault, one that is slow beside silent cycles is none") {
+  const auto reason_after = [](int messages, auto ticks_of) {
+    WholeGimbal gimbal;
+    Telemetry telemetry;
+    telemetry.target[0] = 2000;
+    tp::LimitReason worst = tp::LimitReason::none;
+    for (int i = 0; i < messages; ++i) {
+      if (ticks_of(i) < 0)
+        gimbal.step_silent(129);  // the time before this message was told with a silent cycle
+      gimbal.step(telemetry, ticks_of(i) > 0 ? static_cast<fixed::Ticks>(ticks_of(i)) : fixed::Ticks(0));
+      gimbal.prepare();
+      worst = tp::is_fault(gimbal.command().reason[0]) ? gimbal.command().reason[0] : worst;
+    }
+    return worst;
+  };
+  CHECK(reason_after(40, [](int) { return 0; }) == tp::LimitReason::time_stands_still);
+  CHECK(reason_after(200, [](int i) { return i % 11 == 0 ? 129 : 0; }) == tp::LimitReason::time_stands_still);
+  CHECK(reason_after(200, [](int i) { return i % 3 == 0 ? 129 : 0; }) == tp::LimitReason::time_stands_still);
+  CHECK(reason_after(2000, [](int i) { return i % 2 == 0 ? 129 : 0; }) == tp::LimitReason::none);  // in pairs
+  CHECK(reason_after(2000, [](int) { return -1; }) == tp::LimitReason::none);
+  CHECK(reason_after(2000, [](int) { return 129; }) == tp::LimitReason::none);
+}

@@ -115,8 +115,9 @@ private:
 struct CertifiedUse {
   HeatBounds heat;      ///< What full POWER does.
   float highest_air_C;  ///< The air is never warmer than this. Not below `heat.coldest_C`.
-  float hold_s;     ///< A ceiling acts for at most this long before the next plan can lower it. Above 0, at
-                    ///< most 10.
+  float
+      hold_s;  ///< A ceiling acts for at most this long before the next plan can lower it: the longest cycle, and
+               ///< the longest delay between a command and its effect. Above 0, at most 10.
   float horizon_s;  ///< How long a power must be bearable to be granted: how gently authority falls. At least
                     ///< `hold_s`.
   uint8_t every;    ///< Plan in every n-th step only, at least 1; `hold_s` must cover that many steps.

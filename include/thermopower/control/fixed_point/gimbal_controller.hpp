@@ -131,7 +131,7 @@ public:
   /// One control cycle from a telemetry message.
   /// @param telemetry  offers `target_angle(axis)`, `imu_angle(axis)` in units of 360/16384 degree, `imu_C()`,
   ///                   `frame_imu_C()` and `battery_cV()`, as `sbgc::RealtimeData` does
-  /// @param ticks      time since the last step or silent cycle
+  /// @param ticks      time since the last step or silent cycle; no time at all in most of the messages is a fault
   template <class Telemetry>
   const Command& step(const Telemetry& telemetry, Ticks ticks) noexcept {
     constexpr uint16_t minimum_cV =
@@ -156,6 +156,7 @@ public:
     else if (thermopower::detail::is_board_overheated(telemetry, 0))
       telemetry_fault_ = LimitReason::board_overheated;
     else if (!has_air) telemetry_fault_ = LimitReason::air_implausible;
+    else if (is_standing(ticks)) telemetry_fault_ = LimitReason::time_stands_still;
     else telemetry_fault_ = disobeyed_ > tolerated() ? LimitReason::not_obeyed : LimitReason::none;
     silent_ = 0;
     has_telemetry_ = true;
@@ -392,6 +393,15 @@ private:
     return true;
   }
 
+  // A message takes more than a tick on the wire: one since which no time passed comes from a burst, or the clock stands still. That is
+  // a fault when it does so in most of them.
+  bool is_standing(Ticks ticks) noexcept {
+    if (ticks != 0 || silent_ != 0) stood_ = stood_ != 0 ? static_cast<uint8_t>(stood_ - 1) : stood_;
+    else if (stood_ < 2 * most_stood()) ++stood_;
+    return stood_ >= most_stood();
+  }
+  static constexpr uint8_t most_stood() { return 16; }
+
   const Command& decide(LimitReason fault, Ticks ticks) noexcept {
     StepVisitor visitor = {*this, fault, ticks};
     axes_.visit(visitor);
@@ -407,6 +417,7 @@ private:
   uint16_t silent_ = 0;
   uint16_t disobeyed_ = 0;       // how long the board has had another power in force than it was told
   uint16_t known_air_ = 0;       // ticks since the first plausible air, at least 1 then
+  uint8_t stood_ = 0;            // messages since which no time passed, less those since which it did
   uint8_t strength_ = 128;       // of a POWER, by the supply above the nominal, in 1/128
   uint8_t highest_power_ = 255;  // that the tables know at that supply
   LimitReason telemetry_fault_ = LimitReason::none;
