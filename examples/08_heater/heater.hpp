@@ -258,16 +258,27 @@ class Watch {
 public:
   /// @param heat_W  mean heat since the last step  @return why to cut; `none` when all is well
   tp::LimitReason step(float heat_W, float measured_C, float air_C, uint8_t fan, float dt_s) {
+    constexpr float full_W = float(Plant::heat_balance().full_W);
+    // What no heater makes, and no room has, must not stay in the model: one cycle of it would take minutes to cool.
+    const bool is_heat = heat_W >= 0.0f && heat_W <= 1.5f * full_W, is_air = air_C > -50.0f && air_C < 100.0f;
+    if (is_air) air_C_ = air_C;
     const tp::SensorGuard::Config& range = guard_.config();
-    if (!expected_.is_started() && measured_C >= range.lowest_C && measured_C <= range.highest_C)
+    const bool is_paused =
+        dt_s > 8.0f;  // too long to know what the heater did meanwhile: the monitor starts anew, too
+    if ((is_paused || !expected_.is_started()) && measured_C >= range.lowest_C &&
+        measured_C <= range.highest_C)
       expected_.start(measured_C);
-    still_s_ = measured_C == last_C_ ? still_s_ + dt_s : 0.0f;
+    const float passed_s = dt_s > 0.0f && !is_paused ? dt_s : 0.0f;
+    const float expected_C = expected_.step(is_heat ? heat_W : full_W, air_C_, fan, passed_s);
+    still_s_ = measured_C == last_C_ ? still_s_ + passed_s : 0.0f;
     last_C_ = measured_C;
-    reading_ = guard_.step({measured_C, expected_.step(heat_W, air_C, fan, dt_s)}, dt_s);
+    reading_ = guard_.step({measured_C, expected_C}, dt_s);
     // The monitor judges good readings only: a bridged one is not measured.
     monitor_.step(tp::MonitorInputs::heater(heat_W, guard_.upper(0.0f), air_C, fan), dt_s);
     const tp::LimitReason found = monitor_.limit(255).reason;
-    return found != tp::LimitReason::none ? found : reading_.fault();
+    if (found != tp::LimitReason::none) return found;
+    if (!is_heat) return tp::LimitReason::supply_implausible;
+    return is_air ? reading_.fault() : tp::LimitReason::air_implausible;
   }
   /// What may be believed of the temperature; a bad reading is bridged for a while.
   tp::GuardedCelsius reading() const { return reading_; }
@@ -293,6 +304,7 @@ private:
   tp::SensorGuard guard_ = tp::SensorGuard(guard_of<Plant>());
   tp::GuardedCelsius reading_;
   tp::ModelMonitor<Plant> monitor_;
+  float air_C_ = 20.0f;                   // the last that can be
   float last_C_ = 0.0f, still_s_ = 0.0f;  // the raw reading, and for how long it has not moved by a count
 };
 //! [heater watch]

@@ -4,8 +4,12 @@
 // The usual checks of printers, as the example has them, against what their firmware documents.
 
 #include "../../examples/08_heater/heater.hpp"
+#include "../../examples/08_heater/printer_plant.hpp"
 
 #include "../catch.hpp"
+
+#include <algorithm>
+#include <cmath>
 
 using heater::KelvinSumCheck;
 using heater::RunawayCheck;
@@ -65,4 +69,65 @@ TEST_CASE("before the first good reading the heater is off, and no later for it"
   float duty = 0.0f;
   for (int i = 0; i < 400; ++i) duty = heater.step(60.0f, 20.0f, 20.0f, 24.0f, 0, 0.1f);
   CHECK(duty == 1.0f);
+}
+
+namespace {
+/// A hotend in a hold, of whose inputs some are wrong from a time on.
+struct Hold {
+  heater::Heater<heater::Hotend, RunawayCheck> firmware{heater::Pid::Config::hotend(),
+                                                        RunawayCheck::Config::hotend()};
+  printer::Heater real{printer::hotend(), 22.0, 3};
+  float duty = 0.0f;
+  double hottest_C = 0.0;
+  void pass(double seconds, float supply_V = 24.0f, float air_C = 22.0f, float told_s = 0.1f) {
+    for (double now_s = 0.0; now_s < seconds; now_s += 0.1) {
+      real.pass(static_cast<double>(duty), 0.0, 22.0, 24.0, 0.1);
+      hottest_C = std::max(hottest_C, real.block_C());
+      duty = firmware.step(200.0f, static_cast<float>(real.reading_C()), air_C, supply_V, 0, told_s);
+    }
+  }
+};
+const float nan_ = thermopower::detail::not_a_number();
+}  // namespace
+
+TEST_CASE("one wrong reading of supply, air or clock costs a heater a moment, and no more") {
+  const float right_V = 24.0f, right_C = 22.0f, right_s = 0.1f;
+  struct Wrong {
+    float supply_V, air_C, dt_s;
+  };
+  for (const Wrong& wrong :
+       {Wrong{655.0f, right_C, right_s}, Wrong{1e30f, right_C, right_s}, Wrong{nan_, right_C, right_s},
+        Wrong{0.0f, right_C, right_s}, Wrong{-24.0f, right_C, right_s}, Wrong{right_V, nan_, right_s},
+        Wrong{right_V, -273.0f, right_s}, Wrong{right_V, 1e30f, right_s}, Wrong{right_V, right_C, nan_},
+        Wrong{right_V, right_C, -1.0f}, Wrong{right_V, right_C, 0.0f}, Wrong{right_V, right_C, 1e30f},
+        Wrong{right_V, right_C, 600.0f}}) {
+    CAPTURE(wrong.supply_V, wrong.air_C, wrong.dt_s);
+    Hold hold;
+    hold.pass(600.0);
+    REQUIRE(hold.firmware.reason() == thermopower::LimitReason::none);
+    hold.pass(0.05, wrong.supply_V, wrong.air_C, wrong.dt_s);
+    hold.pass(1.0);
+    CHECK(hold.firmware.reason() == thermopower::LimitReason::none);
+    hold.pass(600.0);
+    CHECK(hold.firmware.reason() == thermopower::LimitReason::none);
+    CHECK(std::fabs(hold.real.block_C() - 200.0) < 3.0);
+  }
+}
+
+TEST_CASE("a heater whose supply, air or clock stays wrong is off, with a reason") {
+  struct Wrong {
+    float supply_V, air_C, dt_s;
+    bool is_named_at_once;
+  };
+  for (const Wrong& wrong :
+       {Wrong{655.0f, 22.0f, 0.1f, true}, Wrong{nan_, 22.0f, 0.1f, true}, Wrong{0.0f, 22.0f, 0.1f, false},
+        Wrong{24.0f, nan_, 0.1f, true}, Wrong{24.0f, -273.0f, 0.1f, true}, Wrong{24.0f, 22.0f, nan_, true},
+        Wrong{24.0f, 22.0f, -0.1f, true}, Wrong{24.0f, 22.0f, 0.0f, false}}) {
+    CAPTURE(wrong.supply_V, wrong.air_C, wrong.dt_s);
+    Hold hold;
+    hold.pass(600.0);
+    hold.pass(wrong.is_named_at_once ? 0.05 : 60.0, wrong.supply_V, wrong.air_C, wrong.dt_s);
+    CHECK(thermopower::is_fault(hold.firmware.reason()));
+    CHECK(hold.hottest_C < 215.0);
+  }
 }
