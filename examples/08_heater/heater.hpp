@@ -211,6 +211,7 @@ public:
     return is_started_ = true;
   }
   bool is_started() const { return is_started_; }
+  float second_C() const { return second_C_; }
 
   /// @param heat_W  mean heat since the last step  @return degC, NaN before the start
   float step(float heat_W, float air_C, uint8_t fan, float dt_s) {
@@ -230,6 +231,46 @@ public:
 private:
   float late_W_ = 0.0f, body_C_ = tp::detail::not_a_number(), second_C_ = tp::detail::not_a_number();
   bool is_started_ = false;
+};
+
+/// How fast a true reading can fall: as fast as the body cools without any heat and with all that may be lost. A thermistor that comes
+/// loose falls faster.
+template <class Plant>
+class FallCheck {
+public:
+  /// @param measured_C  a reading that the guard believes, or NaN  @param second_C  of the second mass, as expected
+  /// @return false from when readings have been below what is possible for three seconds, and ever after
+  bool step(float measured_C, float second_C, float air_C, float dt_s) {
+    constexpr tp::HeatBalanceConfig body = Plant::heat_balance();
+    constexpr float per_J_per_K = float(1.5 / (body.capacity_J_per_K * (1.0 - body.capacity_error)));
+    constexpr float loss_W_per_K =
+        float(body.loss_W_per_K * (1.0 + body.loss_error) + body.fan_W_per_K * (1.0 + body.fan_error));
+    constexpr float second_W_per_K =
+        body.second_J_per_K > 0.0 ? float(body.second_J_per_K / body.second_s) : 0.0f;
+    constexpr float full_W = float(body.full_W), air_error_K = float(body.air_error_K),
+                    margin_K = float(2.0 + 8.0 * body.noise_K);
+    const float second_K = lowest_C_ - second_C, rise_K = lowest_C_ - air_C + air_error_K;
+    float lost_W = rise_K > 0.0f ? loss_W_per_K * rise_K : 0.0f;
+    if (second_K > 0.0f) lost_W += second_W_per_K * second_K;
+    lowest_C_ -= dt_s * per_J_per_K * lost_W;
+    // A single reading that is too high must not make the next ones too low.
+    const float highest_C = lowest_C_ + dt_s * per_J_per_K * full_W;
+    if (!(lowest_C_ > -300.0f)) lowest_C_ = measured_C;
+    else if (measured_C > lowest_C_) lowest_C_ = measured_C < highest_C ? measured_C : highest_C;
+    if (measured_C < lowest_C_ - margin_K) below_s_ += dt_s;
+    else if (measured_C >= lowest_C_ - margin_K) below_s_ = 0.0f;
+    has_fallen_ = has_fallen_ || below_s_ > 3.0f;
+    return !has_fallen_;
+  }
+  /// A pause of unknown length.
+  void restart() {
+    lowest_C_ = tp::detail::not_a_number();
+    below_s_ = 0.0f;
+  }
+
+private:
+  float lowest_C_ = tp::detail::not_a_number(), below_s_ = 0.0f;
+  bool has_fallen_ = false;
 };
 
 /// The guard's bounds follow from the constants': a true reading is colder than expected by no more than heat and loss are off.
@@ -275,7 +316,10 @@ public:
     reading_ = guard_.step({measured_C, expected_C}, dt_s);
     // The monitor judges good readings only: a bridged one is not measured.
     monitor_.step(tp::MonitorInputs::heater(heat_W, guard_.upper(0.0f), air_C, fan), dt_s);
+    if (is_paused) fall_.restart();
+    has_fallen_ = !fall_.step(guard_.upper(0.0f), expected_.second_C(), air_C_, passed_s);
     const tp::LimitReason found = monitor_.limit(255).reason;
+    if (has_fallen_) return tp::LimitReason::sensor_too_fast;
     if (found != tp::LimitReason::none) return found;
     if (!is_heat) return tp::LimitReason::supply_implausible;
     return is_air ? reading_.fault() : tp::LimitReason::air_implausible;
@@ -285,8 +329,8 @@ public:
   /// A sum of `Suspect`: the monitor's, the thermometer where it stood still meanwhile, or what the guard's reason means.
   uint8_t suspects() const {
     const uint8_t sensor = static_cast<uint8_t>(tp::Suspect::thermometer);
-    // A reading that stands still while the heat changes is the plainest of all.
-    if (guard_.state().reason == tp::LimitReason::sensor_stuck) return sensor;
+    // A reading that stands still while the heat changes, or falls as no body does, is the plainest of all.
+    if (has_fallen_ || guard_.state().reason == tp::LimitReason::sensor_stuck) return sensor;
     if (monitor_.disagreement() != tp::Disagreement::none)
       return static_cast<uint8_t>(monitor_.suspects() | (still_s_ > monitor_.record().since_s ? sensor : 0));
     if (reading_.fault() == tp::LimitReason::none) return 0;
@@ -301,9 +345,11 @@ public:
 
 private:
   Expected<Plant> expected_;
+  FallCheck<Plant> fall_;
   tp::SensorGuard guard_ = tp::SensorGuard(guard_of<Plant>());
   tp::GuardedCelsius reading_;
   tp::ModelMonitor<Plant> monitor_;
+  bool has_fallen_ = false;
   float air_C_ = 20.0f;                   // the last that can be
   float last_C_ = 0.0f, still_s_ = 0.0f;  // the raw reading, and for how long it has not moved by a count
 };
