@@ -324,8 +324,8 @@ TEST_CASE(
           body_C = true_air_C + 0.8 * (body_C - true_air_C);
         }) < disagreement_K + 0.5);
   CHECK(worst_behind_guards([](double now_s, double& winding_C, double& body_C) {
-          if (std::fmod(now_s, 1.0) < 0.5) winding_C = nan_;
-          else body_C = nan_;
+          if (std::fmod(now_s, 1.0) < 0.5) winding_C = static_cast<double>(nan_);
+          else body_C = static_cast<double>(nan_);
         }) < 0.5);
 }
 
