@@ -353,21 +353,26 @@ private:
       servo.limit_A = number(block, here, "limit_A", Allowed::positive);
       servo.period_s = number(block, here, "period_s", Allowed::positive);
       servo.delay_s = number_or(block, here, "delay_s", Allowed::not_negative, 0.0);
+      servo.slew_A_per_s = number_or(block, here, "slew_A_per_s", Allowed::not_negative, 0.0);
     };
     if (law(block, here, {"position_pid", "velocity_pi"}) == "position_pid") {
       only(block, here,
            {"law", "kp_A_per_deg", "kd_A_s_per_deg", "ki_A_per_deg_s", "limit_A", "period_s", "delay_s",
-            "uncertainty"});
+            "slew_A_per_s", "dead_zone_deg", "profile_dps", "profile_dps2", "uncertainty"});
       PositionPidServo servo;
       servo.kp_A_per_deg = number(block, here, "kp_A_per_deg", Allowed::not_zero);
       servo.kd_A_s_per_deg = number_or(block, here, "kd_A_s_per_deg", Allowed::any, 0.0);
       servo.ki_A_per_deg_s = number_or(block, here, "ki_A_per_deg_s", Allowed::any, 0.0);
+      servo.dead_zone_deg = number_or(block, here, "dead_zone_deg", Allowed::not_negative, 0.0);
+      servo.profile_dps = number_or(block, here, "profile_dps", Allowed::not_negative, 0.0);
+      servo.profile_dps2 = number_or(block, here, "profile_dps2", Allowed::not_negative, 0.0);
       common(servo);
       model.servo = servo;
       return;
     }
     only(block, here,
-         {"law", "kp_A_s_per_deg", "ki_A_per_deg", "limit_A", "period_s", "delay_s", "uncertainty"});
+         {"law", "kp_A_s_per_deg", "ki_A_per_deg", "limit_A", "period_s", "delay_s", "slew_A_per_s",
+          "uncertainty"});
     VelocityPiServo servo;
     servo.kp_A_s_per_deg = number(block, here, "kp_A_s_per_deg", Allowed::not_zero);
     servo.ki_A_per_deg = number_or(block, here, "ki_A_per_deg", Allowed::any, 0.0);

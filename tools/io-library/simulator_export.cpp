@@ -103,6 +103,9 @@ private:
                                  "; MuJoCo's servo has no integral");
       servo.left_out.push_back("servo: period_s " + joint_number(one.period_s) + ", delay_s " +
                                joint_number(one.delay_s) + "; MuJoCo's servo acts at every step and at once");
+      if (one.slew_A_per_s > 0.0)
+        servo.left_out.push_back("servo: slew_A_per_s " + joint_number(one.slew_A_per_s) +
+                                 "; MuJoCo's servo changes its torque at once");
       if (joint.lag_s)
         servo.left_out.push_back("drive_lag: lag_s " + joint_number(*joint.lag_s) +
                                  "; the torque of MuJoCo's servo follows at once");
@@ -111,6 +114,13 @@ private:
       servo.Nm_per_rad = position->kp_A_per_deg * degrees_per_rad * Nm_per_A;
       servo.Nms_per_rad = position->kd_A_s_per_deg * degrees_per_rad * Nm_per_A;
       common(*position, position->ki_A_per_deg_s, "ki_A_per_deg_s");
+      if (position->dead_zone_deg > 0.0)
+        servo.left_out.push_back("servo: dead_zone_deg " + joint_number(position->dead_zone_deg) +
+                                 "; MuJoCo's servo acts on every error");
+      if (position->profile_dps > 0.0)
+        servo.left_out.push_back("servo: profile_dps " + joint_number(position->profile_dps) +
+                                 ", profile_dps2 " + joint_number(position->profile_dps2) +
+                                 "; move the control along it");
     } else if (const auto* velocity = std::get_if<plant::VelocityPiServo>(&model_.servo)) {
       servo.position = false;
       servo.Nms_per_rad = velocity->kp_A_s_per_deg * degrees_per_rad * Nm_per_A;

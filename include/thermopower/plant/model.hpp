@@ -74,6 +74,9 @@ struct RigidAxisModel {
 /// `"law": "position_pid"`: from `target_deg` to a command, sampled every `period_s` and held until the next one:
 /// kp (target - angle) + kd (target rate - rate) + ki times the integral of the error. The target's rate is
 /// `target_dps` where that is recorded, else 0. The integral is held where it alone asks for the limit.
+///
+/// The servos of hobby and robot kits do more: they go to a new target by a profile (follow_profile()), ignore a small error, and
+/// limit how fast the command changes. These are settings of the servo, so no cause is fitted to them.
 struct PositionPidServo {
   double kp_A_per_deg = 0.05;   ///< A/deg
   double kd_A_s_per_deg = 0.0;  ///< A s/deg
@@ -81,6 +84,10 @@ struct PositionPidServo {
   double limit_A = 1.0;         ///< of the command, > 0
   double period_s = 1e-3;       ///< between samples, > 0
   double delay_s = 0.0;         ///< from a sample to the torque, >= 0
+  double slew_A_per_s = 0.0;    ///< largest change of the command in A/s, >= 0; 0: no limit
+  double dead_zone_deg = 0.0;   ///< an error of at most that size counts as 0; >= 0
+  double profile_dps = 0.0;     ///< largest rate of the set point in deg/s, >= 0; 0: it jumps to the target
+  double profile_dps2 = 0.0;    ///< largest acceleration of the set point in deg/s^2, >= 0; 0: no limit
 };
 
 /// `"law": "velocity_pi"`: from `target_dps` to a command, sampled alike: kp (target - rate) + ki times the integral
@@ -91,6 +98,7 @@ struct VelocityPiServo {
   double limit_A = 1.0;          ///< of the command, > 0
   double period_s = 1e-3;        ///< between samples, > 0
   double delay_s = 0.0;          ///< from a sample to the torque, >= 0
+  double slew_A_per_s = 0.0;     ///< largest change of the command in A/s, >= 0; 0: no limit
 };
 
 /// Parameters of one effect by name.

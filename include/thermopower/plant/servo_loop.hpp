@@ -24,13 +24,31 @@ namespace thermopower::plant {
 /// How to: @ref servo_on_a_pendulum.
 template <class Scalar>
 struct ServoGains {
-  bool position = true;    ///< from `target_deg`; else from `target_dps`
-  Scalar proportional;     ///< A/deg of a position servo, A s/deg of a velocity servo
-  Scalar derivative;       ///< A s/deg; of a position servo
-  Scalar integral;         ///< A/(deg s) of a position servo, A/deg of a velocity servo
-  double limit_A = 0.0;    ///< of the command, > 0
-  double period_s = 1e-3;  ///< between samples, > 0
-  Scalar delay_s;          ///< from a sample to its command, >= 0
+  bool position = true;        ///< from `target_deg`; else from `target_dps`
+  Scalar proportional;         ///< A/deg of a position servo, A s/deg of a velocity servo
+  Scalar derivative;           ///< A s/deg; of a position servo
+  Scalar integral;             ///< A/(deg s) of a position servo, A/deg of a velocity servo
+  double limit_A = 0.0;        ///< of the command, > 0
+  double period_s = 1e-3;      ///< between samples, > 0
+  Scalar delay_s;              ///< from a sample to its command, >= 0
+  double slew_A_per_s = 0.0;   ///< fastest change of the command; 0: any
+  double dead_zone_deg = 0.0;  ///< of a position servo: an error within it counts as none
+
+  /// The error of the angle that a position servo acts on.
+  template <class Target>
+  Scalar angle_error_deg(const Scalar& angle_deg, const Target& target_deg) const {
+    const Scalar error = target_deg - angle_deg;
+    return dead_zone_deg > 0.0 && std::abs(value_of(error)) <= dead_zone_deg ? constant<Scalar>(0.0) : error;
+  }
+
+  /// A command after the one before it, no further from that than the slew allows within a period.
+  Scalar after(const Scalar& before, const Scalar& command) const {
+    if (!(slew_A_per_s > 0.0)) return command;
+    const double most = slew_A_per_s * period_s;
+    if (value_of(command) > value_of(before) + most) return Scalar(before + most);
+    if (value_of(command) < value_of(before) - most) return Scalar(before - most);
+    return command;
+  }
 
   /// The command of a sample, within the limits. Targets are plain numbers, or vary with their delay.
   /// @param accumulated  what integrate() has made of the errors so far, this sample's included
@@ -38,7 +56,8 @@ struct ServoGains {
   Scalar command_A(const Scalar& angle_deg, const Scalar& rate_dps, const Target& target_deg,
                    const Target& target_dps, const Scalar& accumulated) const {
     Scalar command = integral * accumulated;
-    if (position) command += proportional * (target_deg - angle_deg) + derivative * (target_dps - rate_dps);
+    if (position)
+      command += proportional * angle_error_deg(angle_deg, target_deg) + derivative * (target_dps - rate_dps);
     else command += proportional * (target_dps - rate_dps);
     if (value_of(command) > limit_A) return constant<Scalar>(limit_A);
     if (value_of(command) < -limit_A) return constant<Scalar>(-limit_A);
@@ -51,7 +70,7 @@ struct ServoGains {
   void integrate(Scalar& accumulated, const Scalar& angle_deg, const Scalar& rate_dps,
                  const Target& target_deg, const Target& target_dps) const {
     if (!(std::abs(value_of(integral)) > 0.0)) return;
-    const Scalar error = position ? Scalar(target_deg - angle_deg) : Scalar(target_dps - rate_dps);
+    const Scalar error = position ? angle_error_deg(angle_deg, target_deg) : Scalar(target_dps - rate_dps);
     accumulated += error * period_s;
     const Scalar most = limit_A / magnitude(integral);
     if (value_of(accumulated) > value_of(most)) accumulated = most;
@@ -67,10 +86,12 @@ ServoGains<Scalar> servo_gains(const Model& model, Factor&& factor) {
   const auto common = [&](const auto& servo) {
     gains.limit_A = servo.limit_A;
     gains.period_s = servo.period_s;
+    gains.slew_A_per_s = servo.slew_A_per_s;
     gains.delay_s = constant<Scalar>(servo.delay_s);
   };
   if (const auto* position = std::get_if<PositionPidServo>(&model.servo)) {
     common(*position);
+    gains.dead_zone_deg = position->dead_zone_deg;
     gains.proportional = factor("kp_A_per_deg", position->kp_A_per_deg);
     gains.derivative = factor("kd_A_s_per_deg", position->kd_A_s_per_deg);
     gains.integral = factor("ki_A_per_deg_s", position->ki_A_per_deg_s);
@@ -136,7 +157,8 @@ inline void replay_servo(const Model& model, Inputs& inputs) {
         const double target_deg = target_between(inputs, inputs.target_deg, run, row, share),
                      target_dps = target_between(inputs, inputs.target_dps, run, row, share);
         gains.integrate(accumulated, angle, rate, target_deg, target_dps);
-        sum += command = gains.command_A(angle, rate, target_deg, target_dps, accumulated);
+        command = gains.after(command, gains.command_A(angle, rate, target_deg, target_dps, accumulated));
+        sum += command;
       }
       inputs.servo_A[row] = count > 0 ? sum / static_cast<double>(count) : command;
     }
@@ -190,9 +212,12 @@ public:
           seen(row, inputs_.seen_deg[row] + share * (inputs_.seen_deg[after] - inputs_.seen_deg[row]),
                inputs_.seen_dps[row] + share * (inputs_.seen_dps[after] - inputs_.seen_dps[row]));
       const Scalar accumulated = inputs_.servo_integral[after] - not_arrived;
+      const Scalar before = !pending_.empty() ? pending_.back().command_A
+                                              : constant<Scalar>(k > 0 ? inputs_.servo_A[row] : 0.0);
       with_targets(row, share, [&](const auto& target_deg, const auto& target_dps) {
-        pending_.push_back({delay_s_ + sample_s,
-                            gains_.command_A(was.first, was.second, target_deg, target_dps, accumulated)});
+        pending_.push_back(
+            {delay_s_ + sample_s, gains_.after(before, gains_.command_A(was.first, was.second, target_deg,
+                                                                        target_dps, accumulated))});
       });
     }
   }
@@ -227,8 +252,10 @@ public:
         const double part = std::clamp((sample_s - from_s) / (to_s - from_s), 0.0, 1.0);
         with_targets(row, part, [&](const auto& target_deg, const auto& target_dps) {
           gains_.integrate(accumulated_, seen.first, seen.second, target_deg, target_dps);
-          pending_.push_back({delay_s_ + sample_s, gains_.command_A(seen.first, seen.second, target_deg,
-                                                                    target_dps, accumulated_)});
+          pending_.push_back(
+              {delay_s_ + sample_s,
+               gains_.after(pending_.back().command_A, gains_.command_A(seen.first, seen.second, target_deg,
+                                                                        target_dps, accumulated_))});
         });
         ++next_;
         continue;

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/own_inputs.hpp>
 #include <thermopower/gap/model.hpp>
 #include <thermopower/gap/recording.hpp>
+#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/axis_rollout.hpp>
 #include <thermopower/plant/charge_before.hpp>
 #include <thermopower/plant/plant.hpp>
@@ -186,7 +187,10 @@ inline Inputs prepare(const Model& model, const Recording& recording) {
             unwrapped(recording.column("angle_deg"), inputs.runs);
       else lack("angle_deg", "angle_deg");
       if (recording.has("motor_C")) inputs.covariate_motor_C = take("motor_C");
-      if (!commanded) close_loop(model, inputs);
+      if (!commanded) {
+        plant::follow_profile(model, inputs);
+        close_loop(model, inputs);
+      }
     }
   }
   if (inputs.bench() && recording.has("rate_dps")) inputs.covariate_rate_dps = take("rate_dps");

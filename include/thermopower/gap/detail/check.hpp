@@ -99,7 +99,7 @@ inline void read_targets_between_rows(const Model& model, CheckedRecordings& che
   if (!model.has_axis() || !model.has_servo()) return;
   TargetBetweenRows between(model, catalogue);
   const auto is_closed = [](const PreparedRecording& one) {
-    return one.inputs().axis() && one.inputs().closed_loop;
+    return one.inputs().axis() && one.inputs().closed_loop && !one.inputs().target_moves;
   };
   for (const PreparedRecording& one : checked.train)
     if (is_closed(one)) between.add(one.inputs());

@@ -64,12 +64,18 @@ void for_each_constant(ModelType& model, const VisitConstant<ModelType>& visit) 
     visit("servo", "limit_A", servo->limit_A);
     visit("servo", "period_s", servo->period_s);
     visit("servo", "delay_s", servo->delay_s);
+    // Known where there are any, and else not worth a line.
+    if (servo->slew_A_per_s != 0.0) visit("servo", "slew_A_per_s", servo->slew_A_per_s);
+    if (servo->dead_zone_deg != 0.0) visit("servo", "dead_zone_deg", servo->dead_zone_deg);
+    if (servo->profile_dps != 0.0) visit("servo", "profile_dps", servo->profile_dps);
+    if (servo->profile_dps2 != 0.0) visit("servo", "profile_dps2", servo->profile_dps2);
   } else if (auto* velocity = std::get_if<VelocityPiServo>(&model.servo)) {
     visit("servo", "kp_A_s_per_deg", velocity->kp_A_s_per_deg);
     visit("servo", "ki_A_per_deg", velocity->ki_A_per_deg);
     visit("servo", "limit_A", velocity->limit_A);
     visit("servo", "period_s", velocity->period_s);
     visit("servo", "delay_s", velocity->delay_s);
+    if (velocity->slew_A_per_s != 0.0) visit("servo", "slew_A_per_s", velocity->slew_A_per_s);
   }
   if (model.own)
     for (auto& constant : model.own->constants)
@@ -189,7 +195,8 @@ THERMOPOWER_GAP_INLINE std::optional<std::string> Model::validate() const {
   const auto positive = [](std::string_view field) {
     return field == "nominal_V" || field == "resistance_ohm" || field == "heat_capacity_J_per_K" ||
            field == "conductance_W_per_K" || field == "cooling_per_min" || field == "inertia_kgm2" ||
-           field == "limit_A" || field == "period_s";
+           field == "limit_A" || field == "period_s" || field == "slew_A_per_s" || field == "dead_zone_deg" ||
+           field == "profile_dps" || field == "profile_dps2";
   };
   detail::for_each_constant(*this, [&](const char* block, const char* field, const double& value) {
     if (problem) return;
