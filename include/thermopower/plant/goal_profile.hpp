@@ -17,6 +17,7 @@ namespace thermopower::plant {
 /// The servos of hobby and robot kits call this a profile, a goal speed or a goal acceleration. At each new target the set point goes
 /// on from where it is.
 ///
+/// @snippet plant_examples.cpp goal profile
 /// How to: @ref servo_on_a_pendulum.
 class GoalProfile {
 public:

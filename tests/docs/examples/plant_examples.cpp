@@ -10,6 +10,7 @@
 #include <thermopower/gap/pool/log_result.hpp>
 #include <thermopower/gap/pool/mixed_effects.hpp>
 #include <thermopower/gap/simulate.hpp>
+#include <thermopower/plant/goal_profile.hpp>
 #include <thermopower/plant/actuator_plant.hpp>
 #include <thermopower/plant/bench_rollout.hpp>
 #include <thermopower/plant/exchange_step.hpp>
@@ -223,6 +224,18 @@ TEST_CASE("a servo's gains") {
   const double command_A = gains.command_A(9.0, 0.0, 10.0, 0.0, 0.0);  // a degree short of the target
   //! [servo gains]
   CHECK(command_A == Approx(0.02));
+}
+
+TEST_CASE("the set point of a servo") {
+  //! [goal profile]
+  plant::GoalProfile profile(90.0, 300.0, 0.0);  // deg/s, deg/s^2, at rest at 0 deg
+  profile.go(45.0, 0.2, 0.005);                  // 0.2 s towards 45 deg, in steps of 5 ms
+  const double speeding_up_deg = profile.deg(), dps = profile.dps();
+  profile.go(45.0, 2.0, 0.005);
+  //! [goal profile]
+  CHECK(speeding_up_deg == Approx(0.5 * 300.0 * 0.2 * 0.2).margin(0.5));
+  CHECK(dps == Approx(60.0).margin(0.1));
+  CHECK(profile.deg() == Approx(45.0));
 }
 
 TEST_CASE("scalars: one that carries derivatives, one that writes itself down") {
