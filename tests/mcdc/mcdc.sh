@@ -13,6 +13,7 @@ flags="-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc"
 
 tests="sbgc_test actuator_config actuator_power_up actuator_start_bounds certified_chain certified_limiter certified_invariance certified_measurements certified_coupled
   control_air_temperature control_axis_controller control_config_record control_failures_of_others control_gimbal_controller control_limiter_chain
+  control_late_board control_other_battery control_supply_and_time control_told_wrong control_air_witness control_sensor_guard
   control_nodes_and_laws control_position_error control_power_law control_protection control_safety_limiter control_sensor_limiter control_utilisation control_decisions control_refusals actuator_start_decisions actuator_edges actuator_hottest_journal certified_edges
   fixed_point fixed_point_loop"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 \

@@ -204,3 +204,24 @@ TEST_CASE("a board that stopped because of heat says so, and for nothing else") 
     CHECK_FALSE(is_hot());
   }
 }
+
+TEST_CASE("an answer takes no other message for itself, however long that is") {
+  const Data longest(255, 2);
+  const auto other = view(sbgc::command::confirm, longest);
+  CHECK_FALSE(sbgc::Angles().read(other));
+  CHECK_FALSE(sbgc::AnglesExt().read(other));
+  CHECK_FALSE(sbgc::Params3().read(other));
+  CHECK(sbgc::Params3().read(view(sbgc::command::read_params_3, longest)));
+  CHECK(sbgc::Params3().read(view(sbgc::command::write_params_3, longest)));
+  sbgc::RealtimeCustom data(sbgc::custom::power_state);
+  CHECK_FALSE(data.read(other));
+  // Nothing was read yet; then bit 1 of the warnings says that a motor is too hot, and no axis is beyond the third.
+  CHECK(data.field(sbgc::custom::power_state) == nullptr);
+  CHECK_FALSE(data.warns_of_heat());
+  REQUIRE(data.read(view(sbgc::command::realtime_data_custom, longest)));
+  CHECK(data.warns_of_heat());
+  CHECK(int(data.motor_C(2)) == int(data.motor_C(200)));
+  const Data cool(255, 1);
+  REQUIRE(data.read(view(sbgc::command::realtime_data_custom, cool)));
+  CHECK_FALSE(data.warns_of_heat());
+}
