@@ -4,12 +4,14 @@
 // A whole robot: names, the body that MuJoCo answers for, and the diagnosis of two links whose truth is known.
 
 #include "../catch.hpp"
+#include "hidden_truth.hpp"
 #include "two_links.hpp"
 
 #include "mujoco_body.hpp"
 #include "robot_files.hpp"
 
 #include <thermopower/robot/diagnose.hpp>
+#include <thermopower/robot/effort_timing.hpp>
 #include <thermopower/robot/names.hpp>
 #include <thermopower/robot/table.hpp>
 
@@ -181,6 +183,47 @@ TEST_CASE("friction in one joint is found there, with its size, and the other jo
     CHECK(diagnosis.joints[1].found.friction == Approx(0.35).margin(0.03));
     CHECK(diagnosis.joints[1].effort.after < 0.2 * diagnosis.joints[1].effort.before);
     CHECK(change(diagnosis.joints[1], "friction")->from == 0.1);
+  }
+}
+
+TEST_CASE(
+    "whenever in its row an effort is logged, sound joints are not accused, and those with an effect are found") {
+  using Logged = test::HiddenTruth::Logged;
+  for (const Logged logged : {Logged::after_jump, Logged::before_jump, Logged::averaged}) {
+    test::HiddenTruth truth(test::HiddenTruth::Kind::arm, 2);
+    const robot::Log log = truth.log(true, 20.0, logged);
+    const robot::MujocoBody body("model", truth.model());
+    const robot::RobotDiagnosis diagnosis = robot::diagnose(body, body.robot(), log, {});
+    for (std::size_t j = 0; j < diagnosis.joints.size(); ++j) {
+      CAPTURE(static_cast<int>(logged), j);
+      const auto is_here = [&](const test::HiddenTruth::Effect& one) {
+        return one.joint == static_cast<int>(j);
+      };
+      const bool affected = std::any_of(truth.effects().begin(), truth.effects().end(), is_here);
+      CHECK(diagnosis.joints[j].causes.empty() != affected);
+    }
+  }
+}
+
+TEST_CASE("the rate at a jump of the effort is below its mean by what a stepped joint shows") {
+  for (const double x : {1e-3, 0.05, 0.7, 3.0}) {
+    CAPTURE(x);
+    // I w' = -kd w + f, where f falls from 1/2 to -1/2 in each row; I = 1, h = 1, kd = x.
+    constexpr int parts = 20000, periods = 40;
+    double w = 0.0, at_jump = 0.0, sum = 0.0;
+    const int rows = x < 0.1 ? 1 : periods;
+    // A slow joint does not settle in some rows: it sets out from where the period closes, by symmetry of the mean.
+    if (rows == 1) w = -1.0 / 12.0;
+    for (int row = 0; row < rows; ++row) {
+      at_jump = w;
+      sum = 0.0;
+      for (int i = 0; i < parts; ++i) {
+        const double t = (i + 0.5) / parts, middle = w + 0.5 / parts * (0.5 - t - x * w);
+        w += (0.5 - t - x * middle) / parts;
+        sum += middle / parts;
+      }
+    }
+    CHECK(robot::ripple_share(x) == Approx(x * (sum - at_jump)).epsilon(0.01));
   }
 }
 

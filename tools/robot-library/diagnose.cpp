@@ -34,6 +34,10 @@ constexpr double relevant_share =
 constexpr double own_gain = 0.25;
 constexpr double earlier_wins = 0.03;      // share of the effort that a longer delay must win
 constexpr double controlled_share = 0.35;  // of a measured effort that a position controller may leave
+// Share of a measured effort that a position controller may leave where its own words tell the instant of the state in it.
+constexpr double commanded_share = 0.1;
+constexpr double near_gain = 0.2;  // share of the model's gain within which a regression's is taken for it
+constexpr double between_rows = 0.25;  // rows by which a state is not that of a row
 
 Log part_of(const Log& log, bool last, double share) {
   Log out;
@@ -232,7 +236,7 @@ private:
     const Eigen::Index rows = train_.series.rows();
     double least = std::numeric_limits<double>::infinity();
     for (int late = 0; late <= static_cast<int>(options_.latest_rows); ++late) {
-      std::vector<double> gain(count(), 0.0);
+      std::vector<double> gain(count(), 0.0), ripple(count(), 0.0);
       double sum = 0.0;
       for (std::size_t j = 0; j < count(); ++j) {
         const Eigen::VectorXd target = train_.series.smooth_target.col(index(j));
@@ -247,14 +251,50 @@ private:
         const double left =
             (effort - columns * value).norm() / (effort.array() - effort.mean()).matrix().norm();
         sum += std::log(std::min(1.0, left) + 1e-6);
-        if (left < controlled_share && value[0] > 0.0) gain[j] = value[0];
+        if (!(left < controlled_share && value[0] > 0.0)) continue;
+        // Noise of the position makes the regression's gain too large in a light joint.
+        const double kp = joint(j).kp;
+        gain[j] = std::fabs(value[0] - kp) < near_gain * kp ? kp : value[0];
+        const double inertia = train_.body.inertia.col(index(j)).mean() + joint(j).armature;
+        if (value[2] < 0.0 && inertia > 0.0)
+          ripple[j] = ripple_share(-value[2] * train_.series.step_s / inertia);
       }
       if (sum < least) {
         least = sum;
         timing_.target_rows = late;
         timing_.gain = gain;
+        timing_.ripple = ripple;
       }
     }
+  }
+
+  /// Time in s by which the state in the logged effort is older than the logged state; 0 where no joint tells.
+  ///
+  /// A position controller commands kp (target - q) - kd w. With a state that is s older this is, to first order in s,
+  /// kp target - kp q - (kd - kp s) w + kd s a. The regression on the acceleration a tells s. Friction and weight are not in the
+  /// command, so the joint's own equation of motion does not pass for it.
+  double age_of_state() const {
+    std::vector<double> ages;
+    for (std::size_t j = 0; j < count(); ++j) {
+      if (timing_.gain.empty() || timing_.gain[j] == 0.0) continue;
+      const Eigen::VectorXd effort = train_.series.effort.col(index(j));
+      Eigen::MatrixXd columns(train_.series.rows(), 5);
+      columns.col(0) = earlier(train_.series, train_.series.smooth_target.col(index(j)), timing_.target_rows);
+      columns.col(1) = train_.series.motion.position.col(index(j));
+      columns.col(2) = train_.series.motion.velocity.col(index(j));
+      columns.col(3) = train_.series.motion.acceleration.col(index(j));
+      columns.col(4).setOnes();
+      const Eigen::VectorXd value = columns.householderQr().solve(effort);
+      const double left =
+          (effort - columns * value).norm() / (effort.array() - effort.mean()).matrix().norm();
+      const double kp = -value[1], root = value[2] * value[2] + 4.0 * kp * value[3];
+      if (left > commanded_share || !(kp > 0.0) || !(root > 0.0)) continue;
+      ages.push_back((value[2] + std::sqrt(root)) / (2.0 * kp));
+    }
+    if (ages.empty()) return 0.0;
+    const auto middle = ages.begin() + static_cast<std::ptrdiff_t>(ages.size() / 2);
+    std::nth_element(ages.begin(), middle, ages.end());
+    return std::clamp(*middle, -train_.series.step_s, options_.latest_rows * train_.series.step_s);
   }
 
   /// What is left of a joint's effort in units of what noise leaves, as a logarithm.
@@ -286,20 +326,34 @@ private:
 
   // Whether the log holds the effort just after the controllers took over a target, just before, or neither; and how late.
   void find_jump() {
+    const double age_s = age_of_state();
     std::vector<double> kinds{0.0};
-    if (std::any_of(timing_.gain.begin(), timing_.gain.end(), [](double one) { return one > 0.0; }))
+    const bool is_of_its_row = std::fabs(age_s) < between_rows * train_.series.step_s;
+    // An effort whose state lies between the rows is a mean, and has no jump.
+    if (is_of_its_row &&
+        std::any_of(timing_.gain.begin(), timing_.gain.end(), [](double one) { return one > 0.0; }))
       kinds = {0.0, 1.0, -1.0};
     double least = std::numeric_limits<double>::infinity();
     EffortTiming best = timing_;
+    const auto judge = [&](EffortTiming trial, double late_s, double price) {
+      trial.late_s = late_s;
+      const double left = beyond_noise(trial, nullptr) + price;
+      if (left < least) least = left, best = trial;
+    };
     for (const double after : kinds) {
       EffortTiming trial = timing_;
       trial.after_jump = after;
       // An effort that was averaged before it was logged acts before its row.
-      trial.late_s = delay_with(trial, -1.0);
-      const double left = beyond_noise(trial, nullptr) + price_of(trial.late_s);
-      if (left < least) least = left, best = trial;
+      const double late_s = delay_with(trial, -1.0);
+      judge(trial, late_s, price_of(late_s));
+      // What the controllers themselves say costs nothing.
+      if (!is_of_its_row) judge(trial, -age_s, 0.0);
     }
     timing_ = best;
+    // A target that is held to the next row is half a row old on average. An effort just before its jump is older by a row than one
+    // just after it, and neither is a delay.
+    target_delay_s_ =
+        std::max(0.0, target_delay_s_ - 0.5 * (1.0 - timing_.after_jump) * train_.series.step_s);
   }
 
   // What a delay must win, as a logarithm: there is often none, and a long one is rare.

@@ -26,7 +26,20 @@ struct EffortTiming {
   double after_jump = 0.0;
   int target_rows = 0;            ///< rows by which the logged effort follows the logged target
   std::vector<double> gain = {};  ///< N m of measured effort per rad of target, one per joint; 0: not known
+  /// Share of a jump that the logged effort has too much because the rate is least just at the jump, one per joint; see
+  /// ripple_share(). Of an effort that has a jump.
+  std::vector<double> ripple = {};
 };
+
+/// @brief Share of a jump by which an effort at the jump exceeds its mean, because its damping acts on a rate that swings with the jumps.
+///
+/// Between two jumps of height J the target's part of the effort falls behind its mean course evenly, from J / 2 above to J / 2 below.
+/// With I w' = -kd w + that, the rate at the jump is below its mean by J / kd times this share, where x = kd h / I.
+/// @param x  damping gain times the time between rows over the joint's inertia, >= 0
+inline double ripple_share(double x) {
+  constexpr double small = 1e-2;  // the series is then exact to 1e-8
+  return x < small ? x / 12.0 : 1.0 / (1.0 - std::exp(-x)) - 0.5 - 1.0 / x;
+}
 
 /// Value of each row at a time that is `rows` earlier: straight lines between rows, the end's value past an end.
 inline Eigen::VectorXd earlier(const Series& series, const Eigen::VectorXd& values, double rows) {
@@ -63,7 +76,8 @@ inline Eigen::VectorXd effort_of(const Series& series, Eigen::Index index, const
     if (timing.after_jump != 0.0 && gain != 0.0) {
       const Eigen::VectorXd target = series.smooth_target.col(index);
       const int rows = timing.target_rows - (timing.after_jump < 0.0 ? 1 : 0);
-      effort -= 0.5 * timing.after_jump * gain *
+      const double ripple = timing.ripple.empty() ? 0.0 : timing.ripple[static_cast<std::size_t>(index)];
+      effort -= (0.5 * timing.after_jump + ripple) * gain *
                 (earlier(series, target, rows) - earlier(series, target, rows + 1));
     }
     return earlier(series, effort, late);
