@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cassert>
 #include <cmath>
 
 namespace thermopower::gap::engine {
@@ -17,6 +18,7 @@ namespace thermopower::gap::engine {
 /// @return         one an explanation; they sum to 1
 inline Eigen::VectorXd bootstrap_weights(const Eigen::MatrixXd& density, const Eigen::VectorXd& prior) {
   constexpr int draws = 400;
+  assert(density.rows() == prior.size() && density.cols() > 0);
   const Eigen::Index blocks = density.cols();
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(density.rows());
   Dice dice(3);

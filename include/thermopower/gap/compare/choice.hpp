@@ -8,6 +8,7 @@
 #include <thermopower/gap/diagnosis.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -100,6 +101,7 @@ inline double probability_of_constants(const std::vector<Candidate>& candidates)
 
 /// The answer. Where no explanation is likely, but likely ones share some causes, these are it.
 inline Answer choose(const std::vector<Candidate>& candidates, const Model& model) {
+  assert(!candidates.empty());
   Answer choice;
   const std::size_t best = likeliest(candidates);
   choice.chosen = parsimonious(candidates, best, model);

@@ -6,6 +6,7 @@
 #include <thermopower/gap/report/score.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -97,6 +98,7 @@ struct Decision {
 /// @param within_known    whether the refitted constants are within what the model file says is known
 inline Decision decide(const DecisionNumbers& numbers, bool only_constants, bool within_known) {
   const VerdictLimits& limit = verdict_limits;
+  assert(numbers.probability >= 0.0 && numbers.probability <= 1.0 + 1e-9);
   const double passes = std::max(limit.passes, std::min(numbers.by_chance, limit.most_by_chance));
   if (numbers.configured <= passes && numbers.twice_horizon <= limit.near_floor)
     return {Verdict::no_gap, Reason::configured_model_passes};

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/mask_thresholds.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Extreme {
 /// @param samples  at least one  @param top  the largest
 inline Extreme extreme_of(const std::vector<double>& samples, bool top) {
   const auto is_beyond = [top](double one, double other) { return top ? one > other : one < other; };
+  assert(!samples.empty());
   Extreme one;
   one.value = one.next = samples.front();
   for (const double sample : samples)

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -25,6 +26,7 @@ public:
   /// @param a  n by n, of which the lower triangle is read
   explicit SymmetricSystem(Eigen::MatrixXd a) : factors_(std::move(a)) {
     const Eigen::Index n = factors_.rows();
+    assert(factors_.cols() == n);
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index j = k + 1; j < n; ++j) {
         const double multiple = divided(factors_(j, k), k);
@@ -36,6 +38,7 @@ public:
 
   /// The n unknowns of n right-hand sides.
   Eigen::VectorXd solve(Eigen::VectorXd b) const {
+    assert(b.size() == factors_.rows());
     const Eigen::Index n = factors_.rows();
     for (Eigen::Index k = 0; k < n; ++k)
       for (Eigen::Index i = k + 1; i < n; ++i) b[i] -= factors_(i, k) * b[k];
@@ -58,6 +61,7 @@ private:
 /// Turns a symmetric positive definite matrix of a few rows into its inverse (Gauss and Jordan's elimination in place).
 inline void invert_symmetric(Eigen::MatrixXd& a) {
   const Eigen::Index n = a.rows();
+  assert(a.cols() == n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double pivot = a(k, k);
     a(k, k) = 1.0;
@@ -94,6 +98,7 @@ public:
 
   /// The n unknowns of m right-hand sides.
   Eigen::VectorXd solve(Eigen::VectorXd b) const {
+    assert(b.size() == r_.rows());
     for (const Mirror& one : mirrors_) one.reflect(b.data());
     Eigen::VectorXd x = in_order_given(b.data());
     for (const Eigen::VectorXd& direction : null_space_) x -= direction.dot(x) * direction;

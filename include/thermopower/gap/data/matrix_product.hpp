@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <cassert>
+
 #include <Eigen/Core>
 
 /// @file matrix_product.hpp
@@ -18,6 +20,7 @@ using VectorView = Eigen::Ref<const Eigen::VectorXd>;
 
 /// A'B. @param a, b  equally many rows
 inline Eigen::MatrixXd transposed_product(const MatrixView& a, const MatrixView& b) {
+  assert(a.rows() == b.rows());
   Eigen::MatrixXd product(a.cols(), b.cols());
   for (Eigen::Index k = 0; k < b.cols(); ++k)
     for (Eigen::Index i = 0; i < a.cols(); ++i) product(i, k) = a.col(i).dot(b.col(k));
@@ -26,6 +29,7 @@ inline Eigen::MatrixXd transposed_product(const MatrixView& a, const MatrixView&
 
 /// A'b. @param a, b  equally many rows
 inline Eigen::VectorXd transposed_times(const MatrixView& a, const VectorView& b) {
+  assert(a.rows() == b.size());
   Eigen::VectorXd product(a.cols());
   for (Eigen::Index i = 0; i < a.cols(); ++i) product[i] = a.col(i).dot(b);
   return product;
@@ -41,6 +45,7 @@ inline Eigen::MatrixXd gram(const MatrixView& a) {
 
 /// x'Ax. @param a  as many rows and columns as x has elements
 inline double quadratic_form(const Eigen::MatrixXd& a, const Eigen::VectorXd& x) {
+  assert(a.rows() == x.size() && a.cols() == x.size());
   double sum = 0.0;
   for (Eigen::Index k = 0; k < x.size(); ++k) sum += x[k] * a.col(k).dot(x);
   return sum;
@@ -48,6 +53,7 @@ inline double quadratic_form(const Eigen::MatrixXd& a, const Eigen::VectorXd& x)
 
 /// A with each element times the scale of its row and that of its column. @param a  square
 inline Eigen::MatrixXd scaled_both_ways(Eigen::MatrixXd a, const Eigen::VectorXd& scale) {
+  assert(a.rows() == scale.size() && a.cols() == scale.size());
   for (Eigen::Index k = 0; k < a.cols(); ++k)
     for (Eigen::Index i = 0; i < a.rows(); ++i) a(i, k) *= scale[i] * scale[k];
   return a;

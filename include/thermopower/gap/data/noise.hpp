@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -105,6 +106,7 @@ inline double most_of_a_mean() {
 
 /// Minimises |A x - y|^2 over x >= 0 for a handful of columns, by cyclic coordinate descent.
 inline Eigen::VectorXd non_negative_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) {
+  assert(columns.rows() == y.size());
   constexpr int sweeps = 200;
   const Eigen::MatrixXd square = gram(columns);
   const Eigen::VectorXd right = transposed_times(columns, y);
@@ -156,6 +158,7 @@ inline VariogramNoise noise_of_variogram(const std::vector<double>& lags,
                                          const MostNoise& most = {}) {
   constexpr NoiseThresholds limit;
   const auto rows = static_cast<Eigen::Index>(lags.size());
+  assert(variogram.size() == lags.size() && weights.size() == lags.size());
   const auto shape = [&](auto&& function) {
     Eigen::VectorXd column(rows);
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -230,6 +233,7 @@ double half_mean_square(const std::vector<double>& scaled, const std::vector<int
 
 /// Whether two samples are at the same level.
 inline bool are_alike(const std::vector<double>& levels, std::size_t i, std::size_t k) {
+  assert(i < levels.size() && k < levels.size());
   return std::abs(levels[i] - levels[k]) <= NoiseThresholds().same_level;
 }
 

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <cassert>
+
 #include <thermopower/gap/data/linear_solve.hpp>
 #include <thermopower/gap/data/matrix_product.hpp>
 
@@ -25,6 +27,7 @@ public:
 
   /// Adds a row of terms that err. @param instruments  one for each term, that do not err with it
   void add(const Eigen::VectorXd& instruments, const Eigen::VectorXd& terms, double response) {
+    assert(terms.size() == product_.size() && instruments.size() == terms.size());
     for (Eigen::Index k = 0; k < terms.size(); ++k) {
       for (Eigen::Index i = 0; i < terms.size(); ++i) square_(i, k) += instruments[i] * terms[k];
       product_[k] += instruments[k] * response;
@@ -33,6 +36,7 @@ public:
 
   /// Adds other sums so many times: -1 takes them out.
   void add(const NormalEquations& other, double times) {
+    assert(other.product_.size() == product_.size());
     for (Eigen::Index k = 0; k < product_.size(); ++k) {
       for (Eigen::Index i = 0; i < product_.size(); ++i) square_(i, k) += times * other.square_(i, k);
       product_[k] += times * other.product_[k];
@@ -45,6 +49,7 @@ public:
   /// Those of a regression on all terms but one: 0 for that.
   Eigen::VectorXd solve_without(Eigen::Index term) const {
     NormalEquations others = *this;
+    assert(term >= 0 && term < product_.size());
     others.square_.row(term).setZero();
     others.square_.col(term).setZero();
     others.product_[term] = 0.0;
@@ -53,6 +58,7 @@ public:
 
   /// Those of a regression on the first terms alone. @param count  of them
   Eigen::VectorXd solve_first(Eigen::Index count) const {
+    assert(count > 0 && count <= product_.size());
     return LeastSquares(square_.topLeftCorner(count, count)).solve(product_.head(count));
   }
 

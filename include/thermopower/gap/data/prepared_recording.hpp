@@ -17,6 +17,7 @@
 #include <thermopower/plant/samples.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -486,6 +487,7 @@ inline void PreparedRecording::keep_known_rows() {
     run.end = static_cast<Eigen::Index>(source_rows_.size());
   }
   believed_.runs = std::move(kept);
+  assert(static_cast<Eigen::Index>(source_rows_.size()) <= believed_.rows());
   const auto rows = static_cast<Eigen::Index>(source_rows_.size());
   if (rows == believed_.rows()) return;
   const auto kept_of = [&](const Eigen::VectorXd& values) {

@@ -6,6 +6,7 @@
 #include <thermopower/gap/recording.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -20,6 +21,7 @@ namespace thermopower::gap::engine {
 /// The quantile `share` (0..1) of finite values, 0 of none; reorders them.
 inline double quantile_of(std::vector<double>& values, double share) {
   if (values.empty()) return 0.0;
+  assert(share >= 0.0 && share <= 1.0);
   const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
@@ -58,6 +60,7 @@ void for_each_in_order(const Eigen::VectorXd& values, const std::vector<RunSpan>
     }
   const bool skips = together < hardly_any * finite;
   for (const RunSpan& run : runs) {
+    assert(run.begin >= 0 && run.end <= values.size());
     std::array<Eigen::Index, count> rows{};
     std::size_t known = 0;
     for (Eigen::Index i = run.begin; i < run.end; ++i) {

@@ -10,6 +10,7 @@
 #include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,6 +26,7 @@ namespace thermopower::gap::engine {
 
 /// Makes samples of a column missing. @param mask  which; empty: none
 inline void take_away(Eigen::VectorXd& values, const RowMask& mask) {
+  assert(static_cast<Eigen::Index>(mask.size()) <= values.size());
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[i] != 0) values[static_cast<Eigen::Index>(i)] = missing;
 }

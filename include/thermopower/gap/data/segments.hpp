@@ -8,6 +8,7 @@
 #include <thermopower/gap/model.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -110,6 +111,7 @@ inline std::vector<RunSpan> cut_at(const std::vector<RunSpan>& runs, const RowMa
 
 /// Runs without the rows that are set in `unknown`: what is left of each, as segments.
 inline std::vector<RunSpan> without(const std::vector<RunSpan>& runs, const RowMask& unknown) {
+  assert(runs.empty() || runs.back().end <= static_cast<Eigen::Index>(unknown.size()));
   std::vector<RunSpan> result;
   for (const RunSpan& run : runs)
     for (Eigen::Index row = run.begin; row < run.end;) {

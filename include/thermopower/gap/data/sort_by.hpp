@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ template <class Item, class Key>
 void sort_by(std::vector<Item>& items, Key&& key) {
   std::vector<double> numbers;
   for (const Item& one : items) numbers.push_back(static_cast<double>(key(one)));
+  assert(std::none_of(numbers.begin(), numbers.end(), [](double one) { return std::isnan(one); }));
   reorder(items, ascending(numbers));
 }
 

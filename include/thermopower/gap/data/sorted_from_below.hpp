@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ public:
 
   /// The one that has `at` before it, below size().
   double operator[](std::size_t at) {
+    assert(at < list_.size());
     if (at >= sorted_) sort_beyond(at);
     return list_[at];
   }

@@ -9,6 +9,7 @@
 #include <thermopower/gap/data/robust.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -45,6 +46,7 @@ public:
   /// Isolated samples, or two of five, that lie far from all around them.
   /// @param values  of the column, without what was masked so far
   RowMask find(Eigen::VectorXd values) const {
+    assert(values.size() == static_cast<Eigen::Index>(median_confirmed_.size()));
     RowMask mask(static_cast<std::size_t>(values.size()), 0);
     for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
       RowMask found(mask.size(), 0);
@@ -219,6 +221,7 @@ private:
 
   /// Which rows a rate and its angle agree about. @param off  how far a sample must stand out that is looked at
   RowMask confirmed(const Eigen::VectorXd& values, double off) const {
+    assert(runs_.empty() || runs_.back().end <= values.size());
     RowMask mask(static_cast<std::size_t>(values.size()), 0);
     for (const RunSpan& run : runs_)
       for (Eigen::Index i = run.begin; i < run.end; ++i)

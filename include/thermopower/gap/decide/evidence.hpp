@@ -11,6 +11,7 @@
 #include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <string>
@@ -119,6 +120,7 @@ inline bool ends_on_bounds(const Candidate& candidate, const Model& model, const
     if (!plant::names_a_transition(constants[i].fields.front()) &&
         is_as_far_as_it_may(constants[i], candidate.fit.point[static_cast<Eigen::Index>(i)]))
       return true;
+  assert(candidate.list.size() == at_bound.size());
   for (const CatalogueEntry* entry : candidate.explanation.effects) {
     bool all = true;
     const std::size_t first = at;
@@ -197,6 +199,7 @@ inline bool scores_alike(const Candidate& candidate, const Candidate& other) {
 
 /// Log odds that go with a difference of so many standard errors, by the normal distribution (Page 1977).
 inline double log_odds_of(double standard_errors) {
+  assert(!(standard_errors < 0.0));
   const double z = std::min(standard_errors, 40.0);
   return 1.5976 * z + 0.07056 * z * z * z;
 }
@@ -291,6 +294,16 @@ inline SpecialCase special_case(const Candidate& candidate, const EffectInfo& in
   if (small && is_small(candidate, place(small->small), place(small->beside)))
     return {small->cause, true, false};
   return {};
+}
+
+/// Whether some effect of a candidate ended where it has another name.
+inline bool has_special_case(const Candidate& candidate, const Model& model) {
+  std::size_t at = model.calibrated().size();
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    if (!special_case(candidate, entry->info, at).cause.empty()) return true;
+    at += entry->info.parameters.size();
+  }
+  return false;
 }
 
 /// Whether a candidate ended where it is another one (EffectInfo::where_equal, EffectInfo::where_small) that scores like
@@ -485,6 +498,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.against -= first;
     total += one.probability = std::exp(-one.against);
   }
+  assert(total >= 1.0);  // the first has odds of one
   for (Candidate& one : candidates) one.probability /= total;
 }
 
@@ -496,6 +510,7 @@ inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& em
   std::size_t count = 0;
   for (const auto& one : with) count += one.size();
   Eigen::VectorXd change(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < signal_count; ++i) assert(with[i].size() == without[i].size());
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < signal_count; ++i)
     for (std::size_t k = 0; k < with[i].size(); ++k) change[at++] = with[i][k] - without[i][k];
@@ -504,6 +519,7 @@ inline Eigen::VectorXd signature(const Candidate& candidate, const Candidate& em
 
 /// Cosine of two signatures; 0 where one is nothing.
 inline double likeness(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  assert(a.size() == b.size());
   const double norm = a.norm() * b.norm();
   return norm > 0.0 ? a.dot(b) / norm : 0.0;
 }

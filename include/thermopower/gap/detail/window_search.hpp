@@ -83,15 +83,21 @@ public:
     look_closely();
   }
 
-  /// Where averages leave the best explanation above the noise and the rows themselves do not, the rows are what is fitted to.
+  /// Where averages leave the best explanation above the noise and the rows themselves do not, the rows are what is fitted to. So they
+  /// are where it turns out to be a simpler one on the rows: averages of a drag that turns over bend a friction by direction.
   void look_at_rows() {
     constexpr double near = decision.near_floor;
     Candidate leader = attempt_.best();
-    if (!is_averaged(attempt_.problem) || leader.train.within(near * near)) return;
+    const bool is_far = !leader.train.within(near * near);
+    const auto may_be_simpler = [](const CatalogueEntry* one) { return one->info.where_equal.has_value(); };
+    const std::vector<const CatalogueEntry*>& effects = leader.explanation.effects;
+    if (!is_averaged(attempt_.problem) ||
+        (!is_far && std::none_of(effects.begin(), effects.end(), may_be_simpler)))
+      return;
     const double hopeless = 2.0 * leader.fit.cost;
     FitProblem rows = fitted_to_rows(leader, attempt_.problem, train_, attempt_.horizon_s,
                                      search_extent.fitted_recorded_rows);
-    if (!leader.train.within(near * near)) return;
+    if (!leader.train.within(near * near) || (!is_far && !has_special_case(leader, posing_.model()))) return;
     attempt_.problem = std::move(rows);
     attempt_.all = attempt_.problem.segments;  // no window of averages is one of these
     search_->take_over(attempt_.candidates, hopeless);

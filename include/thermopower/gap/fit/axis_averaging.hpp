@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -167,6 +168,7 @@ private:
   /// Means of a held input over the intervals that start at the rows of `thin`.
   Eigen::VectorXd held_means(const Eigen::VectorXd& values, const Inputs& thin) const {
     Eigen::VectorXd means(thin.t_s.size());
+    assert(values.size() == full_.t_s.size());
     for (std::size_t r = 0; r < thin.runs.size(); ++r) {
       const RunSpan& run = thin.runs[r];
       const RunSpan& whole = full_.runs[r];

@@ -7,6 +7,7 @@
 #include <thermopower/gap/rule.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct Candidate {
 
   /// Where the fit ended with the coordinate at this place of `list`: its value, in its unit.
   double value(std::size_t place) const {
+    assert(place < list.size() && fit.point.size() == static_cast<Eigen::Index>(list.size()));
     return list[place].value_of(fit.point[static_cast<Eigen::Index>(place)]);
   }
 
@@ -60,6 +62,7 @@ inline std::vector<int> moved_constants(const Candidate& candidate, const Model&
 
 /// The price of a candidate's moved constants, a released one included: twice a log odds.
 inline double price_of_constants(const Candidate& candidate, const Model& model) {
+  assert(candidate.fit.point.size() >= static_cast<Eigen::Index>(model.calibrated().size()));
   double price = 0.0;
   Eigen::Index at = 0;
   for (const CalibratedConstant& constant : model.calibrated())

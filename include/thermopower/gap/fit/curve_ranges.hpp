@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -34,6 +35,7 @@ public:
     constexpr double outermost = 1e-3, strays = 0.1;
     if (values.empty()) return {0.0, 0.0};
     std::sort(values.begin(), values.end());
+    assert(values.front() <= values.back());
     const auto at = [&](double share) {
       return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
     };

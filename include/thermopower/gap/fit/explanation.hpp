@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -194,6 +195,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
         one.standard = one.coordinate_of(*parameter.standard);
       }
       one.two_families = parameter.two_families && !one.still;
+      assert(one.lower <= one.upper && one.start >= one.lower && one.start <= one.upper);
     }
   return list;
 }
@@ -205,6 +207,7 @@ inline std::vector<CombinedPrior> combined_priors(const Explanation& explanation
   std::vector<CombinedPrior> priors;
   std::size_t of_effects = 0;
   for (const CatalogueEntry* entry : explanation.effects) of_effects += entry->info.parameters.size();
+  assert(of_effects <= list.size());
   Eigen::Index at = static_cast<Eigen::Index>(list.size() - of_effects);
   for (const CatalogueEntry* entry : explanation.effects) {
     if (const auto& curve = entry->info.curve) {
@@ -224,6 +227,7 @@ inline std::vector<CombinedPrior> combined_priors(const Explanation& explanation
 /// A point of a fit as a plant takes it.
 inline ParameterPoint point_of(const Model& model, const Explanation& explanation,
                                const std::vector<Coordinate>& coordinates, const Eigen::VectorXd& at) {
+  assert(at.size() == static_cast<Eigen::Index>(coordinates.size()));
   ParameterPoint point;
   const std::size_t constants = model.calibrated().size();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -240,6 +244,7 @@ inline ParameterPoint point_of(const Model& model, const Explanation& explanatio
 /// The model with an explanation's causes in it and its constants moved.
 inline Model augmented(const Model& model, const Explanation& explanation,
                        const std::vector<Coordinate>& coordinates, const Eigen::VectorXd& at) {
+  assert(at.size() == static_cast<Eigen::Index>(coordinates.size()));
   Model result = model;
   int index = 0;
   for (const CalibratedConstant& constant : model.calibrated()) {

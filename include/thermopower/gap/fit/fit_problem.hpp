@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -74,6 +75,7 @@ struct FitProblem {
                       const Eigen::VectorXd& at, const std::vector<Start>& starts, bool with_jacobian,
                       const std::function<bool(std::size_t index, const Residuals& residuals)>& use) const {
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
+    assert(at.size() == static_cast<Eigen::Index>(list.size()) && starts.size() == segments.size());
     const Plant& plant = this->plant();
     const int parameters = static_cast<int>(list.size());
     const int largest = largest_start_size(plant, segments);
@@ -131,6 +133,7 @@ struct FitProblem {
     if (kept != nullptr)
       for (std::vector<double>& one : *kept) one.clear();
     if (stop != nullptr && *stop) throw Stopped("the diagnosis was told to stop");
+    assert(at.size() == static_cast<Eigen::Index>(list.size()) && starts.size() == segments.size());
     const Plant& plant = this->plant();
     const auto rollout = plant.rollout(*model, *catalogue, point_of(*model, explanation, list, at), {},
                                        SimulationMode::free_running);
@@ -161,6 +164,7 @@ struct FitProblem {
 private:
   /// The factor that brings a difference at a row to units of the noise.
   double weight_of(const Inputs& inputs, Signal signal, Eigen::Index row) const {
+    assert(sigma[static_cast<std::size_t>(signal)] > 0.0);
     const double repeats = inputs.repeats.size() > 0 ? std::sqrt(inputs.repeats[row]) : 1.0;
     return repeats / sigma[static_cast<std::size_t>(signal)];
   }
@@ -200,6 +204,7 @@ private:
         for (int d = 0; d < count; ++d) residuals.jacobian(filled, column(d)) = bounded(slopes[d] * weight);
         ++filled;
       }
+    assert(filled == residuals.value.size());
   }
 
   /// A simulation that left the number range counts as very bad, not as undefined.

@@ -8,6 +8,7 @@
 #include <thermopower/gap/fit/signal_sums.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -72,6 +73,7 @@ public:
                      const std::vector<Start>* starts = nullptr) {
     FitResult best;
     best.point = from;
+    assert(from.size() == static_cast<Eigen::Index>(list_.size()));
     best.starts = starts != nullptr ? *starts : problem_.measured_starts();
     double damping = 1e-4;
     bool seen = false;  // the view is of `best`

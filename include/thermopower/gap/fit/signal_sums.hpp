@@ -4,6 +4,7 @@
 
 #include <thermopower/gap/data/inputs.hpp>
 
+#include <cassert>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -58,12 +59,14 @@ struct SignalSums {
 
   /// Residuals of a signal become so many times as large. @param by  0 or more
   void scale(std::size_t signal, double by) {
+    assert(signal < signal_count && by >= 0.0);
     squares[signal] *= by * by;
     for (double& of_block : block_squares[signal]) of_block *= by * by;
   }
 
   /// Sets a signal's sums. @param unit  residuals are divided by it, > 0
   void set(std::size_t signal, const std::vector<double>& residuals, double unit) {
+    assert(signal < signal_count && unit > 0.0);
     squares[signal] = samples[signal] = 0.0;
     block_squares[signal].fill(0.0);
     block_samples[signal].fill(0.0);

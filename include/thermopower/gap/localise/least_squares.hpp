@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -45,6 +46,7 @@ struct Problem {
 inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment,
                                      const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
   const Eigen::Index n = moment.size();
+  assert(gram.rows() == n && gram.cols() == n && lower.size() == n && upper.size() == n);
   std::vector<int> state(static_cast<std::size_t>(n), 0);  // -1 at lower, 0 free, +1 at upper
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   for (int round = 0; round < 6 * static_cast<int>(n) + 10; ++round) {
@@ -105,6 +107,7 @@ inline Eigen::VectorXd bounded_solve(const Eigen::MatrixXd& gram, const Eigen::V
 /// scan.
 inline double sum_of_squares_left(const Problem& problem, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd x = plant::beside(plant::beside(problem.nuisance, problem.free), columns);
+  assert(x.rows() == problem.y.size());
   const Eigen::Index bounded = problem.nuisance.cols(), width = x.cols();
   const Eigen::MatrixXd square = gram(x);
   Eigen::VectorXd scale(width);
@@ -137,11 +140,13 @@ public:
   /// Keeps references to both arguments: they must outlive this object.
   BlockFitter(const Problem& problem, const std::vector<Block>& blocks) : problem_(problem), blocks_(blocks) {
     const Eigen::Index rows = problem.y.size();
+    assert(problem.nuisance.rows() == rows && problem.free.rows() == rows && problem.fold.size() == rows);
     own_ = problem.nuisance.cols() + problem.free.cols();
     Eigen::Index width = own_;
     for (const Block& block : blocks) {
       begin_.push_back(width);
       width += block.columns.cols();
+      assert(block.columns.rows() == rows && block.lower <= block.upper);
     }
     Eigen::MatrixXd x(rows, width);
     x.leftCols(problem.nuisance.cols()) = problem.nuisance;
@@ -251,6 +256,7 @@ public:
 
   /// The residuals of the fit, row by row.
   Eigen::VectorXd residual(const BlockFit& fit) const {
+    assert(fit.coefficients.size() >= own_);
     Eigen::VectorXd out = problem_.y;
     Eigen::Index at = problem_.nuisance.cols();
     out -= problem_.nuisance * fit.coefficients.head(at);

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -84,6 +85,7 @@ public:
       : b_(balance), average_(balance.rows->runs, balance.measured, limit.rows) {}
 
   Eigen::VectorXd residual() const override {
+    assert(b_.flow_sampled.size() == b_.rows->size());
     Eigen::VectorXd left = b_.measured - b_.flow_sampled;
     if (b_.flow_held.size() > 0) left -= b_.flow_held;
     return average_(left);
@@ -182,6 +184,7 @@ private:
 
   /// x' = pace - relaxation x, exactly for a pace that is held over the interval.
   Eigen::VectorXd filtered(const Eigen::VectorXd& pace, bool from_state) const {
+    assert(pace.size() == kept_.size() && (!from_state || b_.state.size() == kept_.size()));
     Eigen::VectorXd out(pace.size());
     for (const RunSpan& run : b_.rows->runs) {
       double x = from_state ? b_.state[run.begin] : 0.0;
@@ -196,6 +199,7 @@ private:
 
   /// Response to the flow that a further store of this content takes.
   Eigen::VectorXd stored(const Eigen::VectorXd& content, const Eigen::VectorXd& weight) const {
+    assert(content.size() == kept_.size() && (weight.size() == 0 || weight.size() == content.size()));
     Eigen::VectorXd out(content.size());
     for (const RunSpan& run : b_.rows->runs) {
       double x = 0.0;
@@ -310,6 +314,7 @@ private:
       out.segment(at, width.functions.size()) = width.weight * make(width);
       at += width.functions.size();
     }
+    assert(at == rows_);
     return out;
   }
 
@@ -373,7 +378,9 @@ inline Problem problem_of(const plant::Balance& balance, const Projection& proje
   for (std::size_t k = 0; k < moved.size(); ++k)
     problem.nuisance.col(static_cast<Eigen::Index>(k)) = moved[k];
   problem.free = projection.starts();
+  assert(problem.free.rows() == problem.y.size());
   problem.fold = projection.stretches(problem.folds);
+  assert(problem.fold.size() == problem.y.size());
   return problem;
 }
 

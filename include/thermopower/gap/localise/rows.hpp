@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ public:
   double correlation_ratio(const Eigen::VectorXd& value, Eigen::Index shift = 0) const {
     if (bands_ == 0) return 0.0;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(bands_), count = Eigen::VectorXd::Zero(bands_);
+    assert(shift >= 0 && shift <= value.size() && value.size() >= static_cast<Eigen::Index>(band_.size()));
     double total = 0.0, square = 0.0, n = 0.0;
     Eigen::Index at = shift;
     for (const int band : band_) {
@@ -67,6 +69,7 @@ private:
 /// The period in s above which half of a residual's power lies (from the cumulated periodogram of at most
 /// 2048 block means).
 inline double half_power_period(const Eigen::VectorXd& residual, double interval_s) {
+  assert(interval_s > 0.0);
   const Eigen::Index block = std::max<Eigen::Index>(1, residual.size() / 1024);
   const Eigen::Index n = residual.size() / block;
   if (n < 8) return 0.0;
@@ -125,6 +128,7 @@ public:
 
   /// The averages of columns of the full length: as many columns, rows() rows.
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& full) const {
+    assert(kept_.empty() || kept_.back() < full.rows());
     Eigen::MatrixXd out(rows(), full.cols());
     for (Eigen::Index column = 0; column < full.cols(); ++column) {
       std::size_t k = 0;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -126,6 +127,7 @@ public:
 
 private:
   double gain(const std::vector<double>& weights) const {
+    assert(weights.size() == value_.size());
     if (list_.empty()) return 1.0;
     const One& one = list_[list_.size() / 2];
     double sum = 0.0;
@@ -151,6 +153,7 @@ private:
     return a_.runs.front();
   }
   Eigen::VectorXd sum(const std::vector<double>& weights, const Eigen::VectorXd& values) const {
+    assert(list_.empty() || values.size() >= list_.back().end);
     Eigen::VectorXd out(size());
     for (Eigen::Index r = 0; r < size(); ++r) {
       const One& one = list_[static_cast<std::size_t>(r)];

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -21,6 +22,7 @@ struct Estimate {
 
 /// Inverse of a symmetric positive definite matrix: information of a covariance, and back. @param matrix  k by k
 inline Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+  assert(matrix.rows() == matrix.cols());
   return matrix.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
 }
 
@@ -63,6 +65,7 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
   if (units.size() < 2) return result;
   const Eigen::Index k = units.front().at.size();
   const double count = static_cast<double>(units.size());
+  assert(std::all_of(units.begin(), units.end(), [k](const Estimate& one) { return one.at.size() == k; }));
   // Begins at the spread of the estimates themselves.
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(k);
   for (const Estimate& one : units) mean += one.at / count;
@@ -134,6 +137,7 @@ inline MixedEffects fit_mixed_effects(const std::vector<Estimate>& units) {
 /// errors (Morris 1983; here coordinate by coordinate).
 inline Shrunken shrink(const MixedEffects& fleet, const Estimate& unit) {
   const Eigen::Index k = fleet.size();
+  assert(unit.at.size() == k && unit.covariance.rows() == k && unit.covariance.cols() == k);
   const Eigen::MatrixXd gain = fleet.between * inverse_of(unit.covariance + fleet.between);
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(k, k) - gain;
   Shrunken result;
@@ -149,6 +153,7 @@ inline Shrunken shrink(const MixedEffects& fleet, const Estimate& unit) {
 
 /// Half the width of an interval that holds one coordinate of a unit with 95 % at least.
 inline double reach95(const MixedEffects& fleet, const Shrunken& unit, Eigen::Index coordinate) {
+  assert(coordinate >= 0 && coordinate < fleet.size());
   return t_quantile(0.05, fleet.between_degrees[coordinate]) *
          std::sqrt(std::max(unit.covariance(coordinate, coordinate), 0.0));
 }

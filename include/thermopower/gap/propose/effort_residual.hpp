@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -38,6 +39,7 @@ struct EffortCoordinate {
 
   /// The number.
   double& of(EffortPoint& point) const {
+    assert(is_constant ? constant < point.factors.size() : effect < point.effects.size());
     return is_constant ? point.factors[constant] : point.effects[effect].parameters[parameter];
   }
 };
@@ -89,6 +91,7 @@ public:
     }
     compared_.effort =
         Eigen::Map<const Eigen::VectorXd>(effort.data(), static_cast<Eigen::Index>(effort.size()));
+    assert(compared_.rows.size() == compared_.piece.size());
     compared_.effort_rms =
         effort.empty() ? 0.0 : std::sqrt(compared_.effort.squaredNorm() / static_cast<double>(effort.size()));
   }
@@ -129,6 +132,7 @@ public:
       for (Eigen::Index c = 0; c < columns; ++c) low_pass(slopes.col(c).segment(piece.begin, length));
     }
     const Eigen::Index kept = compared_.size();
+    assert(kept <= n);
     all.effort.resize(kept);
     all.jacobian.resize(kept, columns);
     all.is_flat.resize(static_cast<std::size_t>(kept));

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -61,6 +62,7 @@ public:
     effort_.setZero(rows);
     if (torque) grid.torque_Nm.setZero(rows);
     if (warm) grid.covariate_motor_C.setConstant(rows, plant::missing);
+    assert(cutoff > 0.0 && most > 0);
     Eigen::Index filled = 0;
     for (const SampledMotion::Stretch& one : sampled.stretches) fill(one, cutoff, every, filled);
     rate_noise = sampled.rate_noise > 0.0 || sampled.stretches.empty()
@@ -96,6 +98,7 @@ private:
     piece.begin = filled;
     const Eigen::Index count = (one.effort.size() + every - 1) / every;
     piece.end = filled += count;
+    assert(piece.end <= grid.t_s.size());
     const LowPass low_pass(cutoff);
     const auto put = [&](const Eigen::VectorXd& fine, Eigen::VectorXd& to) {
       for (Eigen::Index i = 0; i < count; ++i) to[piece.begin + i] = fine[i * every];

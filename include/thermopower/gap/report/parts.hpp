@@ -14,6 +14,7 @@
 #include <thermopower/plant/calibration_id.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -69,6 +70,7 @@ inline void rank(Diagnosis& result, const std::vector<Candidate>& candidates, co
                  const Weight& weight) {
   std::vector<std::size_t> order = by_deviance(candidates);
   sort_by(order, [&](std::size_t i) { return candidates[i].held_out.any() ? 0 : 1; });
+  assert(order.size() == candidates.size() && !order.empty());
   const double least = candidates[order.front()].deviance;
   std::vector<Eigen::VectorXd> signatures(order.size());
   const Candidate& empty = candidates.front();

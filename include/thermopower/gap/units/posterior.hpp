@@ -6,6 +6,7 @@
 #include <thermopower/gap/units/hypothesis.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -83,6 +84,7 @@ public:
   /// The log posterior of an assignment.
   /// @param common  what most parts have
   double of(const Assignment& units, const UnitHypothesis& common) const {
+    assert(units.size() == parts_.size());
     double sum = common.is_none() ? 0.0 : -price(common);
     for (std::size_t i = 0; i < parts_.size(); ++i) sum += own(i, *units[i], common);
     for (std::size_t k = 0; k < unit_measure_count; ++k) {
@@ -132,6 +134,7 @@ public:
 
   /// By how much the logarithm of a measure is off beside the units: the median over the parts; 0 where none tells it.
   double shift(UnitMeasure kind, const Assignment& units) const {
+    assert(units.size() == parts_.size());
     std::vector<double> all;
     for (std::size_t i = 0; i < parts_.size(); ++i)
       if (const Deviation one = deviation(i, kind, *units[i]); one.is_told) all.push_back(one.value);
@@ -141,6 +144,7 @@ public:
   /// What a part says of a hypothesis where the shared constants are given.
   double of_part(std::size_t part, const UnitHypothesis& one, const Shared& shared,
                  const UnitHypothesis& common) const {
+    assert(part < parts_.size());
     double sum = own(part, one, common);
     for (std::size_t k = 0; k < unit_measure_count; ++k) {
       const Deviation here = deviation(part, static_cast<UnitMeasure>(k), one);
