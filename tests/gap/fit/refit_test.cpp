@@ -129,50 +129,6 @@ TEST_CASE("friction that rises near standstill is found outside its transition, 
   CHECK(value("rise_Nm") == Approx(0.005).epsilon(0.2));
 }
 
-TEST_CASE("a spring whose frequency a fit ended beside is found from there") {
-  const Trial trial{"compliance", {{"far_share", 0.4}, {"frequency_Hz", 6.0}, {"damping", 0.02}}, true};
-  const Model model = axis_model();
-  const std::vector<Inputs> inputs{prepare(model, recorded(trial, 17))};
-  const FitProblem problem = problem_of(model, inputs);
-  const Attribution attribution(problem);
-  const Explanation spring{{standard_catalogue().find("compliance")}, {}};
-  const std::vector<Coordinate> list = coordinates(model, spring, standard_catalogue());
-  Eigen::VectorXd off(static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i)
-    off[static_cast<Eigen::Index>(i)] =
-        list[i].name == "compliance.frequency_Hz" ? std::log(4.0) : list[i].start;
-  Candidate found = attribution.fit_from(spring, {off}, {});
-  const auto frequency_Hz = [&] {
-    return found.value(found.place_of(*spring.effects.front(), "frequency_Hz"));
-  };
-  REQUIRE(frequency_Hz() < 5.7);
-  attribution.look_beside(found, {});
-  CHECK(frequency_Hz() == Approx(6.0).epsilon(0.01));
-  CHECK(found.train.mean(3) < 1.3);
-}
-
-TEST_CASE("torques, inertia and frictions come back together to where their constants are known to be") {
-  const Model model = test::axis_model();
-  test::AxisFault rubs;
-  rubs.coulomb_Nm = 0.006;
-  const std::vector<Inputs> inputs{prepare(model, test::axis_recording(rubs, 1200, 13))};
-  const FitProblem problem = problem_of(model, inputs);
-  const Attribution attribution(problem);
-  Candidate candidate = attribution.fit({{standard_catalogue().find("coulomb_friction")}, {}}, {});
-  const auto friction = static_cast<Eigen::Index>(model.calibrated().size());
-  REQUIRE(candidate.list[static_cast<std::size_t>(friction)].name == "coulomb_friction.Nm");
-  // Half of all of them moves the same: the data say nothing of it.
-  for (Eigen::Index i = 0; i < friction; ++i) candidate.fit.point[i] += std::log(0.5);
-  candidate.fit.point[friction] *= 0.5;
-  FitOptions none;
-  none.iterations = 0;
-  attribution.polish(candidate, none);
-  REQUIRE(candidate.train.mean(2) < 2.0);
-  attribution.settle_the_scale(candidate, {});
-  CHECK(candidate.fit.point[friction] == Approx(0.006).epsilon(0.05));
-  CHECK(candidate.fit.point[0] == Approx(0.0).margin(0.05));
-}
-
 TEST_CASE(
     "a load off the axis is found wherever it hangs, though two of the phases that a fit starts from lead nowhere") {
   const Model model = axis_model();

@@ -42,19 +42,15 @@ TEST_CASE("of a motion that repeats every part is among the windows that are kep
 TEST_CASE(
     "a window that is kept carries on from the one before it, which counts only where it is kept, too") {
   const std::vector<Segment> all = windows(60, 100);
-  const std::vector<std::size_t> also{7, 33};
-  const std::vector<Segment> kept = thinned_axis(all, 1500, also);
+  const std::vector<Segment> kept = thinned_axis(all, 1500);
   Eigen::Index rows = 0;
-  std::size_t asked_for = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const bool follows = i > 0 && kept[i - 1].end == kept[i].begin;
     CHECK(kept[i].carries_on == follows);
     if (kept[i].warm_up) continue;
     CHECK((follows || kept[i].begin == 0));
     rows += kept[i].end - kept[i].begin;
-    for (std::size_t place : also) asked_for += kept[i].begin == all[place].begin ? 1 : 0;
   }
-  CHECK(asked_for == also.size());
   CHECK(rows >= 1400);
   CHECK(rows <= 1900);
 }

@@ -70,16 +70,15 @@ public:
 
   /// The pairs of causes that promise most, the best first: the best single ones with every other one, ranked by one linear
   /// step. They refer to the candidates by their places.
-  /// @param known  where given, pairs that were found before: of the others only those with one of `late` are looked at
-  /// @param late   single causes that came later
+  /// @param late  where given, single causes that came later: only pairs with one of them are looked at
   std::vector<Promise> pairs(const std::vector<Candidate>& candidates,
-                             const std::vector<Explanation>& singles, std::vector<Promise> known = {},
+                             const std::vector<Explanation>& singles,
                              const std::vector<Explanation>& late = {}) const {
     const auto is_new = [&](const Explanation& one) {
       return late.empty() ||
              std::any_of(late.begin(), late.end(), [&](const Explanation& of) { return one.includes(of); });
     };
-    std::vector<Promise> promises = std::move(known);
+    std::vector<Promise> promises;
     for (const std::size_t near : seeds_of(candidates))
       for (Promise& one : all_with(candidates, near, singles))
         if (is_new(one.together)) promises.push_back(std::move(one));

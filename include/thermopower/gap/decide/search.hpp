@@ -89,38 +89,8 @@ public:
     return candidates[order.front()].explanation.refined;
   }
 
-  /// Looks beside the frequencies of the best candidates, where these leave more than `enough` (mean square).
-  /// @return whether the best one has changed
-  bool look_beside(std::vector<Candidate>& candidates, double enough) const {
-    constexpr std::size_t looked_at = 2;
-    if (fittest(candidates).train.within(enough)) return false;
-    FitOptions options;
-    options.iterations = 12;
-    std::vector<std::size_t> order = by_fitness(candidates, 0);
-    order.resize(std::min(looked_at, order.size()));
-    const double before = fitness(fittest(candidates));
-    in_parallel(order.size(), threads_,
-                [&](std::size_t i) { fine_.look_beside(candidates[order[i]], options); });
-    return fitness(fittest(candidates)) < before;
-  }
-
   /// The sets of causes that promise most.
   const PromisingSets& promising() const { return promising_; }
-
-  /// Whether one of the sets that promise most comes within some multiple of the noise in the longer windows of the first look.
-  bool come_near(const std::vector<Promise>& sets, double multiple) const {
-    constexpr std::size_t looked_at = 3;
-    std::vector<char> near(std::min(looked_at, sets.size()), 0);
-    const auto look = [&](std::size_t i) {
-      const Candidate found = longer_.fit_from(sets[i].together, sets[i].guess.starts, quick());
-      near[i] = found.train.within(multiple * multiple);
-    };
-    if (near.empty()) return false;
-    look(0);
-    if (near[0]) return true;
-    in_parallel(near.size() - 1, threads_, [&](std::size_t i) { look(i + 1); });
-    return std::find(near.begin(), near.end(), 1) != near.end();
-  }
 
   /// Adds sets of causes, fitted to the first look's data and taken to the fine data. Their residuals there tell the noise;
   /// only then it is worth fitting them to the end.
@@ -135,43 +105,6 @@ public:
     const FirstLook look(fittest(candidates), glimpse_, coarse_);
     add_all_fitted(candidates, sets, Attribution(look.some, look.few));
     finish(candidates, sets.size() + fitted_to_the_end);
-  }
-
-  /// Exchanges members of the best set for their relatives, and once more for those of the new best set. If both members
-  /// are stand-ins, only one is found at a time.
-  void exchange(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
-    constexpr int rounds = 2;
-    for (int round = 0; round < rounds; ++round) {
-      const Explanation leader = fittest(candidates).explanation;
-      exchange_members(candidates, singles);
-      const Explanation& now = fittest(candidates).explanation;
-      if (now.size() == leader.size() && now.includes(leader)) return;
-    }
-  }
-
-  /// Adds the best set without one member after another, from where the whole ended. On the way, one member may have stood
-  /// in for another.
-  void add_parts(std::vector<Candidate>& candidates) const {
-    const Candidate& whole = fittest(candidates);
-    std::vector<Promise> parts;
-    if (whole.explanation.effects.size() < 2) return;
-    for (std::size_t member = 0; member < whole.explanation.effects.size(); ++member) {
-      Explanation part = whole.explanation;
-      part.effects.erase(part.effects.begin() + static_cast<std::ptrdiff_t>(member));
-      if (!is_known(candidates, part)) parts.push_back({{}, place_of(candidates, whole), std::move(part)});
-    }
-    const FirstLook look(whole, glimpse_, coarse_);
-    add_fitted(candidates, parts, Attribution(look.some, look.few));
-    finish(candidates, fitted_to_the_end);
-  }
-
-  /// A set with one member after another exchanged for a cause of the same submodel that has fewer parameters.
-  /// @param place  of the set among the candidates
-  std::vector<Promise> simpler_instead_of(const std::vector<Candidate>& candidates, std::size_t place,
-                                          const std::vector<Explanation>& singles) const {
-    return exchanged(candidates, place, singles, [](const EffectInfo& single, const EffectInfo& member) {
-      return single.parameters.size() < member.parameters.size();
-    });
   }
 
   /// Fits candidates of as many causes as the best ones, or fewer, once more from the ends of those in sight of the very
@@ -204,28 +137,6 @@ public:
         is_lost[rivals[i]] = !fine_.refit_from(candidates[rivals[i]], leader, finish, decision.second_takes);
       });
     }
-  }
-
-  /// Brings constants of the best candidates back that are far off without need. If a cause and the constants do the same
-  /// to the data, the cost lies in a long flat valley, along which only the prior pulls. A fit ends anywhere in it.
-  void settle_constants(std::vector<Candidate>& candidates, const Model& model) const {
-    constexpr std::size_t looked_at = 8;
-    FitOptions finest;
-    finest.iterations = 15;
-    finest.relative_decrease = 1e-7;
-    const double farthest = Attribution::out_of_sight * fittest(candidates).train.total();
-    std::vector<std::size_t> far_off;
-    for (const std::size_t index : by_fitness(candidates, 0)) {
-      const Candidate& one = candidates[index];
-      if (!one.explanation.effects.empty() && price_of_constants(one, model) > decision.rarity &&
-          !(one.train.total() > farthest))
-        far_off.push_back(index);
-      if (far_off.size() == looked_at) break;
-    }
-    in_parallel(far_off.size(), threads_, [&](std::size_t i) {
-      fine_.polish(candidates[far_off[i]], finest);
-      fine_.settle_the_scale(candidates[far_off[i]], finest);
-    });
   }
 
   /// Fits the best candidates anew: the noise has changed.
@@ -385,46 +296,6 @@ private:
     const std::size_t first = candidates.size();
     for (Candidate& one : found) candidates.push_back(std::move(one));
     take_along(candidates, first, options.hopeless);
-  }
-
-  static std::size_t place_of(const std::vector<Candidate>& candidates, const Candidate& one) {
-    return static_cast<std::size_t>(&one - candidates.data());
-  }
-
-  /// A set with one member after another exchanged for its relatives, the causes of the same submodel; those that are not among
-  /// the candidates yet.
-  /// @param place   of the set among the candidates
-  /// @param counts  takes a relative and the member: whether the one may stand for the other
-  template <class Counts>
-  static std::vector<Promise> exchanged(const std::vector<Candidate>& candidates, std::size_t place,
-                                        const std::vector<Explanation>& singles, Counts&& counts) {
-    const Explanation& set = candidates[place].explanation;
-    std::vector<Promise> sets;
-    for (std::size_t at = 0; at < set.effects.size(); ++at)
-      for (const Explanation& single : singles) {
-        const EffectInfo& member = set.effects[at]->info;
-        if (single.effects.empty() || set.includes(single) ||
-            single.effects.front()->info.submodel != member.submodel ||
-            !counts(single.effects.front()->info, member))
-          continue;
-        Explanation other = set;
-        other.effects[at] = single.effects.front();
-        if (!is_known(candidates, other)) sets.push_back({{}, place, std::move(other)});
-      }
-    return sets;
-  }
-
-  /// Adds the best set again with its members exchanged for their relatives: of two that do the same beside a third, only one
-  /// may have been tried.
-  void exchange_members(std::vector<Candidate>& candidates, const std::vector<Explanation>& singles) const {
-    const Candidate& near = fittest(candidates);
-    if (near.explanation.size() < 2) return;
-    const std::vector<Promise> tries = exchanged(candidates, place_of(candidates, near), singles,
-                                                 [](const EffectInfo&, const EffectInfo&) { return true; });
-    if (tries.empty()) return;
-    const FirstLook look(near, glimpse_, coarse_);
-    add_fitted(candidates, tries, Attribution(look.some, look.few));
-    finish(candidates, fitted_to_the_end);
   }
 
   const Attribution& glimpse_;

@@ -59,8 +59,6 @@ struct DecisionThresholds {
   /// Multiple of the noise in the fitted windows, with fitted starts, above which a simulation does not follow its data.
   /// Noise alone makes 1. Blows of teeth that depend on the last digit of a start came to 2.2.
   double follows = 3.0;
-  /// Multiple of the noise in the windows that are fitted, above which others tell no more.
-  double far_for_more_windows = 3.0;
   /// Mean square, in units of the noise's, above which sets of causes are looked for.
   double room_for_sets = 1.8;
   /// Multiple of the noise above which causes that cost much to simulate are looked for.
@@ -97,9 +95,7 @@ struct SearchThresholds {
   Eigen::Index judged_rows = 20000;   ///< held out, on which explanations are weighed
   Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
-  double tried_window_s = 0.5;   ///< of the first look, at most
-  /// Length of the shorter windows, as a share of those of the score, in which a load that holds an axis is looked for.
-  double shorter_than_the_score = 0.4;
+  double tried_window_s = 0.5;
 };
 
 /// The values in force.

@@ -7,7 +7,6 @@
 #include <thermopower/gap/decide/search.hpp>
 #include <thermopower/gap/decide/thresholds.hpp>
 #include <thermopower/gap/fit/fit_problem.hpp>
-#include <thermopower/gap/fit/overlooked.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
 #include <algorithm>
@@ -18,9 +17,8 @@ namespace thermopower::gap::engine {
 
 /// What a search for causes came to.
 struct Attempt {
-  double horizon_s = 0.0;    ///< length of the windows
-  FitProblem problem;        ///< of training data
-  std::vector<Segment> all;  ///< what it has a part of
+  double horizon_s = 0.0;  ///< length of the windows
+  FitProblem problem;      ///< of training data
   std::vector<Candidate> candidates;
   Weight weight;
   Reference reference;
@@ -38,24 +36,6 @@ struct Attempt {
   /// Whether it is so much nearer to the noise in its shorter windows that these are believed instead.
   bool is_nearer_than(const Attempt& longer) const {
     return best_noise_multiple() < decision.short_windows_lower * longer.best_noise_multiple();
-  }
-
-  /// The least share of the held-out gap that a candidate leaves, of those that were judged.
-  double least_left() const {
-    double least = 1.0;
-    for (const Candidate& one : candidates)
-      if (one.held_out.total() > 0.0)
-        least = std::min(least, left_over(one.held_out, reference.as_configured));
-    return least;
-  }
-
-  /// The windows that the best explanation fits worst, of those that were not fitted; none where even those that were are
-  /// far above the noise: others tell no more then.
-  /// @param window_s  length of the windows of the score
-  std::vector<std::size_t> overlooked_windows(double window_s) const {
-    constexpr double fitted = decision.far_for_more_windows;
-    if (!best().train.within(fitted * fitted)) return {};
-    return overlooked(problem, all, best(), window_s);
   }
 };
 

@@ -147,7 +147,7 @@ private:
   Attempt posed() const {
     Attempt attempt;
     attempt.horizon_s = options_.horizon_s;
-    attempt.problem = posing_.pose(train_inputs_, posing_.fitted(options_.horizon_s), &attempt.all);
+    attempt.problem = posing_.pose(train_inputs_, posing_.fitted(options_.horizon_s));
     return attempt;
   }
 

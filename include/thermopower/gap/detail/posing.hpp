@@ -21,11 +21,10 @@ class Posing {
 public:
   /// How much of the data, in which windows.
   struct Extent {
-    double window_s;                ///< length of the windows of an axis
-    Eigen::Index bench_rows;        ///< of all recordings on the bench, about
-    Eigen::Index axis_rows;         ///< of all windows of an axis, about
-    Eigen::Index together = 1;      ///< neighbours among these that are kept or left out together
-    std::vector<std::size_t> also;  ///< places of further windows to keep, in order
+    double window_s;            ///< length of the windows of an axis
+    Eigen::Index bench_rows;    ///< of all recordings on the bench, about
+    Eigen::Index axis_rows;     ///< of all windows of an axis, about
+    Eigen::Index together = 1;  ///< neighbours among these that are kept or left out together
   };
 
   /// All of them must outlive this object.
@@ -41,13 +40,11 @@ public:
 
   /// The windows that explanations are fitted to in the end.
   Extent fitted(double window_s) const {
-    return {window_s, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, 1, {}};
+    return {window_s, search_extent.fitted_bench_rows, search_extent.fitted_axis_rows, 1};
   }
 
   /// What is fitted to. It keeps the thinned data.
-  /// @param all  where given, receives every window, of which the problem has some in the same order
-  FitProblem pose(const std::vector<Inputs>& inputs, const Extent& extent,
-                  std::vector<Segment>* all = nullptr) const {
+  FitProblem pose(const std::vector<Inputs>& inputs, const Extent& extent) const {
     auto thin = std::make_shared<std::vector<Inputs>>();
     for (const Inputs& one : inputs) {
       const Eigen::Index share = std::max<Eigen::Index>(
@@ -59,9 +56,8 @@ public:
     problem.model = &model_;
     problem.catalogue = &catalogue_;
     problem.stop = options_.stop;
-    std::vector<Segment> segments = cut(*thin, extent.window_s, plant_of(model_));
-    problem.segments = thinned_axis(segments, extent.axis_rows, extent.also, extent.together);
-    if (all != nullptr) *all = std::move(segments);
+    problem.segments =
+        thinned_axis(cut(*thin, extent.window_s, plant_of(model_)), extent.axis_rows, extent.together);
     problem.data = std::move(thin);
     return problem;
   }

@@ -34,16 +34,13 @@ public:
   /// @param as_judged  scores what was found
   /// @param suspects   submodels in which the measured rows themselves say that something is missing
   /// @param horizon_s  length of the windows
-  /// @param also       places of windows to fit, too
   WindowSearch(const Posing& posing, const AsJudged& as_judged, const std::vector<Inputs>& train,
-               const std::vector<plant::SubmodelName>& suspects, double horizon_s,
-               std::vector<std::size_t> also)
+               const std::vector<plant::SubmodelName>& suspects, double horizon_s)
       : posing_(posing),
         options_(posing.options()),
         as_judged_(as_judged),
         train_(train),
-        horizon_s_(horizon_s),
-        also_(std::move(also)) {
+        horizon_s_(horizon_s) {
     attempt_.problem = fitted(horizon_s_);
     pose_first_looks();
     glimpse_.emplace(glimpse_problem_);
@@ -78,8 +75,7 @@ public:
     tried_ = search_->try_singles(with_pairs_of_constants(causes_));
     search_->add(attempt_.candidates, tried_);
     renew();
-    const bool sets_may_do = options_.effects_at_once > 1 && sets_come_near();
-    if (!costly_.empty() && !sets_may_do && !does_for_now(attempt_.best())) add_late(costly_);
+    if (!costly_.empty() && !does_for_now(attempt_.best())) add_late(costly_);
     look_closely();
   }
 
@@ -99,7 +95,6 @@ public:
                                      search_extent.fitted_recorded_rows);
     if (!leader.train.within(near * near) || (!is_far && !has_special_case(leader, posing_.model()))) return;
     attempt_.problem = std::move(rows);
-    attempt_.all = attempt_.problem.segments;  // no window of averages is one of these
     search_->take_over(attempt_.candidates, hopeless);
     renew();
   }
@@ -108,13 +103,12 @@ public:
   /// search goes on in the short ones of the score, if it is nearer there.
   void try_sets() {
     if (options_.effects_at_once < 2) return;
-    if (may_be_shorter() && attempt_.is_far() && !sets_come_near()) shorten();
     if (!has_room()) renew();  // once more: what is weighed in the end has seen the noise of the best one
     const auto promising = [&](const std::vector<Explanation>& late) {
-      return search_->promising().pairs(attempt_.candidates, effects(), {}, late);
+      return search_->promising().pairs(attempt_.candidates, effects(), late);
     };
     if (has_room()) {
-      add_sets(!pairs_.empty() ? pairs_ : promising({}));
+      add_sets(promising({}));
       if (!costly_.empty() && !does_for_now(attempt_.best())) {
         const std::vector<Explanation> late = costly_;
         add_late(costly_);
@@ -143,69 +137,11 @@ public:
     const std::vector<Explanation> late = curves_;
     add_late(curves_);
     if (options_.effects_at_once > 1 && has_room())
-      add_sets(search_->promising().pairs(attempt_.candidates, effects(), {}, late));
+      add_sets(search_->promising().pairs(attempt_.candidates, effects(), late));
   }
 
   /// Weighs what was found on held-out data.
-  void decide() {
-    const bool has_less_noise = leave_only_noise();
-    look_beside_blows();
-    if (has_less_noise && options_.effects_at_once > 1 && has_room())
-      add_sets(search_->promising().pairs(attempt_.candidates, effects(), {}, {}));
-    weigh_all();
-    // What fits the data it was fitted to, and fails on others, was a stand-in.
-    constexpr double near = decision.near_floor;
-    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
-      if (!costly_.empty()) add_late(costly_);
-      if (!curves_.empty()) add_late(curves_);
-      weigh_all();
-    }
-  }
-
-  /// Where single causes reach the noise with constants so far off that a second one could stand in their place: the likeliest of
-  /// them with each further cause.
-  void try_beside_dear_constants() {
-    constexpr std::size_t tried = 3;
-    if (options_.effects_at_once < 2 ||
-        attempt_.candidates[likeliest(attempt_.candidates)].explanation.size() != 1)
-      return;
-    std::vector<Promise> sets;
-    std::size_t found = 0;
-    for (const std::size_t place : by_deviance(attempt_.candidates)) {
-      const Candidate& one = attempt_.candidates[place];
-      if (one.explanation.effects.size() != 1 || !in_the_running(one) ||
-          largest_noise_multiple(one.held_out) > decision.near_floor ||
-          !(price_of_constants(one, posing_.model()) > decision.rarity + decision.dear_constants))
-        continue;
-      if (++found > tried) break;
-      for (Promise& set : search_->promising().with_each(attempt_.candidates, place, effects()))
-        sets.push_back(std::move(set));
-    }
-    if (sets.empty()) return;
-    add_sets(sets);
-    weigh_all();
-  }
-
-  /// What ends on a bound and still fits better than all that does not is another explanation: it with one member after another
-  /// exchanged for a simpler one of the same submodel. Friction by direction in a motion one way is a friction.
-  void try_instead_of_bounded() {
-    constexpr std::size_t tried = 2;
-    const Candidate& best = attempt_.candidates[likeliest(attempt_.candidates)];
-    std::vector<Promise> sets;
-    std::size_t found = 0;
-    for (const std::size_t place : by_deviance(attempt_.candidates)) {
-      const Candidate& one = attempt_.candidates[place];
-      if (!one.on_bounds || one.explanation.effects.size() < 2 || !(misfit_of(one) < misfit_of(best)))
-        continue;
-      if (++found > tried) break;
-      for (Promise& set : search_->simpler_instead_of(attempt_.candidates, place, effects()))
-        sets.push_back(std::move(set));
-    }
-    if (sets.empty()) return;
-    search_->add_whatever_the_room(attempt_.candidates, sets);
-    renew();
-    weigh_all();
-  }
+  void decide() { weigh_all(); }
 
   /// Where a pair is the likeliest explanation, does what a second cause has to, and leaves room for a third one: it with
   /// each further cause. A joint has its weight, its friction and its cogs at once.
@@ -218,7 +154,6 @@ public:
         largest_noise_multiple(pair.held_out) < decision.room_for_second)
       return;
     add_sets(search_->promising().with_each(attempt_.candidates, place, effects()));
-    search_->add_parts(attempt_.candidates);
     weigh_all();
   }
 
@@ -231,28 +166,12 @@ private:
     return some;
   }
 
-  /// Whether there are windows that are shorter than these.
-  bool may_be_shorter() const { return horizon_s_ > options_.horizon_s && train_.front().axis(); }
-
   /// Whether the best explanation leaves room for a further cause.
   bool has_room() const { return !attempt_.best().train.within(decision.room_for_sets); }
-
-  /// Whether, far from the noise in long windows, a set that promises much comes near it.
-  bool sets_come_near() {
-    if (!may_be_shorter() || !attempt_.is_far()) return false;
-    if (pairs_.empty() || !late_.empty()) {
-      pairs_ = search_->promising().pairs(attempt_.candidates, effects(), std::move(pairs_), late_);
-      late_.clear();
-      pairs_come_near_ = search_->come_near(pairs_, decision.far_for_long_windows);
-    }
-    return pairs_come_near_;
-  }
 
   /// @param sets  the most promising one first
   void add_sets(const std::vector<Promise>& sets) {
     search_->add_sets(attempt_.candidates, sets);
-    renew();
-    search_->exchange(attempt_.candidates, effects());
     renew();
   }
 
@@ -260,9 +179,8 @@ private:
   FitProblem fitted(double window_s) {
     Posing::Extent extent = posing_.fitted(window_s);
     extent.together = search_extent.windows_together;
-    if (window_s == horizon_s_) extent.also = also_;
     attempt_.horizon_s = window_s;
-    return posing_.pose(train_, extent, &attempt_.all);
+    return posing_.pose(train_, extent);
   }
 
   /// What they are first tried on.
@@ -275,13 +193,12 @@ private:
     };
     short_s_ = std::min({search_extent.tried_window_s, options_.horizon_s, horizon_s_});
     longer_problem_ =
-        pose({short_s_, bench_rows, search_extent.tried_axis_rows, search_extent.windows_together,
-              short_s_ == horizon_s_ ? also_ : std::vector<std::size_t>()});
+        pose({short_s_, bench_rows, search_extent.tried_axis_rows, search_extent.windows_together});
     coarse_problem_ = glimpse_problem_ = longer_problem_;
     shortest_s_ = shortest_window_s(posing_.model(), posing_.catalogue(), train_, short_s_);
     if (!(shortest_s_ < short_s_)) return;
-    coarse_problem_ = pose({shortest_s_, bench_rows, search_extent.shortest_axis_rows, 1, {}});
-    glimpse_problem_ = pose({shortest_s_, bench_rows, search_extent.glimpsed_axis_rows, 1, {}});
+    coarse_problem_ = pose({shortest_s_, bench_rows, search_extent.shortest_axis_rows, 1});
+    glimpse_problem_ = pose({shortest_s_, bench_rows, search_extent.glimpsed_axis_rows, 1});
   }
 
   void set_noise(const std::array<double, signal_count>& sigma) {
@@ -291,44 +208,12 @@ private:
   /// The noise is what the best explanation leaves; then all are looked at anew.
   void renew() {
     const std::array<double, signal_count> before = attempt_.problem.sigma;
-    attempt_.problem.sigma = noise_left(attempt_.problem, attempt_.best(), train_, taken_for_noise_);
+    attempt_.problem.sigma = noise_left(attempt_.problem, attempt_.best(), train_);
     std::array<double, signal_count> by;
     for (std::size_t i = 0; i < signal_count; ++i) by[i] = before[i] / attempt_.problem.sigma[i];
     set_noise(attempt_.problem.sigma);
     attempt_.problem.correlation = mean_correlation(correlation_of(attempt_.best(), attempt_.problem));
     search_->renew(attempt_.candidates, by);
-  }
-
-  /// Blows that an explanation misses a little look like noise that remembers, in each signal. While a search is far from them
-  /// that is as well: it follows the motion between them. Where the best explanation strikes, and has found what it can, what
-  /// angle and rate show alike is no noise any more. Beside any other, what is missed may have any cause, and counts for as little as
-  /// noise does. @return whether that made a difference
-  bool leave_only_noise() {
-    if (!attempt_.best().explanation.strikes()) return false;
-    constexpr double matters = 1.25;  // times the noise
-    const std::array<double, signal_count> less =
-        noise_left(attempt_.problem, attempt_.best(), train_, TakenForNoise::what_differs);
-    bool is_less = false;
-    for (std::size_t i = 0; i < signal_count; ++i) is_less |= attempt_.problem.sigma[i] > matters * less[i];
-    if (!is_less) return false;
-    taken_for_noise_ = TakenForNoise::what_differs;
-    renew();
-    return true;
-  }
-
-  /// Where the best explanation strikes, looks for a deeper hollow beside that in which its fit ended, as long as there is one.
-  void look_beside_blows() {
-    constexpr int times = 4;
-    constexpr double deeper = 0.98;  // of the cost
-    for (int i = 0; i < times; ++i) {
-      const auto best = static_cast<std::size_t>(&attempt_.best() - attempt_.candidates.data());
-      const std::vector<Eigen::VectorXd> places = places_beside(attempt_.candidates[best]);
-      if (places.empty()) return;
-      Candidate beside = fine_->fit_from(attempt_.candidates[best].explanation, places, {});
-      if (!(beside.fit.cost < deeper * attempt_.candidates[best].fit.cost)) return;
-      attempt_.candidates[best] = std::move(beside);
-      renew();
-    }
   }
 
   /// Takes causes that waited among those that are tried.
@@ -337,32 +222,15 @@ private:
     search_->add(attempt_.candidates, further);
     tried_.insert(tried_.end(), further.begin(), further.end());
     causes_.insert(causes_.end(), waiting.begin(), waiting.end());
-    if (!pairs_.empty()) late_ = waiting;
     waiting.clear();
     renew();
   }
 
   void look_closely() {
     if (search_->refine_shapes(attempt_.candidates)) renew();
-    if (search_->look_beside(attempt_.candidates, decision.room_for_sets)) renew();
-  }
-
-  /// Fits to the short windows of the score instead, where the best explanation is nearer to the noise there.
-  void shorten() {
-    Attempt in_long_windows = attempt_;
-    attempt_.problem = fitted(options_.horizon_s);
-    attempt_.problem.sigma = in_long_windows.problem.sigma;
-    attempt_.candidates.clear();
-    search_->add(attempt_.candidates, tried_);
-    renew();
-    look_closely();
-    if (attempt_.is_nearer_than(in_long_windows)) return;
-    attempt_ = std::move(in_long_windows);
-    set_noise(attempt_.problem.sigma);
   }
 
   void weigh_all() {
-    search_->settle_constants(attempt_.candidates, posing_.model());
     search_->refit_rivals(attempt_.candidates);
     name_moved_constants(attempt_.candidates, posing_.model());
     attempt_.weight = correlation_of(attempt_.best(), attempt_.problem);
@@ -385,7 +253,6 @@ private:
   const AsJudged& as_judged_;
   const std::vector<Inputs>& train_;
   double horizon_s_;
-  std::vector<std::size_t> also_;
 
   double short_s_ = 0.0;     ///< of the windows of the first look
   double shortest_s_ = 0.0;  ///< of those in which friction that holds and lets go is nearly linear
@@ -394,10 +261,6 @@ private:
   std::optional<Search> search_;
   std::vector<Explanation> causes_, costly_, curves_;  ///< those that are tried, and those that wait
   std::vector<Candidate> tried_;                       ///< the singles, as fitted to the first look
-  std::vector<Promise> pairs_;                         ///< the most promising ones, where somebody asked
-  std::vector<Explanation> late_;                      ///< causes that came after that
-  bool pairs_come_near_ = false;
-  TakenForNoise taken_for_noise_ = TakenForNoise::what_looks_like_it;
   Attempt attempt_;
 };
 

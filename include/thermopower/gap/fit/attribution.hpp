@@ -72,7 +72,7 @@ public:
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
-    free_from_traps(fitter, candidate, options);
+    lead_outside(fitter, candidate, options);
     candidate.train = candidate.fit.sums;
     return candidate;
   }
@@ -87,26 +87,8 @@ public:
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2) free_from_traps(fitter, candidate, options);
+    if (options.iterations > 2) lead_outside(fitter, candidate, options);
     candidate.train = candidate.fit.sums;
-  }
-
-  /// Moves a candidate's torques, its inertia and its frictions by one factor to where the prior wants them, and fits on
-  /// from there. If no torque is known by itself, motion says nothing of that factor. A step along it in single coordinates
-  /// leaves the curved valley. The candidate stays as it was where that costs less.
-  void settle_the_scale(Candidate& candidate, const FitOptions& options) const {
-    const std::vector<bool> scales = are_torques(candidate);
-    const double by = scale_wanted(candidate, scales);
-    constexpr double hardly = 0.02;
-    if (std::abs(by) < hardly) return;
-    Candidate other = candidate;
-    for (std::size_t i = 0; i < scales.size(); ++i) {
-      const Coordinate& one = candidate.list[i];
-      double& at = other.fit.point[static_cast<Eigen::Index>(i)];
-      if (scales[i]) at = std::clamp(one.logarithmic ? at + by : at * std::exp(by), one.lower, one.upper);
-    }
-    polish(other, options);
-    if (other.fit.cost < candidate.fit.cost) candidate = std::move(other);
   }
 
   /// Frees the details of a candidate's effects and fits once more from where it ended. Details become part of the effects
@@ -119,30 +101,6 @@ public:
     finer.train = finer.fit.sums;
     finer.settled = false;
     if (takes_away(finer, candidate, share)) candidate = std::move(finer);
-  }
-
-  /// Fits once more from beside the end of a candidate's fit, in the frequencies of what rings. Over windows of several
-  /// periods, a fit that is one period off in each is a valley of its own.
-  void look_beside(Candidate& candidate, const FitOptions& options) const {
-    const double shares[] = {0.8, 0.87, 0.94, 1.06, 1.15, 1.25};
-    FitOptions soon = options;
-    const Eigen::VectorXd from = candidate.fit.point;
-    Fitter fitter(problem_, candidate.explanation, candidate.list);
-    for (std::size_t i = 0; i < candidate.list.size(); ++i) {
-      const Coordinate& one = candidate.list[i];
-      if (one.unit != "Hz" || one.still) continue;
-      const auto at = static_cast<Eigen::Index>(i);
-      for (const double share : shares) {
-        Eigen::VectorXd beside = from;
-        beside[at] = std::clamp(one.coordinate_of(share * one.value_of(from[at])), one.lower, one.upper);
-        soon.hopeless = 0.98 * candidate.fit.cost;
-        FitResult found = fitter.minimise(beside, soon, starts_of(candidate));
-        if (!(found.cost < soon.hopeless)) continue;
-        candidate.fit = std::move(found);
-        candidate.settled = false;
-        candidate.train = candidate.fit.sums;
-      }
-    }
   }
 
   /// Looks at the curvature where a fit ended: what the intervals of its parameters are made of.
@@ -357,38 +315,6 @@ private:
         wider.push_back(one);
       }
     return wider;
-  }
-
-  /// Which coordinates of a candidate are torques, or turn motions and currents into torques. All have one unit, in which
-  /// motion by itself is not measured.
-  std::vector<bool> are_torques(const Candidate& candidate) const {
-    const auto has_unit = [](const std::string& name) {
-      return name.find("Nm") != std::string::npos || name.find("kgm2") != std::string::npos;
-    };
-    std::vector<bool> list;
-    for (const CalibratedConstant& constant : problem_.model->calibrated())
-      list.push_back(has_unit(constant.fields.front()));
-    for (std::size_t i = list.size(); i < candidate.list.size(); ++i)
-      list.push_back(has_unit(candidate.list[i].name));
-    return list;
-  }
-
-  /// The logarithm of the common factor that brings the constants among some coordinates to where they cost least. It
-  /// brings one of them to its place: the sum over all grows ever slower with the distance.
-  static double scale_wanted(const Candidate& candidate, const std::vector<bool>& scales) {
-    const auto cost = [&](double by) {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < scales.size(); ++i)
-        if (scales[i])
-          sum += candidate.list[i].prior.cost(candidate.fit.point[static_cast<Eigen::Index>(i)] + by);
-      return sum;
-    };
-    double best = 0.0;
-    for (std::size_t i = 0; i < scales.size(); ++i) {
-      const double back = -candidate.fit.point[static_cast<Eigen::Index>(i)];
-      if (scales[i] && candidate.list[i].prior.sd > 0.0 && cost(back) < cost(best)) best = back;
-    }
-    return best;
   }
 
   /// Largest magnitude of an input over the data of the fit.

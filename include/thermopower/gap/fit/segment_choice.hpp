@@ -50,10 +50,8 @@ inline std::vector<Segment> thinned_runs(const std::vector<Segment>& segments, E
 /// Keeps some of the windows of a moving axis, spread over the recording, with about `rows` rows in total. Each comes with
 /// the one before it if it carries that one's states on. Windows that only bring such states about are not counted, nor
 /// chosen. Segments on the bench are all kept.
-/// @param also      places of further segments to keep, in order
 /// @param together  so many windows in a row are kept or left out, > 0: states that nobody measures need some time
 inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, Eigen::Index rows,
-                                         const std::vector<std::size_t>& also = {},
                                          Eigen::Index together = 1) {
   const auto counts = [](const Segment& one) { return one.axis && !one.warm_up; };
   Eigen::Index total = 0, windows = 0;
@@ -70,8 +68,7 @@ inline std::vector<Segment> thinned_axis(const std::vector<Segment>& segments, E
   for (std::size_t place = 0; place < segments.size(); ++place) {
     const bool is_window = counts(segments[place]);
     if (is_window && window++ % together == 0) in_group = spread.next();
-    chosen.push_back(!segments[place].axis || (is_window && in_group) ||
-                     std::binary_search(also.begin(), also.end(), place));
+    chosen.push_back(!segments[place].axis || (is_window && in_group));
   }
   std::vector<Segment> kept;
   for (std::size_t place = 0; place < segments.size(); ++place) {

@@ -49,7 +49,7 @@ inline FitProblem fitted_to_rows(Candidate& candidate, const FitProblem& searche
                                  const std::vector<Inputs>& recordings, double horizon_s, Eigen::Index rows) {
   FitProblem problem = searched;
   problem.segments =
-      thinned_axis(cut(recordings, horizon_s, searched.plant()), rows, {}, search_extent.windows_together);
+      thinned_axis(cut(recordings, horizon_s, searched.plant()), rows, search_extent.windows_together);
   Attribution(problem).polish(candidate, last_fit());
   return problem;
 }
