@@ -27,10 +27,7 @@ class AxisRollout {
 public:
   /// Keeps references to both arguments: they must outlive this object.
   AxisRollout(const Instance<Scalar>& instance, const Inputs& inputs)
-      : instance_(instance),
-        inputs_(inputs),
-        parts_(std::max<Eigen::Index>(1, inputs.command_within.cols())),
-        step_(instance) {}
+      : instance_(instance), inputs_(inputs), step_(instance) {}
 
   /// The state in which the readings at `row` are these; the spring is relaxed. A reading must grow with what it is of.
   AxisState<Scalar> start(Eigen::Index row, double run_start_s, double angle_deg, double rate_dps) const {
@@ -58,7 +55,7 @@ public:
     }
     const double delay_s =
         instance_.axis_structure.delayed ? value_of(instance_.axis_structure.delay_s) : 0.0;
-    Eigen::Index commanded = arrived(begin * parts_, run, delay_s);
+    Eigen::Index commanded = arrived(begin, run, delay_s);
     bring_about(run, begin, state, [&](Eigen::Index place, Eigen::Index row, double t_s) {
       return drive(arrived(place + 1, run, delay_s) - 1, run, row, t_s);
     });
@@ -71,9 +68,9 @@ public:
   }
 
   /// The drive at a row, from a command of the run (of none where that lies before it).
-  /// @param commanded  row of the command; where it goes on between the rows, its place among all their parts
+  /// @param commanded  row of the command
   AxisDrive<Scalar> drive(Eigen::Index commanded, const RunSpan& run, Eigen::Index row, double t_s) const {
-    const Eigen::Index first = run.begin * parts_;
+    const Eigen::Index first = run.begin;
     const double value = commanded >= first ? commanded_value(commanded)
                          : run.was_driven   ? commanded_value(first)
                                             : 0.0;
@@ -174,7 +171,7 @@ private:
       return seen(row, run, angle_deg, rate_dps);
     });
     bring_about(run, begin, state, [&](Eigen::Index place, Eigen::Index row, double t_s) {
-      if (place + 1 == begin * parts_) return drive(servo.command_A(), row, t_s);
+      if (place + 1 == begin) return drive(servo.command_A(), row, t_s);
       return drive(constant<Scalar>(servo_A(row, run)), row, t_s);
     });
     const auto sense = [&] {
@@ -201,41 +198,34 @@ private:
     if (state.own.count == instance_.own_states) return;
     const double start_s = inputs_.t_s[run.begin], now_s = inputs_.t_s[begin] - start_s;
     if (now_s > AxisStep<Scalar>::settled_for_s) {
-      step_.settle(state, now_s, before(begin * parts_ - 1, begin, now_s));
+      step_.settle(state, now_s, before(begin - 1, begin, now_s));
       return;
     }
-    step_.settle(state, 0.0, drive(run.begin * parts_ - 1, run, run.begin, 0.0));
+    step_.settle(state, 0.0, drive(run.begin - 1, run, run.begin, 0.0));
     for (Eigen::Index row = run.begin; row < begin; ++row) {
-      const double length_s = (inputs_.t_s[row + 1] - inputs_.t_s[row]) / static_cast<double>(parts_);
-      for (Eigen::Index part = 0; part < parts_; ++part) {
-        const double t_s = inputs_.t_s[row] - start_s + length_s * static_cast<double>(part);
-        step_.follow(state, t_s, length_s, before(row * parts_ + part, row, t_s));
-      }
+      const double t_s = inputs_.t_s[row] - start_s;
+      step_.follow(state, t_s, inputs_.t_s[row + 1] - inputs_.t_s[row], before(row, row, t_s));
     }
   }
 
   /// The command that reaches the drive when that at a place is set; before its first row a run is idle.
   Eigen::Index arrived(Eigen::Index place, const RunSpan& run, double delay_s) const {
-    const double now_s = set_s(place);
-    while (place >= run.begin * parts_ && set_s(place) + delay_s > now_s) --place;
+    const double now_s = inputs_.t_s[place];
+    while (place >= run.begin && inputs_.t_s[place] + delay_s > now_s) --place;
     return place;
   }
 
   void interval(Eigen::Index row, double from_s, double to_s, double start_s, Eigen::Index& commanded,
                 const RunSpan& run, AxisState<Scalar>& state) const {
     if (!instance_.axis_structure.delayed) {
-      const double length_s = (to_s - from_s) / static_cast<double>(parts_);
-      for (Eigen::Index part = 0; part < parts_; ++part) {
-        const double now_s = from_s + length_s * static_cast<double>(part);
-        step_.advance(state, now_s, constant<Scalar>(length_s), drive(row * parts_ + part, run, row, now_s));
-      }
+      step_.advance(state, from_s, constant<Scalar>(to_s - from_s), drive(row, run, row, from_s));
       return;
     }
     // The command switches inside the interval, at its stamp plus the delay: any delay acts smoothly.
     const Scalar& delay_s = instance_.axis_structure.delay_s;
     Scalar now_s = constant<Scalar>(from_s);
-    while (commanded + 1 < run.end * parts_) {
-      const Scalar switch_s = delay_s + (set_s(commanded + 1) - start_s);
+    while (commanded + 1 < run.end) {
+      const Scalar switch_s = delay_s + (inputs_.t_s[commanded + 1] - start_s);
       if (!(value_of(switch_s) < to_s)) break;
       step_.advance(state, value_of(now_s), Scalar(switch_s - now_s),
                     drive(commanded, run, row, value_of(now_s)));
@@ -245,22 +235,12 @@ private:
     step_.advance(state, value_of(now_s), Scalar(to_s - now_s), drive(commanded, run, row, value_of(now_s)));
   }
 
-  /// When a command is set. Where commands go on between the rows, each row has as many as its interval has parts.
-  double set_s(Eigen::Index commanded) const {
-    const Eigen::Index row = commanded / parts_, part = commanded % parts_;
-    if (part == 0 || row + 1 >= inputs_.rows()) return inputs_.t_s[row];
-    return inputs_.t_s[row] + (inputs_.t_s[row + 1] - inputs_.t_s[row]) * static_cast<double>(part) /
-                                  static_cast<double>(parts_);
-  }
-
   double commanded_value(Eigen::Index commanded) const {
-    if (inputs_.command_within.size() == 0) return command(inputs_, instance_.voltage_driven)[commanded];
-    return inputs_.command_within(commanded / parts_, commanded % parts_);
+    return command(inputs_, instance_.voltage_driven)[commanded];
   }
 
   const Instance<Scalar>& instance_;
   const Inputs& inputs_;
-  const Eigen::Index parts_;  ///< of an interval between rows, each with a command of its own
   AxisStep<Scalar> step_;
 };
 

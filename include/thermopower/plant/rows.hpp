@@ -96,7 +96,6 @@ struct Inputs {
   Eigen::VectorXd target_deg;               ///< of the servo
   Eigen::VectorXd target_dps;               ///< of the servo
   bool target_moves = false;                ///< targets go straight from row to row; else they hold
-  double target_lead = 0.0;                 ///< rows by which moving targets are ahead of that
   Eigen::VectorXd seen_deg;                 ///< measured angle without holes, of a closed loop; else empty
   Eigen::VectorXd seen_dps;                 ///< measured rate without holes, of a closed loop; else empty
   Eigen::VectorXd servo_A;                  ///< of a closed loop: what the servo makes of the measured motion
@@ -114,11 +113,8 @@ struct Inputs {
   bool own = false;                         ///< the signals are those of a plant of one's own
   Eigen::VectorXd repeats;                  ///< samples averaged in each row; empty: one
   std::array<double, actuator_signal_count>
-      sample_noise{};  ///< of what was averaged: standard deviation of one sample's
-                       ///< noise, as all of them tell it; 0: not told
-  Eigen::MatrixXd
-      command_within;  ///< of an open loop: the command's means in equal parts of the interval after each row,
-                       ///< rows x parts; empty: it holds
+      sample_noise{};              ///< of what was averaged: standard deviation of one sample's
+                                   ///< noise, as all of them tell it; 0: not told
   double command_noise = 0.0;      ///< standard deviation of what is noise in the command, in its unit
   UnknownCommand command_unknown;  ///< what it did between the rows, as far as nobody knows
   double current_noise_A = 0.0;    ///< the same of a recorded current that heats: its variance heats nothing

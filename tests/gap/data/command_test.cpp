@@ -187,24 +187,13 @@ TEST_CASE("a command that holds from row to row is left as it is, and one that c
   CHECK(checked.train.front().recording().column("drive_A") == early);
 }
 
-TEST_CASE("between rows a smooth command is followed along its cubic, and one in steps as it holds") {
-  // x^3 - 2 x + 3 in rows: the mean of each third of an interval is the integral's difference.
-  const auto sum = [](double x) { return 0.25 * x * x * x * x - x * x + 3.0 * x; };
-  Eigen::VectorXd cubic(8);
-  for (Eigen::Index i = 0; i < cubic.size(); ++i) {
-    const double x = static_cast<double>(i);
-    cubic[i] = x * x * x - 2.0 * x + 3.0;
-  }
-  const Eigen::MatrixXd means = command_within(cubic, {{0, 8, ""}}, 0.5, true, 3);
-  for (Eigen::Index row = 1; row < 6; ++row)
-    for (Eigen::Index part = 0; part < 3; ++part) {
-      const double from = static_cast<double>(row) + static_cast<double>(part) / 3.0;
-      CHECK(means(row, part) == Approx(3.0 * (sum(from + 1.0 / 3.0) - sum(from))).epsilon(1e-9));
-    }
-  const Eigen::MatrixXd straight = command_within(cubic, {{0, 8, ""}}, 0.4, false, 1);
+TEST_CASE("between rows a command goes straight, and the last row of a run holds") {
+  Eigen::VectorXd command(8);
+  for (Eigen::Index i = 0; i < command.size(); ++i) command[i] = static_cast<double>(i * i);
+  const Eigen::VectorXd mean = mean_command(command, {{0, 8, ""}}, 0.4);
   for (Eigen::Index row = 0; row < 7; ++row)
-    CHECK(straight(row, 0) == Approx(cubic[row] + 0.4 * (cubic[row + 1] - cubic[row])));
-  CHECK(straight(7, 0) == cubic[7]);
+    CHECK(mean[row] == Approx(command[row] + 0.4 * (command[row + 1] - command[row])));
+  CHECK(mean[7] == command[7]);
 }
 
 TEST_CASE("noise in a command is told by what no motion follows") {

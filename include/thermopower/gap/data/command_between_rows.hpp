@@ -26,16 +26,13 @@ namespace thermopower::gap::engine {
 /// Thresholds of the questions what a command did between the rows, and whether it is noisy.
 /// Held by tests/gap/data/command_test.cpp.
 struct CommandThresholds {
-  double least_share = 0.2;   ///< every second command logged is felt by a quarter
-  double most_share = 0.65;   ///< a command that changes steadily by half; more is another thing
-  double sure = 5.0;          ///< standard errors that a share differs from 0 by
-  double precise = 0.08;      ///< largest standard error of the share
-  double agree = 2.0;         ///< standard errors that two shares may differ by
-  double matters = 0.2;       ///< noise scales of what half a row changes: less is nobody's concern
-  double bend_known = 0.015;  ///< largest standard error of a bend that is believed
-  double angle_off = 0.1;     ///< noise scales of the angle that a command held at its mean may cost
-  double most_pieces = 8.0;   ///< that an interval is cut into
-  double wander = 0.3;        ///< noise scales that a simulation wanders by: less is nobody's concern
+  double least_share = 0.2;  ///< every second command logged is felt by a quarter
+  double most_share = 0.65;  ///< a command that changes steadily by half; more is another thing
+  double sure = 5.0;         ///< standard errors that a share differs from 0 by
+  double precise = 0.08;     ///< largest standard error of the share
+  double agree = 2.0;        ///< standard errors that two shares may differ by
+  double matters = 0.2;      ///< noise scales of what half a row changes: less is nobody's concern
+  double wander = 0.3;       ///< noise scales that a simulation wanders by: less is nobody's concern
 };
 
 /// Asks the motion of axes what their command did.
@@ -78,39 +75,6 @@ public:
   /// Whether the motion follows the first term of a fit by enough to tell of the next. @param noise_dps  of the rate
   static bool is_followed(const MotionFit& fit, double noise_dps) {
     return fit.value[0] != 0.0 && !(0.5 * fit.first_dps < CommandThresholds().matters * noise_dps);
-  }
-
-  /// Whether the command of a row bends between its neighbours as a smooth one does, rather than going straight.
-  bool bends() const {
-    constexpr CommandThresholds limit;
-    if (noise() > 0.0) return false;
-    const auto fit =
-        motion_.fit([](const Inputs&, const Eigen::VectorXd& c, const RunSpan& run, Eigen::Index k) {
-          if (k - 1 < run.begin || k + 2 >= run.end) return Terms();
-          return terms({c[k], c[k + 1] - c[k], c[k - 1] - c[k] - c[k + 1] + c[k + 2]});
-        });
-    if (!fit) return false;
-    const auto [bend, error] = fit->estimate([](const Eigen::VectorXd& of) { return of[2] / of[0]; });
-    // The mean of the cubic through four rows, between the two in the middle.
-    constexpr double smooth = -1.0 / 24.0;
-    return error < limit.bend_known && std::abs(bend - smooth) < std::abs(bend);
-  }
-
-  /// Parts of an interval that a steady command must be followed in, so that holding the mean in each costs no angle
-  /// that anybody sees.
-  int pieces() const {
-    constexpr CommandThresholds limit;
-    const double noise_deg = motion_.noise(Signal::angle_deg), response = this->response();
-    double costs_deg = 0.0;
-    for (const auto& one : motion_.recordings()) {
-      const double step_s = plant::median_interval_s(one.inputs->t_s, one.inputs->runs, 0.0);
-      const Eigen::VectorXd& c = *one.command;
-      const double spread = std::sqrt((c.array() - c.mean()).square().mean() * 2.0);  // of end and start
-      costs_deg = std::max(costs_deg, response * spread * step_s * step_s / 12.0);
-    }
-    if (!(noise_deg > 0.0)) return 1;
-    return static_cast<int>(
-        std::clamp(std::ceil(std::sqrt(costs_deg / (limit.angle_off * noise_deg))), 1.0, limit.most_pieces));
   }
 
   /// Standard deviation of the noise in the command, in its unit: what it is rough by from row to row and no motion
@@ -277,37 +241,16 @@ inline Eigen::VectorXd unknown_between(const Eigen::VectorXd& command, const Eig
   return sd;
 }
 
-/// What a command did in equal parts of the intervals between the rows: its means there, a row of them for each row.
-///
-/// Between two rows it goes straight, or along the cubic through the two before and after; a run's last row holds.
+/// The means of a command over the intervals after each row: it goes straight to the next one; a run's last row holds.
 /// @param share  of the next row's command in the mean of an interval: 0.5 where it was set all the time, less where each
 ///               step of a loop holds a while
-/// @param bends  along the cubic
-/// @param parts  of an interval, 1 or more
-inline Eigen::MatrixXd command_within(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
-                                      double share, bool bends, int parts) {
-  Eigen::MatrixXd means = command.replicate(1, parts);
-  const double late = 0.5 - share;  // rows
+inline Eigen::VectorXd mean_command(const Eigen::VectorXd& command, const std::vector<RunSpan>& runs,
+                                    double share) {
+  Eigen::VectorXd mean = command;
   for (const RunSpan& run : runs)
-    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row) {
-      const double step = command[row + 1] - command[row];
-      const bool has_four = bends && row > run.begin && row + 2 < run.end;
-      // With x from row to row: the straight line, and x (x - 1) times what the neighbours bend it by.
-      const double bend =
-          has_four ? 0.25 * (command[row - 1] - command[row] - command[row + 1] + command[row + 2]) : 0.0;
-      const double skew =
-          has_four ? (command[row + 2] - command[row - 1] - 3.0 * step) / 6.0 : 0.0;  // third difference
-      const auto sum = [&](double x) {  // of the cubic from 0 to x
-        const double straight = command[row] * x + 0.5 * step * x * x, bent = x * x * (x / 3.0 - 0.5),
-                     skewed = x * x * (0.25 * x * x - 0.5 * x + 0.25);
-        return straight + bend * bent + skew * skewed;
-      };
-      for (int part = 0; part < parts; ++part) {
-        const double from = static_cast<double>(part) / parts - late, to = from + 1.0 / parts;
-        means(row, part) = (sum(to) - sum(from)) * parts;
-      }
-    }
-  return means;
+    for (Eigen::Index row = run.begin; row + 1 < run.end; ++row)
+      mean[row] += share * (command[row + 1] - command[row]);
+  return mean;
 }
 
 }  // namespace thermopower::gap::engine

@@ -22,15 +22,12 @@ struct MaskThresholds {
   double motion_scales = 6.0;       ///< noise scales between a sample and the motion of its neighbours
   double motion_scales_here = 5.0;  ///< the same, of the noise around
   std::size_t noise_around = 14;    ///< samples before and after that tell the noise around
-  double rests_of_two = 6.0;        ///< of what is left of the neighbours, where one of them is a spike, too
   double rests_like_noise =
       1.5;                 ///< noise scales that are left of the neighbours at most where there is no corner
   double on_a_line = 3.0;  ///< noise scales off what neighbours on one side go on to: a corner
   double corner = 0.35;    ///< the same, of how far a sample lies
   double sharp_corner = 0.2;         ///< the same, where no more than noise is left of the neighbours
   double with_lost_rows = 1.5;       ///< times as long as usual that the neighbours may last
-  double as_far_as_another = 0.25;   ///< of how far it lies: what of another one may be a spike, too
-  std::size_t least_bends = 4;       ///< of them, where those of other spikes are left out
   std::size_t drawn_along = 3;       ///< rows before and after a spike that seem to lie far because of it
   double as_far = 0.6;               ///< of the farthest among them: what is a spike of its own
   double confirmed = 0.35;           ///< of how far a sample lies: what a rate and its angle may differ by

@@ -63,12 +63,6 @@ public:
       for (const Stencil& stencil : stencils_)
         if (has(samples, i, stencil, usually_between))
           result[i] = std::max(result[i], off_alone(samples, i, stencil, noise_here));
-      const Stencil& wide = stencils_[2];
-      if (result[i] > 0.0 || i < wide.beside + 2 || i + wide.beside + 2 >= count ||
-          !has(samples, i, wide, usually_between))
-        continue;
-      for (const std::size_t other : {i - 1, i + 1, i - 2, i + 2})
-        result[i] = std::max(result[i], off_beside(samples, i, other, wide, noise_here));
     }
     return result;
   }
@@ -114,16 +108,6 @@ private:
     if (continues<2>(samples, i, within, within_noise)) return 0.0;
     if (leaves_much && continues<3>(samples, i, within, within_noise)) return 0.0;
     return off;
-  }
-
-  /// The same where another neighbour is a spike, too: both stand out of what the others make of the motion.
-  double off_beside(const OrderedSamples& samples, std::size_t i, std::size_t other, const Stencil& stencil,
-                    double noise_here) const {
-    const NeighbourMotion motion = neighbour_motion(samples, i, stencil.beside, stencil.degree, other);
-    const bool both = stands_out(motion, limit_.rests_of_two, noise_here) &&
-                      stands_out(neighbour_motion(samples, other, stencil.beside, stencil.degree, i),
-                                 limit_.rests_of_two, noise_here);
-    return both ? std::abs(motion.off) : 0.0;
   }
 
   /// Whether a sample lies where those before it go on to, or those after it come from: a corner. So many and one more must agree

@@ -53,30 +53,13 @@ public:
   /// Median interval between rows in s.
   double interval_s() const { return interval_s_; }
   /// Takes other values of a command than were recorded.
-  /// @param within  its means in equal parts of the intervals, rows of recording() x parts
+  /// @param values  its means over the intervals after each row of recording()
   /// @param unknown what of each row's nobody knows
-  void take_command(const Model& model, const std::string& column, Eigen::MatrixXd within,
+  void take_command(const Model& model, const std::string& column, Eigen::VectorXd values,
                     UnknownCommand unknown) {
-    believed_.set(column, within.rowwise().mean());
+    believed_.set(column, std::move(values));
     renew_inputs(model);
-    if (within.cols() > 1) inputs_.command_within = std::move(within);
     inputs_.command_unknown = std::move(unknown);
-  }
-  /// Lets a servo's target go on between the rows. @param share  of the way to the next row's, on average
-  void take_targets_between(const Model& model, double share) {
-    const Eigen::VectorXd deg = inputs_.target_deg, dps = inputs_.target_dps;
-    for (const char* column : {"target_deg", "target_dps"})
-      if (believed_.has(column))
-        believed_.set(column,
-                      command_within(believed_.column(column), believed_.runs, share, false, 1).col(0));
-    renew_inputs(model);
-    inputs_.target_deg = deg;
-    inputs_.target_dps = dps;
-    inputs_.target_moves = true;
-    constexpr double told_apart = 0.1;  // rows
-    const double of_samples = plant::moving_target_share(plant::servo_gains(model).period_s, interval_s_);
-    if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
-    replay_servo(model, inputs_);
   }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
@@ -341,30 +324,7 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
   traits.begins_with_a_step = power != nullptr;
   SampleMasks masks(values, steady, traits);
-  if (power != nullptr) {
-    const RowMask lost = lost_current(values, *power, masks.scale());
-    take_away(values, lost);
-    masks.take(lost);
-    list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
-                  "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
-    const RowMask held = held_over_steps(values, *power, runs, masks.scale());
-    take_away(values, held);
-    masks.take(held);
-    list.add_rows(FindingKind::frozen_samples, Severity::warning, name, held, FindingAction::masked,
-                  "still read what they did before the power stepped, which shows at once otherwise",
-                  "look at what reads the sensor");
-  }
   RowMask spikes = masks.spikes();
-  // Where the power steps too often to be looked at in between: what it leaves.
-  const auto is_short = [](const RunSpan& run) { return run.size() < shortest_steady; };
-  if (power != nullptr && std::any_of(steady.begin(), steady.end(), is_short)) {
-    const RowMask others =
-        SampleMasks(detrended_current(masks.values(), *power, believed_.find("supply_V"), runs), runs, traits)
-            .spikes();
-    for (const RunSpan& run : steady)
-      for (Eigen::Index i = run.begin; is_short(run) && i < run.end; ++i)
-        spikes[static_cast<std::size_t>(i)] |= others[static_cast<std::size_t>(i)];
-  }
   const RowMask bursts = masks.bursts();
   if (std::find(bursts.begin(), bursts.end(), 1) != bursts.end()) {
     // Next to a burst a spike does not stand out.

@@ -35,10 +35,6 @@ public:
     constexpr double few_digits = 0.01;  // 360/16384 deg with four decimals comes as 0.0219 and 0.0220
     const double coarsest = std::max(quantum, quantum_of(values, few_digits));
     motion_ = MotionSpikes(values, traits.t_s, runs, coarsest);
-    if (traits.at_rest != nullptr && traits.t_s != nullptr) {
-      ways_ = ways_of(*traits.at_rest, *traits.t_s, runs);
-      besides_ways_ = MotionSpikes(values - ways_, traits.t_s, runs, coarsest);
-    }
     median_confirmed_ = confirmed(values, limit_.spike_scales * scale_);
     motion_confirmed_ = confirmed(values, limit_.spike_scales * motion_.noise());
   }
@@ -50,8 +46,7 @@ public:
     RowMask mask(static_cast<std::size_t>(values.size()), 0);
     for (int pass = 0; pass < 4; ++pass) {  // a tenth of bad rows puts three of five together now and then
       RowMask found(mask.size(), 0);
-      const Eigen::VectorXd besides = ways_.size() > 0 ? Eigen::VectorXd(values - ways_) : Eigen::VectorXd();
-      for (const RunSpan& run : runs_) spikes_of(values, besides, run, found);
+      for (const RunSpan& run : runs_) spikes_of(values, run, found);
       if (std::find(found.begin(), found.end(), 1) == found.end()) break;
       for (std::size_t i = 0; i < mask.size(); ++i) {
         if (found[i] == 0) continue;
@@ -69,18 +64,14 @@ private:
     return five[2];
   }
 
-  /// @param besides  an angle less the way of its rate; empty where there is none
-  void spikes_of(const Eigen::VectorXd& values, const Eigen::VectorXd& besides, const RunSpan& run,
-                 RowMask& mask) const {
+  void spikes_of(const Eigen::VectorXd& values, const RunSpan& run, RowMask& mask) const {
     const OrderedSamples samples(values, traits_.t_s, run);
     const std::size_t count = samples.size();
     if (count < 7) return;
     std::vector<double> far(count, 0.0);
     far_from_the_median(values, run, samples, far);
     if (traits_.cannot_jump) far_from_the_beginning(samples, far);
-    far_from_the_motion(values, run, samples, motion_, far);
-    if (besides.size() > 0)
-      far_from_the_motion(values, run, OrderedSamples(besides, traits_.t_s, run), besides_ways_, far, true);
+    far_from_the_motion(values, run, samples, far);
     // Next to a spike its neighbours lie far, too: the farthest first, the others are looked at again without it.
     for (std::size_t i = 0; i < count; ++i) {
       if (!(far[i] > 0.0)) continue;
@@ -123,15 +114,12 @@ private:
 
   /// Raises how far samples lie to how far they lie from their neighbours' motion, where their rate, or their angle, does not bear
   /// them out.
-  /// @param besides_ways  whether they are an angle less the way of its rate
   void far_from_the_motion(const Eigen::VectorXd& values, const RunSpan& run, const OrderedSamples& samples,
-                           const MotionSpikes& motion, std::vector<double>& far,
-                           bool besides_ways = false) const {
-    const std::vector<double> off = motion.off(samples);
+                           std::vector<double>& far) const {
+    const std::vector<double> off = motion_.off(samples);
     for (std::size_t i = 0; i < off.size(); ++i) {
       if (!(off[i] > far[i])) continue;
       const Eigen::Index row = samples.rows[i];
-      if (besides_ways && !(off[i] > stray_way(run, row))) continue;
       if (motion_confirmed_[static_cast<std::size_t>(row)] == 0 && !is_motion(values, run, row, off[i]))
         far[i] = off[i];
     }
@@ -174,49 +162,13 @@ private:
       if (!(off > least) || median_confirmed_[static_cast<std::size_t>(samples.rows[i])] != 0 ||
           is_motion(values, run, samples.rows[i], off))
         continue;
-      // So many that another spike among them does not move the median. Those of two more, and of what is right between them,
-      // are left out, but of a rate: blows of teeth look like that.
-      std::vector<double> bends, without_spikes;
-      const double another = std::max(least, limit_.as_far_as_another * off);
-      std::size_t others = 0;
+      // So many that another spike among them does not move the median.
+      std::vector<double> bends;
       for (std::size_t k = i < limit_.bends_around + 1 ? 1 : i - limit_.bends_around;
-           k < std::min(count - 1, i + limit_.bends_around + 1); ++k) {
-        if (k != i && off_median[k] > another) ++others;
-        if (k + 1 >= i && k <= i + 1) continue;
-        bends.push_back(std::abs(at[k - 1] - 2.0 * at[k] + at[k + 1]));
-        const double spike = std::max({off_median[k - 1], off_median[k], off_median[k + 1]});
-        if (!(spike > another)) without_spikes.push_back(bends.back());
-      }
-      const bool may_be_three =
-          traits_.integral == nullptr && others <= 3 && without_spikes.size() >= limit_.least_bends;
-      if (off > limit_.spike_bends * median_of(may_be_three ? without_spikes : bends)) far[i] = off;
+           k < std::min(count - 1, i + limit_.bends_around + 1); ++k)
+        if (k + 1 < i || k > i + 1) bends.push_back(std::abs(at[k - 1] - 2.0 * at[k] + at[k + 1]));
+      if (off > limit_.spike_bends * median_of(bends)) far[i] = off;
     }
-  }
-
-  /// The way that a rate goes from the first row of each run on; what is missing lasts as it was before.
-  static Eigen::VectorXd ways_of(const Eigen::VectorXd& rate, const Eigen::VectorXd& t_s,
-                                 const std::vector<RunSpan>& runs) {
-    Eigen::VectorXd ways = Eigen::VectorXd::Zero(rate.size());
-    for (const RunSpan& run : runs) {
-      double last = 0.0;
-      for (Eigen::Index i = run.begin; i < run.end; ++i) {
-        const double here = std::isfinite(rate[i]) ? rate[i] : last;
-        if (i > run.begin) ways[i] = ways[i - 1] + 0.5 * (last + here) * (t_s[i] - t_s[i - 1]);
-        last = here;
-      }
-    }
-    return ways;
-  }
-
-  /// The way that an angle goes while the stamps around a row stray from even steps: its rate tells no better where it is.
-  double stray_way(const RunSpan& run, Eigen::Index row) const {
-    constexpr Eigen::Index around = 2;
-    const Eigen::VectorXd &rate = *traits_.at_rest, &t_s = *traits_.t_s;
-    double farthest = 0.0;
-    for (Eigen::Index k = std::max(run.begin + 1, row - around); k < std::min(run.end - 1, row + around + 1);
-         ++k)
-      farthest = std::max(farthest, std::abs(rate[k] * (t_s[k + 1] - 2.0 * t_s[k] + t_s[k - 1])));
-    return farthest;
   }
 
   /// Which rows a rate and its angle agree about. @param off  how far a sample must stand out that is looked at
@@ -264,9 +216,6 @@ private:
   ColumnTraits traits_;
   double quantum_, scale_, position_step_;
   MotionSpikes motion_;
-  // Less the way that its rate says an angle went, which has no bend: a rate may show what a coarse row hides.
-  Eigen::VectorXd ways_;
-  MotionSpikes besides_ways_;
   // Rows that a rate and its angle agree about, while all neighbours are still there: without them motion would look like a spike.
   RowMask median_confirmed_, motion_confirmed_;
 };

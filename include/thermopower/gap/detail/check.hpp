@@ -10,7 +10,6 @@
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
-#include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>
@@ -93,33 +92,6 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
     }
 }
 
-/// Lets the target of a servo go on between the rows where the training recordings say that it did.
-inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
-                                      const Catalogue& catalogue, std::vector<Finding>& findings) {
-  if (!model.has_axis() || !model.has_servo()) return;
-  TargetBetweenRows between(model, catalogue);
-  const auto is_closed = [](const PreparedRecording& one) {
-    return one.inputs().axis() && one.inputs().closed_loop && !one.inputs().target_moves;
-  };
-  for (const PreparedRecording& one : checked.train)
-    if (is_closed(one)) between.add(one.inputs());
-  const auto share = between.steady();
-  if (!share) return;
-  for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
-    findings.push_back({FindingKind::sampled_command,
-                        Severity::note,
-                        one.recording().name,
-                        one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
-                        "went on between the rows, as the motion shows: the servo is given what lies " +
-                            short_number(100.0 * share->value) +
-                            " % of the way to the next row's, on average",
-                        "log the target at the rate it is set",
-                        FindingAction::none,
-                        {}});
-    one.take_targets_between(model, share->value);
-  });
-}
-
 /// Whether a recording is of an axis whose command was logged.
 inline bool is_commanded(const PreparedRecording& one) {
   return one.inputs().axis() && !one.inputs().closed_loop;
@@ -155,8 +127,6 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
   const double noise = between.noise();
   const auto share = between.steady();
   if (!share && !(noise > 0.0)) return;
-  const bool bends = share && between.bends();
-  const int parts = share ? between.pieces() : 1;
   for_each_recording(checked, is_commanded, [&](PreparedRecording& one) {
     const std::string column = command_column(one.inputs());
     const auto note = [&](FindingKind kind, const std::string& message, const char* mend) {
@@ -175,8 +145,7 @@ inline void read_between_rows(const Model& model, CheckedRecordings& checked, do
       if (!(noise > 0.0)) unknown.between = unknown_between(command, steps, runs);
       constexpr double sure = 2.0;  // standard errors: 95 %
       unknown.shift = sure * share->error * steps;
-      one.take_command(model, column, command_within(command, runs, share->value, bends, parts),
-                       std::move(unknown));
+      one.take_command(model, column, mean_command(command, runs, share->value), std::move(unknown));
     }
     if (noise > 0.0) {
       const char* unit = model.axis->voltage_driven() ? " V" : " A";
@@ -292,7 +261,6 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
     mend_what_lags(model, result, others);
     read_what_drove_before(model, result);
     read_between_rows(model, result, options.horizon_s, others);
-    read_targets_between_rows(model, result, catalogue, others);
     read_current_noise(model, result, others);
     read_when_switched(model, result, catalogue, others);
   }

@@ -136,7 +136,6 @@ private:
       picked(*values);
     // The value of a parabola at its middle has 9/4 times the variance of a mean.
     thin.repeats = Eigen::VectorXd::Constant(count, std::max(1.0, 4.0 / 9.0 * static_cast<double>(rows)));
-    thin.command_within.resize(0, 0);
     for (Eigen::VectorXd& values : thin.between_samples) values.resize(0);
     thin.command_noise = full_.command_noise / std::sqrt(static_cast<double>(rows));
     const auto& unknown = full_.command_unknown;
