@@ -135,6 +135,8 @@ struct Parameter {
   /// It is a detail of the effect's shape: it stays at its standard, which it must have, until the effect without it is
   /// fitted and leaves what the detail takes away.
   bool refines = false;
+  /// Two families of shapes meet at its standard: a fit that ends below it looks at the other side, too.
+  bool two_families = false;
   /// Name of another parameter of the effect that it must exceed: below, nothing shows it, and a fit that ends
   /// there explains nothing. Empty: none.
   std::string exceeds = {};
@@ -192,6 +194,8 @@ public:
   ParameterBuilder& periods_in_travel(double least) { return parameter_.periods_in_travel = least, *this; }
   /// It stays at its standard until the effect without it leaves what it takes away.
   ParameterBuilder& refines() { return parameter_.refines = true, *this; }
+  /// Two families of shapes meet at its standard.
+  ParameterBuilder& two_families() { return parameter_.two_families = true, *this; }
   /// The data give it its value, and it is not fitted.
   ParameterBuilder& given_by_data() { return parameter_.given_by_data = true, *this; }
   /// At its bounds the effect is another one: a fit that ends there explains nothing.

@@ -23,7 +23,7 @@ inline Parameter friction_transition(int index) {
 /// proportion to the rate, then at once) over 0 (as tanh) to 1 (as x / (1 + |x|)); 0 where a model leaves it out.
 /// @param index  by which the effect reads it
 inline Parameter friction_tail(int index) {
-  return parameter(index, "tail").unit("1").within(-1.0, 1.0).starts({0.0, 0.6}).standard(0.0);
+  return parameter(index, "tail").unit("1").within(-1.0, 1.0).starts({0.0, 0.6}).standard(0.0).two_families();
 }
 
 }  // namespace thermopower::plant

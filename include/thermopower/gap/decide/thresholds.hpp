@@ -54,7 +54,7 @@ struct DecisionThresholds {
   double worse = 1.05;
   /// Multiple of the noise above which long windows may do harm: a small error sends the axis into the next dip of a load.
   double far_for_long_windows = 3.0;
-  /// Share of it that short windows must get below to be believed instead.
+  /// Share of what the answer of long windows leaves, that the one of short windows must get below to be believed instead.
   double short_windows_lower = 0.7;
   /// Multiple of the noise in the fitted windows, with fitted starts, above which a simulation does not follow its data.
   /// Noise alone makes 1. Blows of teeth that depend on the last digit of a start came to 2.2.

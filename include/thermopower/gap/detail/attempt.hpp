@@ -33,9 +33,15 @@ struct Attempt {
   /// Whether long windows may do harm.
   bool is_far() const { return best_noise_multiple() > decision.far_for_long_windows; }
 
-  /// Whether it is so much nearer to the noise in its shorter windows that these are believed instead.
-  bool is_nearer_than(const Attempt& longer) const {
-    return best_noise_multiple() < decision.short_windows_lower * longer.best_noise_multiple();
+  /// The share of the held-out gap that the likeliest explanation leaves, as a gap is judged.
+  double left() const {
+    const Candidate& one = candidates[likeliest(candidates)];
+    return one.held_out.any() ? left_over(one.held_out, reference.as_configured) : 1.0;
+  }
+
+  /// Whether it closes so much more of the gap in its shorter windows that these are believed instead.
+  bool closes_more_than(const Attempt& longer) const {
+    return left() < decision.short_windows_lower * longer.left();
   }
 };
 

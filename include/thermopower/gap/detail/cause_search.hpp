@@ -31,13 +31,13 @@ public:
         told_(told),
         suspects_(suspects_among(where)) {}
 
-  /// A search in long windows, and one in those of the score where that is nearer to the noise.
+  /// A search in long windows, and one in those of the score where that closes more.
   Attempt run() const {
     const double long_s = posing_.long_window_s(), short_s = posing_.options().horizon_s;
     Attempt attempt = search(long_s);
     if (attempt.horizon_s == long_s && train_.front().axis() && short_s < long_s && attempt.is_far()) {
       Attempt shorter = search(short_s);
-      if (shorter.is_nearer_than(attempt)) attempt = std::move(shorter);
+      if (shorter.closes_more_than(attempt)) attempt = std::move(shorter);
     }
     return attempt;
   }

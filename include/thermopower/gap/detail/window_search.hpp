@@ -155,6 +155,13 @@ public:
       return;
     add_sets(search_->promising().with_each(attempt_.candidates, place, effects()));
     weigh_all();
+    // What fits the data it was fitted to, and fails on others, was a stand-in.
+    constexpr double near = decision.near_floor;
+    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
+      if (!costly_.empty()) add_late(costly_);
+      if (!curves_.empty()) add_late(curves_);
+      weigh_all();
+    }
   }
 
 private:

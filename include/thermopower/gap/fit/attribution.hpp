@@ -72,7 +72,7 @@ public:
     } else {
       candidate.fit = fitter.minimise(starts.front(), options);
     }
-    lead_outside(fitter, candidate, options);
+    free_from_traps(fitter, candidate, options);
     candidate.train = candidate.fit.sums;
     return candidate;
   }
@@ -87,7 +87,7 @@ public:
   void polish(Candidate& candidate, const FitOptions& options) const {
     Fitter fitter(problem_, candidate.explanation, candidate.list);
     candidate.fit = fitter.minimise(candidate.fit.point, options, starts_of(candidate));
-    if (options.iterations > 2) lead_outside(fitter, candidate, options);
+    if (options.iterations > 2) free_from_traps(fitter, candidate, options);
     candidate.train = candidate.fit.sums;
   }
 

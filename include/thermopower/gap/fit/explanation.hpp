@@ -29,6 +29,7 @@ struct Coordinate {
   bool logarithmic = false;  ///< value = exp(coordinate)
   std::optional<double> standard = {};  ///< where to begin anew should a fit end on the lower bound
   bool still = false;                   ///< it stays at its start: a detail that is not looked at
+  bool two_families = false;            ///< below its standard it is of another shape than above
 
   /// The value, in `unit`, where the fit's coordinate is `at`.
   double value_of(double at) const { return logarithmic ? std::exp(at) : at; }
@@ -193,6 +194,7 @@ inline std::vector<Coordinate> coordinates(const Model& model, const Explanation
       } else if (parameter.standard) {
         one.standard = one.coordinate_of(*parameter.standard);
       }
+      one.two_families = parameter.two_families && !one.still;
       assert(one.lower <= one.upper && one.start >= one.lower && one.start <= one.upper);
     }
   return list;

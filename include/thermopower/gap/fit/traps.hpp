@@ -14,6 +14,39 @@
 
 namespace thermopower::gap::engine {
 
+/// A friction without a transition has no derivative by it. A fit that came to that bound is blind there, and begins once
+/// more from the standard value. Nor does the way to that bound always lead downhill: a fit that ended shortly before it
+/// begins once more there. A shape that ended at its far bound may have run there from a start on the wrong side. Then all
+/// parameters with a standard begin once more from it. Two families of shapes meet at the standard one, and a fit that
+/// stopped shortly below it looks at the other side. A hopeless fit stays where it is.
+inline void free_from_trap(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+  if (candidate.fit.cost > options.hopeless) return;
+  Eigen::VectorXd again = candidate.fit.point;
+  bool trapped = false, far = false;
+  for (std::size_t i = 0; i < candidate.list.size(); ++i) {
+    const Coordinate& one = candidate.list[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    if (!one.standard) continue;
+    if (!one.logarithmic && again[at] >= one.upper) far = trapped = true;
+    const bool other_side = one.two_families && again[at] < *one.standard && again[at] > 0.5 * one.lower;
+    if (other_side) {
+      again[at] = 2.0 * *one.standard - again[at];
+      trapped = true;
+    }
+    if (!one.logarithmic || !(*one.standard > one.lower) || again[at] > *one.standard) continue;
+    again[at] = again[at] > one.lower + 1e-9 ? one.lower : *one.standard;
+    trapped = true;
+  }
+  if (!trapped) return;
+  for (std::size_t i = 0; far && i < candidate.list.size(); ++i)
+    if (candidate.list[i].standard) again[static_cast<Eigen::Index>(i)] = *candidate.list[i].standard;
+  FitOptions better = options;  // soon, by as much as tells that it was a trap
+  better.hopeful = 3;
+  better.hopeless = 0.99 * candidate.fit.cost;
+  FitResult freed = fitter.minimise(again, better, &candidate.fit.starts);
+  if (freed.cost < candidate.fit.cost) candidate.fit = std::move(freed);
+}
+
 /// Where a fit of a parameter that has to exceed another one (Parameter::exceeds) ended below it: places above it to begin from.
 /// At the first one the other parameter is as small as it may be. At the second one the shapes have their standard values,
 /// and a small part beside something else (EffectInfo::where_small) is halved. Inside, a film takes most of a rise away,
@@ -63,6 +96,12 @@ inline void lead_outside(Fitter& fitter, Candidate& candidate, const FitOptions&
     candidate.fit = std::move(out);
     return;
   }
+}
+
+/// Out of what free_from_trap() and lead_outside() know.
+inline void free_from_traps(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
+  free_from_trap(fitter, candidate, options);
+  lead_outside(fitter, candidate, options);
 }
 
 }  // namespace thermopower::gap::engine
