@@ -19,7 +19,7 @@ inline double target_between(const Inputs& inputs, const Eigen::VectorXd& values
                              Eigen::Index row, double part) {
   if (values.size() == 0) return 0.0;
   if (!inputs.target_moves || row + 1 >= run.end) return values[row];
-  return values[row] + part * (values[row + 1] - values[row]);
+  return values[row] + (part + inputs.target_lead) * (values[row + 1] - values[row]);
 }
 
 /// A servo's target that reaches the servo late: what was recorded a delay ago, with its derivative by the delay.

@@ -96,6 +96,7 @@ struct Inputs {
   Eigen::VectorXd target_deg;               ///< of the servo
   Eigen::VectorXd target_dps;               ///< of the servo
   bool target_moves = false;                ///< targets go straight from row to row; else they hold
+  double target_lead = 0.0;                 ///< rows by which moving targets are ahead of that
   Eigen::VectorXd seen_deg;                 ///< measured angle without holes, of a closed loop; else empty
   Eigen::VectorXd seen_dps;                 ///< measured rate without holes, of a closed loop; else empty
   Eigen::VectorXd servo_A;                  ///< of a closed loop: what the servo makes of the measured motion

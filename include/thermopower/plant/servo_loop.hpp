@@ -122,6 +122,14 @@ inline long samples_until(double t_s, double period_s) {
   return std::max(0L, static_cast<long>(std::floor(t_s / period_s + rounding)) + 1);
 }
 
+/// Part of the way to the next row's that a target which goes straight there has gone, on average, when a servo takes it:
+/// between two samples it holds. 0 where the servo takes one a row or fewer.
+/// @param period_s    between the servo's samples, > 0
+/// @param interval_s  between two rows
+inline double moving_target_share(double period_s, double interval_s) {
+  return 0.5 - 0.5 * std::min(1.0, period_s / std::max(interval_s, period_s));
+}
+
 /// The command of a servo by the measured motion. It tells the servo's memory where a window starts.
 ///
 /// Fills `inputs.servo_A`, the command that the samples of each row's interval yield on average, and

@@ -61,6 +61,21 @@ public:
     renew_inputs(model);
     inputs_.command_unknown = std::move(unknown);
   }
+  /// Lets a servo's target go on between the rows. @param share  of the way to the next row's, on average
+  void take_targets_between(const Model& model, double share) {
+    const Eigen::VectorXd deg = inputs_.target_deg, dps = inputs_.target_dps;
+    for (const char* column : {"target_deg", "target_dps"})
+      if (believed_.has(column))
+        believed_.set(column, mean_command(believed_.column(column), believed_.runs, share));
+    renew_inputs(model);
+    inputs_.target_deg = deg;
+    inputs_.target_dps = dps;
+    inputs_.target_moves = true;
+    constexpr double told_apart = 0.1;  // rows
+    const double of_samples = plant::moving_target_share(plant::servo_gains(model).period_s, interval_s_);
+    if (std::abs(share - of_samples) > told_apart) inputs_.target_lead = share - of_samples;
+    replay_servo(model, inputs_);
+  }
   /// Says how noisy the command is. @param sd  standard deviation, in its unit
   void set_command_noise(double sd) { inputs_.command_noise = sd; }
   /// Says how noisy the current is that heats the bench: its variance heats nothing. @param sd_A  standard deviation

@@ -10,6 +10,7 @@
 #include <thermopower/gap/data/heat_between_rows.hpp>
 #include <thermopower/gap/data/lagging_output.hpp>
 #include <thermopower/gap/data/sort_by.hpp>
+#include <thermopower/gap/data/target_between_rows.hpp>
 #include <thermopower/gap/detail/dead_columns.hpp>
 #include <thermopower/gap/rule.hpp>
 #include <thermopower/gap/units/choose_units.hpp>
@@ -90,6 +91,33 @@ inline void check_units(const Model& model, const CheckedRecordings& checked,
       check_drive_clock(model, one, list);
       for (Finding& finding : list.take()) findings.push_back(std::move(finding));
     }
+}
+
+/// Lets the target of a servo go on between the rows where the training recordings say that it did.
+inline void read_targets_between_rows(const Model& model, CheckedRecordings& checked,
+                                      const Catalogue& catalogue, std::vector<Finding>& findings) {
+  if (!model.has_axis() || !model.has_servo()) return;
+  TargetBetweenRows between(model, catalogue);
+  const auto is_closed = [](const PreparedRecording& one) {
+    return one.inputs().axis() && one.inputs().closed_loop && !one.inputs().target_moves;
+  };
+  for (const PreparedRecording& one : checked.train)
+    if (is_closed(one)) between.add(one.inputs());
+  const auto share = between.steady();
+  if (!share) return;
+  for_each_recording(checked, is_closed, [&](PreparedRecording& one) {
+    findings.push_back({FindingKind::sampled_command,
+                        Severity::note,
+                        one.recording().name,
+                        one.inputs().target_deg.size() > 0 ? "target_deg" : "target_dps",
+                        "went on between the rows, as the motion shows: the servo is given what lies " +
+                            short_number(100.0 * share->value) +
+                            " % of the way to the next row's, on average",
+                        "log the target at the rate it is set",
+                        FindingAction::none,
+                        {}});
+    one.take_targets_between(model, share->value);
+  });
 }
 
 /// Whether a recording is of an axis whose command was logged.
@@ -261,6 +289,7 @@ THERMOPOWER_GAP_INLINE CheckedRecordings check(const Model& model, std::vector<R
     mend_what_lags(model, result, others);
     read_what_drove_before(model, result);
     read_between_rows(model, result, options.horizon_s, others);
+    read_targets_between_rows(model, result, catalogue, others);
     read_current_noise(model, result, others);
     read_when_switched(model, result, catalogue, others);
   }

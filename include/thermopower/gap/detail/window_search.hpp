@@ -69,13 +69,12 @@ public:
   /// The same, to keep. The search is over then.
   Attempt take() { return std::move(attempt_); }
 
-  /// Every single cause: those that cost much to simulate only where neither the others nor, far from the noise, sets of
-  /// them promise to come near it.
+  /// Every single cause, but for those that cost much to simulate: they wait until sets of the others have been tried.
   void try_singles() {
     tried_ = search_->try_singles(with_pairs_of_constants(causes_));
     search_->add(attempt_.candidates, tried_);
     renew();
-    if (!costly_.empty() && !does_for_now(attempt_.best())) add_late(costly_);
+    if (options_.effects_at_once < 2 && !costly_.empty() && !does_for_now(attempt_.best())) add_late(costly_);
     look_closely();
   }
 
