@@ -339,6 +339,13 @@ inline void PreparedRecording::mask_output(const Recording& recorded, const std:
   const std::vector<RunSpan> steady = power != nullptr ? steady_runs(*power, runs) : runs;
   traits.begins_with_a_step = power != nullptr;
   SampleMasks masks(values, steady, traits);
+  if (power != nullptr) {
+    const RowMask lost = lost_current(values, *power, masks.scale());
+    take_away(values, lost);
+    masks.take(lost);
+    list.add_rows(FindingKind::glitched_samples, Severity::warning, name, lost, FindingAction::masked,
+                  "are 0 where current flows at that power otherwise", "look at the current sensor's bus");
+  }
   RowMask spikes = masks.spikes();
   const RowMask bursts = masks.bursts();
   if (std::find(bursts.begin(), bursts.end(), 1) != bursts.end()) {
