@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
-#include <thermopower/actuator/duty.hpp>
 #include <thermopower/gap/data/robust.hpp>
 #include <thermopower/gap/data/sample_masks.hpp>
 #include <thermopower/gap/data/segments.hpp>
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// @file current_masks.hpp

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the thermopower authors
 #pragma once
 
+#include <thermopower/gap/compare/choice.hpp>
 #include <thermopower/gap/decide/evidence.hpp>
 #include <thermopower/gap/decide/gap_taken.hpp>
 #include <thermopower/gap/decide/search.hpp>
@@ -9,8 +10,6 @@
 #include <thermopower/gap/fit/fit_problem.hpp>
 #include <thermopower/gap/report/parts.hpp>
 
-#include <algorithm>
-#include <cstddef>
 #include <vector>
 
 namespace thermopower::gap::engine {

@@ -8,7 +8,6 @@
 #include <thermopower/gap/detail/window_search.hpp>
 #include <thermopower/gap/propose/inverse_score.hpp>
 
-#include <cstddef>
 #include <utility>
 #include <vector>
 

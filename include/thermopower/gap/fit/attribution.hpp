@@ -10,7 +10,6 @@
 #include <thermopower/gap/data/noise.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -5,7 +5,6 @@
 #include <thermopower/gap/fit/fit_problem.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/report/noise_of_errors.hpp>
-#include <thermopower/gap/report/rate_beside_angle.hpp>
 #include <thermopower/gap/report/score.hpp>
 
 #include <algorithm>
