@@ -203,60 +203,6 @@ TEST_CASE(
   CHECK(out.size() < static_cast<std::size_t>(to - from + 3));
 }
 
-TEST_CASE("a spike of a current whose power never rests is seen in the first row after a pause, too") {
-  // The power wanders, so that few rows of the sixteen between two pauses have one near that of the first.
-  Recording r = bench();
-  Eigen::VectorXd power(r.rows()), current(r.rows());
-  test::Noise noise(4);
-  for (Eigen::Index i = 0; i < r.rows(); ++i) {
-    power[i] = std::round(127.0 + 120.0 * std::sin(0.29 * static_cast<double>(i)));
-    current[i] = 1.5 * std::sqrt(power[i] / 255.0) + 0.005 * noise();
-  }
-  constexpr Eigen::Index first = 704, second = 720;
-  for (const Eigen::Index pause : {first, second})
-    for (Eigen::Index i = pause; i < r.rows(); ++i) r.t_s[i] += 40.0;
-  for (const Eigen::Index row : {Eigen::Index{300}, first, Eigen::Index{900}}) current[row] += 3.0;
-  r.set("power_param", power);
-  r.set("current_A", current);
-  const PreparedRecording prepared(test::bench_model(), r);
-  CHECK(taken(r, prepared, "current_A") == std::set<Eigen::Index>{300, first, 900});
-}
-
-TEST_CASE(
-    "a current that stood over a step of the power is masked, not that of a drive that answers every step late") {
-  const Eigen::Index late = GENERATE(0, 3), step_rows = 50;
-  CAPTURE(late);
-  Recording r = bench();
-  Eigen::VectorXd power(r.rows()), current(r.rows());
-  test::Noise noise(4);
-  std::uint32_t state = 20261128;
-  double level = 0.0;
-  for (Eigen::Index i = 0; i < r.rows(); ++i) {
-    if (i % step_rows == 0) {
-      const double before = level;
-      while (level == before)
-        level = 25.0 * static_cast<double>((state = state * 1664525u + 1013904223u) >> 29);
-    }
-    power[i] = level;
-    const double flows = power[std::max<Eigen::Index>(0, i - late)];
-    current[i] = std::round(1e3 * (1.5 * std::sqrt(flows / 255.0) + 0.003 * noise())) / 1e3;
-    if (late > 0 && i > 0 && i % step_rows < late) current[i] = current[i - 1];
-  }
-  std::set<Eigen::Index> bad;
-  for (const Eigen::Index row : {300, 650, 1100}) {
-    // Over the last one the logger pauses, too.
-    for (Eigen::Index i = row; row == 1100 && i < r.rows(); ++i) r.t_s[i] += 40.0;
-    for (Eigen::Index i = row; i < row + 3 && late == 0; ++i) {
-      current[i] = current[i - 1];
-      bad.insert(i);
-    }
-  }
-  r.set("power_param", power);
-  r.set("current_A", current);
-  const PreparedRecording prepared(test::bench_model(), r);
-  CHECK(taken(r, prepared, "current_A") == bad);
-}
-
 TEST_CASE("a rate cut off at the end of its range is masked there") {
   Recording r = axis();
   const double limit = 0.7 * r.column("rate_dps").cwiseAbs().maxCoeff();
@@ -663,25 +609,6 @@ TEST_CASE(
     CHECK(out.count(row) == 1);
   }
   CHECK(out.size() <= bad.size() + 3);
-}
-
-TEST_CASE("a spike of the current in a ramp of the power is masked from the ramp's first rows on") {
-  Recording r = bench();
-  test::Noise noise(5);
-  Eigen::VectorXd power(r.rows()), current(r.rows());
-  std::set<Eigen::Index> bad;
-  for (Eigen::Index i = 0; i < r.rows(); ++i) {
-    const double up = static_cast<double>(i % 150) - 75.0;  // rows since the rest ended
-    power[i] = std::round(std::clamp(4.0 * up, 0.0, 250.0));
-    current[i] = 12.0 * std::sqrt(power[i] / 255.0) / 8.0 + 0.003 * noise();
-    if (i % 150 == 75 + 2 + (i / 150)) {  // the second to the eleventh row of a ramp
-      current[i] += 2.0;
-      bad.insert(i);
-    }
-  }
-  r.set("power_param", power);
-  r.set("current_A", current);
-  CHECK(taken(r, PreparedRecording(test::bench_model(), r), "current_A") == bad);
 }
 
 TEST_CASE("spikes a few rows apart do not hide each other") {

@@ -146,26 +146,10 @@ TEST_CASE("spikes of a rate are masked though it bends") {
   nine_in_ten(bad, masked(r, "rate_dps"));
 }
 
-TEST_CASE("two spikes beside each other in a bent motion do not hide each other") {
-  Recording r = record(swings(), 0.02, 0.1, 0.0, false);
-  const std::set<Eigen::Index> bad = spoil_pairs(r, "angle_deg", [](Eigen::Index i) {
-    const double side = i % 2 == 0 ? 1.0 : -1.0;
-    return std::make_pair(2.0 * side, (i % 3 == 0 ? 1.6 : -1.6) * side);
-  });
-  nine_in_ten(bad, masked(r, "angle_deg"));
-}
-
 TEST_CASE("two equal spikes beside each other on a slow motion are masked") {
   Recording r = record(swings(), 0.002, 0.1, 0.0, false);
   const std::set<Eigen::Index> bad =
       spoil_pairs(r, "angle_deg", [](Eigen::Index) { return std::make_pair(1.7, 1.7); });
-  nine_in_ten(bad, masked(r, "angle_deg"));
-}
-
-TEST_CASE(
-    "where a motion has a corner every few rows, the rate shows which samples of its angle are spikes") {
-  Recording r = record(pushed_there_and_back(), 0.05, 0.03, 0.3, true);
-  const std::set<Eigen::Index> bad = spoil(r, "angle_deg", 0.03, 31);
   nine_in_ten(bad, masked(r, "angle_deg"));
 }
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,10 @@ void reorder(std::vector<Item>& items, const std::vector<std::size_t>& order) {
 template <class Item, class Key>
 void sort_by(std::vector<Item>& items, Key&& key) {
   std::vector<double> numbers;
-  for (const Item& one : items) numbers.push_back(static_cast<double>(key(one)));
-  assert(std::none_of(numbers.begin(), numbers.end(), [](double one) { return std::isnan(one); }));
+  for (const Item& one : items) {
+    const double number = static_cast<double>(key(one));
+    numbers.push_back(std::isnan(number) ? std::numeric_limits<double>::infinity() : number);
+  }
   reorder(items, ascending(numbers));
 }
 

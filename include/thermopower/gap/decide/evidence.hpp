@@ -498,7 +498,7 @@ inline void weigh(std::vector<Candidate>& candidates, const Weight& weight, cons
     one.against -= first;
     total += one.probability = std::exp(-one.against);
   }
-  assert(total >= 1.0);  // the first has odds of one
+  assert(!(total < 1.0));  // the first has odds of one
   for (Candidate& one : candidates) one.probability /= total;
 }
 

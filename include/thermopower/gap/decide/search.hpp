@@ -139,6 +139,26 @@ public:
     }
   }
 
+  /// Brings constants of the best candidates back that are far off without need. If a cause and the constants do the same
+  /// to the data, the cost lies in a long flat valley, along which only the prior pulls. A fit ends anywhere in it.
+  void settle_constants(std::vector<Candidate>& candidates, const Model& model) const {
+    constexpr std::size_t looked_at = 8;
+    FitOptions finest;
+    finest.iterations = 15;
+    finest.relative_decrease = 1e-7;
+    const double farthest = Attribution::out_of_sight * fittest(candidates).train.total();
+    std::vector<std::size_t> far_off;
+    for (const std::size_t index : by_fitness(candidates, 0)) {
+      const Candidate& one = candidates[index];
+      if (!one.explanation.effects.empty() && price_of_constants(one, model) > decision.rarity &&
+          !(one.train.total() > farthest))
+        far_off.push_back(index);
+      if (far_off.size() == looked_at) break;
+    }
+    in_parallel(far_off.size(), threads_,
+                [&](std::size_t i) { fine_.polish(candidates[far_off[i]], finest); });
+  }
+
   /// Fits the best candidates anew: the noise has changed.
   /// @param by  what residuals in units of the noise are multiplied with for that, by signal
   void renew(std::vector<Candidate>& candidates, const std::array<double, signal_count>& by) const {

@@ -95,7 +95,7 @@ struct SearchThresholds {
   Eigen::Index judged_rows = 20000;   ///< held out, on which explanations are weighed
   Eigen::Index windows_together = 4;  ///< neighbours that are kept: what remembers needs some time
   double fitted_window_s = 2.0;  ///< of an axis, at least: long windows tell more than those of the score
-  double tried_window_s = 0.5;
+  double tried_window_s = 0.5;   ///< of the first look, at most
 };
 
 /// The values in force.

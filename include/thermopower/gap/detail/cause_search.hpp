@@ -50,6 +50,7 @@ private:
     search.try_told(told_);
     search.try_curves();
     search.decide();
+    search.try_beside_dear_constants();
     search.try_third_causes();
     return search.take();
   }

@@ -140,7 +140,44 @@ public:
   }
 
   /// Weighs what was found on held-out data.
-  void decide() { weigh_all(); }
+  void decide() {
+    const bool has_less_noise = leave_only_noise();
+    look_beside_blows();
+    if (has_less_noise && options_.effects_at_once > 1 && has_room())
+      add_sets(search_->promising().pairs(attempt_.candidates, effects()));
+    weigh_all();
+    // What fits the data it was fitted to, and fails on others, was a stand-in.
+    constexpr double near = decision.near_floor;
+    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
+      if (!costly_.empty()) add_late(costly_);
+      if (!curves_.empty()) add_late(curves_);
+      weigh_all();
+    }
+  }
+
+  /// Where single causes reach the noise with constants so far off that a second one could stand in their place: the likeliest of
+  /// them with each further cause.
+  void try_beside_dear_constants() {
+    constexpr std::size_t tried = 3;
+    if (options_.effects_at_once < 2 ||
+        attempt_.candidates[likeliest(attempt_.candidates)].explanation.size() != 1)
+      return;
+    std::vector<Promise> sets;
+    std::size_t found = 0;
+    for (const std::size_t place : by_deviance(attempt_.candidates)) {
+      const Candidate& one = attempt_.candidates[place];
+      if (one.explanation.effects.size() != 1 || !in_the_running(one) ||
+          largest_noise_multiple(one.held_out) > decision.near_floor ||
+          !(price_of_constants(one, posing_.model()) > decision.rarity + decision.dear_constants))
+        continue;
+      if (++found > tried) break;
+      for (Promise& set : search_->promising().with_each(attempt_.candidates, place, effects()))
+        sets.push_back(std::move(set));
+    }
+    if (sets.empty()) return;
+    add_sets(sets);
+    weigh_all();
+  }
 
   /// Where a pair is the likeliest explanation, does what a second cause has to, and leaves room for a third one: it with
   /// each further cause. A joint has its weight, its friction and its cogs at once.
@@ -154,13 +191,6 @@ public:
       return;
     add_sets(search_->promising().with_each(attempt_.candidates, place, effects()));
     weigh_all();
-    // What fits the data it was fitted to, and fails on others, was a stand-in.
-    constexpr double near = decision.near_floor;
-    if ((!costly_.empty() || !curves_.empty()) && !attempt_.best().held_out.within(near * near)) {
-      if (!costly_.empty()) add_late(costly_);
-      if (!curves_.empty()) add_late(curves_);
-      weigh_all();
-    }
   }
 
 private:
@@ -214,12 +244,44 @@ private:
   /// The noise is what the best explanation leaves; then all are looked at anew.
   void renew() {
     const std::array<double, signal_count> before = attempt_.problem.sigma;
-    attempt_.problem.sigma = noise_left(attempt_.problem, attempt_.best(), train_);
+    attempt_.problem.sigma = noise_left(attempt_.problem, attempt_.best(), train_, taken_for_noise_);
     std::array<double, signal_count> by;
     for (std::size_t i = 0; i < signal_count; ++i) by[i] = before[i] / attempt_.problem.sigma[i];
     set_noise(attempt_.problem.sigma);
     attempt_.problem.correlation = mean_correlation(correlation_of(attempt_.best(), attempt_.problem));
     search_->renew(attempt_.candidates, by);
+  }
+
+  /// Blows that an explanation misses a little look like noise that remembers, in each signal. While a search is far from them
+  /// that is as well: it follows the motion between them. Where the best explanation strikes, and has found what it can, what
+  /// angle and rate show alike is no noise any more. Beside any other, what is missed may have any cause, and counts for as little as
+  /// noise does. @return whether that made a difference
+  bool leave_only_noise() {
+    if (!attempt_.best().explanation.strikes()) return false;
+    constexpr double matters = 1.25;  // times the noise
+    const std::array<double, signal_count> less =
+        noise_left(attempt_.problem, attempt_.best(), train_, TakenForNoise::what_differs);
+    bool is_less = false;
+    for (std::size_t i = 0; i < signal_count; ++i) is_less |= attempt_.problem.sigma[i] > matters * less[i];
+    if (!is_less) return false;
+    taken_for_noise_ = TakenForNoise::what_differs;
+    renew();
+    return true;
+  }
+
+  /// Where the best explanation strikes, looks for a deeper hollow beside that in which its fit ended, as long as there is one.
+  void look_beside_blows() {
+    constexpr int times = 4;
+    constexpr double deeper = 0.98;  // of the cost
+    for (int i = 0; i < times; ++i) {
+      const auto best = static_cast<std::size_t>(&attempt_.best() - attempt_.candidates.data());
+      const std::vector<Eigen::VectorXd> places = places_beside(attempt_.candidates[best]);
+      if (places.empty()) return;
+      Candidate beside = fine_->fit_from(attempt_.candidates[best].explanation, places, {});
+      if (!(beside.fit.cost < deeper * attempt_.candidates[best].fit.cost)) return;
+      attempt_.candidates[best] = std::move(beside);
+      renew();
+    }
   }
 
   /// Takes causes that waited among those that are tried.
@@ -237,6 +299,7 @@ private:
   }
 
   void weigh_all() {
+    search_->settle_constants(attempt_.candidates, posing_.model());
     search_->refit_rivals(attempt_.candidates);
     name_moved_constants(attempt_.candidates, posing_.model());
     attempt_.weight = correlation_of(attempt_.best(), attempt_.problem);
@@ -267,6 +330,7 @@ private:
   std::optional<Search> search_;
   std::vector<Explanation> causes_, costly_, curves_;  ///< those that are tried, and those that wait
   std::vector<Candidate> tried_;                       ///< the singles, as fitted to the first look
+  TakenForNoise taken_for_noise_ = TakenForNoise::what_looks_like_it;
   Attempt attempt_;
 };
 

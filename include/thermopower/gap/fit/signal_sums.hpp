@@ -66,7 +66,7 @@ struct SignalSums {
 
   /// Sets a signal's sums. @param unit  residuals are divided by it, > 0
   void set(std::size_t signal, const std::vector<double>& residuals, double unit) {
-    assert(signal < signal_count && unit > 0.0);
+    assert(signal < signal_count && !(unit <= 0.0));
     squares[signal] = samples[signal] = 0.0;
     block_squares[signal].fill(0.0);
     block_samples[signal].fill(0.0);

@@ -98,6 +98,29 @@ inline void lead_outside(Fitter& fitter, Candidate& candidate, const FitOptions&
   }
 }
 
+/// The end of a fit of a cause that strikes (EffectInfo::strikes), and the places beside it. Each place moves one parameter
+/// of such a cause by some hundredths to some tenths. Empty where no cause does.
+inline std::vector<Eigen::VectorXd> places_beside(const Candidate& candidate) {
+  std::vector<Eigen::VectorXd> places;
+  for (const CatalogueEntry* entry : candidate.explanation.effects) {
+    if (!entry->info.strikes) continue;
+    if (places.empty()) places.push_back(candidate.fit.point);
+    for (const Parameter& parameter : entry->info.parameters) {
+      const std::size_t i = candidate.place_of(*entry, parameter.name);
+      const Coordinate& one = candidate.list[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      for (const double share : {0.02, 0.05, 0.1, 0.2, 0.4})
+        for (const double by : {-share, share}) {
+          Eigen::VectorXd place = candidate.fit.point;
+          place[at] =
+              std::clamp(one.logarithmic ? place[at] + by : place[at] * (1.0 + by), one.lower, one.upper);
+          places.push_back(std::move(place));
+        }
+    }
+  }
+  return places;
+}
+
 /// Out of what free_from_trap() and lead_outside() know.
 inline void free_from_traps(Fitter& fitter, Candidate& candidate, const FitOptions& options) {
   free_from_trap(fitter, candidate, options);

@@ -5,6 +5,7 @@
 #include <thermopower/gap/data/noise.hpp>
 #include <thermopower/gap/fit/attribution.hpp>
 #include <thermopower/gap/report/noise_of_errors.hpp>
+#include <thermopower/gap/report/rate_beside_angle.hpp>
 #include <thermopower/gap/report/score.hpp>
 
 #include <algorithm>
@@ -46,12 +47,22 @@ inline Errors errors_left(const FitProblem& problem, const Candidate& candidate)
   return left;
 }
 
+/// The part of a candidate's residuals that is taken for noise.
+enum class TakenForNoise {
+  what_looks_like_it,  ///< in each signal: a motion that is missed counts, too, where it looks like noise that remembers
+  what_differs,  ///< no more than what a rate and the angle beside it do not show alike
+};
+
 /// Noise of each signal, as what a candidate leaves tells it; that of the problem where it says nothing of a signal.
 /// @param recordings  that the problem is made of, for the steps of their channels
 inline std::array<double, signal_count> noise_left(const FitProblem& problem, const Candidate& candidate,
-                                                   const std::vector<Inputs>& recordings) {
+                                                   const std::vector<Inputs>& recordings,
+                                                   TakenForNoise taken = TakenForNoise::what_looks_like_it) {
   const bool is_averaged = problem.segments.front().inputs->repeats.size() > 0;
   const Errors left = errors_left(problem, candidate);
+  RateBesideAngle::Most most;
+  if (taken == TakenForNoise::what_differs && !is_averaged)
+    most = RateBesideAngle(left, problem.segments).most_noise();
   const std::array<double, signal_count> wander =
       wander_of_command(augmented(*problem.model, candidate.explanation, candidate.list, candidate.fit.point),
                         problem.segments, *problem.catalogue);
@@ -60,15 +71,15 @@ inline std::array<double, signal_count> noise_left(const FitProblem& problem, co
     if (left.of[i].empty()) continue;
     const auto signal = static_cast<Signal>(i);
     const double quantum = is_averaged ? 0.0 : coarsest_quantum(recordings, signal),
-                 sd = std::min(
-                     noise_sd(left.of[i], left.gaps(signal), quantum, {}, problem.measured_of_axis(signal)),
-                     most_noise(problem, signal));
+                 sd = std::min(noise_sd(left.of[i], left.gaps(signal), quantum, {},
+                                        problem.measured_of_axis(signal), most.of(signal)),
+                               most_noise(problem, signal));
     sigma[i] = std::max(with_wander(sd, wander[i], left.rms(signal)), 1e-9);
   }
   return sigma;
 }
 
-/// Takes what a candidate leaves for a witness of the noise.
+/// Takes what a candidate leaves for a witness of the noise: all that looks like it.
 inline void measure_noise(FitProblem& problem, const Candidate& candidate,
                           const std::vector<Inputs>& recordings) {
   problem.sigma = noise_left(problem, candidate, recordings);
