@@ -43,7 +43,9 @@ protected:
     static const std::map<std::string, std::string> known = {{"current_A", "motor current"},
                                                              {"motor_C", "motor temperature"},
                                                              {"angle_deg", "angle"},
-                                                             {"rate_dps", "angular rate"}};
+                                                             {"rate_dps", "angular rate"},
+                                                             {"drive_A", "drive current"},
+                                                             {"voltage_V", "voltage"}};
     const auto found = known.find(name);
     return found == known.end() ? name : found->second;
   }

@@ -162,8 +162,11 @@ std::string with_unit(const std::string& number, const std::string& unit) {
 }
 
 std::string signal_text(const plant::SignalName& signal) {
+  // An effort is no signal of a bench or an axis, and has words of its own; a plant of one's own has names.
   const std::string name = to_string(signal);
-  return signal.known() ? variable_text(name).text : name;
+  return signal.known() || signal == plant::SignalName("drive_A") || signal == plant::SignalName("voltage_V")
+             ? variable_text(name).text
+             : name;
 }
 
 VariableText variable_text(const std::string& name, const std::string& unit) {
