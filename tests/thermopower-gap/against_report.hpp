@@ -40,12 +40,9 @@ protected:
   }
 
   static std::string words(const std::string& name) {
-    static const std::map<std::string, std::string> known = {{"current_A", "motor current"},
-                                                             {"motor_C", "motor temperature"},
-                                                             {"angle_deg", "angle"},
-                                                             {"rate_dps", "angular rate"},
-                                                             {"drive_A", "drive current"},
-                                                             {"voltage_V", "voltage"}};
+    static const std::map<std::string, std::string> known = {
+        {"current_A", "motor current"}, {"motor_C", "motor temperature"}, {"angle_deg", "angle"},
+        {"rate_dps", "angular rate"},   {"drive_A", "drive current"},     {"voltage_V", "voltage"}};
     const auto found = known.find(name);
     return found == known.end() ? name : found->second;
   }
