@@ -161,13 +161,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return text.empty() ? number : number + "\u00a0" + text;
 }
 
-std::string signal_text(const plant::SignalName& signal) {
-  // An effort is no signal of a bench or an axis, and has words of its own; a plant of one's own has names.
-  const std::string name = to_string(signal);
-  return signal.known() || signal == plant::SignalName("drive_A") || signal == plant::SignalName("voltage_V")
-             ? variable_text(name).text
-             : name;
-}
+std::string signal_text(const plant::SignalName& signal) { return plant::in_words(to_string(signal)); }
 
 VariableText variable_text(const std::string& name, const std::string& unit) {
   if (const plant::VariableWords* const words = plant::words_of(name))

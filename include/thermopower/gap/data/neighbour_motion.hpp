@@ -86,16 +86,12 @@ struct NeighbourMotion {
   double rest = 0.0;  ///< root mean square of what the polynomial leaves of them, per degree of freedom
 };
 
-/// No sample.
-constexpr std::size_t no_sample = static_cast<std::size_t>(-1);
-
 /// The polynomial of least squares of some neighbours on either side, at the sample between them. Fewer coefficients than
 /// neighbours.
 /// @param beside  neighbours on either side (1..5), which there must be
-/// @param degree  of the polynomial (0..7), less than 2 beside - 1, or 2 beside - 2 but for one
-/// @param but     one of them that takes no part, either
+/// @param degree  of the polynomial (0..7), less than 2 beside - 1
 inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size_t i, std::size_t beside,
-                                        std::size_t degree, std::size_t but = no_sample) {
+                                        std::size_t degree) {
   constexpr std::size_t most = 10, most_coefficients = 8;
   std::size_t count = 0;
   std::array<double, most> left{};
@@ -105,7 +101,7 @@ inline NeighbourMotion neighbour_motion(const OrderedSamples& samples, std::size
       std::max(samples.at[i] - samples.at[i - beside], samples.at[i + beside] - samples.at[i]);
   std::array<double, most> at{};
   for (std::size_t j = i - beside; j <= i + beside; ++j) {
-    if (j == i || j == but) continue;
+    if (j == i) continue;
     at[count] = (samples.at[j] - samples.at[i]) / width;
     left[count] = samples.values[j] - samples.values[i];  // so that large values cost no digits
     ++count;

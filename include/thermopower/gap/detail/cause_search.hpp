@@ -34,7 +34,7 @@ public:
   Attempt run() const {
     const double long_s = posing_.long_window_s(), short_s = posing_.options().horizon_s;
     Attempt attempt = search(long_s);
-    if (attempt.horizon_s == long_s && train_.front().axis() && short_s < long_s && attempt.is_far()) {
+    if (train_.front().axis() && short_s < long_s && attempt.is_far()) {
       Attempt shorter = search(short_s);
       if (shorter.closes_more_than(attempt)) attempt = std::move(shorter);
     }

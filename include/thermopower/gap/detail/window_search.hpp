@@ -41,7 +41,7 @@ public:
         as_judged_(as_judged),
         train_(train),
         horizon_s_(horizon_s) {
-    attempt_.problem = fitted(horizon_s_);
+    attempt_.problem = fitted();
     pose_first_looks();
     glimpse_.emplace(glimpse_problem_);
     coarse_.emplace(coarse_problem_, glimpse_problem_);
@@ -71,8 +71,7 @@ public:
 
   /// Every single cause, but for those that cost much to simulate: they wait until sets of the others have been tried.
   void try_singles() {
-    tried_ = search_->try_singles(with_pairs_of_constants(causes_));
-    search_->add(attempt_.candidates, tried_);
+    search_->add(attempt_.candidates, search_->try_singles(with_pairs_of_constants(causes_)));
     renew();
     if (options_.effects_at_once < 2 && !costly_.empty() && !does_for_now(attempt_.best())) add_late(costly_);
     look_closely();
@@ -98,8 +97,7 @@ public:
     renew();
   }
 
-  /// Sets of causes. Where neither a single cause nor a set that promises much comes near the noise in long windows, the
-  /// search goes on in the short ones of the score, if it is nearer there.
+  /// Sets of causes, and then those that cost much to simulate, alone and in sets, where there is room for them.
   void try_sets() {
     if (options_.effects_at_once < 2) return;
     if (!has_room()) renew();  // once more: what is weighed in the end has seen the noise of the best one
@@ -211,11 +209,11 @@ private:
     renew();
   }
 
-  /// What explanations are fitted to in the end, in windows of some length.
-  FitProblem fitted(double window_s) {
-    Posing::Extent extent = posing_.fitted(window_s);
+  /// What explanations are fitted to in the end.
+  FitProblem fitted() {
+    Posing::Extent extent = posing_.fitted(horizon_s_);
     extent.together = search_extent.windows_together;
-    attempt_.horizon_s = window_s;
+    attempt_.horizon_s = horizon_s_;
     return posing_.pose(train_, extent);
   }
 
@@ -286,9 +284,7 @@ private:
 
   /// Takes causes that waited among those that are tried.
   void add_late(std::vector<Explanation>& waiting) {
-    const std::vector<Candidate> further = search_->try_further(waiting, attempt_.candidates);
-    search_->add(attempt_.candidates, further);
-    tried_.insert(tried_.end(), further.begin(), further.end());
+    search_->add(attempt_.candidates, search_->try_further(waiting, attempt_.candidates));
     causes_.insert(causes_.end(), waiting.begin(), waiting.end());
     waiting.clear();
     renew();
@@ -329,7 +325,6 @@ private:
   std::optional<Attribution> glimpse_, coarse_, longer_, fine_;  ///< once the problems are posed
   std::optional<Search> search_;
   std::vector<Explanation> causes_, costly_, curves_;  ///< those that are tried, and those that wait
-  std::vector<Candidate> tried_;                       ///< the singles, as fitted to the first look
   TakenForNoise taken_for_noise_ = TakenForNoise::what_looks_like_it;
   Attempt attempt_;
 };
