@@ -4,7 +4,7 @@
 
 # sh tests/mcdc/mcdc.sh [DIR]   builds the tests of limiters, power-up, faults and codec for MC/DC in DIR (build/mcdc), runs them,
 #                               and prints which decisions they have covered. cmake --build <build> --target mcdc does the same.
-# Fails when a condition is not covered that docs/reference/mcdc.md does not explain, or explains one that is.
+# Fails when a condition is not covered that tests/mcdc/uncovered.md does not explain, or explains one that is.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:-$root/build/mcdc}
@@ -33,7 +33,7 @@ cd "$root/include/thermopower"
 echo "Not held to it, but proved by machine (docs/explain/machine-proofs.md):"
 python3 -B "$root/tests/mcdc/table.py" "$build/coverage.json" . - control/certified/*.hpp
 echo "Limiters, power-up, faults and codec:"
-python3 -B "$root/tests/mcdc/table.py" "$build/coverage.json" . "$root/docs/reference/mcdc.md" \
+python3 -B "$root/tests/mcdc/table.py" "$build/coverage.json" . "$root/tests/mcdc/uncovered.md" \
   control/*limiter*.hpp control/fixed_point/*limiter*.hpp control/power_in_force.hpp \
   actuator/power_up.hpp actuator/start_bounds.hpp actuator/stored_state.hpp actuator/record_ring.hpp actuator/hottest_journal.hpp \
   control/air_temperature.hpp control/fixed_point/air_temperature.hpp control/position_error.hpp control/utilisation.hpp \

@@ -75,10 +75,10 @@ def main():
         explained.discard((name, conditions, code))
         wrong += not known
         print("%s:%d: condition %s of `%s`: %s" %
-              (name, line, conditions, code, "not covered, explained in mcdc.md" if known else "NOT COVERED"))
+              (name, line, conditions, code, "not covered, explained in uncovered.md" if known else "NOT COVERED"))
     for name, conditions, code in sorted(explained):
         wrong += 1
-        print("%s: condition %s of `%s` is explained in mcdc.md, but covered or gone" % (name, conditions, code))
+        print("%s: condition %s of `%s` is explained in uncovered.md, but covered or gone" % (name, conditions, code))
     return 1 if wrong else 0
 
 

@@ -8,7 +8,7 @@ Each change is compiled into the tests that include the header, which are then r
 functions are compiled all at once and chosen when the tests run, others one at a time. What no test fails for is
 compiled once more with optimisation, together with instances/GROUP.cpp, which instantiates all of the header: the same object code
 as of the original is the same behaviour. With --sanitizers what is left of those compiled at once runs again under the address and
-undefined-behaviour sanitizers. What still survives must be explained in docs/reference/mutation.md by a line
+undefined-behaviour sanitizers. What still survives must be explained in tests/mutation/survivors.md by a line
 "- `HEADER` `CODE` -> `CHANGED`", and what stands there must survive: the exit status is 0 only when both hold.
 
 Results are kept in DIR/journal.jsonl under a hash of the group's headers, its tests and the compiler, so that a run that was stopped goes
@@ -37,7 +37,7 @@ import changes
 HERE = os.path.dirname(os.path.realpath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 INCLUDE = os.path.join(ROOT, "include")
-PAGE = os.path.join(ROOT, "docs", "reference", "mutation.md")
+PAGE = os.path.join(HERE, "survivors.md")
 # Of each group: its headers, and its tests in the order in which they are asked, those that take long last; those of one list are
 # compiled as one.
 GROUPS = {
@@ -419,16 +419,16 @@ def report(results, all_of_it, tools, seconds):
         if entry["result"] == SURVIVED:
             wrong += entry["name"] not in explained
             print("%s:%d: %s: %s" % (entry["header"], entry["line"], entry["name"],
-                                     "survives, explained in mutation.md" if entry["name"] in explained else "SURVIVES"))
+                                     "survives, explained in survivors.md" if entry["name"] in explained else "SURVIVES"))
         elif entry["name"] in explained:
             wrong += 1
-            print("%s is explained in mutation.md, but is: %s" % (entry["name"], entry["result"]))
+            print("%s is explained in survivors.md, but is: %s" % (entry["name"], entry["result"]))
     if len(results) == all_of_it:
         asked = {entry["header"] for entry in results}
         for name in sorted(explained - {entry["name"] for entry in results}):
             if name.split("`")[1] in asked:
                 wrong += 1
-                print("%s is explained in mutation.md, but gone" % name)
+                print("%s is explained in survivors.md, but gone" % name)
     return 1 if wrong else 0
 
 
