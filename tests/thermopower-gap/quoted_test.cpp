@@ -130,7 +130,7 @@ TEST_CASE(
 
 TEST_CASE("the table and the quotation of the thesis's motors are what the program says of them") {
   const std::string here = std::string(THERMOPOWER_ROOT) + "/examples/thesis_gap/",
-                    page = text_of(std::string(THERMOPOWER_ROOT) + "/docs/explain/thesis-gap.md");
+                    page = text_of(std::string(THERMOPOWER_ROOT) + "/docs/explain/real-recordings.md");
   const struct {
     const char *row, *name, *laws;
   } motors[] = {{"BGM5208-200-12", "bgm5208", "programmed"},
@@ -142,7 +142,7 @@ TEST_CASE("the table and the quotation of the thesis's motors are what the progr
         diagnosed(recorded(here + motor.name + "_" + motor.laws + ".json",
                            here + motor.name + "_chapter4.csv", here + motor.name + "_chapter5.csv"));
     if (motor.laws == std::string("programmed") && motor.name == std::string("bgm5208"))
-      check_quotes("docs/explain/thesis-gap.md", 2, said);
+      check_quotes("docs/explain/real-recordings.md", 2, said);
     Words verdict, score;
     for (const std::string& line : lines_of(said)) {
       const Words words = words_of(line);
